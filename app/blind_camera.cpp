@@ -2,26 +2,18 @@
 #include "app/blind_camera.h"
 
 #include <fmt/format.h>
-#include <glm/gtc/constants.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace binosplat {
 
 std::string describeNearest(const Pose& world_from_camera, std::span<const glm::vec3> positions, double near) {
     if (positions.empty()) { return "no splat is seen: the scene has none"; }
-    double nearest = std::numeric_limits<double>::infinity();
-    glm::dvec3 towards(0.0);
-    for (const glm::vec3& position : positions) {
-        const glm::dvec3 offset = glm::dvec3(position) - world_from_camera.position;
-        if (const double distance = glm::length(offset); distance < nearest) {
-            nearest = distance;
-            towards = offset;
-        }
-    }
     const glm::dvec3 eye = world_from_camera.position, forward = world_from_camera.orientation * glm::dvec3(0.0, 0.0, 1.0);
+    const auto distanceTo = [&](const glm::vec3& position) { return glm::distance(eye, glm::dvec3(position)); };
+    const glm::dvec3 towards = glm::dvec3(*std::ranges::min_element(positions, {}, distanceTo)) - eye;
+    const double nearest = glm::length(towards);
     const double cosine = nearest > 0.0 ? glm::dot(towards, forward) / nearest : 1.0;
     return fmt::format(
         "no splat is seen from {:.4g},{:.4g},{:.4g}: the nearest is {:.4g} scene units away, {:.0f} degrees off the middle of the "

@@ -24,10 +24,7 @@ void runConvert(const ConvertOptions& options) {
               options.crop->y, options.crop->z, options.crop->w);
         notes.lines.push_back(fmt::format("{} of {} splats lie within the sphere of --crop", scene.size(), before));
     }
-    {
-        ProgressLine line("writing " + out);
-        target.write(scene, out, [&](double share) { line.show(share); });
-    }
+    target.write(scene, out, ProgressLine("writing " + out).progress());
     fmt::print("{}: {} splats ({}), SH degree {}, {} bytes\n", out, scene.size(), scene.isGaussian3d() ? "3D Gaussians" : "discs",
                scene.sh_degree, std::filesystem::file_size(options.out));
     fmt::print("  loses: {}\n", target.describeLoss(scene));

@@ -21,51 +21,12 @@ namespace {
 // A picture asks for what it shows, and next to nothing beside it.
 constexpr double kPictureLookAhead = 0.1;
 
-}  // namespace
-
-LevelChoice levelChoice(const LoadOptions& options, std::uint64_t memory_limit_mib) {
-    if (memory_limit_mib == 0) { return {options.lod, {}}; }
-    return {options.lod, [limit_bytes = memory_limit_mib << 20, options](std::uint64_t splats, int sh_degree) {
-                const int kept = std::min(sh_degree, static_cast<int>(options.sh_degree.value_or(kMaxShDegree)));
-                return splats <= limit_bytes / deviceBytesPerSplat(kept, !options.flatten);
-            }};
-}
-
-namespace {
-
 // Fewer colours, 3D Gaussians as discs, or dimmed, where the user says so; a file may itself say that its splats are to be dimmed.
 void drawAs(const LoadOptions& options, Scene& scene, LoadNotes& notes) {
     if (options.sh_degree) { limitShDegree(scene, static_cast<int>(*options.sh_degree), notes); }
     if (options.flatten) { flatten(scene, notes); }
     if (options.antialiased) { scene.antialiased = scene.isGaussian3d(); }
 }
-
-}  // namespace
-
-Scene loadAsAsked(const std::string& source, const LoadOptions& options, std::uint64_t memory_limit_mib, LoadNotes& notes,
-                  const Progress& progress, std::uint64_t builtin_splats) {
-    const WebSettings web{webCacheFolder(), options.cache_limit_mib << 20, {}};
-    Scene scene = loadSceneFromAnywhere(source, builtin_splats, notes, progress, levelChoice(options, memory_limit_mib), web);
-    drawAs(options, scene, notes);
-    return scene;
-}
-
-Scene loadWithProgress(const std::string& source, const LoadOptions& options, LoadNotes& notes, std::uint64_t memory_limit_mib) {
-    ProgressLine line("loading " + source);
-    return loadAsAsked(source, options, memory_limit_mib, notes, [&](double share) { line.show(share); });
-}
-
-bool mayLive(const std::string& source, const LoadOptions& options) {
-    check(options.splat_budget == 0 || !options.lod, "{}: lod {} is one level, splat-budget chooses among all: expected one of the two",
-          source, options.lod.value_or(0));
-    if (options.lod) { return false; }
-    const bool is_streamed = isStreamedScene(source);
-    check(options.splat_budget == 0 || is_streamed,
-          "{}: has no levels of detail, expected a streamed SOG scene (lod-meta.json) for --splat-budget to choose among", source);
-    return is_streamed || isMovingScene(source);
-}
-
-namespace {
 
 // As much as the finest level may take of the device, which needs some for frames.
 std::uint64_t memoryForScene(const Context& context, std::uint64_t memory_limit_mib) {
@@ -118,6 +79,36 @@ OpenedScene openMoving(const Context& context, const std::string& source, const 
 
 }  // namespace
 
+LevelChoice levelChoice(const LoadOptions& options, std::uint64_t memory_limit_mib) {
+    if (memory_limit_mib == 0) { return {options.lod, {}}; }
+    return {options.lod, [limit_bytes = memory_limit_mib << 20, options](std::uint64_t splats, int sh_degree) {
+                const int kept = std::min(sh_degree, static_cast<int>(options.sh_degree.value_or(kMaxShDegree)));
+                return splats <= limit_bytes / deviceBytesPerSplat(kept, !options.flatten);
+            }};
+}
+
+Scene loadAsAsked(const std::string& source, const LoadOptions& options, std::uint64_t memory_limit_mib, LoadNotes& notes,
+                  const Progress& progress, std::uint64_t builtin_splats) {
+    const WebSettings web{webCacheFolder(), options.cache_limit_mib << 20, {}};
+    Scene scene = loadSceneFromAnywhere(source, builtin_splats, notes, progress, levelChoice(options, memory_limit_mib), web);
+    drawAs(options, scene, notes);
+    return scene;
+}
+
+Scene loadWithProgress(const std::string& source, const LoadOptions& options, LoadNotes& notes, std::uint64_t memory_limit_mib) {
+    return loadAsAsked(source, options, memory_limit_mib, notes, ProgressLine("loading " + source).progress());
+}
+
+bool mayLive(const std::string& source, const LoadOptions& options) {
+    check(options.splat_budget == 0 || !options.lod, "{}: lod {} is one level, splat-budget chooses among all: expected one of the two",
+          source, options.lod.value_or(0));
+    if (options.lod) { return false; }
+    const bool is_streamed = isStreamedScene(source);
+    check(options.splat_budget == 0 || is_streamed,
+          "{}: has no levels of detail, expected a streamed SOG scene (lod-meta.json) for --splat-budget to choose among", source);
+    return is_streamed || isMovingScene(source);
+}
+
 std::optional<OpenedScene> openLive(const Context& context, const std::string& source, const RunOptions& run, StreamFor purpose,
                                     const Progress& progress) {
     if (!isStreamedScene(source)) { return openMoving(context, source, run, progress); }
@@ -147,8 +138,6 @@ std::optional<OpenedScene> openLive(const Context& context, const std::string& s
     return scene;
 }
 
-namespace {
-
 void settle(LiveScene& scene, std::span<const Eye> eyes, const Progress& progress) {
     scene.settle(eyes, [&](double share) {
         stopIfInterrupted();
@@ -156,15 +145,6 @@ void settle(LiveScene& scene, std::span<const Eye> eyes, const Progress& progres
     });
     for (const std::string& said : scene.takeLines()) { fmt::print(stderr, "binosplat: {}\n", said); }
 }
-
-}  // namespace
-
-void settleWithProgress(LiveScene& scene, std::span<const Eye> eyes) {
-    ProgressLine line("loading what is seen of " + scene.name());
-    settle(scene, eyes, [&](double share) { line.show(share); });
-}
-
-void settleQuietly(LiveScene& scene, std::span<const Eye> eyes) { settle(scene, eyes, {}); }
 
 FrameCounters::Streaming streamingOf(const LiveScene& scene) {
     const StreamCounters counters = scene.counters();
@@ -174,8 +154,7 @@ FrameCounters::Streaming streamingOf(const LiveScene& scene) {
 Scene loadAs(const RunOptions& run, const std::string& source, std::uint64_t builtin_splats) {
     LoadNotes notes;
     ProgressLine line("loading " + source);
-    const Progress progress = isAddress(source) ? Progress([&](double share) { line.show(share); }) : Progress();
-    Scene scene = loadAsAsked(source, run.load, run.memory_limit_mib, notes, progress, builtin_splats);
+    Scene scene = loadAsAsked(source, run.load, run.memory_limit_mib, notes, isAddress(source) ? line.progress() : nullptr, builtin_splats);
     if (!notes.stale.empty()) { fmt::print(stderr, "binosplat: {}\n", notes.stale); }
     return scene;
 }

@@ -43,9 +43,8 @@ bool mayLive(const std::string& source, const LoadOptions& options);
 // Of such a source; empty where it is to be loaded whole all the same.
 std::optional<OpenedScene> openLive(const Context& context, const std::string& source, const RunOptions& run, StreamFor purpose,
                                     const Progress& progress = {});
-// Until all is there that the eyes and the time ask for, with progress on the terminal, or without. Says what cannot be had.
-void settleWithProgress(LiveScene& scene, std::span<const Eye> eyes);
-void settleQuietly(LiveScene& scene, std::span<const Eye> eyes);
+// Until all is there that the eyes and the time ask for. Says what cannot be had.
+void settle(LiveScene& scene, std::span<const Eye> eyes, const Progress& progress = {});
 // What there is of it, for reports.
 FrameCounters::Streaming streamingOf(const LiveScene& scene);
 

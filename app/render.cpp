@@ -83,7 +83,6 @@ void warnOfBlindFrames(const PathReport& report, std::span<const glm::vec3> posi
 
 void runRender(const RenderOptions& options) {
     const StereoOptions& stereo = options.run.stereo;
-    const Mode mode = stereo.mode;
     // Whatever can be known to fail is found out before the scene is loaded.
     requirePeriphery(stereo);
     OutputFiles files(options.out);
@@ -109,10 +108,7 @@ void runRender(const RenderOptions& options) {
     if (!opened) { opened.emplace(contextOptions(options.run)); }
     const Context& context = *opened;
     std::optional<const GpuScene> whole;
-    if (live == nullptr) {
-        ProgressLine line("uploading " + options.scene);
-        whole.emplace(context, scene, [&](double share) { line.show(share); });
-    }
+    if (live == nullptr) { whole.emplace(context, scene, ProgressLine("uploading " + options.scene).progress()); }
     const GpuScene& gpu_scene = whole ? *whole : live->scene();
     const RenderOptions used = asUsed(options, scene, notes, live);
     const std::vector<glm::vec3> positions = std::move(scene.positions);  // for a camera that sees none of them
@@ -137,8 +133,8 @@ void runRender(const RenderOptions& options) {
         warnOfBlindFrames(said, positions);
     } else {
         settings.keep_classes = true;
-        const std::span<const Eye> eyes = mode == Mode::kMono ? std::span(&cameras.middle, 1) : std::span<const Eye>(cameras.eyes);
-        if (live != nullptr) { settleWithProgress(*live, eyes); }
+        const std::span<const Eye> eyes = stereo.mode == Mode::kMono ? std::span(&cameras.middle, 1) : std::span<const Eye>(cameras.eyes);
+        if (live != nullptr) { settle(*live, eyes, ProgressLine("loading what is seen of " + live->name()).progress()); }
         FrameResult result = renderTimed(frame, eyes, settings);
         if (live != nullptr) { result.counters.streaming = streamingOf(*live); }
         writePictures(files, frame, settings);

@@ -53,8 +53,7 @@ void requireNoOthers(const std::filesystem::path& folder, std::size_t frames, bo
 }  // namespace
 
 HeadPath readHeadPath(const RenderOptions& options) {
-    HeadMotion motion =
-        readHeadMotion(options.path, options.path_axes == "unity" ? MotionAxes::kUnity : MotionAxes::kOpenXr, options.segment);
+    HeadMotion motion = readHeadMotion(options.path, options.path_axes, options.segment);
     std::vector<double> times_s = frameTimes(motion, options.segment, options.path);
     requireNoOthers(options.out, times_s.size(), options.run.stereo.mode == Mode::kMono);
     return {std::move(motion), std::move(times_s)};
@@ -74,7 +73,7 @@ std::vector<PathFrame> renderPath(StereoFrame& frame, LiveScene* live, const Fra
         const std::span<const Eye> eyes = mono ? std::span(&cameras.middle, 1) : std::span<const Eye>(cameras.eyes);
         if (live != nullptr) {
             live->setTime(time_s - path.times_s.front());
-            settleQuietly(*live, eyes);
+            settle(*live, eyes);
         }
         // The first frame of a device makes its kernels, which the report is not about.
         if (frames.empty()) { frame.render(eyes, settings); }

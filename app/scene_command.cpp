@@ -14,14 +14,8 @@ void runScene(const SceneOptions& options) {
     const std::filesystem::path folder = options.out.has_parent_path() ? options.out.parent_path() : ".";
     check(std::filesystem::is_directory(folder), "{}: cannot be written, {} must be a directory", options.out.string(), folder.string());
     const std::string source = isBuiltin(options.name) ? options.name : "builtin:" + options.name;
-    Scene scene;
-    {
-        ProgressLine line("making " + source);
-        scene = makeBuiltin(
-            source, options.splats, [&](double share) { line.show(share); }, options.frame);
-    }
-    ProgressLine line("writing " + options.out.string());
-    writePly(scene, options.out.string(), [&](double share) { line.show(share); });
+    const Scene scene = makeBuiltin(source, options.splats, ProgressLine("making " + source).progress(), options.frame);
+    writePly(scene, options.out.string(), ProgressLine("writing " + options.out.string()).progress());
 }
 
 }  // namespace binosplat

@@ -10,23 +10,24 @@ namespace binosplat {
 void runStability(const StabilityOptions& options) {
     OutputFiles files(options.out);
     const Context context({.device = options.device});
-    StabilityRun run{context.deviceName(), stability::makeCatalogue(), {}, stability::makePaths(), {}, stability::makeSequences(), {}};
+    const auto cases = stability::makeCatalogue();
+    const auto paths = stability::makePaths();
+    const auto sequences = stability::makeSequences();
+    const std::size_t all = cases.size() + paths.size() + sequences.size();
+    StabilityRun run{context.deviceName(), {}, {}, {}};
     {
         ProgressLine line("stability");
         stability::CaseRunner runner(context);
-        const auto all = static_cast<double>(run.cases.size() + run.paths.size() + run.sequences.size());
-        for (const stability::Case& one : run.cases) {
-            run.scores.push_back(runner.run(one));
-            line.show(static_cast<double>(run.scores.size()) / all);
-        }
-        for (const stability::Path& path : run.paths) {
-            run.path_scores.push_back(runner.run(path));
-            line.show(static_cast<double>(run.scores.size() + run.path_scores.size()) / all);
-        }
-        for (const stability::Sequence& sequence : run.sequences) {
-            run.sequence_scores.push_back(runner.run(sequence));
-            line.show(static_cast<double>(run.scores.size() + run.path_scores.size() + run.sequence_scores.size()) / all);
-        }
+        std::size_t done = 0;
+        const auto runEach = [&](const auto& those, auto& scored) {
+            for (const auto& one : those) {
+                scored.emplace_back(one, runner.run(one));
+                line.show(static_cast<double>(++done) / static_cast<double>(all));
+            }
+        };
+        runEach(cases, run.cases);
+        runEach(paths, run.paths);
+        runEach(sequences, run.sequences);
     }
     const std::string table = stabilityTable(run);
     writeText(files.staging() / "stability.txt", table);
@@ -36,8 +37,8 @@ void runStability(const StabilityOptions& options) {
     files.publish();
     fmt::print("{}", table);
     const std::vector<std::string> failures = run.failures();
-    check(failures.empty(), "stability: {} of {} cases miss their bounds, the first is: {}", failures.size(),
-          run.cases.size() + run.paths.size() + run.sequences.size(), failures.empty() ? "" : failures.front());
+    check(failures.empty(), "stability: {} of {} cases miss their bounds, the first is: {}", failures.size(), all,
+          failures.empty() ? "" : failures.front());
 }
 
 }  // namespace binosplat

@@ -1,4 +1,5 @@
 // Facts about the window's end: by its cross or by Escape, with the device, with the display, and before there is a headset.
+#include "app/view/panel/panel_font.h"
 #include "app/view/window/mirror_window.h"
 #include "engine/error.h"
 #include "tests/view_window.h"
@@ -86,8 +87,8 @@ TEST_CASE("a picture of a frame that was given up is drawn in the next, and a wi
         // Of the panel, too: its letters may change before it is drawn again.
         canvas.begin({}, 0.01);
         canvas.giveUp();
-        REQUIRE(canvas.wantsLetters("\xd7\x90"));
-        canvas.buildLetters();
+        REQUIRE(canvas.font().want("\xd7\x90"));
+        canvas.font().build();
         canvas.takeLetters();
         canvas.begin({}, 0.01);
         canvas.giveUp();

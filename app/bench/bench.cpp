@@ -12,22 +12,12 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <iterator>
 
 namespace binosplat {
 
 namespace {
-
-// Counts points, which take about as long as each other.
-class PointProgress {
-public:
-    explicit PointProgress(std::size_t points) : points_(points) {}
-    void next() { line_.show(static_cast<double>(++done_) / static_cast<double>(points_)); }
-
-private:
-    ProgressLine line_{"bench"};
-    std::size_t points_, done_ = 0;
-};
 
 std::vector<std::uint64_t> countsOf(const std::string& source, const BenchSeries& series) {
     // A file has the splats it has: it is measured once for all counts of a series.
@@ -47,11 +37,9 @@ std::size_t pointCount(const BenchPlan& plan, const RunOptions& run) {
 }
 
 // One scene with one splat count, drawn in one way: every size, headset and view.
-std::vector<BenchResult> benchScene(const Context& context, const BenchPlan& plan, const BenchSeries& series,
-                                    const std::vector<BenchView>& views, const BenchScene& loaded, PointProgress& progress) {
-    std::vector<BenchResult> results;
+void benchScene(const Context& context, const BenchPlan& plan, const BenchSeries& series, const std::vector<BenchView>& views,
+                const BenchScene& loaded, std::vector<BenchResult>& results, const std::function<void()>& next) {
     const Scene& scene = loaded.scene();
-    const GpuScene& gpu_scene = loaded.gpuScene();
     for (const glm::uvec2 size_px : series.sizes_px) {
         for (const std::string& headset : plan.headsets) {
             for (const BenchView& view : views) {
@@ -59,13 +47,12 @@ std::vector<BenchResult> benchScene(const Context& context, const BenchPlan& pla
                 if (size_px.x > 0) { run.camera.size_px = size_px; }
                 if (!headset.empty()) { run.camera.headset = headset; }
                 const Cameras cameras = makeCameras(run, readCameraFiles(run.camera), scene);
-                const BenchPoint point{gpu_scene, scene, run, cameras, series.name, view.name, run.camera.headset, loaded.live()};
+                const BenchPoint point{loaded.gpuScene(), scene, run, cameras, series.name, view.name, run.camera.headset, loaded.live()};
                 std::ranges::move(benchPoint(context, point, plan), std::back_inserter(results));
-                progress.next();
+                next();
             }
         }
     }
-    return results;
 }
 
 // Headsets, cameras: whatever can be known to fail is found out before anything is measured.
@@ -84,13 +71,16 @@ void benchSpeed(const BenchOptions& options, const BenchPlan& plan) {
     const Context context(contextOptions(options.run));
     BenchRun run{context.deviceName(), options.run.config, {}};
     {
-        PointProgress progress(pointCount(plan, options.run));
+        // Points take about as long as each other.
+        const auto points = static_cast<double>(pointCount(plan, options.run));
+        double done = 0.0;
+        ProgressLine progress("bench");
         for (const std::string& source : plan.scenes) {
             for (const BenchSeries& series : plan.series) {
                 for (const std::uint64_t splats : countsOf(source, series)) {
                     for (const DrawnViews& drawn : viewsOf(plan, source, options.run)) {
                         const BenchScene scene(context, drawn.run, source, splats);
-                        std::ranges::move(benchScene(context, plan, series, drawn.views, scene, progress), std::back_inserter(run.results));
+                        benchScene(context, plan, series, drawn.views, scene, run.results, [&] { progress.show(++done / points); });
                     }
                 }
             }

@@ -22,11 +22,12 @@ Json timesJson(const NamedTimes& times) {
 }
 
 // PSNR is null where the pictures are equal: JSON has no infinity.
+Json numberOrNull(const std::optional<double>& value) { return value && std::isfinite(*value) ? Json(*value) : Json(); }
+
 Json qualityJson(const std::vector<OriginScores>& quality) {
     Json json = Json::object();
     for (const OriginScores& scores : quality) {
-        Json one{{"pixels", scores.pixels}, {"mean_square", scores.mean_square}, {"psnr_db", scores.psnrDb()}};
-        if (!std::isfinite(scores.psnrDb())) { one["psnr_db"] = nullptr; }
+        Json one{{"pixels", scores.pixels}, {"mean_square", scores.mean_square}, {"psnr_db", numberOrNull(scores.psnrDb())}};
         if (scores.ssim) { one["ssim"] = *scores.ssim; }
         if (scores.flip) { one["flip"] = *scores.flip; }
         if (scores.lpips) { one["lpips"] = *scores.lpips; }
@@ -34,8 +35,6 @@ Json qualityJson(const std::vector<OriginScores>& quality) {
     }
     return json;
 }
-
-Json numberOrNull(const std::optional<double>& value) { return value && std::isfinite(*value) ? Json(*value) : Json(); }
 
 // What both files have, null where a result has none of it.
 Json fieldsOf(const BenchResult& r) {
@@ -94,11 +93,6 @@ std::string cellOf(const Json& value) {
     return value.is_number_float() ? number(value.get<double>()) : value.dump();
 }
 
-std::string timeCell(const NamedTimes& times, const std::string& name) {
-    const auto found = std::ranges::find(times, name, &std::pair<std::string, double>::first);
-    return found == times.end() ? "" : fmt::format("{:.6g}", found->second);
-}
-
 // Passes and counters that any result has, in order of first appearance.
 template <typename Entries>
 std::vector<std::string> namesIn(const BenchRun& run, Entries&& entries) {
@@ -133,10 +127,10 @@ std::vector<Column> allColumns(const BenchRun& run) {
         }
     }
     for (const std::string stage : kStages) {
-        columns.push_back({stage + " ms", [stage](const BenchResult& r) { return timeCell(stagesOf(r.mode, r.pass_ms), stage); }});
+        columns.push_back({stage + " ms", [stage](const BenchResult& r) { return number(sumOf(stagesOf(r.mode, r.pass_ms), stage)); }});
     }
     for (const std::string& pass : namesIn(run, [](const BenchResult& r) { return byLabel(r.pass_ms); })) {
-        columns.push_back({pass + " ms", [pass](const BenchResult& r) { return timeCell(byLabel(r.pass_ms), pass); }});
+        columns.push_back({pass + " ms", [pass](const BenchResult& r) { return number(sumOf(byLabel(r.pass_ms), pass)); }});
     }
     for (const std::string& counter : namesIn(
              run, [](const BenchResult& r) -> const auto& { return r.counters; })) {

@@ -17,17 +17,11 @@ namespace binosplat {
 
 namespace {
 
-void setStreaming(std::span<MotionFrame> frames, const LiveScene& live) {
-    for (MotionFrame& frame : frames) {
-        frame.streaming = streamingOf(live);
-        frame.splats_read = live.counters().splats_read;
-    }
-}
-
 // One view of a scene at every pose.
 void playView(const Context& context, const BenchOptions& options, const BenchPlan& plan, const HeadMotion& motion,
               const std::string& source, const BenchScene& loaded, const BenchView& view, MotionRun& run) {
     const GpuScene& gpu_scene = loaded.gpuScene();
+    LiveScene* const live = loaded.live();
     RunOptions view_run = view.run;
     const glm::uvec2 size_px = plan.series.front().sizes_px.front();
     if (size_px.x > 0) { view_run.camera.size_px = size_px; }
@@ -39,13 +33,13 @@ void playView(const Context& context, const BenchOptions& options, const BenchPl
     };
     const auto camerasAt = [&](double time_s) {
         const Cameras cameras = poseAt(time_s);
-        if (loaded.live() != nullptr) {
-            loaded.live()->setTime(time_s - times_s.front());
-            settleQuietly(*loaded.live(), cameras.eyes);
+        if (live != nullptr) {
+            live->setTime(time_s - times_s.front());
+            settle(*live, cameras.eyes);
         }
         return cameras;
     };
-    if (loaded.live() != nullptr) { settleQuietly(*loaded.live(), start.eyes); }
+    if (live != nullptr) { settle(*live, start.eyes); }
     // A GPU shows how fast it is only while nobody keeps it waiting: its times are those of a run without pictures.
     std::vector<std::vector<FrameResult>> timed;
     if (!context.isSoftware()) {
@@ -64,7 +58,10 @@ void playView(const Context& context, const BenchOptions& options, const BenchPl
         const std::size_t first = run.frames.size();
         if (loaded.moves() && i > 0) { point.rememberStill(poseAt(times_s[i])); }
         point.play(camerasAt(times_s[i]), i, times_s[i], run.frames);
-        if (loaded.live() != nullptr) { setStreaming(std::span(run.frames).subspan(first), *loaded.live()); }
+        for (std::size_t f = first; live != nullptr && f < run.frames.size(); ++f) {
+            run.frames[f].streaming = streamingOf(*live);
+            run.frames[f].splats_read = live->counters().splats_read;
+        }
         for (std::size_t m = 0; !timed.empty() && m < timed[i].size(); ++m) { setTimes(run.frames[first + m], timed[i][m]); }
         progress.show(static_cast<double>(i) / static_cast<double>(times_s.size()));
     }
@@ -74,8 +71,7 @@ void playView(const Context& context, const BenchOptions& options, const BenchPl
 
 void benchMotion(const BenchOptions& options, const BenchPlan& plan) {
     requireScenes(plan);
-    const HeadMotion motion =
-        readHeadMotion(options.motion_file, options.motion_axes == "unity" ? MotionAxes::kUnity : MotionAxes::kOpenXr, options.segment);
+    const HeadMotion motion = readHeadMotion(options.motion_file, options.motion_axes, options.segment);
     OutputFiles files(options.out);
     const Context context(contextOptions(options.run));
     MotionRun run{context.deviceName(), options.run.config, std::filesystem::path(options.motion_file).filename().string(), {}};

@@ -1,12 +1,12 @@
 // `binosplat bench --orders`: how near the picture of each order of splats is to one in which every pixel has an order of its own, and what
 // pops while the head turns. In float64 on the CPU, so that nothing but the order differs.
 #include "app/bench/bench.h"
-#include "app/bench/bench_quality.h"
 #include "app/bench/order_results.h"
 #include "app/load.h"
 #include "app/options/camera_options.h"
 #include "app/terminal/interrupt.h"
 #include "app/terminal/progress.h"
+#include "engine/picture/metrics.h"
 #include "engine/reference/reference.h"
 #include "engine/setup/output_files.h"
 

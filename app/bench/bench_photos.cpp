@@ -88,17 +88,13 @@ std::optional<double> meanLpips(const Means& means) {
     return std::accumulate(means.lpips.begin(), means.lpips.end(), 0.0) / static_cast<double>(means.lpips.size());
 }
 
-bool anyLpips(const std::vector<PhotoRow>& rows) {
-    return std::ranges::any_of(rows, [](const PhotoRow& row) { return row.lpips.has_value(); });
-}
-
 const Means& fullOf(const std::vector<Means>& means, const Means& like) {
     return *std::ranges::find_if(means, [&](const Means& one) { return one.scene == like.scene && one.mode == Mode::kShared; });
 }
 
 std::string photosCsv(const std::string& device, const std::vector<PhotoRow>& rows) {
     std::string csv = "device,scene,camera,method,mode,gpu_total_ms,psnr_db_to_photo,ssim_to_photo,psnr_db_to_full";
-    const bool with_lpips = anyLpips(rows);
+    const bool with_lpips = std::ranges::any_of(rows, [](const PhotoRow& row) { return row.lpips.has_value(); });
     csv += with_lpips ? ",lpips_to_photo\n" : "\n";
     for (const PhotoRow& row : rows) {
         csv += fmt::format("{},{},{},{},{},{:.6g},{:.6g},{:.6g},{:.6g}", csvCell(device), csvCell(row.scene), csvCell(row.camera),

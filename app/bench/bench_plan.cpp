@@ -30,6 +30,11 @@ auto readEach(const Setting& setting, Read&& read) {
     return values;
 }
 
+Mode readMode(const Setting& setting) {
+    const std::string name = readChoice(setting, {kModeNames.begin(), kModeNames.end()});
+    return static_cast<Mode>(std::ranges::find(kModeNames, name) - kModeNames.begin());
+}
+
 void readScores(const Setting& setting, BenchPlan& plan) {
     plan.psnr = plan.ssim = plan.flip = false;
     for (const std::string& score : readEach(setting, [](const Setting& one) {

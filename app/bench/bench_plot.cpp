@@ -32,7 +32,7 @@ std::vector<PlotPanel> errorPanels(const BenchRun& run, const char* y_label, std
         const BenchResult& first = run.results[begin];
         PlotPanel panel{.title = namePoint(first), .x_label = "GPU time of the pair, ms", .y_label = y_label};
         panel.x_scale = panel.y_scale = Scale::kLinear;
-        std::vector<const BenchResult*> front;
+        PlotLine front{.label = "Pareto front", .dots = false};
         std::map<std::optional<Mode>, std::size_t> methods;  // by mode
         for (end = begin; end < run.results.size() && samePoint(first, run.results[end]); ++end) { ++methods[run.results[end].mode]; }
         for (std::size_t i = begin; i < end; ++i) {
@@ -45,17 +45,13 @@ std::vector<PlotPanel> errorPanels(const BenchRun& run, const char* y_label, std
             line.points.emplace_back(result.total_ms, *psnr_db);
             // In a crowd only the front is named.
             line.names.push_back(methods[result.mode] < 6 || result.on_front ? result.method : "");
-            if (result.on_front) { front.push_back(&result); }
+            if (result.on_front) { front.points.emplace_back(result.total_ms, *psnr_db); }
         }
         if (panel.lines.empty()) { continue; }
-        if (!draws_front) {
-            panels.push_back(std::move(panel));
-            continue;
+        if (draws_front) {
+            std::ranges::sort(front.points);
+            panel.lines.push_back(std::move(front));
         }
-        std::ranges::sort(front, {}, [](const BenchResult* result) { return result->total_ms; });
-        PlotLine& line = lineOf(panel, "Pareto front");
-        line.dots = false;
-        for (const BenchResult* result : front) { line.points.emplace_back(result->total_ms, *psnrDbOf(*result)); }
         panels.push_back(std::move(panel));
     }
     return panels;

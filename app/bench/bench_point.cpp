@@ -19,23 +19,19 @@ namespace {
 // One method and what its frames took.
 struct Runner {
     BenchMethod method;
-    std::vector<double> total_ms;
+    BenchResult result;                                  // to which summarize adds what follows from the frames
     std::map<std::string, std::vector<double>> pass_ms;  // by the text of its label
     FrameResult last, compared;
-    std::uint64_t peak_gpu_bytes = 0;
-    std::vector<OriginScores> quality;
-    std::optional<SeenScores> seen;
-    bool is_twin = false;
 
-    void count(const FrameResult& result) {
-        last = result;
-        total_ms.push_back(result.gpu_total_ms);
-        for (const auto& [label, ms] : addUp(result.gpu_ms)) { pass_ms[label.text()].push_back(ms); }
+    void count(const FrameResult& frame) {
+        last = frame;
+        result.frame_ms.push_back(frame.gpu_total_ms);
+        for (const auto& [label, ms] : addUp(frame.gpu_ms)) { pass_ms[label.text()].push_back(ms); }
     }
 };
 
 BenchResult summarize(const Runner& runner, const BenchPoint& point) {
-    BenchResult result;
+    BenchResult result = runner.result;
     result.series = point.series;
     result.scene = point.scene.name;
     result.view = point.view;
@@ -44,29 +40,21 @@ BenchResult summarize(const Runner& runner, const BenchPoint& point) {
     result.backbone = point.scene.isGaussian3d() ? "3DGS" : "2DGS";
     result.size_px = point.cameras.middle.size_px;
     result.method = runner.method.name;
-    if (!runner.is_twin) { result.mode = runner.method.stereo.mode; }
     result.dominant = runner.method.stereo.dominant;
-    result.frames = static_cast<std::uint32_t>(runner.total_ms.size());
+    result.frames = static_cast<std::uint32_t>(result.frame_ms.size());
     for (const auto& [label, ms] : addUp(runner.last.gpu_ms)) {
         result.pass_ms.push_back({label, median(runner.pass_ms.at(label.text()))});
     }
-    result.total_ms = median(runner.total_ms);
-    result.frame_ms = runner.total_ms;
-    result.least_ms = std::ranges::min(runner.total_ms);
-    result.most_ms = std::ranges::max(runner.total_ms);
-    result.counters = runner.last.counters.named();
-    if (point.live != nullptr && !runner.is_twin) {
-        FrameCounters counters = runner.last.counters;
-        counters.streaming = streamingOf(*point.live);
-        result.counters = counters.named();
-    }
+    result.total_ms = median(result.frame_ms);
+    result.least_ms = std::ranges::min(result.frame_ms);
+    result.most_ms = std::ranges::max(result.frame_ms);
+    FrameCounters counters = runner.last.counters;
+    if (point.live != nullptr) { counters.streaming = streamingOf(*point.live); }
+    result.counters = counters.named();
     result.counters.merge(runner.compared.counters.named());  // those that cost time
-    result.seen = runner.seen;
-    result.peak_gpu_bytes = runner.peak_gpu_bytes;
     result.tiles_rendered = runner.last.tiles_rendered;
     result.work_rendered = runner.last.work_rendered;
     if (!runner.last.stereo_bytes_per_pixel.empty()) { result.stereo_bytes_per_pixel = runner.last.stereo_bytes_per_pixel.back().second; }
-    result.quality = runner.quality;
     return result;
 }
 
@@ -103,31 +91,30 @@ Image renderFull(const StereoOptions& stereo, const BenchPoint& point, MethodFra
 Runner prepare(const BenchMethod& method, const BenchPoint& point, const BenchPlan& plan, MethodFrames& frames, const Image& full) {
     Runner runner;
     runner.method = method;
-    runner.peak_gpu_bytes = frames.peakAlone(point.cameras, point.run.camera, method.stereo);
-    const auto [result, frame] = frames.render(point.cameras, point.run.camera, method.stereo, true);
-    runner.compared = result;
-    const auto seenIn = [&](const Image& whole, const Image& picture, const Eye& eye, const std::optional<Gaze>& gaze) {
-        if (gaze) { runner.seen = measureSeen(whole, picture, reference::findSharesThere(eye, {gaze->direction, gaze->clear_rad})); }
+    BenchResult& result = runner.result;
+    result.mode = method.stereo.mode;
+    result.peak_gpu_bytes = frames.peakAlone(point.cameras, point.run.camera, method.stereo);
+    const auto [compared, frame] = frames.render(point.cameras, point.run.camera, method.stereo, true);
+    runner.compared = compared;
+    const auto measure = [&](const Image& whole, const Image& picture, const Eye& eye, const std::optional<Gaze>& gaze,
+                             std::span<const std::uint32_t> tile_kinds, std::span<const std::uint8_t> pixel_classes) {
+        if (gaze) { result.seen = measureSeen(whole, picture, reference::findSharesThere(eye, {gaze->direction, gaze->clear_rad})); }
+        result.quality = measureQuality(whole, picture, tile_kinds, pixel_classes,
+                                        {plan.ssim, plan.flip, eye.intrinsics.fx, plan.lpips ? &*plan.lpips : nullptr});
     };
     const std::array<std::optional<Gaze>, 2> gazes = gazesOf(point.cameras, method.stereo);
     if (plan.psnr && reprojects(method.stereo.mode)) {
         const auto affiliated = static_cast<std::size_t>(1 - method.stereo.dominant);
-        const Eye& eye = point.cameras.eyes[affiliated];
-        const double focal_px = eye.intrinsics.fx;
-        const Image picture = frame->readPicture(static_cast<int>(affiliated));
-        seenIn(full, picture, eye, gazes[affiliated]);
-        runner.quality = measureQuality(full, picture, frame->readTileKinds(), frame->readPixelClasses(),
-                                        {plan.ssim, plan.flip, focal_px, plan.lpips ? &*plan.lpips : nullptr});
-        if (!result.counters.warped) { runner.quality.resize(1); }  // both eyes were rendered
+        measure(full, frame->readPicture(static_cast<int>(affiliated)), point.cameras.eyes[affiliated], gazes[affiliated],
+                frame->readTileKinds(), frame->readPixelClasses());
+        if (!compared.counters.warped) { result.quality.resize(1); }  // both eyes were rendered
     } else if (plan.psnr && method.stereo.mode == Mode::kMono && method.stereo.half_periphery) {
         const Image picture = frame->readPicture(0);
         StereoOptions sharp = method.stereo;
         sharp.half_periphery = false;
         const Image own_full = frames.render(point.cameras, point.run.camera, sharp, true).frame->readPicture(0);
-        seenIn(own_full, picture, point.cameras.middle, gazes[0]);
-        runner.quality = measureQuality(own_full, picture, {}, {},
-                                        {plan.ssim, plan.flip, point.cameras.middle.intrinsics.fx, plan.lpips ? &*plan.lpips : nullptr});
-        runner.quality.resize(1);  // no pixel comes from another eye
+        measure(own_full, picture, point.cameras.middle, gazes[0], {}, {});
+        result.quality.resize(1);  // no pixel comes from another eye
     }
     return runner;
 }
@@ -178,7 +165,7 @@ void warmUp(const Context& context, std::uint32_t rounds, const std::function<vo
 
 std::vector<BenchResult> benchPoint(const Context& context, const BenchPoint& point, const BenchPlan& plan) {
     const CameraOptions& camera = point.run.camera;
-    if (point.live != nullptr) { settleQuietly(*point.live, point.cameras.eyes); }
+    if (point.live != nullptr) { settle(*point.live, point.cameras.eyes); }
     MethodFrames frames(context, point.gpu_scene);
     std::map<std::optional<Order>, Image> full_by_order;
     for (const BenchMethod& method : plan.methods) {
@@ -195,7 +182,6 @@ std::vector<BenchResult> benchPoint(const Context& context, const BenchPoint& po
     });
     Runner twin;
     twin.method.name = "float64 twin, one eye";
-    twin.is_twin = true;
     for (std::uint32_t i = 0; i < plan.repeats; ++i) {
         for (Runner& runner : runners) { runner.count(frames.render(point.cameras, camera, runner.method.stereo).result); }
     }

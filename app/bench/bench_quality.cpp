@@ -9,8 +9,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
 
 namespace binosplat {
 
@@ -20,15 +18,7 @@ namespace {
 constexpr std::array<const char*, 3> kGroups{"reprojected", "interpolated", "patched"};
 
 std::uint8_t groupOf(PixelOrigin origin) {
-    switch (origin) {
-        case PixelOrigin::kReprojected:
-            return 0;
-        case PixelOrigin::kGap:
-        case PixelOrigin::kHole:
-            return 1;
-        default:
-            return 2;
-    }
+    return origin == PixelOrigin::kReprojected ? 0 : origin == PixelOrigin::kGap || origin == PixelOrigin::kHole ? 1 : 2;
 }
 
 // Nothing where it is not asked for, or where the network needs more pixels.
@@ -50,7 +40,7 @@ double squareOf(const Image& a, const Image& b, std::size_t pixel) {
 
 }  // namespace
 
-double psnrOf(double mean_square) { return mean_square == 0.0 ? std::numeric_limits<double>::infinity() : -10.0 * std::log10(mean_square); }
+double psnrOf(double mean_square) { return Difference{.mean_square = mean_square}.psnrDb(); }
 
 double OriginScores::psnrDb() const { return psnrOf(mean_square); }
 

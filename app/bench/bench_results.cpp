@@ -27,19 +27,14 @@ std::optional<double> ratioTo(const BenchResult& result, const BenchResult* othe
     return median(ratios);
 }
 
-std::uint64_t counterOf(const BenchResult& result, const std::string& name) {
-    const auto found = result.counters.find(name);
-    return found == result.counters.end() ? 0 : found->second;
-}
-
 // What the reprojection of a tile took, in the time that rendering the affiliated eye takes a pair of tile and splat.
 std::optional<double> moveCost(const BenchResult& predicted, const BenchResult* shared) {
     const std::uint64_t moved = counterOf(predicted, "tiles_weighed_as_moved");
     if (predicted.mode != Mode::kPredicted || shared == nullptr || moved == 0) { return std::nullopt; }
     const auto pairs = static_cast<double>(counterOf(*shared, shared->dominant == kLeft ? "tile_pairs_right" : "tile_pairs_left"));
-    const double pair_ms = pairs > 0.0 ? sumOf(stagesOf(Mode::kShared, shared->pass_ms), "affiliated") / pairs : 0.0;
+    const double pair_ms = pairs > 0.0 ? sumOf(stagesOf(Mode::kShared, shared->pass_ms), "affiliated").value_or(0.0) / pairs : 0.0;
     if (!(pair_ms > 0.0)) { return std::nullopt; }
-    return sumOf(stagesOf(Mode::kPredicted, predicted.pass_ms), "reprojection") / static_cast<double>(moved) / pair_ms;
+    return sumOf(stagesOf(Mode::kPredicted, predicted.pass_ms), "reprojection").value_or(0.0) / static_cast<double>(moved) / pair_ms;
 }
 
 // Whether a result takes part in the comparison of error and time.
@@ -96,6 +91,11 @@ void markFront(std::vector<BenchResult>& results) {
         result.on_front = meanSquareOf(result).has_value() &&
                           std::ranges::none_of(results, [&](const BenchResult& other) { return beats(other, result); });
     }
+}
+
+std::uint64_t counterOf(const BenchResult& result, const std::string& name) {
+    const auto found = result.counters.find(name);
+    return found == result.counters.end() ? 0 : found->second;
 }
 
 const OriginScores* scoresOf(const BenchResult& result, const std::string& origin) {

@@ -67,6 +67,9 @@ void compareModes(std::vector<BenchResult>& results);
 // every eye in full have no error.
 void markFront(std::vector<BenchResult>& results);
 
+// 0 where it has no such counter.
+std::uint64_t counterOf(const BenchResult& result, const std::string& name);
+
 // The result's scores over one origin; null where it has none.
 const OriginScores* scoresOf(const BenchResult& result, const std::string& origin);
 

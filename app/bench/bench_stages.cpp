@@ -25,6 +25,11 @@ std::string columnOf(std::optional<Mode> mode, const PassLabel& label) {
     return mode && rendersBothInFull(*mode) ? "affiliated" : "patch";
 }
 
+void add(NamedTimes& sums, const std::string& name, double ms) {
+    const auto found = std::ranges::find(sums, name, &std::pair<std::string, double>::first);
+    (found == sums.end() ? sums.emplace_back(name, 0.0) : *found).second += ms;
+}
+
 }  // namespace
 
 NamedTimes byLabel(const PassTimes& pass_ms) {
@@ -35,35 +40,25 @@ NamedTimes byLabel(const PassTimes& pass_ms) {
 
 NamedTimes byPass(const PassTimes& pass_ms) {
     NamedTimes sums;
-    for (const auto& [label, ms] : pass_ms) {
-        const auto found = std::ranges::find(sums, label.pass, &std::pair<std::string, double>::first);
-        if (found == sums.end()) {
-            sums.emplace_back(label.pass, ms);
-        } else {
-            found->second += ms;
-        }
-    }
+    for (const auto& [label, ms] : pass_ms) { add(sums, label.pass, ms); }
     return sums;
 }
 
 NamedTimes stagesOf(std::optional<Mode> mode, const PassTimes& pass_ms) {
     NamedTimes stages;
     for (const char* stage : kStages) {
-        double sum = 0.0;
-        bool ran = false;
         for (const auto& [label, ms] : pass_ms) {
-            if (columnOf(mode, label) != stage) { continue; }
-            sum += ms;
-            ran = true;
+            if (columnOf(mode, label) == stage) { add(stages, stage, ms); }
         }
-        if (ran) { stages.emplace_back(stage, sum); }
     }
     return stages;
 }
 
-double sumOf(const NamedTimes& times, const std::string& name) {
-    double sum = 0.0;
-    for (const auto& [time_name, ms] : times) { sum += time_name == name ? ms : 0.0; }
+std::optional<double> sumOf(const NamedTimes& times, const std::string& name) {
+    std::optional<double> sum;
+    for (const auto& [time_name, ms] : times) {
+        if (time_name == name) { sum = sum.value_or(0.0) + ms; }
+    }
     return sum;
 }
 

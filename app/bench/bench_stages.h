@@ -27,7 +27,7 @@ NamedTimes byPass(const PassTimes& pass_ms);
 // did not run are left out.
 NamedTimes stagesOf(std::optional<Mode> mode, const PassTimes& pass_ms);
 
-// Of all times with this name; 0 of none.
-double sumOf(const NamedTimes& times, const std::string& name);
+// Of all times with this name; nothing of none.
+std::optional<double> sumOf(const NamedTimes& times, const std::string& name);
 
 }  // namespace binosplat

@@ -10,7 +10,7 @@ namespace binosplat {
 
 namespace {
 
-std::string ratioText(const std::optional<double>& ratio) { return ratio ? fmt::format("{:.3f}", *ratio) : "-"; }
+std::string thousandths(const std::optional<double>& value) { return value ? fmt::format("{:.3f}", *value) : "-"; }
 
 std::string psnrText(const OriginScores* scores) {
     if (scores == nullptr) { return "-"; }
@@ -21,12 +21,7 @@ std::string scoreText(const std::optional<double>& score) { return score ? fmt::
 
 // A counter that is kept per eye, added up.
 std::uint64_t ofBothEyes(const BenchResult& result, const std::string& name) {
-    std::uint64_t sum = 0;
-    for (const char* suffix : {"", "_left", "_right"}) {
-        const auto found = result.counters.find(name + suffix);
-        if (found != result.counters.end()) { sum += found->second; }
-    }
-    return sum;
+    return counterOf(result, name) + counterOf(result, name + "_left") + counterOf(result, name + "_right");
 }
 
 std::string methodsTable(const std::vector<const BenchResult*>& point, bool with_lpips) {
@@ -41,8 +36,8 @@ std::string methodsTable(const std::vector<const BenchResult*>& point, bool with
     for (const BenchResult* r : point) {
         std::vector<std::string> row{r->method, r->on_front ? "*" : ""};
         for (const double ms : {r->total_ms, r->least_ms, r->most_ms}) { row.push_back(fmt::format("{:.3f}", ms)); }
-        row.push_back(ratioText(r->ratio_to_two_pass));
-        row.push_back(ratioText(r->ratio_to_shared));
+        row.push_back(thousandths(r->ratio_to_two_pass));
+        row.push_back(thousandths(r->ratio_to_shared));
         row.push_back(!r->mode ? "-" : fmt::format("{:.1f}", static_cast<double>(r->peak_gpu_bytes) / (1024.0 * 1024.0)));
         for (const char* origin : kOrigins) { row.push_back(psnrText(scoresOf(*r, origin))); }
         const OriginScores* all = scoresOf(*r, "all");
@@ -63,11 +58,6 @@ std::string methodsTable(const std::vector<const BenchResult*>& point, bool with
     return columns.text();
 }
 
-std::string find(const NamedTimes& times, const std::string& name) {
-    const auto found = std::ranges::find(times, name, &std::pair<std::string, double>::first);
-    return found == times.end() ? "-" : fmt::format("{:.3f}", found->second);
-}
-
 std::string timesTable(const std::vector<const BenchResult*>& point) {
     std::vector<std::string> passes;
     for (const BenchResult* r : point) {
@@ -85,8 +75,8 @@ std::string timesTable(const std::vector<const BenchResult*>& point) {
     for (const BenchResult* r : point) {
         std::vector<std::string> row{r->method};
         const NamedTimes stages = stagesOf(r->mode, r->pass_ms), times = byPass(r->pass_ms);
-        for (const char* stage : kStages) { row.push_back(find(stages, stage)); }
-        for (const std::string& name : passes) { row.push_back(find(times, name)); }
+        for (const char* stage : kStages) { row.push_back(thousandths(sumOf(stages, stage))); }
+        for (const std::string& name : passes) { row.push_back(thousandths(sumOf(times, name))); }
         columns.addRow(std::move(row));
     }
     return columns.text();

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <functional>
 
 namespace binosplat {
 
@@ -32,18 +33,13 @@ std::vector<Sequence> sequencesOf(const MotionRun& run) {
 }
 
 template <typename Value>
-std::vector<double> valuesOf(const Sequence& sequence, Value&& value) {
+std::vector<double> valuesOf(const std::vector<const MotionFrame*>& frames, Value&& value) {
     std::vector<double> values;
-    for (const MotionFrame* frame : sequence.frames) { values.push_back(value(*frame)); }
+    for (const MotionFrame* frame : frames) { values.push_back(std::invoke(value, *frame)); }
     return values;
 }
 
-double stageMs(const MotionFrame& frame, const std::string& stage) {
-    const auto found = std::ranges::find(frame.stage_ms, stage, &std::pair<std::string, double>::first);
-    return found == frame.stage_ms.end() ? 0.0 : found->second;
-}
-
-double totalMs(const MotionFrame& frame) { return frame.total_ms; }
+double stageMs(const MotionFrame& frame, const std::string& stage) { return sumOf(frame.stage_ms, stage).value_or(0.0); }
 
 // Frames whose errors do not count where there are more: a method that reuses its past has none yet in the first, and little after it.
 constexpr std::size_t kSettling = 10;
@@ -67,15 +63,11 @@ double runSquare(const Sequence& sequence) {
 }
 
 // Of the worse eye.
-std::vector<double> steadySquares(const Sequence& sequence) {
-    std::vector<double> squares;
-    for (const MotionFrame* frame : steadyFrames(sequence)) { squares.push_back(frame->worseSquare()); }
-    return squares;
-}
+std::vector<double> steadySquares(const Sequence& sequence) { return valuesOf(steadyFrames(sequence), &MotionFrame::worseSquare); }
 
 // The first frame has none before it.
 std::vector<double> flickerOf(const Sequence& sequence) {
-    std::vector<double> values = valuesOf(sequence, [](const MotionFrame& frame) { return frame.worseFlicker(); });
+    std::vector<double> values = valuesOf(sequence.frames, &MotionFrame::worseFlicker);
     if (!values.empty()) { values.erase(values.begin()); }
     return values;
 }
@@ -94,7 +86,8 @@ Json statisticsJson(const std::vector<double>& values) {
 Json passesJson(const Sequence& sequence) {
     Json passes = Json::object();
     for (const auto& [label, ms] : sequence.frames.back()->pass_ms) {
-        passes[label] = median(valuesOf(sequence, [&](const MotionFrame& frame) { return sumOf(frame.pass_ms, label); }));
+        passes[label] = median(
+            valuesOf(sequence.frames, [&name = label](const MotionFrame& frame) { return sumOf(frame.pass_ms, name).value_or(0.0); }));
     }
     return passes;
 }
@@ -129,9 +122,7 @@ std::string motionCsv(const MotionRun& run) {
     for (const char* stage : kStages) { csv += fmt::format(",{} ms", stage); }
     csv +=
         ",mean_square,psnr_db,flicker,full_change,tile_steps,sharpness_gap,psnr_left_db,psnr_right_db,mse_left,mse_right,flicker_left,"
-        "flicker_right,work_rendered,"
-        "pixels_"
-        "warped";
+        "flicker_right,work_rendered,pixels_warped";
     const bool is_streamed = std::ranges::any_of(run.frames, [](const MotionFrame& frame) { return frame.streaming.has_value(); });
     if (is_streamed) { csv += ",splats_read,splats_resident,chunks_resident,frames_waited_for_loading,scene_frames_late"; }
     const bool moves = std::ranges::any_of(run.frames, [](const MotionFrame& frame) { return frame.moved_square.has_value(); });
@@ -164,14 +155,14 @@ std::string motionJson(const MotionRun& run) {
     for (const Sequence& sequence : sequencesOf(run)) {
         Json stages = Json::object();
         for (const char* stage : kStages) {
-            const std::vector<double> values = valuesOf(sequence, [&](const MotionFrame& frame) { return stageMs(frame, stage); });
+            const std::vector<double> values = valuesOf(sequence.frames, [&](const MotionFrame& frame) { return stageMs(frame, stage); });
             if (std::ranges::max(values) > 0.0) { stages[stage] = statisticsJson(values); }
         }
         Json json{{"point", sequence.point},
                   {"method", sequence.method},
                   {"mode", nameOf(sequence.frames[0]->mode)},
                   {"frames", sequence.frames.size()},
-                  {"gpu_total_ms", statisticsJson(valuesOf(sequence, totalMs))},
+                  {"gpu_total_ms", statisticsJson(valuesOf(sequence.frames, &MotionFrame::total_ms))},
                   {"stage_ms", stages},
                   {"pass_ms", passesJson(sequence)}};
         if (isLossy(sequence)) {
@@ -181,16 +172,14 @@ std::string motionJson(const MotionRun& run) {
                                {"run", psnrJson(runSquare(sequence))},      {"first", psnrJson(sequence.frames.front()->worseSquare())}};
             if (const std::vector<double> moved = movedSquares(sequence); !moved.empty()) {
                 json["psnr_moved_db"] = {{"run", psnrJson(movedRunSquare(sequence))}, {"worst", psnrJson(std::ranges::max(moved))}};
-                std::vector<double> shares;
-                for (const MotionFrame* frame : steadyFrames(sequence)) { shares.push_back(frame->moved_share); }
-                json["moved_share"] = statisticsJson(shares);
+                json["moved_share"] = statisticsJson(valuesOf(steadyFrames(sequence), &MotionFrame::moved_share));
             }
             json["flicker"] = statisticsJson(flickerOf(sequence));
-            json["tile_steps"] = statisticsJson(valuesOf(sequence, [](const MotionFrame& frame) { return frame.tile_steps; }));
-            json["sharpness_gap"] = statisticsJson(valuesOf(sequence, [](const MotionFrame& frame) { return frame.sharpness_gap; }));
+            json["tile_steps"] = statisticsJson(valuesOf(sequence.frames, &MotionFrame::tile_steps));
+            json["sharpness_gap"] = statisticsJson(valuesOf(sequence.frames, &MotionFrame::sharpness_gap));
         }
-        json["work_rendered"] = statisticsJson(valuesOf(sequence, [](const MotionFrame& frame) { return frame.work_rendered; }));
-        json["full_change"] = statisticsJson(valuesOf(sequence, [](const MotionFrame& frame) { return frame.full_change; }));
+        json["work_rendered"] = statisticsJson(valuesOf(sequence.frames, &MotionFrame::work_rendered));
+        json["full_change"] = statisticsJson(valuesOf(sequence.frames, &MotionFrame::full_change));
         results.push_back(json);
     }
     const Json root{{"device", run.device}, {"config", run.config}, {"motion", run.motion}, {"results", results}};
@@ -209,7 +198,8 @@ std::string motionTable(const MotionRun& run) {
                                  "ms p95", "ms worst", "dB run", "dB 95", "dB worst", "flicker", "p95", "p99",
                                  moves ? fmt::format(" {:>9} {:>8}", "dB moved", "worst") : "");
         }
-        const std::vector<double> times = valuesOf(sequence, totalMs), errors = steadySquares(sequence), flicker = flickerOf(sequence);
+        const std::vector<double> times = valuesOf(sequence.frames, &MotionFrame::total_ms), errors = steadySquares(sequence),
+                                  flicker = flickerOf(sequence);
         table += fmt::format("  {:<28} {:>10.3f} {:>10.3f} {:>10.3f}", sequence.method, median(times), percentile(times, 0.95),
                              std::ranges::max(times));
         if (isLossy(sequence)) {
@@ -250,7 +240,7 @@ std::string motionPlot(const MotionRun& run) {
         if (!isLossy(sequence) || !(square > 0.0)) { continue; }
         PlotPanel& panel = panelOf(sequence.point + ": run", "PSNR of the run, down to the worst frame's, dB");
         panel.x_label = "median GPU time of the pair, ms";
-        const double time_ms = median(valuesOf(sequence, totalMs));
+        const double time_ms = median(valuesOf(sequence.frames, &MotionFrame::total_ms));
         lineOf(panel, sequence.method).points = {{time_ms, psnrOf(square)}, {time_ms, psnrOf(std::ranges::max(steadySquares(sequence)))}};
     }
     return drawPlot("Measured on " + run.device + " with " + run.motion, panels);

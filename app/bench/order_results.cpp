@@ -2,7 +2,6 @@
 #include "app/bench/order_results.h"
 
 #include "app/bench/bench_results.h"
-#include "engine/picture/metrics.h"
 
 #include <fmt/format.h>
 

@@ -4,9 +4,10 @@
 #include "app/command_line/option_documents.h"
 #include "app/options/option_layers.h"
 #include "engine/error.h"
-#include "engine/picture/flip.h"
 #include "engine/scene/scene_folder.h"
 
+#include <algorithm>
+#include <iterator>
 #include <set>
 
 namespace binosplat {
@@ -70,7 +71,7 @@ Options makeRender(const Settings& given) {
     RenderOptions render;
     render.scene = wordOf(line, "SCENE");
     render.run = readRun(line, {"view"}, line.contains("path") ? withPast() : RunOptions());
-    readRows(renderRows(), line, render);
+    render = readRows(renderRows(), line, render);
     for (const char* key : {"path-axes", "from", "seconds", "rate"}) {
         if (line.contains(key) && render.path.empty()) { throw Error(ExitCode::kUsage, fmt::format("--{} is given without --path", key)); }
     }
@@ -102,7 +103,7 @@ Options makeBench(const Settings& given) {
     if (const auto scenes = line.find("SCENE"); scenes != line.end()) { bench.scenes = scenes->second.items; }
     bench.run = readRun(line, {"bench", "series", "methods", "views", "view"}, {}, &bench.tables);
     bench.asked = runOptions(line).camera;
-    readRows(benchRows(), line, bench);
+    bench = readRows(benchRows(), line, bench);
     requireBenchKind(bench);
     for (const char* key : {"motion-axes", "from", "seconds", "rate"}) {
         if (line.contains(key) && bench.motion_file.empty()) {
@@ -121,50 +122,24 @@ Options makeView(const Settings& given) {
     RunOptions standard = withPast();
     standard.stereo.half_periphery = true;
     view.run = readRun(line, {"view"}, standard, &view.tables);
-    readRows(viewRows(), line, view);
-    return view;
+    return readRows(viewRows(), line, view);
 }
 
 Options makeInfo(const Settings& line) { return InfoOptions{wordOf(line, "SCENE"), runOptions(line).load}; }
 
-Options makeScene(const Settings& line) {
-    SceneOptions scene;
-    scene.name = wordOf(line, "NAME");
-    readRows(sceneRows(), line, scene);
-    return scene;
-}
+Options makeScene(const Settings& line) { return readRows(sceneRows(), line, SceneOptions{.name = wordOf(line, "NAME"), .out = {}}); }
 
 Options makeConvert(const Settings& line) {
-    ConvertOptions convert;
-    convert.scene = wordOf(line, "SCENE");
-    convert.load = runOptions(line).load;
-    convert.out = wordOf(line, "OUT");
-    readRows(convertRows(), line, convert);
-    return convert;
+    return readRows(convertRows(), line, ConvertOptions{wordOf(line, "SCENE"), runOptions(line).load, wordOf(line, "OUT"), {}});
 }
 
 Options makeCompare(const Settings& line) {
-    CompareOptions compare;
-    compare.first = wordOf(line, "A");
-    compare.second = wordOf(line, "B");
-    compare.pixels_per_degree = kFlipPixelsPerDegree;
-    readRows(compareRows(), line, compare);
-    return compare;
+    return readRows(compareRows(), line, CompareOptions{.first = wordOf(line, "A"), .second = wordOf(line, "B"), .lpips_weights = {}});
 }
 
-Options makeStability(const Settings& line) {
-    StabilityOptions stability;
-    stability.device = runOptions(line).device;
-    readRows(stabilityRows(), line, stability);
-    return stability;
-}
+Options makeStability(const Settings& line) { return readRows(stabilityRows(), line, StabilityOptions{{}, runOptions(line).device}); }
 
-Options makeKernels(const Settings& line) {
-    KernelsOptions kernels;
-    kernels.device = runOptions(line).device;
-    readRows(kernelsRows(), line, kernels);
-    return kernels;
-}
+Options makeKernels(const Settings& line) { return readRows(kernelsRows(), line, KernelsOptions{{}, runOptions(line).device}); }
 
 Options makeDocument(const Settings& line) { return HelpText{documentOf(wordOf(line, "KIND"))}; }
 
@@ -227,6 +202,12 @@ std::span<const Command> commands() {
          /*hidden*/ true},
     };
     return rows;
+}
+
+std::vector<std::reference_wrapper<const Command>> shownCommands() {
+    std::vector<std::reference_wrapper<const Command>> shown;
+    std::ranges::copy_if(commands(), std::back_inserter(shown), [](const Command& command) { return !command.hidden; });
+    return shown;
 }
 
 std::vector<OptionDescription> optionsOf(const Command& command) {

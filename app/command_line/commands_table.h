@@ -3,6 +3,8 @@
 
 #include "app/options/option_table.h"
 
+#include <functional>
+
 namespace binosplat {
 
 // An argument of the command line without a name.
@@ -25,6 +27,7 @@ struct Command {
 };
 
 std::span<const Command> commands();
+std::vector<std::reference_wrapper<const Command>> shownCommands();  // by --help
 
 // Its own options and those it shares, as the help lists them.
 std::vector<OptionDescription> optionsOf(const Command& command);

@@ -1,5 +1,5 @@
 // Options and settings of the viewer as lines of TOML.
-#include "app/command_line/default_config.h"
+#include "app/command_line/option_documents.h"
 
 #include "app/options/option_table.h"
 #include "app/view/settings/view_settings_table.h"

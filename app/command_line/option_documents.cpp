@@ -1,9 +1,7 @@
 // The list of commands and options for readers and shells.
 #include "app/command_line/option_documents.h"
 
-#include "app/command_line/default_config.h"
-#include "app/command_line/document_text.h"
-#include "app/command_line/shell_completions.h"
+#include "app/command_line/commands_table.h"
 #include "app/terminal/version.h"
 #include "app/view/settings/view_settings_table.h"
 #include "engine/error.h"
@@ -14,6 +12,13 @@
 namespace binosplat {
 
 namespace {
+
+std::string replaced(std::string text, std::string_view what, std::string_view by) {
+    for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size())) {
+        text.replace(at, what.size(), by);
+    }
+    return text;
+}
 
 std::string usage(const Command& command) {
     std::string line = fmt::format("binosplat {}", command.name);
@@ -28,15 +33,15 @@ std::string usage(const Command& command) {
 }
 
 std::string markdownRow(const OptionDescription& option, const std::string& last) {
-    const std::string value = isFlag(option.text) ? "" : fmt::format(" {}", replaced(option.text.value, "|", "\\|"));
+    const std::string value = option.text.isFlag() ? "" : fmt::format(" {}", replaced(option.text.value, "|", "\\|"));
     return fmt::format("| `--{}{}` | {} | {} | {} | {} |\n", option.text.key, value, replaced(option.text.help, "|", "\\|"), option.range,
                        option.standard, last);
 }
 
 std::string commandsWith(const OptionText& text) {
     std::string names;
-    for (const Command* command : shownCommands()) {
-        if ((text.commands & command->bit) != 0) { names += fmt::format("{}`{}`", names.empty() ? "" : ", ", command->name); }
+    for (const Command& command : shownCommands()) {
+        if ((text.commands & command.bit) != 0) { names += fmt::format("{}`{}`", names.empty() ? "" : ", ", command.name); }
     }
     return (text.commands & kMethods) != 0 ? names + ", `[[methods]]`" : names;
 }
@@ -45,12 +50,12 @@ std::string markdown() {
     std::string text =
         "# Options\n\nMade from the program's own table (`binosplat document markdown`). Every command prints its part with "
         "`--help`.\n\n## Commands\n";
-    for (const Command* command : shownCommands()) {
-        text += fmt::format("\n### {}\n\n{}.\n\n```\n{}\n```\n\n", command->name, command->help, usage(*command));
-        for (const Word& word : command->words) { text += fmt::format("- `{}`: {}\n", word.name, word.help); }
-        if (command->own.empty()) { continue; }
-        text += fmt::format("{}| option | | range | default | |\n|---|---|---|---|---|\n", command->words.empty() ? "" : "\n");
-        for (const OptionDescription& option : command->own) { text += markdownRow(option, option.text.required ? "required" : ""); }
+    for (const Command& command : shownCommands()) {
+        text += fmt::format("\n### {}\n\n{}.\n\n```\n{}\n```\n\n", command.name, command.help, usage(command));
+        for (const Word& word : command.words) { text += fmt::format("- `{}`: {}\n", word.name, word.help); }
+        if (command.own.empty()) { continue; }
+        text += fmt::format("{}| option | | range | default | |\n|---|---|---|---|---|\n", command.words.empty() ? "" : "\n");
+        for (const OptionDescription& option : command.own) { text += markdownRow(option, option.text.required ? "required" : ""); }
     }
     text +=
         "\n## Shared options\n\nThe last column says which commands have an option. It may also stand in a config file (`--config`), in "
@@ -66,8 +71,7 @@ std::string markdown() {
     }
     text +=
         "\n### [view]\n\nConfig files alone, and what the panel saves; beside these, `scene-position`, `scene-orientation` (w, x, y, z) "
-        "and "
-        "`units-per-metre`, all\nthree or none.\n\n| key | | range | default |\n|---|---|---|---|\n";
+        "and `units-per-metre`, all\nthree or none.\n\n| key | | range | default |\n|---|---|---|---|\n";
     for (const OptionRow<ViewSettings>& row : viewSettingsRows()) {
         const OptionDescription key = describe(row);
         text +=
@@ -96,14 +100,14 @@ std::string manText(const std::string& text) {
 std::string man() {
     std::string text = fmt::format(".TH BINOSPLAT 1 \"\" \"binosplat {}\" \"User Commands\"\n.SH NAME\nbinosplat \\- {}\n.SH SYNOPSIS\n",
                                    kVersion, "Gaussian splatting scenes for the two eyes of a VR headset");
-    for (const Command* command : shownCommands()) { text += fmt::format(".B {}\n.br\n", manText(usage(*command))); }
+    for (const Command& command : shownCommands()) { text += fmt::format(".B {}\n.br\n", manText(usage(command))); }
     text += ".SH COMMANDS\n";
-    for (const Command* command : shownCommands()) {
-        text += fmt::format(".SS {}\n{}.\n", manText(usage(*command)), manText(command->help));
-        for (const Word& word : command->words) { text += fmt::format(".TP\n.I {}\n{}\n", word.name, manText(word.help)); }
-        for (const OptionDescription& option : optionsOf(*command)) {
+    for (const Command& command : shownCommands()) {
+        text += fmt::format(".SS {}\n{}.\n", manText(usage(command)), manText(command.help));
+        for (const Word& word : command.words) { text += fmt::format(".TP\n.I {}\n{}\n", word.name, manText(word.help)); }
+        for (const OptionDescription& option : optionsOf(command)) {
             text += fmt::format(".TP\n\\fB\\-\\-{}\\fR{}\n{}\n", manText(option.text.key),
-                                isFlag(option.text) ? "" : fmt::format(" \\fI{}\\fR", manText(option.text.value)), manText(option.help()));
+                                option.text.isFlag() ? "" : fmt::format(" \\fI{}\\fR", manText(option.text.value)), manText(option.help()));
         }
     }
     text +=

@@ -9,4 +9,11 @@ namespace binosplat {
 // another.
 std::string documentOf(const std::string& kind);
 
+// configs/default.toml. A key without a default of its own, or with one that depends on the command, is a comment there, with an example
+// value.
+std::string defaultConfig();
+
+// Completion of commands, options and their values.
+std::string completionsOfBash();
+
 }  // namespace binosplat

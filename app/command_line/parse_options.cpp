@@ -38,7 +38,7 @@ void addOption(CommandLine& line, const OptionDescription& option) {
     const OptionText& text = option.text;
     const std::string name = std::string("--") + text.key;
     CLI::Option* added = nullptr;
-    if (*text.value == '\0') {
+    if (text.isFlag()) {
         added = line.parser->add_flag(name)->description(option.help());
     } else {
         added = line.parser->add_option(name, line.values[text.key], option.help())->type_name(text.value);
@@ -98,9 +98,7 @@ std::vector<std::string> withCommand(std::vector<std::string> words) {
         return words;
     }
     std::string names;
-    for (const Command& command : commands()) {
-        if (!command.hidden) { names += fmt::format("{}{}", names.empty() ? "" : ", ", command.name); }
-    }
+    for (const Command& command : shownCommands()) { names += fmt::format("{}{}", names.empty() ? "" : ", ", command.name); }
     throw Error(ExitCode::kUsage,
                 fmt::format("{} is not a command; must be one of: {}, or a scene to view (see `binosplat --help`)", word, names));
 }

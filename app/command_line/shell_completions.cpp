@@ -1,7 +1,7 @@
 // Completion for bash.
-#include "app/command_line/shell_completions.h"
+#include "app/command_line/option_documents.h"
 
-#include "app/command_line/document_text.h"
+#include "app/command_line/commands_table.h"
 
 #include <fmt/format.h>
 
@@ -9,21 +9,20 @@ namespace binosplat {
 
 std::string completionsOfBash() {
     std::string names, options, values;
-    for (const Command* command : shownCommands()) {
-        names += fmt::format("{}{}", names.empty() ? "" : " ", command->name);
+    for (const Command& command : shownCommands()) {
+        names += fmt::format("{}{}", names.empty() ? "" : " ", command.name);
         std::vector<std::string> keys;
-        for (const OptionDescription& option : optionsOf(*command)) {
+        for (const OptionDescription& option : optionsOf(command)) {
             keys.push_back(fmt::format("--{}", option.text.key));
             if (!option.choices.empty()) {
-                values += fmt::format("        {}:--{}) COMPREPLY=($(compgen -W \"{}\" -- \"$word\")); return ;;\n", command->name,
+                values += fmt::format("        {}:--{}) COMPREPLY=($(compgen -W \"{}\" -- \"$word\")); return ;;\n", command.name,
                                       option.text.key, fmt::join(option.choices, " "));
-            } else if (!isFlag(option.text)) {
-                values += fmt::format("        {}:--{}) {} return ;;\n", command->name, option.text.key,
+            } else if (!option.text.isFlag()) {
+                values += fmt::format("        {}:--{}) {} return ;;\n", command.name, option.text.key,
                                       option.is_file ? "COMPREPLY=($(compgen -f -- \"$word\"));" : "");
             }
         }
-        options +=
-            fmt::format("        {}) COMPREPLY=($(compgen -W \"{} --help\" -- \"$word\")) ;;\n", command->name, fmt::join(keys, " "));
+        options += fmt::format("        {}) COMPREPLY=($(compgen -W \"{} --help\" -- \"$word\")) ;;\n", command.name, fmt::join(keys, " "));
     }
     return fmt::format(R"(# Completion of binosplat for bash.
 _binosplat() {{

@@ -4,10 +4,6 @@
 #include "app/options/start_view.h"
 #include "engine/error.h"
 
-#include <algorithm>
-#include <cmath>
-#include <utility>
-
 namespace binosplat {
 
 namespace {

@@ -7,10 +7,7 @@
 namespace binosplat {
 
 inline ContextOptions contextOptions(const RunOptions& run) {
-    ContextOptions options;
-    options.device = run.device;
-    options.memory_limit_bytes = run.memory_limit_mib << 20;
-    return options;
+    return {.device = run.device, .memory_limit_bytes = run.memory_limit_mib << 20};
 }
 
 }  // namespace binosplat

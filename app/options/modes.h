@@ -4,12 +4,7 @@
 #include "app/options/options.h"
 #include "engine/frame/stereo_frame.h"
 
-#include <string>
-
 namespace binosplat {
-
-// Throws Error (bad input) for a name that is no mode.
-Mode readMode(const Setting& setting);
 
 // Throws Error (bad input) where they ask for half the resolution of a mode that cannot give it, or do not say where. The references are
 // left as they are.

@@ -4,7 +4,6 @@
 #include "app/options/option_table.h"
 #include "engine/error.h"
 
-#include <string_view>
 #include <utility>
 
 namespace binosplat {
@@ -12,26 +11,20 @@ namespace binosplat {
 namespace {
 
 // Each of these pairs says two different things about the camera.
-constexpr std::pair<std::string_view, std::string_view> kContradictions[] = {
+constexpr std::pair<const char*, const char*> kContradictions[] = {
     {"cameras", "headset"}, {"cameras", "eye"}, {"cameras", "look"}, {"cameras", "up"}, {"cameras", "fov-x"}, {"headset", "fov-x"},
 };
 
-bool has(const Settings& settings, std::string_view key) { return settings.contains(std::string(key)); }
-
 void refuseContradictions(const Settings& layer, ExitCode code) {
     for (const auto& [a, b] : kContradictions) {
-        if (!has(layer, a) || !has(layer, b)) { continue; }
-        throw Error(code, fmt::format("{} and {} contradict each other, must be one of them", layer.at(std::string(a)).origin,
-                                      layer.at(std::string(b)).origin));
+        if (!layer.contains(a) || !layer.contains(b)) { continue; }
+        throw Error(code, fmt::format("{} and {} contradict each other, must be one of them", layer.at(a).origin, layer.at(b).origin));
     }
 }
 
 }  // namespace
 
-RunOptions runOptions(const Settings& settings, RunOptions options) {
-    readRows(runRows(), settings, options);
-    return options;
-}
+RunOptions runOptions(const Settings& settings, const RunOptions& options) { return readRows(runRows(), settings, options); }
 
 Settings configLayer(const std::filesystem::path& config, const std::vector<SettingsTable>& tables, const std::set<std::string>& foreign) {
     Settings layer;
@@ -61,11 +54,11 @@ Settings mergeLayers(const Settings& command_line, const Settings& config) {
     refuseContradictions(command_line, ExitCode::kUsage);
     Settings merged = config;
     for (const auto& [a, b] : kContradictions) {
-        if (has(command_line, a)) { merged.erase(std::string(b)); }
-        if (has(command_line, b)) { merged.erase(std::string(a)); }
+        if (command_line.contains(a)) { merged.erase(b); }
+        if (command_line.contains(b)) { merged.erase(a); }
     }
     for (const auto& [key, setting] : command_line) { merged.insert_or_assign(key, setting); }
-    if (!has(merged, "cameras") && has(command_line, "view")) {
+    if (!merged.contains("cameras") && command_line.contains("view")) {
         throw Error(ExitCode::kUsage, "--view is given without --cameras, and there is no cameras.json beside SCENE or in its folder");
     }
     return merged;

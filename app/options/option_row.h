@@ -2,7 +2,6 @@
 // writing and the documents follow.
 #pragma once
 
-#include "app/options/modes.h"
 #include "app/options/options.h"
 #include "engine/setup/values.h"
 
@@ -56,6 +55,8 @@ struct OptionText {
     const char* standard = "";  // the default, if the field does not have it
     bool required = false;
     bool by_command = false;  // the default depends on the command
+
+    [[nodiscard]] bool isFlag() const { return *value == '\0'; }
 };
 
 template <typename Owner>
@@ -66,17 +67,13 @@ struct OptionRow {
 
 namespace field {
 
-template <typename Pointer>
-struct OwnerOf;
 template <typename Owner, typename Field>
-struct OwnerOf<Field Owner::*> {
-    using Type = Owner;
-};
+Owner ownerOf(Field Owner::*);
 
 // A field of a field: pointers to members from the outermost one on.
 template <auto First, auto... Rest>
 struct Path {
-    using Owner = typename OwnerOf<decltype(First)>::Type;
+    using Owner = decltype(ownerOf(First));
     static auto& in(auto& owner) {
         if constexpr (sizeof...(Rest) == 0) {
             return owner.*First;
@@ -90,12 +87,10 @@ template <typename Value>
 OptionValue toValue(const Value& value) {
     if constexpr (std::is_same_v<Value, bool> || std::is_same_v<Value, glm::dvec3>) {
         return value;
-    } else if constexpr (std::is_integral_v<Value>) {
-        return static_cast<std::uint64_t>(value);
+    } else if constexpr (std::is_integral_v<Value> || std::is_enum_v<Value>) {
+        return static_cast<std::uint64_t>(value);  // of an enum, which named() has a word for
     } else if constexpr (std::is_floating_point_v<Value>) {
         return static_cast<double>(value);
-    } else if constexpr (std::is_same_v<Value, Mode>) {
-        return std::string(nameOf(value));
     } else if constexpr (std::is_same_v<Value, glm::uvec2>) {
         return fmt::format("{}x{}", value.x, value.y);
     } else if constexpr (std::is_same_v<Value, glm::dvec4>) {
@@ -108,13 +103,23 @@ OptionValue toValue(const Value& value) {
     }
 }
 
+// To a field, or to one that may be absent.
+template <typename Field>
+void assign(Field& field, const auto& value) {
+    field = static_cast<Field>(value);
+}
+template <typename Field>
+void assign(std::optional<Field>& field, const auto& value) {
+    field = static_cast<Field>(value);
+}
+
 // `parse` makes the field's value from a Setting.
 template <auto... Members>
 auto make(std::string range, auto parse) {
     using At = Path<Members...>;
     using Owner = typename At::Owner;
     OptionField<Owner> made;
-    made.read = [parse](const Setting& setting, Owner& owner) { At::in(owner) = parse(setting); };
+    made.read = [parse](const Setting& setting, Owner& owner) { assign(At::in(owner), parse(setting)); };
     made.value = [](const Owner& owner) { return toValue(At::in(owner)); };
     made.range = std::move(range);
     return made;
@@ -129,23 +134,10 @@ auto number(double least, double most) {
 }
 
 template <auto... Members>
-auto positive() {
-    return make<Members...>("greater than 0", readPositive);
-}
-
-template <auto... Members>
 auto count(std::uint64_t least, std::uint64_t most) {
-    using At = Path<Members...>;
-    using Field = std::remove_cvref_t<decltype(At::in(std::declval<typename At::Owner&>()))>;
-    const auto parse = [=](const Setting& s) -> Field {
-        if constexpr (std::is_integral_v<Field>) {
-            return static_cast<Field>(readCount(s, least, most));
-        } else {
-            return static_cast<typename Field::value_type>(readCount(s, least, most));
-        }
-    };
     const bool unlimited = most >= std::numeric_limits<std::uint32_t>::max();
-    auto made = make<Members...>(unlimited ? fmt::format("{} or more", least) : fmt::format("{} to {}", least, most), parse);
+    auto made = make<Members...>(unlimited ? fmt::format("{} or more", least) : fmt::format("{} to {}", least, most),
+                                 [=](const Setting& s) { return readCount(s, least, most); });
     made.least = static_cast<double>(least);
     made.most = static_cast<double>(most);
     return made;
@@ -163,88 +155,22 @@ auto text() {
 
 // The name of a file or a folder.
 template <auto... Members>
-auto file() {
-    auto made = text<Members...>();
+auto file(std::string (*parse)(const Setting&) = readText) {
+    auto made = make<Members...>("", parse);
     made.is_file = true;
     return made;
-}
-
-// For fields that may be absent.
-template <auto... Members>
-auto fileIfAny() {
-    auto made = make<Members...>("", [](const Setting& s) { return s.text(); });
-    made.is_file = true;
-    return made;
-}
-
-template <auto... Members>
-auto vector() {
-    return make<Members...>("", readVector);
-}
-
-template <auto... Members>
-auto direction() {
-    return make<Members...>("of any length", readDirection);
-}
-
-template <auto... Members>
-auto sphere() {
-    return make<Members...>("", readSphere);
-}
-
-template <auto... Members>
-auto colour() {
-    return make<Members...>("0 to 1 each", readColour);
-}
-
-template <auto... Members>
-auto size() {
-    return make<Members...>(fmt::format("1 to {} each", kMaxSide), readSize);
-}
-
-// `parse` makes the field's value from a Setting that is one of `names`.
-template <auto... Members>
-auto oneOf(std::vector<std::string_view> names, auto parse) {
-    auto made = make<Members...>(fmt::format("{}", fmt::join(names, ", ")), parse);
-    made.choices = std::move(names);
-    return made;
-}
-
-template <auto... Members>
-auto choice(const std::vector<std::string_view>& names) {
-    return oneOf<Members...>(names, [names](const Setting& s) { return readChoice(s, names); });
-}
-
-// By the table of the modes' names.
-template <auto... Members>
-auto mode() {
-    return oneOf<Members...>({kModeNames.begin(), kModeNames.end()}, readMode);
 }
 
 // Of an enum, which may be absent, or of a bool, by the names of its values from 0 on.
 template <auto... Members>
 auto named(std::vector<std::string_view> names) {
     using At = Path<Members...>;
-    using Owner = typename At::Owner;
-    using Field = std::remove_cvref_t<decltype(At::in(std::declval<Owner&>()))>;
-    OptionField<Owner> made;
-    made.read = [names](const Setting& s, Owner& owner) {
-        const auto index = std::ranges::find(names, readChoice(s, names)) - names.begin();
-        if constexpr (requires { typename Field::value_type; }) {
-            At::in(owner) = static_cast<typename Field::value_type>(index);
-        } else {
-            At::in(owner) = static_cast<Field>(index);
-        }
+    auto made = make<Members...>(fmt::format("{}", fmt::join(names, ", ")),
+                                 [names](const Setting& s) { return std::ranges::find(names, readChoice(s, names)) - names.begin(); });
+    made.value = [names](const typename At::Owner& owner) {
+        const std::optional value = At::in(owner);
+        return value ? OptionValue(std::string(names[static_cast<std::size_t>(*value)])) : OptionValue();
     };
-    made.value = [names](const Owner& owner) -> OptionValue {
-        if constexpr (requires { typename Field::value_type; }) {
-            if (!At::in(owner)) { return {}; }
-            return std::string(names[static_cast<std::size_t>(*At::in(owner))]);
-        } else {
-            return std::string(names[static_cast<std::size_t>(At::in(owner))]);
-        }
-    };
-    made.range = fmt::format("{}", fmt::join(names, ", "));
     made.choices = std::move(names);
     return made;
 }

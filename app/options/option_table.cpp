@@ -59,15 +59,15 @@ std::span<const OptionRow<RunOptions>> runRows() {
     static const std::vector<OptionRow<RunOptions>> rows{
         // Camera.
         {{"eye", "camera", kWearer, "x,y,z", "middle of the eyes", "where `binosplat info` says"},
-         field::vector<kCamera, &CameraOptions::eye>()},
-        {{"look", "camera", kWearer, "x,y,z", "point looked at"}, field::vector<kCamera, &CameraOptions::look>()},
+         field::make<kCamera, &CameraOptions::eye>("", readVector)},
+        {{"look", "camera", kWearer, "x,y,z", "point looked at"}, field::make<kCamera, &CameraOptions::look>("", readVector)},
         {{"up", "camera", kWearer, "x,y,z", "direction that is up in the picture",
           "of the cameras, the floor or the built-in scene, or 0,-1,0"},
-         field::vector<kCamera, &CameraOptions::up>()},
+         field::make<kCamera, &CameraOptions::up>("", readVector)},
         {{"fov-x", "camera", kPictures, "DEG", "horizontal field of view", "60, or the built-in scene's view"},
          field::number<kCamera, &CameraOptions::fov_x_deg>(0.1, 179.0)},
         {{"size", "camera", kPictures, "WxH", "pixels per eye", "1024x1024, or that of --cameras or --headset"},
-         field::size<kCamera, &CameraOptions::size_px>()},
+         field::make<kCamera, &CameraOptions::size_px>(fmt::format("1 to {} each", kMaxSide), readSize)},
         {{"cameras", "camera", kWearer, "FILE", "cameras.json of a 3DGS or 2DGS training",
           "with --view, the one beside SCENE or in its folder"},
          field::file<kCamera, &CameraOptions::cameras_file>()},
@@ -76,12 +76,13 @@ std::span<const OptionRow<RunOptions>> runRows() {
          field::text<kCamera, &CameraOptions::headset>()},
         {{"near", "camera", kWearer, "Z", "nearest depth that is drawn, in scene units or, in view, in the wearer's metres"},
          field::number<kCamera, &CameraOptions::near>(1e-6, 1e6)},
-        {{"background", "camera", kWearer, "r,g,b", "colour behind the scene"}, field::colour<kCamera, &CameraOptions::background>()},
+        {{"background", "camera", kWearer, "r,g,b", "colour behind the scene"},
+         field::make<kCamera, &CameraOptions::background>("0 to 1 each", readColour)},
 
         // Stereo.
         {{"mode", "stereo", kTried, "MODE", "how the two pictures are made", "predicted; with view and --path temporal", /*required*/ false,
           /*by_command*/ true},
-         field::mode<kStereo, &StereoOptions::mode>()},
+         field::named<kStereo, &StereoOptions::mode>({kModeNames.begin(), kModeNames.end()})},
         {{"dominant", "stereo", kWearer, "SIDE", "eye that is rendered in full"},
          field::named<kStereo, &StereoOptions::dominant>({"left", "right"})},
         {{"ipd", "stereo", kPictures, "METRES", "distance of the eyes", "0.063, or the headset's"},
@@ -126,7 +127,7 @@ std::span<const OptionRow<RunOptions>> runRows() {
           "full; with view half", /*required*/ false, /*by_command*/ true},
          field::named<kStereo, &StereoOptions::half_periphery>({"full", "half"})},
         {{"gaze", "stereo", kPictures, "x,y,z", "direction of the gaze, from the head: right, down, forward", "each lens's centre"},
-         field::direction<kStereo, &StereoOptions::gaze>()},
+         field::make<kStereo, &StereoOptions::gaze>("of any length", readDirection)},
 
         // Scene.
         {{"lod", "scene", kScenes, "N", "level of detail of a streamed SOG scene, 0 the finest", "the finest within --memory-limit"},
@@ -147,7 +148,8 @@ std::span<const OptionRow<RunOptions>> runRows() {
          field::flag<kLoad, &LoadOptions::antialiased>()},
         {{"cache-limit", "scene", kScenes, "MIB", "disk space for scenes from http and https addresses, which are kept for the next time"},
          field::count<kLoad, &LoadOptions::cache_limit_mib>(0, kMaxMemoryMib)},
-        {{"metres-per-unit", "scene", kWearer, "M", "metres in one scene unit"}, field::positive<&RunOptions::metres_per_unit>()},
+        {{"metres-per-unit", "scene", kWearer, "M", "metres in one scene unit"},
+         field::make<&RunOptions::metres_per_unit>("greater than 0", readPositive)},
 
         // Run.
         {{"memory-limit", "run", kWearer, "MIB", "device memory that may be used", "all there is"},
@@ -168,7 +170,7 @@ std::span<const OptionRow<RenderOptions>> renderRows() {
         {{"out", "", kRender, "DIR", "directory for pictures and report.json", "", /*required*/ true}, field::file<&RenderOptions::out>()},
         {{"path", "", kRender, "POSES.csv", "head poses to render relative to the camera, one numbered frame after the other"},
          field::file<&RenderOptions::path>()},
-        {{"path-axes", "", kRender, "AXES", "axes of --path"}, field::choice<&RenderOptions::path_axes>({"openxr", "unity"})},
+        {{"path-axes", "", kRender, "AXES", "axes of --path"}, field::named<&RenderOptions::path_axes>({"openxr", "unity"})},
         {{"from", "", kRender, "S", "second of --path at which the frames begin; the head is at the camera then"},
          field::number<kPathSegment, &MotionSegment::from_s>(0.0, kMaxSeconds)},
         {{"seconds", "", kRender, "S", "length of the part of --path that is rendered", "all that is left"},
@@ -184,7 +186,7 @@ std::span<const OptionRow<BenchOptions>> benchRows() {
         {{"out", "", kBench, "DIR", "directory for bench.json, bench.csv and bench.svg", "", /*required*/ true},
          field::file<&BenchOptions::out>()},
         {{"motion", "", kBench, "TRACE.csv", "head poses to play relative to the camera"}, field::file<&BenchOptions::motion_file>()},
-        {{"motion-axes", "", kBench, "AXES", "axes of --motion"}, field::choice<&BenchOptions::motion_axes>({"openxr", "unity"})},
+        {{"motion-axes", "", kBench, "AXES", "axes of --motion"}, field::named<&BenchOptions::motion_axes>({"openxr", "unity"})},
         {{"from", "", kBench, "S", "second of --motion at which the frames begin; the head is at the camera then"},
          field::number<kMotionSegment, &MotionSegment::from_s>(0.0, kMaxSeconds)},
         {{"seconds", "", kBench, "S", "length of the part of --motion that is played", "all that is left"},
@@ -216,7 +218,7 @@ std::span<const OptionRow<ViewOptions>> viewRows() {
         {{"shaders", "", kView, "DIR", "for work on the shaders: a button of the panel, and F5, reload them from there"},
          field::file<&ViewOptions::shaders>()},
         {{"simulate", "", kView, "[SCRIPT]", "use the simulated headset, driven by SCRIPT if given"},
-         field::fileIfAny<&ViewOptions::script>()},
+         field::file<&ViewOptions::script>([](const Setting& s) { return s.text(); })},
     };
     return rows;
 }
@@ -234,7 +236,7 @@ std::span<const OptionRow<SceneOptions>> sceneRows() {
 std::span<const OptionRow<ConvertOptions>> convertRows() {
     static const std::vector<OptionRow<ConvertOptions>> rows{
         {{"crop", "", kConvert, "x,y,z,r", "keep the splats whose centres lie in this sphere, in scene units"},
-         field::sphere<&ConvertOptions::crop>()},
+         field::make<&ConvertOptions::crop>("", readSphere)},
     };
     return rows;
 }

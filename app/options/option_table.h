@@ -42,7 +42,7 @@ struct OptionDescription {
 template <typename Owner>
 OptionDescription describe(const OptionRow<Owner>& row) {
     std::string standard = *row.text.standard != '\0' ? row.text.standard : textOf(row.field.value(Owner{}));
-    if (*row.text.value == '\0' && standard == "false") { standard.clear(); }  // of a flag that goes without saying
+    if (row.text.isFlag() && standard == "false") { standard.clear(); }  // of a flag that goes without saying
     return {row.text, row.field.range, standard, row.field.choices, row.field.is_file};
 }
 template <typename Owner>
@@ -52,12 +52,13 @@ std::vector<OptionDescription> describe(std::span<const OptionRow<Owner>> rows) 
     return descriptions;
 }
 
-// Reads the `rows` that `settings` have into `options`; the others stay.
+// `options` with the `rows` that `settings` have; the others stay.
 template <typename Owner>
-void readRows(std::span<const OptionRow<Owner>> rows, const Settings& settings, Owner& options) {
+Owner readRows(std::span<const OptionRow<Owner>> rows, const Settings& settings, Owner options = {}) {
     for (const OptionRow<Owner>& row : rows) {
         if (const auto found = settings.find(row.text.key); found != settings.end()) { row.field.read(found->second, options); }
     }
+    return options;
 }
 
 }  // namespace binosplat

@@ -3,6 +3,7 @@
 
 #include "engine/geometry.h"
 #include "engine/passes/stereo_settings.h"
+#include "engine/picture/flip.h"
 #include "engine/setup/head_motion.h"
 #include "engine/setup/settings.h"
 
@@ -70,25 +71,25 @@ struct RenderOptions {
     std::string scene;
     std::filesystem::path out;
     RunOptions run;
-    std::string path;                  // --path: head poses to render, relative to the camera; empty: one frame
-    std::string path_axes = "openxr";  // --path-axes: of the recording
-    MotionSegment segment;             // --from, --seconds, --rate: of the path
+    std::string path;                            // --path: head poses to render, relative to the camera; empty: one frame
+    MotionAxes path_axes = MotionAxes::kOpenXr;  // --path-axes: of the recording
+    MotionSegment segment;                       // --from, --seconds, --rate: of the path
 };
 
 struct BenchOptions {
     std::vector<std::string> scenes;  // empty: those of the config
     std::filesystem::path out;
     RunOptions run;
-    CameraOptions asked;                 // the part of `run.camera` from the command line, not from the config
-    std::vector<SettingsTable> tables;   // the config's tables that the bench alone reads, see bench_plan.h
-    std::string motion_file;             // --motion: head poses to play, relative to the camera
-    std::string motion_axes = "openxr";  // --motion-axes: of the recording
-    MotionSegment segment;               // --from, --seconds, --rate: of the motion
-    std::string photos_folder;           // --photos: photographs of the cameras of --cameras
-    std::uint32_t every = 1;             // --every: of a motion's poses or of the cameras
-    std::uint32_t repeats = 0;           // --repeats: measured frames per method; 0: as the config says
-    bool orders = false;                 // --orders: how near each order of splats is to one that every pixel has of its own
-    std::string lpips_weights;           // --lpips: LPIPS too is measured, whatever the config's scores are; empty: as the config says
+    CameraOptions asked;                           // the part of `run.camera` from the command line, not from the config
+    std::vector<SettingsTable> tables;             // the config's tables that the bench alone reads, see bench_plan.h
+    std::string motion_file;                       // --motion: head poses to play, relative to the camera
+    MotionAxes motion_axes = MotionAxes::kOpenXr;  // --motion-axes: of the recording
+    MotionSegment segment;                         // --from, --seconds, --rate: of the motion
+    std::string photos_folder;                     // --photos: photographs of the cameras of --cameras
+    std::uint32_t every = 1;                       // --every: of a motion's poses or of the cameras
+    std::uint32_t repeats = 0;                     // --repeats: measured frames per method; 0: as the config says
+    bool orders = false;                           // --orders: how near each order of splats is to one that every pixel has of its own
+    std::string lpips_weights;  // --lpips: LPIPS too is measured, whatever the config's scores are; empty: as the config says
 };
 
 struct ViewOptions {
@@ -127,8 +128,8 @@ struct ConvertOptions {
 
 struct CompareOptions {
     std::filesystem::path first, second;
-    std::string lpips_weights;       // empty: no LPIPS
-    double pixels_per_degree = 0.0;  // of FLIP
+    std::string lpips_weights;                        // empty: no LPIPS
+    double pixels_per_degree = kFlipPixelsPerDegree;  // of FLIP
 };
 
 struct StabilityOptions {
@@ -152,6 +153,6 @@ using Options = std::variant<RenderOptions, BenchOptions, ViewOptions, InfoOptio
 Options parseOptions(int argument_count, const char* const* arguments);
 
 // Typed values of merged settings; missing ones stay as in `options`.
-RunOptions runOptions(const Settings& settings, RunOptions options = {});
+RunOptions runOptions(const Settings& settings, const RunOptions& options = {});
 
 }  // namespace binosplat

@@ -77,8 +77,8 @@ View viewFrom(const Pose& world_from_camera, const std::optional<glm::dvec3>& up
 }
 
 StartView startView(const Scene& scene, const StandpointWish& wish) {
-    if (isBuiltin(scene.name)) {
-        if (const std::optional<View> view = builtinView(scene.name)) { return {*view, "at the built-in scene's own view"}; }
+    if (const std::optional<View> view = isBuiltin(scene.name) ? builtinView(scene.name) : std::nullopt) {
+        return {*view, "at the built-in scene's own view"};
     }
     const SceneCameras own = scene.name.empty() ? SceneCameras{} : readSceneCameras(scene.name);
     if (const auto at_camera = viewAtCamera(scene, own, wish)) { return *at_camera; }

@@ -8,12 +8,6 @@
 
 namespace binosplat {
 
-namespace {
-
-constexpr double kMostDecades = 9.0;  // with a label each
-
-}  // namespace
-
 bool PlotAxis::shows(double value) const { return std::isfinite(value) && (scale_ == Scale::kLinear || value > 0.0); }
 
 void PlotAxis::include(double value) {
@@ -33,6 +27,7 @@ void PlotAxis::round() {
     // Over three decades, powers of ten are enough; over nine, every second, third ... of them.
     const double decades = scale_ == Scale::kLog ? std::log10(high_ / low_) : 0.0;
     if (decades > 3.0) {
+        constexpr double kMostDecades = 9.0;  // with a label each
         const double step = std::ceil(decades / kMostDecades);
         std::erase_if(ticks_, [&](double tick) {
             const double steps = std::log10(tick) / step;

@@ -4,7 +4,6 @@
 #include "app/options/option_table.h"
 
 #include <fmt/format.h>
-#include <glm/gtc/constants.hpp>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -106,11 +105,7 @@ PassTimes addUp(const PassTimes& times) {
     PassTimes sums;
     for (const PassTime& time : times) {
         const auto found = std::ranges::find(sums, time.label, &PassTime::label);
-        if (found == sums.end()) {
-            sums.push_back(time);
-        } else {
-            found->ms += time.ms;
-        }
+        (found == sums.end() ? sums.emplace_back(PassTime{time.label}) : *found).ms += time.ms;
     }
     return sums;
 }

@@ -9,13 +9,9 @@
 namespace binosplat {
 
 using stability::Bound;
-using stability::Case;
 using stability::CaseScore;
 using stability::kModes;
-using stability::PathScore;
 using stability::PictureScore;
-using stability::Sequence;
-using stability::SequenceScore;
 
 namespace {
 
@@ -41,9 +37,7 @@ std::string casesTable(const StabilityRun& run) {
         head.emplace_back(name);
     }
     columns.addRow(std::move(head));
-    for (std::size_t i = 0; i < run.cases.size(); ++i) {
-        const Case& one = run.cases[i];
-        const CaseScore& score = run.scores[i];
+    for (const auto& [one, score] : run.cases) {
         std::vector<std::string> row{one.name()};
         for (const Mode mode : kModes) { row.push_back(decibels(score.worstOf(mode).psnr_db)); }
         row.push_back(fmt::format("{:.1e}", greatest(score, [](const PictureScore& p) { return p.moved ? 0.0 : p.largest; })));
@@ -63,10 +57,9 @@ std::string casesTable(const StabilityRun& run) {
 std::string pathsTable(const StabilityRun& run) {
     TextColumns columns;
     columns.addRow({"the eye moves by 1e-6 a frame", "change", "twin's", "slack", "worst frame", "not finite", ""});
-    for (std::size_t i = 0; i < run.paths.size(); ++i) {
-        const PathScore& score = run.path_scores[i];
-        columns.addRow({run.paths[i].name, fmt::format("{:.2e}", score.device), fmt::format("{:.2e}", score.twin),
-                        fmt::format("{:.1e}", run.paths[i].slack), decibels(score.psnr_db), fmt::format("{}", score.not_finite),
+    for (const auto& [path, score] : run.paths) {
+        columns.addRow({path.name, fmt::format("{:.2e}", score.device), fmt::format("{:.2e}", score.twin),
+                        fmt::format("{:.1e}", path.slack), decibels(score.psnr_db), fmt::format("{}", score.not_finite),
                         score.passes ? "" : "FAILS"});
     }
     return columns.text();
@@ -77,9 +70,7 @@ std::string sequencesTable(const StabilityRun& run) {
     columns.addRow({"frames made from the ones before", "frames", "worst", "bound", "drift", "bound", "beyond", "bound", "bias", "bound",
                     "equal from", "bound", "not finite", "repeats", ""});
     const auto bound = [](double value) { return std::isinf(value) ? std::string() : fmt::format("{:.2g}", value); };
-    for (std::size_t i = 0; i < run.sequences.size(); ++i) {
-        const Sequence& sequence = run.sequences[i];
-        const SequenceScore& score = run.sequence_scores[i];
+    for (const auto& [sequence, score] : run.sequences) {
         columns.addRow({sequence.title(), fmt::format("{}", sequence.frames), decibels(score.psnr_db),
                         fmt::format("{:.0f}", sequence.psnr_db), fmt::format("{:.1f}", score.drift_db), bound(sequence.drift_db),
                         fmt::format("{:.3f}", score.beyond), bound(sequence.beyond), fmt::format("{:.4f}", score.bias),
@@ -92,13 +83,13 @@ std::string sequencesTable(const StabilityRun& run) {
 
 std::string reasons(const StabilityRun& run) {
     std::string text, family;
-    for (const Case& one : run.cases) {
+    for (const auto& [one, score] : run.cases) {
         if (one.family == family) { continue; }
         family = one.family;
         text += fmt::format("  {}: {}\n", family, one.reason);
     }
-    for (const stability::Path& path : run.paths) { text += fmt::format("  {}: {}\n", path.name, path.reason); }
-    for (const Sequence& sequence : run.sequences) {
+    for (const auto& [path, score] : run.paths) { text += fmt::format("  {}: {}\n", path.name, path.reason); }
+    for (const auto& [sequence, score] : run.sequences) {
         if (sequence.name == family) { continue; }
         family = sequence.name;
         text += fmt::format("  {}: {}\n", family, sequence.reason);
@@ -106,25 +97,20 @@ std::string reasons(const StabilityRun& run) {
     return text;
 }
 
-std::string boundCells(const Bound& bound) {
-    return fmt::format("{},{},{},{}", bound.psnr_db, bound.share_off, bound.largest, bound.other_tiles);
-}
-
 std::string csvRow(const std::string& family, const std::string& parameter, double value, const PictureScore& p, const Bound& bound) {
-    return fmt::format("\"{}\",\"{}\",{:.9g},{},{},{:d},{:.2f},{:.3g},{:.3g},{:.3g},{},{:d},{},{:d}\n", family, parameter, value,
+    return fmt::format("\"{}\",\"{}\",{:.9g},{},{},{:d},{:.2f},{:.3g},{:.3g},{:.3g},{},{:d},{},{},{},{},{:d}\n", family, parameter, value,
                        nameOf(p.mode), p.eye, p.moved, p.psnr_db, p.share_off, p.largest, p.other_tiles, p.not_finite, p.repeats,
-                       boundCells(bound), p.passes);
+                       bound.psnr_db, bound.share_off, bound.largest, bound.other_tiles, p.passes);
 }
 
 void addPanels(std::vector<PlotPanel>& panels, const StabilityRun& run) {
-    for (std::size_t i = 0; i < run.sequences.size(); ++i) {
-        const Sequence& sequence = run.sequences[i];
+    for (const auto& [sequence, score] : run.sequences) {
         if (panels.empty() || panels.back().title != sequence.name) {
             panels.push_back({.title = sequence.name, .x_label = "frame", .y_label = "PSNR against the full render, dB"});
             panels.back().x_scale = panels.back().y_scale = Scale::kLinear;
         }
         PlotLine& line = lineOf(panels.back(), std::string(nameOf(sequence.mode)));
-        const auto& frames = run.sequence_scores[i].frames;
+        const auto& frames = score.frames;
         for (std::size_t f = 0; f + 1 < frames.size(); f += 2) {  // both eyes of each
             const double worse = std::min(frames[f].picture.psnr_db, frames[f + 1].picture.psnr_db);
             line.points.emplace_back(frames[f].frame, std::min(worse, kEqualDb));
@@ -136,14 +122,14 @@ void addPanels(std::vector<PlotPanel>& panels, const StabilityRun& run) {
 
 std::vector<std::string> StabilityRun::failures() const {
     std::vector<std::string> names;
-    for (std::size_t i = 0; i < cases.size(); ++i) {
-        if (!scores[i].passes()) { names.push_back(cases[i].name()); }
+    for (const auto& [one, score] : cases) {
+        if (!score.passes()) { names.push_back(one.name()); }
     }
-    for (std::size_t i = 0; i < paths.size(); ++i) {
-        if (!path_scores[i].passes) { names.push_back(paths[i].name); }
+    for (const auto& [path, score] : paths) {
+        if (!score.passes) { names.push_back(path.name); }
     }
-    for (std::size_t i = 0; i < sequences.size(); ++i) {
-        if (!sequence_scores[i].passes) { names.push_back(sequences[i].title()); }
+    for (const auto& [sequence, score] : sequences) {
+        if (!score.passes) { names.push_back(sequence.title()); }
     }
     return names;
 }
@@ -164,37 +150,32 @@ std::string stabilityCsv(const StabilityRun& run) {
     std::string csv =
         "family,parameter,value,mode,eye,moved,psnr_db,share_off,largest,other_tiles,not_finite,repeats,bound_psnr_db,bound_share_off,"
         "bound_largest,bound_other_tiles,passes\n";
-    for (std::size_t i = 0; i < run.cases.size(); ++i) {
-        const Case& one = run.cases[i];
-        for (const PictureScore& p : run.scores[i].pictures) {
+    for (const auto& [one, score] : run.cases) {
+        for (const PictureScore& p : score.pictures) {
             csv += csvRow(one.family, one.parameter, one.value, p, p.moved ? one.moved : one.rendered);
         }
     }
-    for (std::size_t i = 0; i < run.sequences.size(); ++i) {
-        const Sequence& sequence = run.sequences[i];
-        for (const auto& [frame, p] : run.sequence_scores[i].frames) {
-            csv += csvRow(sequence.name, "frame", frame, p, {sequence.psnr_db, 1.0});
-        }
+    for (const auto& [sequence, score] : run.sequences) {
+        for (const auto& [frame, p] : score.frames) { csv += csvRow(sequence.name, "frame", frame, p, {sequence.psnr_db, 1.0}); }
     }
     return csv;
 }
 
 std::string stabilityPlot(const StabilityRun& run) {
     std::vector<PlotPanel> panels;
-    for (std::size_t i = 0; i < run.cases.size(); ++i) {
-        const Case& one = run.cases[i];
+    for (const auto& [one, score] : run.cases) {
         if (one.parameter.empty()) { continue; }
         if (panels.empty() || panels.back().title != one.family) {
             panels.push_back({.title = one.family, .x_label = one.parameter, .y_label = "PSNR against the twin, dB"});
             panels.back().y_scale = Scale::kLinear;
         }
         PlotPanel& panel = panels.back();
-        const auto add = [&](const std::string& label, double psnr_db, bool dots) {
+        const auto add = [&panel, x = one.value](const std::string& label, double psnr_db, bool dots) {
             PlotLine& line = lineOf(panel, label);
             line.dots = dots;
-            line.points.emplace_back(one.value, std::min(psnr_db, kEqualDb));
+            line.points.emplace_back(x, std::min(psnr_db, kEqualDb));
         };
-        for (const Mode mode : kModes) { add(std::string(nameOf(mode)), run.scores[i].worstOf(mode).psnr_db, true); }
+        for (const Mode mode : kModes) { add(std::string(nameOf(mode)), score.worstOf(mode).psnr_db, true); }
         add("bound, rendered eyes", one.rendered.psnr_db, false);
         add("bound, moved eye", one.moved.psnr_db, false);
     }

@@ -4,18 +4,16 @@
 #include "engine/stability/run_case.h"
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace binosplat {
 
 struct StabilityRun {
     std::string device;
-    std::vector<stability::Case> cases;
-    std::vector<stability::CaseScore> scores;  // of the cases, in their order
-    std::vector<stability::Path> paths;
-    std::vector<stability::PathScore> path_scores;
-    std::vector<stability::Sequence> sequences;
-    std::vector<stability::SequenceScore> sequence_scores;
+    std::vector<std::pair<stability::Case, stability::CaseScore>> cases;
+    std::vector<std::pair<stability::Path, stability::PathScore>> paths;
+    std::vector<std::pair<stability::Sequence, stability::SequenceScore>> sequences;
 
     // Names of what misses its bounds.
     [[nodiscard]] std::vector<std::string> failures() const;

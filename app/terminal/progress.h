@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <string>
 #include <thread>
 
@@ -18,6 +19,11 @@ public:
     // `share` done, 0 to 1. Throws Interrupted after a Ctrl-C, but only where the line was made on the same thread. Cheap enough for inner
     // loops: the line is drawn at most ten times a second.
     void show(double share);
+
+    // The same as a function, for as long as the line lives.
+    [[nodiscard]] std::function<void(double)> progress() {
+        return [this](double share) { show(share); };
+    }
 
 private:
     using Clock = std::chrono::steady_clock;

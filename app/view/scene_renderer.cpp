@@ -95,7 +95,6 @@ FrameSettings SceneRenderer::settingsOfFrame(ConnectedHeadset& headset, const Vi
     // Of the wearer, however large the scene is.
     frame.near = options_.camera.near * scale;
     frame.units_per_metre = scale;
-    frame.dominant = settings.stereo.dominant;
     frame.keep_depth = frame.keep_both_depths = headset.images->takesDepth();
     frame.half_floats = true;
     frame.keep_classes = settings.tint;
@@ -119,8 +118,7 @@ void SceneRenderer::prepare(ConnectedHeadset& headset, ShownScene& shown, const 
     frame_ = settingsOfFrame(headset, settings, scene_from_room.scale, views, scene.gpu_scene.usualOrder());
     eyes_.clear();
     inset_eyes_.clear();
-    for (const int e : {kLeft, kRight}) {
-        if (settings.showsOneEye() && e != frame_.dominant) { continue; }
+    for (const int e : drawnEyes()) {
         const auto at = static_cast<std::size_t>(e);
         eyes_.push_back(eyeInScene(scene_from_room, views.room_from_eyes[at], views.eyes[at].fov, headset.images->partPx()));
     }
@@ -139,7 +137,7 @@ void SceneRenderer::prepare(ConnectedHeadset& headset, ShownScene& shown, const 
         }
         presenter_.makeRoom(largest_px, headset.images->takesDepth());
     } catch (const Error&) {
-        forgetLastFrame();
+        last_ = {};
         throw;
     }
 }
@@ -149,8 +147,7 @@ void SceneRenderer::aimInsets(const ConnectedHeadset& headset, const Similarity&
     inset_frame_.hidden_tiles = {};
     inset_frame_.gazes = {};
     const glm::uvec2 size_px = headset.inset_images->partPx();
-    for (const int e : {kLeft, kRight}) {
-        if (!drawsEye(e)) { continue; }
+    for (const int e : drawnEyes()) {
         const auto at = static_cast<std::size_t>(e);
         const Eye& inset =
             inset_eyes_.emplace_back(eyeInScene(scene_from_room, views.room_from_eyes[at], views.insets->at(at).fov, size_px));
@@ -164,8 +161,7 @@ void SceneRenderer::render(ConnectedHeadset& headset, ShownScene& shown, const V
                            const std::function<void(Commands&)>& record_panel) {
     const bool one_eye = settings.showsOneEye();
     headset.images->seeThrough(seesThrough(settings));
-    for (const int e : {kLeft, kRight}) {
-        if (!drawsEye(e)) { continue; }
+    for (const int e : drawnEyes()) {
         headset.images->acquire(e, true);
         if (headset.inset) { headset.inset_images->acquire(e, true); }
     }
@@ -205,8 +201,7 @@ void SceneRenderer::render(ConnectedHeadset& headset, ShownScene& shown, const V
 }
 
 void SceneRenderer::recordEyes(Commands& commands, EyeImages& images, const StereoFrame& frame, bool tint, MirrorWindow* window) {
-    for (const int e : {kLeft, kRight}) {
-        if (!drawsEye(e)) { continue; }
+    for (const int e : drawnEyes()) {
         const bool is_mono = frame_.mode == Mode::kMono;
         images.present(commands, e, frame.picture(is_mono ? 0 : e), tint ? frame.chosenTiles(e) : nullptr, frame_.near);
         // The window shows the dominant eye, or what is made of it where that is the point.

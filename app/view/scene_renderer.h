@@ -51,10 +51,9 @@ public:
     [[nodiscard]] bool seesThrough(const ViewSettings& settings) const { return settings.passthrough && instance_.canSeeThrough(); }
     // Of those that the device is done with. No counters before the first frame of a scene.
     [[nodiscard]] const FrameResult& lastFrame() const { return last_; }
-    void forgetLastFrame() { last_ = {}; }
     // Another scene is shown: neither its counters nor what it takes are those of the one before.
     void forgetScene() {
-        forgetLastFrame();
+        last_ = {};
         governor_.forget();
         splat_budget_.reset();
     }
@@ -69,7 +68,9 @@ private:
     [[nodiscard]] glm::uvec2 insetPx(const ConnectedHeadset& headset, double scale) const;
     // Where they look, after the eyes that they are part of.
     void aimInsets(const ConnectedHeadset& headset, const Similarity& scene_from_room, const FrameViews& views);
-    [[nodiscard]] bool drawsEye(int eye) const { return frame_.mode != Mode::kMono || eye == frame_.dominant; }
+    [[nodiscard]] std::vector<int> drawnEyes() const {
+        return frame_.mode == Mode::kMono ? std::vector<int>{frame_.dominant} : std::vector<int>{kLeft, kRight};
+    }
     [[nodiscard]] FrameSettings settingsOfFrame(ConnectedHeadset& headset, const ViewSettings& settings, double scale,
                                                 const FrameViews& views, Order usual_order);
     // Those of `frame` into `images`.

@@ -10,7 +10,7 @@
 #include <cstring>
 #include <fstream>
 #include <future>
-#include <sstream>
+#include <iterator>
 
 namespace binosplat {
 
@@ -32,21 +32,17 @@ struct TemporaryFolder {
     fs::path path;
 };
 
-template <typename T>
-std::vector<T> readAll(const fs::path& file) {
+std::vector<std::uint32_t> readWords(const fs::path& file) {
     std::ifstream stream(file, std::ios::binary);
-    std::stringstream bytes;
-    bytes << stream.rdbuf();
-    const std::string text = bytes.str();
-    std::vector<T> values(text.size() / sizeof(T));
-    std::copy_n(text.data(), values.size() * sizeof(T), reinterpret_cast<char*>(values.data()));
-    return values;
+    const std::string bytes(std::istreambuf_iterator<char>(stream), {});
+    std::vector<std::uint32_t> words(bytes.size() / sizeof(std::uint32_t));
+    std::memcpy(words.data(), bytes.data(), words.size() * sizeof(std::uint32_t));
+    return words;
 }
 
 // The first complaint in what glslang printed, "ERROR: FILE:LINE: REASON".
 std::string firstError(const fs::path& log, const fs::path& source) {
-    const std::vector<char> text = readAll<char>(log);
-    std::istringstream lines(std::string(text.begin(), text.end()));
+    std::ifstream lines(log, std::ios::binary);
     const std::string mark = "ERROR: ";
     for (std::string line; std::getline(lines, line);) {
         if (line.starts_with(mark)) { return line.substr(mark.size()); }
@@ -65,7 +61,7 @@ std::vector<std::uint32_t> compileShader(const fs::path& folder, const std::stri
                                 "-I" + folder.string(), "-o", words.string(), source.string()},
                                log);
     check(ok, "{}", firstError(log, source));
-    return readAll<std::uint32_t>(words);
+    return readWords(words);
 }
 
 }  // namespace

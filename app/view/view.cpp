@@ -14,7 +14,6 @@
 
 #include <chrono>
 #include <csignal>
-#include <cstring>
 #include <memory>
 
 namespace binosplat {

@@ -30,7 +30,7 @@ Viewer::Viewer(const ViewOptions& options, const ViewSettings& settings, xr::Ins
       scenes_(context_, options_, log_,
               FramesAhead{settings.stereo, renderer_.sizePx(settings), instance.takesDepth(), settings.tint, {}}) {
     panel_.status().can_reload_shaders = !shaderFolder(options.shaders).empty();
-    if (const std::string& complaint = panel_.canvas().fontComplaint(); !complaint.empty()) { log_.print(complaint); }
+    if (const std::string& complaint = panel_.canvas().font().complaint(); !complaint.empty()) { log_.print(complaint); }
     if (mirrored) { openWindow(); }
 }
 
@@ -105,16 +105,11 @@ void Viewer::loseHeadset(const std::string& why) {
 
 bool Viewer::comeBack() {
     if (leaving_) { return false; }
-    switch (connection_.search([this](const std::string& message) { say(message); })) {
-        case HeadsetConnection::Search::kLater:
-            drawWindowAlone("The headset is unplugged: plug it in");
-            std::this_thread::sleep_for(kIdle);
-            break;
-        case HeadsetConnection::Search::kNone:
-            break;
-        case HeadsetConnection::Search::kFound:
-            renderer_.fitImages(headset(), state_.settings());
-            break;
+    const HeadsetConnection::Search came = connection_.search([this](const std::string& message) { say(message); });
+    if (came == HeadsetConnection::Search::kFound) { renderer_.fitImages(headset(), state_.settings()); }
+    if (came == HeadsetConnection::Search::kLater) {
+        drawWindowAlone("The headset is unplugged: plug it in");
+        std::this_thread::sleep_for(kIdle);
     }
     return true;
 }

@@ -72,7 +72,6 @@ private:
     void goBackToLastScene();
     // A small picture of the scene as it was seen last, for the list of scenes.
     void keepPictureOfScene();
-    void save();
     void load();
     void remember(const std::string& complaint);
     void reloadShaders();

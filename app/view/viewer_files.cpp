@@ -34,7 +34,11 @@ void Viewer::remember(const std::string& complaint) {
 }
 
 void Viewer::openAndSave(const PanelRequests& requests) {
-    if (requests.save) { save(); }
+    if (requests.save) {
+        files_.write("saving", [this, scene = scenes_.name(), saved = state_.withPlacement()]() -> FileWorker::Done {
+            return [this, outcome = saveViewSettings(scene, saved)] { say(outcome); };
+        });
+    }
     if (requests.load) { load(); }
     if (requests.scene_step != 0) { scenes_.beginBeside(requests.scene_step, files_); }
     if (!requests.chosen_scene.empty()) { scenes_.begin(requests.chosen_scene); }
@@ -52,12 +56,6 @@ void Viewer::openAndSave(const PanelRequests& requests) {
             };
         });
     }
-}
-
-void Viewer::save() {
-    files_.write("saving", [this, scene = scenes_.name(), saved = state_.withPlacement()]() -> FileWorker::Done {
-        return [this, outcome = saveViewSettings(scene, saved)] { say(outcome); };
-    });
 }
 
 void Viewer::load() {

@@ -104,9 +104,9 @@ void Viewer::keepPictureOfScene() {
                          keepSeenScene(name, makeScenePicture(view), about);
                          return {};
                      });
-    } catch (const vk::DeviceLostError&) { throw; } catch (const vk::SystemError&) {
+    } catch (const vk::DeviceLostError&) { throw; } catch (const std::runtime_error&) {
         // One is not worth a word.
-    } catch (const Error&) {}
+    }
 }
 
 }  // namespace binosplat

@@ -18,12 +18,10 @@ namespace {
 Image besideOneAnother(const Image& left, const Image& right) {
     Image both{{left.size_px.x + right.size_px.x, left.size_px.y}, left.channels, {}};
     both.values.reserve(left.values.size() + right.values.size());
-    const std::size_t row = std::size_t{left.size_px.x} * static_cast<std::size_t>(left.channels);
-    for (std::size_t at = 0; at < left.values.size(); at += row) {
-        for (const Image* eye : {&left, &right}) {
-            const auto begin = eye->values.begin() + static_cast<std::ptrdiff_t>(at);
-            both.values.insert(both.values.end(), begin, begin + static_cast<std::ptrdiff_t>(row));
-        }
+    const auto row = static_cast<std::ptrdiff_t>(left.size_px.x) * left.channels;
+    for (auto l = left.values.begin(), r = right.values.begin(); l != left.values.end(); l += row, r += row) {
+        both.values.insert(both.values.end(), l, l + row);
+        both.values.insert(both.values.end(), r, r + row);
     }
     return both;
 }

@@ -34,14 +34,7 @@ struct Least {
 };
 
 Least leastOf(Quality quality) {
-    switch (quality) {
-        case Quality::kSharp:
-            return {0.2, 0.8};
-        case Quality::kBalanced:
-            return {0.1, 0.6};
-        default:
-            return {0.05, 0.4};
-    }
+    return quality == Quality::kSharp ? Least{0.2, 0.8} : quality == Quality::kBalanced ? Least{0.1, 0.6} : Least{0.05, 0.4};
 }
 
 // What a frame takes whatever the budget is, in units of what all work would take: by docs/results/motion.md `temporal` takes 0.22 of

@@ -51,12 +51,8 @@ double MissedDisplays::usuallyLost(std::size_t last) const {
     return std::accumulate(sorted.begin(), sorted.begin() + usual, 0.0) / static_cast<double>(std::max<std::ptrdiff_t>(usual, 1));
 }
 
-bool MissedDisplays::comeAtOnce(std::size_t frames) const {
-    return recent_.size() >= frames && lostIn(frames) >= static_cast<double>(frames) - kLostSlack;
-}
-
-bool MissedDisplays::comeOften() const {
-    return recent_.size() >= kOftenOf && lostIn(kOftenOf) >= static_cast<double>(kOftenOver) - kLostSlack;
+bool MissedDisplays::areLost(std::size_t lost, std::size_t of_last) const {
+    return recent_.size() >= of_last && lostIn(of_last) >= static_cast<double>(lost) - kLostSlack;
 }
 
 void MissedDisplays::lowerShare(double now_ms, double period_ms) {

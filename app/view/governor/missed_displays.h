@@ -19,9 +19,9 @@ public:
     void add(double lost_periods, double now_s);
 
     // One after the other, so many of them.
-    [[nodiscard]] bool comeAtOnce(std::size_t frames) const;
+    [[nodiscard]] bool comeAtOnce(std::size_t frames) const { return areLost(frames, frames); }
     // Or again and again.
-    [[nodiscard]] bool come(std::size_t at_once) const { return comeAtOnce(at_once) || comeOften(); }
+    [[nodiscard]] bool come(std::size_t at_once) const { return comeAtOnce(at_once) || areLost(kOftenOver, kOftenOf); }
     [[nodiscard]] std::size_t framesSeen() const { return recent_.size(); }
     // By each of the two thirds of so many frames that lost least.
     [[nodiscard]] double usuallyLost(std::size_t last) const;
@@ -41,7 +41,7 @@ public:
 private:
     // Periods lost by the last frames, so many of them; each counts as one at most.
     [[nodiscard]] double lostIn(std::size_t last) const;
-    [[nodiscard]] bool comeOften() const;
+    [[nodiscard]] bool areLost(std::size_t lost, std::size_t of_last) const;
 
     std::deque<double> recent_;  // newest last
     double now_s_ = 0.0;

@@ -53,8 +53,6 @@ Canvas::~Canvas() {
     ImGui::DestroyContext();
 }
 
-const std::string& Canvas::fontComplaint() const { return font_->complaint(); }
-
 void Canvas::makeImage(vk::Format format) {
     picture_.emplace(context_, "canvas", size_px_, format, vk::ImageUsageFlagBits::eColorAttachment | vk::ImageUsageFlagBits::eTransferSrc);
     view_ = vk::raii::ImageView(context_.device(), vk::ImageViewCreateInfo({}, image(), vk::ImageViewType::e2D, format, {},
@@ -116,12 +114,6 @@ void Canvas::startBackend() {
     commands.submitAndWait();
     ImGui_ImplVulkan_DestroyFontUploadObjects();
 }
-
-bool Canvas::wantsLetters(std::string_view text, const std::vector<ScenePicture>& pictures) { return font_->want(text, pictures); }
-
-const std::map<std::string, PictureCorners>& Canvas::pictures() const { return font_->pictures(); }
-
-void Canvas::buildLetters() { font_->build(); }
 
 void Canvas::takeLetters() {
     {

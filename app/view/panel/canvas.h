@@ -3,22 +3,17 @@
 #pragma once
 
 #include "app/view/room/panel_pointer.h"
-#include "app/view/scenes/seen_scenes.h"
 #include "engine/gpu/commands.h"
 
 #include <glm/glm.hpp>
 
-#include <map>
 #include <memory>
 #include <optional>
-#include <string>
-#include <string_view>
 #include <vector>
 
 namespace binosplat {
 
 class PanelFont;
-struct PictureCorners;
 
 // An image of one level, in memory of its own.
 struct OwnImage {
@@ -36,11 +31,8 @@ public:
     Canvas& operator=(const Canvas&) = delete;
     ~Canvas();
 
-    // Before begin(), as in PanelFont: whether there are letters or pictures that buildLetters() is to bring, which reads files, on any
-    // thread; until takeLetters() has brought them, before another begin(), they are boxes. This waits for the queue.
-    [[nodiscard]] bool wantsLetters(std::string_view text, const std::vector<ScenePicture>& pictures = {});
-    void buildLetters();
-    [[nodiscard]] const std::map<std::string, PictureCorners>& pictures() const;
+    // What it wants before begin() is shown as boxes until takeLetters() has brought it, before another begin(). This waits for the queue.
+    [[nodiscard]] PanelFont& font() const { return *font_; }
     void takeLetters();
     // Widgets are drawn between this and end() or giveUp().
     void begin(const PanelPointer& pointer, double step_seconds);
@@ -56,8 +48,6 @@ public:
     [[nodiscard]] std::uint64_t revision() const { return revision_; }
 
     [[nodiscard]] glm::uvec2 sizePx() const { return size_px_; }
-    // Why the small built-in font is used; empty: it is not.
-    [[nodiscard]] const std::string& fontComplaint() const;
     [[nodiscard]] vk::Image image() const { return *picture_->image; }
 
 private:

@@ -7,7 +7,6 @@
 #include FT_FREETYPE_H
 #include <hb.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 

@@ -2,7 +2,6 @@
 #include "app/options/option_table.h"
 #include "app/report/report.h"
 #include "app/view/panel/panel_pages.h"
-#include "app/view/panel/panel_style.h"
 #include "app/view/settings/view_settings_table.h"
 
 #include <fmt/format.h>
@@ -96,8 +95,6 @@ void drawResolution(PanelWidgets& widgets, ViewSettings& settings) {
     storage->SetFloat(id, static_cast<float>(settings.resolution_scale));
 }
 
-void drawQuality(PanelWidgets& widgets, ViewSettings& settings) { choose(widgets, "Frame rate", *findViewRow("quality"), settings, 4); }
-
 void drawTimes(const PanelStatus& status) {
     const std::vector<float>& times = status.frame_ms;
     const float last = times.empty() ? 0.0f : times.back();
@@ -166,7 +163,7 @@ void drawMethodPage(PanelWidgets& widgets, ViewSettings& settings, const PanelSt
     ImGui::PushItemWidth(ImGui::GetContentRegionAvail().x * kSliderShare);
     drawMethod(widgets, settings, status.usual_order);
     drawResolution(widgets, settings);
-    drawQuality(widgets, settings);
+    choose(widgets, "Frame rate", *findViewRow("quality"), settings, 4);
     ImGui::PopItemWidth();
     drawFiles(widgets, settings, status.can_reload_shaders, requests);
     drawSaid(status);

@@ -39,10 +39,10 @@ void Panel::showTimes(const FrameResult& last, const std::string& governor, doub
 
 void Panel::askFor(FileWorker& files, const ViewSettings& settings) {
     status_.files = files.now();
-    status_.pictures = &canvas_.pictures();
-    if (canvas_.wantsLetters(namesOn(settings, chooser_, status_), picturesOn(settings, chooser_))) {
+    status_.pictures = &canvas_.font().pictures();
+    if (canvas_.font().want(namesOn(settings, chooser_, status_), picturesOn(settings, chooser_))) {
         files.read("reading fonts", [this]() -> FileWorker::Done {
-            canvas_.buildLetters();
+            canvas_.font().build();
             return [this] { canvas_.takeLetters(); };
         });
     }

@@ -83,7 +83,7 @@ struct PanelRequests {
     ViewSettings settings;             // as they are to be from now on
 };
 
-// All that a canvas shows of names and messages, a line each; see Canvas::wantsLetters.
+// All that a canvas shows of names and messages, a line each; see PanelFont::want.
 std::string namesOn(const ViewSettings& settings, const SceneChooser& chooser, const PanelStatus& status);
 // Likewise the pictures.
 std::vector<ScenePicture> picturesOn(const ViewSettings& settings, const SceneChooser& chooser);

@@ -58,7 +58,7 @@ std::string readFont(const fs::path& file, std::string& complaint) {
 // What else lies in the atlas.
 struct AtlasPicture {
     glm::uvec2 size_px;
-    std::function<void(unsigned char* rgba, std::size_t y)> draw_row;
+    std::vector<unsigned char> rgba;
     std::function<void(ImFont& font, const ImVec2& low, const ImVec2& high)> use;  // by where it lies, in shares of the texture
 };
 
@@ -70,8 +70,9 @@ void drawPictures(ImFontAtlas& atlas, std::span<const AtlasPicture> pictures, in
     atlas.GetTexDataAsRGBA32(&pixels, &width, &height);
     for (const AtlasPicture& picture : pictures) {
         const ImFontAtlasCustomRect& rect = *atlas.GetCustomRectByIndex(first_rect++);
+        const std::size_t bytes = 4 * std::size_t{picture.size_px.x};
         for (std::size_t y = 0; y < picture.size_px.y; ++y) {
-            picture.draw_row(pixels + 4 * ((rect.Y + y) * static_cast<std::size_t>(width) + rect.X), y);
+            std::copy_n(picture.rgba.data() + y * bytes, bytes, pixels + 4 * ((rect.Y + y) * static_cast<std::size_t>(width) + rect.X));
         }
         ImVec2 low, high;
         atlas.CalcCustomRectUV(&rect, &low, &high);
@@ -111,25 +112,16 @@ bool buildAtlas(ImFontAtlas& atlas, std::span<const LoadedFont> fonts, const std
 }
 
 AtlasPicture pictureOf(const ScenePicture& scene, PicturePlaces& places) {
-    return {kScenePicturePx,
-            [&scene](unsigned char* rgba, std::size_t y) {
-                const std::size_t bytes = 4 * kScenePicturePx.x;
-                std::copy_n(scene.rgba.begin() + static_cast<std::ptrdiff_t>(y * bytes), bytes, rgba);
-            },
-            [&scene, &places](ImFont&, const ImVec2& low, const ImVec2& high) {
+    return {kScenePicturePx, scene.rgba, [&scene, &places](ImFont&, const ImVec2& low, const ImVec2& high) {
                 places[scene.key] = {low, high};
             }};
 }
 
 AtlasPicture pictureOf(const FormedSign& sign, ImWchar letter) {
-    return {glm::max(sign.size_px, 1u),  // a blank has none
-            [&sign](unsigned char* rgba, std::size_t y) {
-                for (std::size_t x = 0; x < sign.size_px.x && y < sign.size_px.y; ++x) {
-                    const unsigned char alpha = sign.coverage[y * sign.size_px.x + x];
-                    rgba = std::copy_n(std::array<unsigned char, 4>{255, 255, 255, alpha}.begin(), 4, rgba);
-                }
-            },
-            [&sign, letter](ImFont& font, const ImVec2& low, const ImVec2& high) {
+    const glm::uvec2 size_px = glm::max(sign.size_px, 1u);  // a blank has none
+    std::vector<unsigned char> rgba(std::size_t{4} * size_px.x * size_px.y, 255);
+    for (std::size_t i = 0; i < rgba.size() / 4; ++i) { rgba[4 * i + 3] = i < sign.coverage.size() ? sign.coverage[i] : 0; }
+    return {size_px, std::move(rgba), [&sign, letter](ImFont& font, const ImVec2& low, const ImVec2& high) {
                 const glm::vec2 at = sign.low_px + glm::vec2(0.0f, std::round(font.Ascent)),
                                 end = at + glm::vec2(sign.size_px) * glm::vec2(0.5f, 1.0f);
                 font.AddGlyph(nullptr, letter, at.x, at.y, end.x, end.y, low.x, low.y, high.x, high.y, sign.advance_px);

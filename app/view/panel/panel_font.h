@@ -3,13 +3,13 @@
 
 #include "app/view/panel/formed_words.h"
 #include "app/view/panel/shown_text.h"
+#include "app/view/panel/unique_of.h"
 #include "app/view/scenes/seen_scenes.h"
 
 #include <imgui.h>
 
 #include <filesystem>
 #include <map>
-#include <memory>
 #include <set>
 #include <span>
 #include <string>
@@ -27,11 +27,6 @@ std::vector<std::filesystem::path> fontFiles();
 // Whether the tables that a TrueType or OpenType font says it has, and those that are needed, lie within these bytes; of a collection, its
 // first font.
 bool looksLikeFont(std::span<const unsigned char> bytes);
-
-struct FontAtlasDeleter {
-    void operator()(ImFontAtlas* atlas) const { IM_DELETE(atlas); }
-};
-using FontAtlas = std::unique_ptr<ImFontAtlas, FontAtlasDeleter>;
 
 // Where a picture lies in the font's texture.
 struct PictureCorners {
@@ -65,7 +60,7 @@ private:
     std::set<ImWchar> added_;  // beyond those of the beginning, whether a font has them or not
     std::set<std::u32string> words_;
     std::map<std::string, ScenePicture> pictures_;
-    FontAtlas built_;
+    UniqueOf<ImFontAtlas, IM_DELETE<ImFontAtlas>> built_;
     PicturePlaces built_places_, places_;
     WordForms built_forms_, forms_;
     bool is_building_ = false;  // from want() on, until take(): then all but this is build()'s

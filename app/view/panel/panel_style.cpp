@@ -30,14 +30,10 @@ void stylePanel() {
     colours[ImGuiCol_ButtonActive] = colours[ImGuiCol_FrameBgActive] = kPressed;
 }
 
-void beginChosen(bool chosen) {
-    if (!chosen) { return; }
+int pushChosenColours() {
     ImGui::PushStyleColor(ImGuiCol_Button, kChosen);
     ImGui::PushStyleColor(ImGuiCol_ButtonHovered, kChosenHovered);
-}
-
-void endChosen(bool chosen) {
-    if (chosen) { ImGui::PopStyleColor(2); }
+    return 2;
 }
 
 }  // namespace binosplat

@@ -16,8 +16,7 @@ inline constexpr float kTargetPx = 45.0f, kTabPx = 60.0f, kLargeTargetPx = 88.0f
 // Colours and sizes of the current ImGui context.
 void stylePanel();
 
-// Between the two a button looks like one that is chosen, if it is `chosen`.
-void beginChosen(bool chosen);
-void endChosen(bool chosen);
+// From now on a button looks like one that is chosen, until ImGui::PopStyleColor of as many colours as this returns.
+int pushChosenColours();
 
 }  // namespace binosplat

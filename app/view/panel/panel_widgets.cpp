@@ -9,9 +9,9 @@
 namespace binosplat {
 
 bool PanelWidgets::button(const char* name, bool chosen, const glm::vec2& size_px) {
-    beginChosen(chosen);
+    const int pushed = chosen ? pushChosenColours() : 0;
     const bool pressed = ImGui::Button(name, ImVec2(size_px.x, size_px.y));
-    endChosen(chosen);
+    ImGui::PopStyleColor(pushed);
     noteMiddle(name);
     return pressed;
 }
@@ -33,12 +33,6 @@ bool PanelWidgets::checkbox(const char* name, bool* value) {
     const bool changed = ImGui::Checkbox(name, value);
     noteBox(name);
     return changed;
-}
-
-bool PanelWidgets::radio(const char* name, bool is_chosen) {
-    const bool pressed = ImGui::RadioButton(name, is_chosen);
-    noteBox(name);
-    return pressed;
 }
 
 std::optional<std::string_view> PanelWidgets::chooseFrom(const char* label, std::span<const std::string_view> names,
@@ -66,7 +60,9 @@ std::optional<std::string_view> PanelWidgets::chooseFrom(const char* label, std:
         } else {
             ImGui::SetCursorPosX(at);
         }
-        if (radio(std::string(names[i]).c_str(), chosen == names[i])) { pressed = names[i]; }
+        const std::string name(names[i]);
+        if (ImGui::RadioButton(name.c_str(), chosen == names[i])) { pressed = names[i]; }
+        noteBox(name);
         at += widthOf(names[i]) + gap;
     }
     return pressed;
@@ -102,19 +98,9 @@ bool PanelWidgets::star(const std::string& name, bool filled, const glm::vec2& s
     return pressed;
 }
 
-void PanelWidgets::noteSlider(const char* name) {
+void PanelWidgets::note(const std::string& name, float width_px) {
     const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
-    places_[name] = {low.x + 0.5f * ImGui::CalcItemWidth(), 0.5f * (low.y + high.y)};
-}
-
-void PanelWidgets::noteMiddle(const std::string& name) {
-    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
-    places_[name] = {0.5f * (low.x + high.x), 0.5f * (low.y + high.y)};
-}
-
-void PanelWidgets::noteBox(const char* name) {
-    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
-    places_[name] = {low.x + 0.5f * (high.y - low.y), 0.5f * (low.y + high.y)};
+    places_[name] = {low.x + 0.5f * width_px, 0.5f * (low.y + high.y)};
 }
 
 void writeLine(const std::string& line) { ImGui::TextUnformatted(line.c_str()); }

@@ -25,15 +25,13 @@ public:
     std::optional<std::size_t> row(std::span<const char* const> names, std::optional<std::size_t> chosen, float height_px,
                                    float end_x = 1.0f);
     bool checkbox(const char* name, bool* value);
-    // Whether it was pressed.
-    bool radio(const char* name, bool is_chosen);
     // A row of its own, `size_px` large, for a name that is shown letter by letter, whatever it holds, with `about` below it; `trouble`
     // makes it grey, and is shown in place of `about`. The text begins `indent_px` from the left.
     bool entry(const std::string& name, const std::string& about, const std::string& trouble, const glm::vec2& size_px, float indent_px);
     // A star, `name` in the places.
     bool star(const std::string& name, bool filled, const glm::vec2& size_px);
     // To be called after a slider: it is where the next column would begin.
-    void noteSlider(const char* name);
+    void noteSlider(const std::string& name) { note(name, ImGui::CalcItemWidth()); }
     // Rows of names beside their label, of which one is chosen; gives the one that was pressed, if one was.
     std::optional<std::string_view> chooseFrom(const char* label, std::span<const std::string_view> names, std::string_view chosen,
                                                std::size_t per_row);
@@ -41,8 +39,10 @@ public:
     [[nodiscard]] const WidgetPlaces& places() const { return places_; }
 
 private:
-    void noteMiddle(const std::string& name);
-    void noteBox(const char* name);
+    // Of what was drawn last, the middle of its first `width_px`.
+    void note(const std::string& name, float width_px);
+    void noteMiddle(const std::string& name) { note(name, ImGui::GetItemRectSize().x); }
+    void noteBox(const std::string& name) { note(name, ImGui::GetItemRectSize().y); }
 
     WidgetPlaces places_;
 };

@@ -16,15 +16,12 @@ SceneList makeSceneList(const SceneListWish& wish) {
 
 void SceneChooser::showFolder(const std::string& folder) {
     wish_.folder = folder;
-    wish_.recent = false;
-    list_ = {folder, {}, {}, {}};
-    page_ = 0;
-    want();
+    showAnother(false, folder);
 }
 
-void SceneChooser::showRecent() {
-    wish_.recent = true;
-    list_ = {"Recent scenes", {}, {}, {}};
+void SceneChooser::showAnother(bool recent, const std::string& title) {
+    wish_.recent = recent;
+    list_ = {title, {}, {}, {}};
     page_ = 0;
     want();
 }

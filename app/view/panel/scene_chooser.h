@@ -29,7 +29,7 @@ public:
 
     // Looks into a folder, or kBuiltinFolder.
     void showFolder(const std::string& folder);
-    void showRecent();
+    void showRecent() { showAnother(true, "Recent scenes"); }
     void goUp();
     // Looks again where it looked last; the first time where `scene` lies.
     void refresh(const std::string& scene);
@@ -52,6 +52,7 @@ public:
     [[nodiscard]] std::size_t pageCount() const;
 
 private:
+    void showAnother(bool recent, const std::string& title);
     void want();
 
     SceneList list_;

@@ -1,4 +1,4 @@
-// What a C library hands out, given back by its own function.
+// What a library hands out, given back by its own function.
 #pragma once
 
 #include <memory>

@@ -82,11 +82,9 @@ void drawPlace(PanelWidgets& widgets, const ShownPlace& place, PanelRequests& re
 
 // One of a few, after a word.
 template <typename Chosen, std::size_t kCount>
-void choose(PanelWidgets& widgets, const char* words, const std::array<const char*, kCount>& names, Chosen& chosen, float end_x = 1.0f) {
+void choose(PanelWidgets& widgets, const char* words, const std::array<const char*, kCount>& names, Chosen& chosen) {
     writeBefore(words, kTargetPx);
-    if (const auto pressed = widgets.row(names, static_cast<std::size_t>(chosen), kTargetPx, end_x)) {
-        chosen = static_cast<Chosen>(*pressed);
-    }
+    if (const auto pressed = widgets.row(names, static_cast<std::size_t>(chosen), kTargetPx)) { chosen = static_cast<Chosen>(*pressed); }
 }
 
 void drawMoving(PanelWidgets& widgets, ViewSettings& settings, const std::vector<ToolChoice>& tools, bool can_pass_through) {

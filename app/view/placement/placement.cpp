@@ -16,6 +16,11 @@ constexpr double kLeastScale = 1e-6, kMostScale = 1e6;
 // About the vertical; x turns towards z.
 glm::dquat turnAboutDown(double angle_rad) { return glm::angleAxis(angle_rad, kDown); }
 
+// `turn` and `growth` make the room as it was of the room as it is, in which `about` stays.
+Similarity turnedAndGrown(const Similarity& scene_from_room, const glm::dquat& turn, double growth, const glm::dvec3& about) {
+    return compose(scene_from_room, {turn, about - growth * (turn * about), growth});
+}
+
 // The shortest one that brings `from` to the direction of `to`.
 glm::dquat turnBetween(const glm::dvec3& from, const glm::dvec3& to) {
     const glm::dvec3 a = glm::normalize(from), b = glm::normalize(to);
@@ -50,35 +55,31 @@ Similarity movedBy(const Similarity& scene_from_room, const glm::dvec3& step_m) 
 }
 
 Similarity turnedBy(const Similarity& scene_from_room, double angle_rad, const glm::dvec3& about) {
-    const glm::dquat turn = turnAboutDown(angle_rad);
-    return compose(scene_from_room, {turn, about - turn * about, 1.0});
+    return turnedAndGrown(scene_from_room, turnAboutDown(angle_rad), 1.0, about);
 }
 
 Similarity grownBy(const Similarity& scene_from_room, double growth, const glm::dvec3& about) {
     const double old_from_new = std::clamp(scene_from_room.scale / growth, kLeastScale, kMostScale) / scene_from_room.scale;
-    return compose(scene_from_room, {glm::dquat(1.0, 0.0, 0.0, 0.0), about - old_from_new * about, old_from_new});
+    return turnedAndGrown(scene_from_room, glm::dquat(1.0, 0.0, 0.0, 0.0), old_from_new, about);
 }
 
 Similarity tiltedBy(const Similarity& scene_from_room, const glm::dquat& turn, const glm::dvec3& about) {
-    const glm::dquat old_from_new = glm::conjugate(turn);
-    return compose(scene_from_room, {old_from_new, about - old_from_new * about, 1.0});
+    return turnedAndGrown(scene_from_room, glm::conjugate(turn), 1.0, about);
 }
 
 Similarity heldBy(const Similarity& scene_from_room, const std::array<glm::dvec3, 2>& from, const std::array<glm::dvec3, 2>& to,
                   bool tilted) {
     const glm::dvec3 span_from = from[1] - from[0], span_to = to[1] - to[0];
     const auto level = [](const glm::dvec3& v) { return glm::dvec3(v.x, 0.0, v.z); };
-    double growth = 1.0, turn = 0.0;
-    if (std::min(glm::length(span_from), glm::length(span_to)) > kLeastSpanMetres) {
-        growth = glm::length(span_from) / glm::length(span_to);
-    }
-    if (std::min(glm::length(level(span_from)), glm::length(level(span_to))) > kLeastSpanMetres) {
-        turn = headingOf(span_from) - headingOf(span_to);
-    }
+    const auto areApart = [](const glm::dvec3& a, const glm::dvec3& b) {
+        return std::min(glm::length(a), glm::length(b)) > kLeastSpanMetres;
+    };
+    const bool has_size = areApart(span_from, span_to);
+    double growth = has_size ? glm::length(span_from) / glm::length(span_to) : 1.0;
+    const double turn = areApart(level(span_from), level(span_to)) ? headingOf(span_from) - headingOf(span_to) : 0.0;
     growth = std::clamp(scene_from_room.scale * growth, kLeastScale, kMostScale) / scene_from_room.scale;
     // The room as it was, seen from the room as it is: `to` must lie where `from` lay.
-    const bool is_free = tilted && std::min(glm::length(span_from), glm::length(span_to)) > kLeastSpanMetres;
-    const glm::dquat old_from_new = is_free ? turnBetween(span_to, span_from) : turnAboutDown(turn);
+    const glm::dquat old_from_new = tilted && has_size ? turnBetween(span_to, span_from) : turnAboutDown(turn);
     const glm::dvec3 middle_from = 0.5 * (from[0] + from[1]), middle_to = 0.5 * (to[0] + to[1]);
     return compose(scene_from_room, {old_from_new, middle_from - growth * (old_from_new * middle_to), growth});
 }
@@ -91,8 +92,8 @@ Similarity levelledAlong(const Similarity& scene_from_room, const glm::dvec3& up
     return level;
 }
 
-glm::dvec3 levelled(const glm::dvec3& forward) {
-    const glm::dvec3 level(forward.x, 0.0, forward.z);
+glm::dvec3 levelAhead(const Pose& room_from_head) {
+    const glm::dvec3 forward = room_from_head.orientation * glm::dvec3(0.0, 0.0, 1.0), level(forward.x, 0.0, forward.z);
     return glm::length(level) > 1e-6 ? glm::normalize(level) : glm::dvec3(0.0, 0.0, 1.0);
 }
 

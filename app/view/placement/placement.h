@@ -30,7 +30,7 @@ Similarity heldBy(const Similarity& scene_from_room, const std::array<glm::dvec3
 // Stands upright where `up` is up in the scene, a unit vector, with the same heading; `about`, in the room, stays where it is.
 Similarity levelledAlong(const Similarity& scene_from_room, const glm::dvec3& up, const glm::dvec3& about);
 
-// How the wearer looks ahead, level: the horizontal part of `forward`, or straight ahead if there is none.
-glm::dvec3 levelled(const glm::dvec3& forward);
+// How the wearer looks ahead, level: the horizontal part of that, or straight ahead if there is none.
+glm::dvec3 levelAhead(const Pose& room_from_head);
 
 }  // namespace binosplat

@@ -14,23 +14,14 @@ constexpr glm::dvec3 kSkinLight(0.3, 0.42, 0.55);
 constexpr double kLeastRadiusMetres = 0.004;  // of joints whose runtime does not say
 constexpr double kRimTexels = 1.2;            // over which a border fades
 
-struct Bone {
-    std::size_t from, to;
-};
-
-// From the wrist to each fingertip. Joints of a finger follow one another.
-std::vector<Bone> makeBones() {
-    std::vector<Bone> bones{{XR_HAND_JOINT_WRIST_EXT, XR_HAND_JOINT_PALM_EXT}};
-    for (const auto& [first, tip] : {std::pair(XR_HAND_JOINT_THUMB_METACARPAL_EXT, XR_HAND_JOINT_THUMB_TIP_EXT),
-                                     std::pair(XR_HAND_JOINT_INDEX_METACARPAL_EXT, XR_HAND_JOINT_INDEX_TIP_EXT),
-                                     std::pair(XR_HAND_JOINT_MIDDLE_METACARPAL_EXT, XR_HAND_JOINT_MIDDLE_TIP_EXT),
-                                     std::pair(XR_HAND_JOINT_RING_METACARPAL_EXT, XR_HAND_JOINT_RING_TIP_EXT),
-                                     std::pair(XR_HAND_JOINT_LITTLE_METACARPAL_EXT, XR_HAND_JOINT_LITTLE_TIP_EXT)}) {
-        bones.push_back({XR_HAND_JOINT_WRIST_EXT, static_cast<std::size_t>(first)});
-        for (std::size_t joint = first; joint < static_cast<std::size_t>(tip); ++joint) { bones.push_back({joint, joint + 1}); }
-    }
-    return bones;
-}
+constexpr std::size_t kWrist = XR_HAND_JOINT_WRIST_EXT;
+// Those next to it, of the palm and of each finger, whose other joints follow up to its tip.
+constexpr std::array<std::size_t, 6> kFirstJoints{XR_HAND_JOINT_PALM_EXT,
+                                                  XR_HAND_JOINT_THUMB_METACARPAL_EXT,
+                                                  XR_HAND_JOINT_INDEX_METACARPAL_EXT,
+                                                  XR_HAND_JOINT_MIDDLE_METACARPAL_EXT,
+                                                  XR_HAND_JOINT_RING_METACARPAL_EXT,
+                                                  XR_HAND_JOINT_LITTLE_METACARPAL_EXT};
 
 // A joint as the picture shows it, in texels.
 struct SeenJoint {
@@ -72,7 +63,6 @@ Strip handPicturePlace(const xr::HandJoints& joints, const glm::dvec3& eye) {
 }
 
 TexelPicture drawHand(const xr::HandJoints& joints, const Strip& place, const glm::dvec3& eye, const TexelLayout& layout) {
-    static const std::vector<Bone> bones = makeBones();
     TexelPicture picture{kHandPicturePx, {}};
     const glm::dvec2 size(picture.size_px), texels_per_metre = size / place.size_m;
     const Pose picture_from_room = inverse(place.room_from_strip);
@@ -87,7 +77,11 @@ TexelPicture drawHand(const xr::HandJoints& joints, const Strip& place, const gl
         seen[i] = {at * texels_per_metre + 0.5 * size, radius_m * growth * texels_per_metre.x, joint.z * texels_per_metre.x};
     }
     std::vector<Hit> hits(std::size_t{picture.size_px.x} * picture.size_px.y);
-    for (const Bone& bone : bones) { drawBone(seen[bone.from], seen[bone.to], picture.size_px, hits); }
+    for (std::size_t joint = 0; joint < seen.size(); ++joint) {
+        if (joint == kWrist) { continue; }
+        const bool is_first = std::ranges::find(kFirstJoints, joint) != kFirstJoints.end();
+        drawBone(seen[is_first ? kWrist : joint - 1], seen[joint], picture.size_px, hits);
+    }
     picture.texels.reserve(hits.size());
     for (const Hit& hit : hits) { picture.texels.push_back(texelOf(hit.brightness * kSkinLight, hit.alpha, layout)); }
     return picture;

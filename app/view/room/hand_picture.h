@@ -2,7 +2,6 @@
 #pragma once
 
 #include "app/view/room/sprites.h"
-#include "app/view/room/strips.h"
 #include "xr/extensions/hand_tracking.h"
 
 namespace binosplat {

@@ -1,6 +1,8 @@
 // Rays against the panel.
 #include "app/view/room/panel_in_room.h"
 
+#include "app/view/placement/placement.h"
+
 #include <cmath>
 
 namespace binosplat {
@@ -21,10 +23,7 @@ PanelInRoom::PanelInRoom(glm::uvec2 size_px, double width_m)
 }
 
 void PanelInRoom::hangBefore(const Pose& room_from_head) {
-    const glm::dvec3 forward = room_from_head.orientation * glm::dvec3(0.0, 0.0, 1.0);
-    const glm::dvec3 level(forward.x, 0.0, forward.z);
-    const glm::dvec3 ahead = glm::length(level) > 1e-6 ? level : glm::dvec3(0.0, 0.0, 1.0);
-    const Pose upright = lookAt(room_from_head.position, room_from_head.position + ahead, kUp);
+    const Pose upright = lookAt(room_from_head.position, room_from_head.position + levelAhead(room_from_head), kUp);
     const glm::dvec3 place = transform(upright, kPlaceMetres);
     room_from_panel_ = lookAt(place, place + (place - room_from_head.position), kUp);
 }
@@ -39,10 +38,10 @@ std::optional<PanelInRoom::Hit> PanelInRoom::meet(const Pose& room_from_aim) con
     return Hit{share * size_px_, distance};
 }
 
-void PanelInRoom::carry(const std::array<xr::Hand, 2>& hands) {
+void PanelInRoom::carry(const std::array<xr::Hand, 2>& hands, bool shown) {
     if (!carrier_) { return; }
     const xr::Hand& hand = hands[static_cast<std::size_t>(*carrier_)];
-    if (hand.grabs && hand.aim) {
+    if (shown && hand.grabs && hand.aim) {
         room_from_panel_ = compose(*hand.aim, hand_from_panel_);
     } else {
         carrier_.reset();
@@ -69,11 +68,7 @@ void PanelInRoom::follow(const xr::Hand& hand, int h, bool shown) {
 }
 
 void PanelInRoom::update(const std::array<xr::Hand, 2>& hands, bool shown) {
-    if (shown) {
-        carry(hands);
-    } else {
-        carrier_.reset();
-    }
+    carry(hands, shown);
     for (const int h : {kLeft, kRight}) { follow(hands[static_cast<std::size_t>(h)], h, shown); }
     pointer_ = {};
     pointing_hand_.reset();

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "app/view/room/panel_pointer.h"
-#include "app/view/room/thing.h"
+#include "app/view/room/sprites.h"
 #include "xr/input.h"
 
 #include <array>
@@ -53,7 +53,7 @@ private:
     };
     [[nodiscard]] const HandNow& of(int hand) const { return hands_[static_cast<std::size_t>(hand)]; }
     void follow(const xr::Hand& hand, int h, bool shown);
-    void carry(const std::array<xr::Hand, 2>& hands);
+    void carry(const std::array<xr::Hand, 2>& hands, bool shown);
 
     glm::dvec2 size_px_, size_m_;
     Pose room_from_panel_;

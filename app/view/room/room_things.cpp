@@ -46,26 +46,25 @@ void RoomThings::giveUp() {
     sheet_ = {};
 }
 
-void RoomThings::add(Sprite sprite, const Strip& strip) {
-    if (sheet_.handle() == XR_NULL_HANDLE) { return; }
-    const SpritePlace place = placeOf(sprite);
-    quads_.push_back({strip.room_from_strip, strip.size_m, &sheet_, place.from_px, place.size_px});
+xr::LayerQuad RoomThings::quadOf(const Thing& thing) const {
+    const SpritePlace place = placeOf(thing.sprite);
+    return {thing.strip.room_from_strip, thing.strip.size_m, &sheet_, place.from_px, place.size_px};
+}
+
+void RoomThings::add(const Thing& thing) {
+    if (sheet_.handle() != XR_NULL_HANDLE) { quads_.push_back(quadOf(thing)); }
 }
 
 void RoomThings::choose(const RoomSight& sight) {
     quads_.clear();
     vignette_.reset();
     if (sight.vignette_m && sheet_.handle() != XR_NULL_HANDLE) {
-        const SpritePlace place = placeOf(Sprite::kVignette);
-        vignette_ = xr::LayerQuad{{glm::dquat(1.0, 0.0, 0.0, 0.0), {0.0, 0.0, kVignetteMetres}},
-                                  glm::dvec2(*sight.vignette_m),
-                                  &sheet_,
-                                  place.from_px,
-                                  place.size_px,
-                                  true};
+        const Pose ahead{glm::dquat(1.0, 0.0, 0.0, 0.0), {0.0, 0.0, kVignetteMetres}};
+        vignette_ = quadOf({Sprite::kVignette, {ahead, glm::dvec2(*sight.vignette_m)}});
+        vignette_->follows_head = true;
     }
     for (std::size_t h = 0; sight.hands && h < 2; ++h) { chooseHand((*sight.hands)[h], hands_[h], sight.eye); }
-    for (const Thing& thing : sight.things) { add(thing.sprite, thing.strip); }
+    for (const Thing& thing : sight.things) { add(thing); }
 }
 
 void RoomThings::chooseHand(const xr::Hand& hand, HandImage& image, const glm::dvec3& eye) {
@@ -83,9 +82,9 @@ void RoomThings::chooseHand(const xr::Hand& hand, HandImage& image, const glm::d
         const std::optional<Strip> handle = stripBetween(along(-kHandleBehindMetres), along(kHandleAheadMetres), kHandleWidthMetres, eye);
         // The farther one first.
         const bool knob_is_behind = glm::distance(along(kHandleAheadMetres), eye) > glm::distance(along(-kHandleBehindMetres), eye);
-        if (knob_is_behind) { add(Sprite::kKnob, knob); }
-        if (handle) { add(Sprite::kHandle, *handle); }
-        if (!knob_is_behind) { add(Sprite::kKnob, knob); }
+        if (knob_is_behind) { add({Sprite::kKnob, knob}); }
+        if (handle) { add({Sprite::kHandle, *handle}); }
+        if (!knob_is_behind) { add({Sprite::kKnob, knob}); }
     }
 }
 

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "app/view/room/hand_picture.h"
-#include "app/view/room/thing.h"
 #include "engine/gpu/commands.h"
 #include "xr/input.h"
 #include "xr/layers.h"
@@ -47,7 +46,8 @@ private:
     };
     void makeSheet(const xr::Session& session, const Context& context, vk::Format format);
     void chooseHand(const xr::Hand& hand, HandImage& image, const glm::dvec3& eye);
-    void add(Sprite sprite, const Strip& strip);
+    [[nodiscard]] xr::LayerQuad quadOf(const Thing& thing) const;
+    void add(const Thing& thing);
 
     xr::Troubles& troubles_;
     TexelLayout layout_;

@@ -68,21 +68,13 @@ std::uint32_t byteOf(double value) { return static_cast<std::uint32_t>(std::clam
 }  // namespace
 
 SpritePlace placeOf(Sprite sprite) {
-    switch (sprite) {
-        case Sprite::kVignette:
-            return {{0, 0}, {256, 256}};
-        case Sprite::kTarget:
-            return {{264, 0}, {128, 128}};
-        case Sprite::kKnob:
-            return {{264, 136}, {64, 64}};
-        case Sprite::kHandle:
-            return {{400, 0}, {32, 128}};
-        case Sprite::kRay:
-            return {{440, 0}, {16, 64}};
-        case Sprite::kFadingRay:
-            break;
-    }
-    return {{464, 0}, {16, 64}};
+    static constexpr std::array<SpritePlace, 6> kBySprite{{{{440, 0}, {16, 64}},
+                                                           {{464, 0}, {16, 64}},
+                                                           {{400, 0}, {32, 128}},
+                                                           {{264, 136}, {64, 64}},
+                                                           {{264, 0}, {128, 128}},
+                                                           {{0, 0}, {256, 256}}}};
+    return kBySprite[static_cast<std::size_t>(sprite)];
 }
 
 TexelLayout texelLayoutOf(vk::Format format) {

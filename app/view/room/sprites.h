@@ -1,7 +1,8 @@
 // The small pictures that hang in the room beside the panel: rays, controllers, where a wearer will stand. Drawn by the program.
 #pragma once
 
-#include <glm/glm.hpp>
+#include "app/view/room/strips.h"
+
 #include <vulkan/vulkan_raii.hpp>
 
 #include <cstdint>
@@ -16,6 +17,12 @@ enum class Sprite {
     kKnob,       // at a controller's front
     kTarget,     // on the floor
     kVignette,   // clear in the middle
+};
+
+// One that hangs in the room.
+struct Thing {
+    Sprite sprite;
+    Strip strip;
 };
 
 // Where a picture is in the sheet of all of them.

@@ -1,7 +1,6 @@
 // The view's edge is dark while the wearer moves by stick, since what only the edge sees move makes people ill.
 #pragma once
 
-#include "engine/geometry.h"
 #include "xr/session.h"
 
 #include <array>

@@ -1,6 +1,8 @@
 // Two names from left to right, a letter or a number at a time.
 #include "app/view/scenes/natural_order.h"
 
+#include <algorithm>
+
 namespace binosplat {
 
 namespace {
@@ -14,10 +16,8 @@ unsigned char folded(char letter) {
 
 // The digits that `name` begins with, without zeros in front, taken away from it.
 std::string_view takeNumber(std::string_view& name) {
-    std::size_t zeros = 0;
-    while (zeros < name.size() && name[zeros] == '0') { ++zeros; }
-    std::size_t end = zeros;
-    while (end < name.size() && isDigit(name[end])) { ++end; }
+    const std::size_t zeros = std::min(name.find_first_not_of('0'), name.size());
+    const std::size_t end = std::min(name.find_first_not_of("0123456789", zeros), name.size());
     const std::string_view number = name.substr(zeros, end - zeros);
     name.remove_prefix(end);
     return number;

@@ -19,14 +19,11 @@ namespace fs = std::filesystem;
 constexpr const char *kRecentName = "recent-scenes.txt", *kFavouritesName = "favourite-scenes.txt";
 constexpr std::size_t kMostFavourites = 1000;
 
-// One in each line. A list that cannot be read is begun anew by the next scene.
+// One in each line. A list that is not there, or cannot be read, is begun anew by the next scene.
 std::vector<std::string> readList(const char* name, std::size_t most) {
     std::vector<std::string> scenes;
     try {
-        const fs::path file = viewFolder() / name;
-        std::error_code ignored;
-        if (!fs::exists(file, ignored)) { return {}; }
-        std::istringstream lines(readTextFile(file, "a list of scenes"));
+        std::istringstream lines(readTextFile(viewFolder() / name, "a list of scenes"));
         for (std::string line; std::getline(lines, line) && scenes.size() < most;) {
             if (!line.empty()) { scenes.push_back(line); }
         }

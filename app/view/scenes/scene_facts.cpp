@@ -32,13 +32,9 @@ std::uint64_t bytesOnDisk(const fs::path& place) {
 
 // 1234567 as 1 234 567.
 std::string inThousands(std::uint64_t count) {
-    const std::string digits = fmt::format("{}", count);
-    std::string grouped;
-    for (std::size_t i = 0; i < digits.size(); ++i) {
-        if (i > 0 && (digits.size() - i) % 3 == 0) { grouped += ' '; }
-        grouped += digits[i];
-    }
-    return grouped;
+    std::string digits = fmt::format("{}", count);
+    for (auto at = std::ssize(digits) - 3; at > 0; at -= 3) { digits.insert(static_cast<std::size_t>(at), " "); }
+    return digits;
 }
 
 std::string kindOf(const Scene& scene, const LoadNotes& notes) {

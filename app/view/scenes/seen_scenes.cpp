@@ -13,18 +13,6 @@
 
 namespace binosplat {
 
-namespace {
-
-namespace fs = std::filesystem;
-
-// Without an extension.
-fs::path seenStem(const std::string& scene) {
-    const fs::path settings = viewSettingsFile(scene);
-    return settings.parent_path() / settings.stem().stem();  // without .view.toml
-}
-
-}  // namespace
-
 Image makeScenePicture(const Image& view) {
     // The largest part of the same shape about the middle.
     const glm::dvec2 whole(view.size_px), wanted(kScenePicturePx);
@@ -59,7 +47,7 @@ Image makeScenePicture(const Image& view) {
 
 void keepSeenScene(const std::string& scene, const Image& picture, const std::string& about) {
     try {
-        const fs::path stem = seenStem(scene);
+        const std::filesystem::path stem = viewFileStem(scene);
         OutputFiles files(stem.parent_path());
         writePicture(files.staging() / stem.filename(), PictureKind::kDisplay, picture);
         writeText(files.staging() / (stem.filename().string() + ".txt"), about + "\n");
@@ -70,9 +58,9 @@ void keepSeenScene(const std::string& scene, const Image& picture, const std::st
 SeenScene findSeenScene(const std::string& scene) {
     SeenScene seen;
     try {
-        const std::string stem = seenStem(scene).string(), file = stem + extensionOf(PictureKind::kDisplay);
+        const std::string stem = viewFileStem(scene).string(), file = stem + extensionOf(PictureKind::kDisplay);
         std::error_code error;
-        const auto written = fs::last_write_time(file, error);
+        const auto written = std::filesystem::last_write_time(file, error);
         if (error) { return seen; }
         seen.about = readTextFile(stem + ".txt", "a line about a scene");
         seen.about = seen.about.substr(0, seen.about.find('\n'));

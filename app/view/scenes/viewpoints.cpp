@@ -19,10 +19,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMostKept = 1000;
 
-fs::path keptFile(const std::string& source) {
-    const fs::path settings = viewSettingsFile(source);
-    return settings.parent_path() / (settings.stem().stem().string() + ".viewpoints.txt");
-}
+fs::path keptFile(const std::string& source) { return viewFileStem(source).string() + ".viewpoints.txt"; }
 
 bool isView(const View& view) {
     const glm::dvec3 ahead = view.look - view.eye;
@@ -35,17 +32,14 @@ bool isView(const View& view) {
 std::vector<View> keptViews(const std::string& source) {
     std::vector<View> kept;
     try {
-        const fs::path file = keptFile(source);
-        std::error_code ignored;
-        if (!fs::exists(file, ignored)) { return kept; }
-        std::istringstream lines(readTextFile(file, "a list of viewpoints"));
+        std::istringstream lines(readTextFile(keptFile(source), "a list of viewpoints"));
         for (std::string line; std::getline(lines, line) && kept.size() < kMostKept;) {
             std::istringstream numbers(line);
             View view{};
             for (glm::dvec3* const point : {&view.eye, &view.look, &view.up}) { numbers >> point->x >> point->y >> point->z; }
             if (numbers && isView(view)) { kept.push_back(view); }
         }
-    } catch (const Error&) {}  // begun anew by the next one
+    } catch (const Error&) {}  // none, or begun anew by the next one
     return kept;
 }
 
@@ -86,11 +80,9 @@ void keepViewpoint(const std::string& source, const View& view) {
 
 Similarity placedAt(const View& view, const Similarity& scene_from_room, const Pose& room_from_head) {
     // Upright, looking that way, and turned back by where the head looks in the room.
-    const glm::dvec3 up = glm::normalize(view.up), ahead = view.look - view.eye, level = ahead - glm::dot(ahead, up) * up;
-    const Pose upright = lookAt(glm::dvec3(0.0), glm::length(level) > 1e-9 * glm::length(ahead) ? level : ahead, up);
-    const glm::dvec3 looks = levelled(room_from_head.orientation * glm::dvec3(0.0, 0.0, 1.0));
-    const glm::dquat head_turn = lookAt(glm::dvec3(0.0), looks, {0.0, -1.0, 0.0}).orientation;
-    Similarity placed{glm::normalize(upright.orientation * glm::conjugate(head_turn)), glm::dvec3(0.0), scene_from_room.scale};
+    const glm::dquat head_turn = lookAt(glm::dvec3(0.0), levelAhead(room_from_head), {0.0, -1.0, 0.0}).orientation;
+    const glm::dquat upright = startPlacement(view, 1.0).orientation;
+    Similarity placed{glm::normalize(upright * glm::conjugate(head_turn)), glm::dvec3(0.0), scene_from_room.scale};
     placed.position = view.eye - transform(placed, room_from_head.position);
     return placed;
 }

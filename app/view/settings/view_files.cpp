@@ -33,12 +33,9 @@ std::string withRoomFor(std::size_t more_bytes, std::string name) {
     return name;
 }
 
-std::vector<SettingsTable> viewTables(const std::vector<SettingsTable>& tables) {
-    std::vector<SettingsTable> view;
-    for (const SettingsTable& table : tables) {
-        if (table.name == "view") { view.push_back(table); }
-    }
-    return view;
+std::vector<SettingsTable> viewTables(std::vector<SettingsTable> tables) {
+    std::erase_if(tables, [](const SettingsTable& table) { return table.name != "view"; });
+    return tables;
 }
 
 }  // namespace
@@ -57,6 +54,11 @@ fs::path viewSettingsFile(const std::string& scene) {
     const std::uintmax_t bytes = fs::is_regular_file(place, ignored) ? fs::file_size(place, ignored) : 0;
     const std::string tail = fmt::format("-{:016x}.view.toml", fingerprint(fmt::format("{}:{}", place.string(), bytes)));
     return configFolder() / (withRoomFor(tail.size(), place.stem().string()) + tail);
+}
+
+fs::path viewFileStem(const std::string& scene) {
+    const fs::path settings = viewSettingsFile(scene);
+    return settings.parent_path() / settings.stem().stem();
 }
 
 std::optional<Similarity> rememberedPlacement(const std::string& scene) {

@@ -17,6 +17,8 @@ std::filesystem::path viewFolder();
 // that another one in its place begins anew; of a folder by its place, of builtin:NAME by its name. Throws Error where there is no such
 // folder.
 std::filesystem::path viewSettingsFile(const std::string& scene);
+// The same without .view.toml, for what else is kept of the scene.
+std::filesystem::path viewFileStem(const std::string& scene);
 
 // Where the wearer stood when the scene's settings were saved; empty where they never were. Throws Error where the file is broken.
 std::optional<Similarity> rememberedPlacement(const std::string& scene);

@@ -58,32 +58,31 @@ std::vector<std::pair<std::string, std::string>> viewLines(const ViewSettings& s
 
 std::span<const OptionRow<ViewSettings>> viewSettingsRows() {
     using S = ViewSettings;
+    const auto row = [](const char* key, const char* value, const char* help, OptionField<S> field) {
+        return OptionRow<S>{{key, "view", kView, value, help}, std::move(field)};
+    };
     static const std::vector<OptionRow<S>> rows{
-        {{"resolution-scale", "view", kView, "FACTOR", "pixels each way, of what the headset recommends"},
-         field::number<&S::resolution_scale>(0.1, 2.0)},
-        {{"tint", "view", kView, "", "show what made the tiles that were not rendered with the rest of a picture"},
-         field::flag<&S::tint>()},
-        {{"panel", "view", kView, "", "show the panel at the start"}, field::flag<&S::panel>()},
-        {{"visibility-mask", "view", kView, "", "ask the runtime what the lenses hide"}, field::flag<&S::visibility_mask>()},
-        {{"eye-tracking", "view", kView, "", "with foveation: follow the eyes, where the headset sees where they look"},
-         field::flag<&S::eye_tracking>()},
-        {{"foveated-inset", "view", kView, "", "with foveation: where the runtime takes a sharp inset over a coarse picture, give it both"},
-         field::flag<&S::foveated_inset>()},
-        {{"tilt", "view", kView, "", "two hands may tilt the scene"}, field::flag<&S::tilt>()},
-        {{"refresh-rate", "view", kView, "HZ", "one of the headset's rates; 0: the runtime's choice"},
-         field::number<&S::refresh_rate>(0.0, 1000.0)},
-        {{"hands", "view", kView, "", "draw hands, or the controllers they hold"}, field::flag<&S::hands>()},
-        {{"locomotion", "view", kView, "KIND", "what the left stick does"}, field::named<&S::teleport>({"walk", "teleport"})},
-        {{"turn", "view", kView, "KIND", "how the right stick turns: by 30 degrees at a time, or smoothly"},
-         field::named<&S::smooth_turn>({"snap", "smooth"})},
-        {{"backdrop", "view", kView, "COLOUR", "colour behind the scene; as-set: what --background says"},
-         field::named<&S::backdrop>({"as-set", "black", "grey", "white"})},
-        {{"panel-page", "view", kView, "PAGE", "what the panel opens with; time: of a scene that moves"},
-         field::named<&S::page>({"view", "scenes", "method", "time"})},
-        {{"vignette", "view", kView, "", "darken the edge of the view while a stick moves the wearer"}, field::flag<&S::vignette>()},
-        {{"passthrough", "view", kView, "", "the room behind the scene, where the headset shows it"}, field::flag<&S::passthrough>()},
-        {{"quality", "view", kView, "PRESET", "how the frame rate is held, see headset.md"},
-         field::named<&S::quality>({std::begin(kQualityNames), std::end(kQualityNames)})},
+        row("resolution-scale", "FACTOR", "pixels each way, of what the headset recommends", field::number<&S::resolution_scale>(0.1, 2.0)),
+        row("tint", "", "show what made the tiles that were not rendered with the rest of a picture", field::flag<&S::tint>()),
+        row("panel", "", "show the panel at the start", field::flag<&S::panel>()),
+        row("visibility-mask", "", "ask the runtime what the lenses hide", field::flag<&S::visibility_mask>()),
+        row("eye-tracking", "", "with foveation: follow the eyes, where the headset sees where they look", field::flag<&S::eye_tracking>()),
+        row("foveated-inset", "", "with foveation: where the runtime takes a sharp inset over a coarse picture, give it both",
+            field::flag<&S::foveated_inset>()),
+        row("tilt", "", "two hands may tilt the scene", field::flag<&S::tilt>()),
+        row("refresh-rate", "HZ", "one of the headset's rates; 0: the runtime's choice", field::number<&S::refresh_rate>(0.0, 1000.0)),
+        row("hands", "", "draw hands, or the controllers they hold", field::flag<&S::hands>()),
+        row("locomotion", "KIND", "what the left stick does", field::named<&S::teleport>({"walk", "teleport"})),
+        row("turn", "KIND", "how the right stick turns: by 30 degrees at a time, or smoothly",
+            field::named<&S::smooth_turn>({"snap", "smooth"})),
+        row("backdrop", "COLOUR", "colour behind the scene; as-set: what --background says",
+            field::named<&S::backdrop>({"as-set", "black", "grey", "white"})),
+        row("panel-page", "PAGE", "what the panel opens with; time: of a scene that moves",
+            field::named<&S::page>({"view", "scenes", "method", "time"})),
+        row("vignette", "", "darken the edge of the view while a stick moves the wearer", field::flag<&S::vignette>()),
+        row("passthrough", "", "the room behind the scene, where the headset shows it", field::flag<&S::passthrough>()),
+        row("quality", "PRESET", "how the frame rate is held, see headset.md",
+            field::named<&S::quality>({std::begin(kQualityNames), std::end(kQualityNames)})),
     };
     return rows;
 }
@@ -100,15 +99,15 @@ ViewSettings readViewSettings(const std::vector<SettingsTable>& tables, ViewSett
         for (const auto& [key, setting] : table.settings) {
             if (const OptionRow<ViewSettings>* row = findViewRow(key); row != nullptr) {
                 row->field.read(setting, settings);
-            } else if (key == "scene-position") {
+                continue;
+            }
+            ++placed;
+            if (key == "scene-position") {
                 placement.position = readVector(setting);
-                ++placed;
             } else if (key == "scene-orientation") {
                 placement.orientation = readRotation(setting);
-                ++placed;
             } else if (key == "units-per-metre") {
                 placement.scale = readPositive(setting);
-                ++placed;
             } else {
                 fail("{} is not a known key of [view]", setting.origin);
             }

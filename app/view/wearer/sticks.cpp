@@ -23,7 +23,7 @@ double withoutShiver(double stick) { return std::abs(stick) < kStickDeadZone ? 0
 }  // namespace
 
 void Walk::update(const WearerNow& now, const PanelInRoom& panel, ViewState& state) {
-    const glm::dvec3 forward = levelled(now.room_from_head.orientation * glm::dvec3(0.0, 0.0, 1.0));
+    const glm::dvec3 forward = levelAhead(now.room_from_head);
     const glm::dvec3 down(0.0, 1.0, 0.0), right = glm::cross(down, forward);
     const auto stickOf = [&](int h) { return panel.isPointedAtBy(h) ? glm::dvec2(0.0) : now.hands[static_cast<std::size_t>(h)].stick; };
     const glm::dvec2 left_stick = state.settings().teleport ? glm::dvec2(0.0) : stickOf(kLeft);

@@ -25,19 +25,16 @@ void WearerControls::update(const WearerNow& now, PanelInRoom& panel, ViewState&
 
 void WearerControls::pressButtons(const WearerNow& now, PanelInRoom& panel, ViewState& state) {
     const bool menu = now.hands[kLeft].menu || now.hands[kRight].menu;
-    if (menu && !std::exchange(menu_, menu)) {
+    if (!std::exchange(menu_, menu) && menu) {
         state.togglePanel();
         if (state.settings().panel) { panel.hangBefore(now.room_from_head); }
     }
-    menu_ = menu;
     const bool play = now.hands[kLeft].play || now.hands[kRight].play;
-    play_pressed_ = play && !std::exchange(play_, play);
-    play_ = play;
+    play_pressed_ = !std::exchange(play_, play) && play;
     viewpoint_step_ = 0;
     for (const int h : {kLeft, kRight}) {
         const bool pressed = now.hands[static_cast<std::size_t>(h)].stick_presses;
-        if (pressed && !std::exchange(stick_presses_[static_cast<std::size_t>(h)], pressed)) { viewpoint_step_ += h == kRight ? 1 : -1; }
-        stick_presses_[static_cast<std::size_t>(h)] = pressed;
+        if (!std::exchange(stick_presses_[static_cast<std::size_t>(h)], pressed) && pressed) { viewpoint_step_ += h == kRight ? 1 : -1; }
     }
 }
 

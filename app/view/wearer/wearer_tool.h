@@ -39,11 +39,8 @@ public:
     [[nodiscard]] virtual bool isMoving() const { return false; }
     // The hand that it draws a ray of its own for.
     [[nodiscard]] virtual std::optional<int> aimingHand() const { return {}; }
-    // What hangs in the room because of it, as `eye` sees that.
-    [[nodiscard]] virtual std::vector<Thing> things(const glm::dvec3& eye) const {
-        static_cast<void>(eye);
-        return {};
-    }
+    // What hangs in the room because of it, as an eye there sees that.
+    [[nodiscard]] virtual std::vector<Thing> things(const glm::dvec3&) const { return {}; }
     // What the panel lets the wearer choose.
     [[nodiscard]] virtual std::vector<ToolChoice> choices() const { return {}; }
 };

@@ -19,7 +19,7 @@ Similarity movedByWindow(const Similarity& scene_from_room, const WindowInput& i
     Similarity moved = scene_from_room;
     const double turn_rad = input.turn_rad + step_seconds * input.turn_rate * kTurnRadiansPerSecond;
     if (turn_rad != 0.0) { moved = turnedBy(moved, turn_rad, room_from_head.position); }
-    const glm::dvec3 forward = levelled(room_from_head.orientation * glm::dvec3(0.0, 0.0, 1.0)), down(0.0, 1.0, 0.0);
+    const glm::dvec3 forward = levelAhead(room_from_head), down(0.0, 1.0, 0.0);
     const glm::dvec3 right = glm::cross(down, forward);
     if (input.wheel != 0.0) { moved = grownBy(moved, std::pow(kGrowthPerStep, input.wheel), room_from_head.position); }
     if (input.tilt_rad != glm::dvec2(0.0)) {

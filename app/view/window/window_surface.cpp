@@ -23,9 +23,8 @@ std::optional<vk::SurfaceFormatKHR> windowFormat(std::span<const vk::SurfaceForm
     static constexpr std::array kWanted{Format::eB8G8R8A8Unorm,          Format::eR8G8B8A8Unorm,          Format::eA8B8G8R8UnormPack32,
                                         Format::eA2B10G10R10UnormPack32, Format::eA2R10G10B10UnormPack32, Format::eR16G16B16A16Unorm};
     for (const Format wanted : kWanted) {
-        for (const vk::SurfaceFormatKHR& format : offered) {
-            if (format.format == wanted && format.colorSpace == vk::ColorSpaceKHR::eSrgbNonlinear) { return format; }
-        }
+        const auto found = std::ranges::find(offered, vk::SurfaceFormatKHR(wanted, vk::ColorSpaceKHR::eSrgbNonlinear));
+        if (found != offered.end()) { return *found; }
     }
     // The old way to say that any will do.
     if (offered.size() == 1 && offered[0].format == Format::eUndefined) { return vk::SurfaceFormatKHR{kWanted[0], offered[0].colorSpace}; }
