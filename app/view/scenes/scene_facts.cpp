@@ -33,7 +33,7 @@ std::uint64_t bytesOnDisk(const fs::path& place) {
 // 1234567 as 1 234 567.
 std::string inThousands(std::uint64_t count) {
     std::string digits = fmt::format("{}", count);
-    for (auto at = std::ssize(digits) - 3; at > 0; at -= 3) { digits.insert(static_cast<std::size_t>(at), " "); }
+    for (auto at = std::ssize(digits) - 3; at > 0; at -= 3) { digits.insert(digits.begin() + at, ' '); }
     return digits;
 }
 
