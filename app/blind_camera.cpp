@@ -1,4 +1,4 @@
-// The nearest splat, by its centre.
+// Finds the nearest splat, by its centre.
 #include "app/blind_camera.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// What to say of a camera that sees no splat.
+// A message about a camera that sees no splat.
 #pragma once
 
 #include "engine/geometry.h"
@@ -10,8 +10,8 @@
 
 namespace binosplat {
 
-// How far the nearest of the scene's splats are from the camera, and where: "no splat is seen; the nearest is ...", and whether nothing is
-// drawn so near.
+// Tells how far away the scene's nearest splat is, and in which direction: "no splat is seen from ...: the nearest is ...", and whether it
+// is before the near plane.
 std::string describeNearest(const Pose& world_from_camera, std::span<const glm::vec3> positions, double near);
 
 }  // namespace binosplat

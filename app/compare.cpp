@@ -1,4 +1,4 @@
-// `binosplat compare`: how much two pictures differ, in the scores that `bench` has.
+// `binosplat compare`: the difference of two pictures, in the same scores as `bench`.
 #include "app/commands.h"
 #include "app/terminal/progress.h"
 #include "engine/error.h"

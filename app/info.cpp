@@ -1,4 +1,4 @@
-// `binosplat info`: what a scene holds and what rendering it will leave out.
+// `binosplat info`: the contents of a scene, and what rendering it will leave out.
 #include "app/commands.h"
 #include "app/load.h"
 #include "app/options/start_view.h"
@@ -59,7 +59,7 @@ void printSurvey(const Scene& scene, const SceneSurvey& survey) {
           fmt::format("floaters: seen, but alone (fewer than {} splats within one to two fiftieths of the size)", kFewNeighbours));
 }
 
-// What the scene takes on the GPU, and what would take less.
+// The scene's memory on the GPU, and ways to need less.
 void printDeviceMemory(const Scene& scene, const LoadNotes& notes, const SceneSurvey& survey) {
     const auto bytesOf = [&](std::uint64_t splats, int sh_degree) { return splats * deviceBytesPerSplat(sh_degree, scene.isGaussian3d()); };
     const std::uint64_t bytes = bytesOf(scene.size(), scene.sh_degree);
@@ -78,7 +78,7 @@ void printDeviceMemory(const Scene& scene, const LoadNotes& notes, const SceneSu
     for (std::size_t i = 0; i < ways.size(); ++i) { printRow(i == 0 ? "  if too much" : "", "{}", ways[i]); }
 }
 
-// Where one stands at first, and why.
+// The start view, and the reason for it.
 std::string describeStart(const Scene& scene) {
     const auto [view, why] = startView(scene);
     return fmt::format("{:.4g},{:.4g},{:.4g} looking at {:.4g},{:.4g},{:.4g}, {}", view.eye.x, view.eye.y, view.eye.z, view.look.x,

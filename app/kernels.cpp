@@ -1,5 +1,5 @@
-// `binosplat kernels`: what the driver makes of every kernel in every specialization that a mode uses. Makes pipelines and nothing else,
-// so that it runs on drivers of GPUs that are not there.
+// `binosplat kernels`: the driver's statistics of every kernel in every specialization that a mode uses. Makes only pipelines, so that it
+// also runs on drivers without their GPU.
 #include "app/commands.h"
 #include "app/terminal/interrupt.h"
 #include "app/terminal/progress.h"
@@ -50,8 +50,8 @@ void runKernels(const KernelsOptions& options) {
     std::string text;
     std::optional<ProgressLine> progress("kernels");
     const KernelTable variants = allKernels(context);
-    // Lives until the next one is made: RADV gives its memory for code back once no kernel is left there, and takes 8 MiB anew for the
-    // next.
+    // Lives until the next one is made: RADV frees its code memory once no kernel is left in it, and would allocate another 8 MiB for the
+    // next kernel.
     Kernel last;
     for (const KernelVariant& variant : variants) {
         Kernel kernel(context, variant, has_statistics ? Kernel::Keep::kStatistics : Kernel::Keep::kNothing);

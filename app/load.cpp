@@ -18,17 +18,17 @@ namespace binosplat {
 
 namespace {
 
-// A picture asks for what it shows, and next to nothing beside it.
+// A picture needs what it shows, and hardly anything beside it.
 constexpr double kPictureLookAhead = 0.1;
 
-// Fewer colours, 3D Gaussians as discs, or dimmed, where the user says so; a file may itself say that its splats are to be dimmed.
+// Limits the SH degree, flattens 3D Gaussians to discs, or dims them, if the options say so; a file may itself ask for dimming.
 void drawAs(const LoadOptions& options, Scene& scene, LoadNotes& notes) {
     if (options.sh_degree) { limitShDegree(scene, static_cast<int>(*options.sh_degree), notes); }
     if (options.flatten) { flatten(scene, notes); }
     if (options.antialiased) { scene.antialiased = scene.isGaussian3d(); }
 }
 
-// As much as the finest level may take of the device, which needs some for frames.
+// The most device memory for the finest level; frames need the rest.
 std::uint64_t memoryForScene(const Context& context, std::uint64_t memory_limit_mib) {
     const std::uint64_t bytes = context.deviceMemoryBytes() / 4 * 3;
     return memory_limit_mib > 0 ? std::min(bytes, memory_limit_mib << 20) : bytes;
@@ -45,7 +45,7 @@ bool fitsWhole(const Context& context, ChunkSource& source, const RunOptions& ru
     return splats <= memoryForScene(context, run.memory_limit_mib) / deviceBytesPerSplat(sh_degree, !run.load.flatten);
 }
 
-// The coarsest level that can be had and has splats.
+// The coarsest level that can be loaded and has splats.
 Scene loadCoarsest(const std::string& source, const RunOptions& run, std::size_t levels, LoadNotes& notes, const Progress& progress) {
     LoadOptions load = run.load;
     for (load.lod = static_cast<std::uint32_t>(levels - 1);; --*load.lod) {
@@ -114,10 +114,10 @@ std::optional<OpenedScene> openLive(const Context& context, const std::string& s
     if (!isStreamedScene(source)) { return openMoving(context, source, run, progress); }
     const LoadOptions& load = run.load;
     const bool whole_if_it_fits = purpose == StreamFor::kPictures && load.splat_budget == 0;
-    // Nothing is fetched only to find that out.
+    // Nothing is fetched just to find out whether it fits.
     if (whole_if_it_fits && isAddress(source) && run.memory_limit_mib == 0) { return std::nullopt; }
     WebSettings web{webCacheFolder(), load.cache_limit_mib << 20, {}};
-    web.fetch.attempts = 2;  // the loader tries again by itself
+    web.fetch.attempts = 2;  // the loader retries by itself
     auto chunks = std::make_unique<ChunkSource>(source, web, progress);
     if (whole_if_it_fits && fitsWhole(context, *chunks, run)) { return std::nullopt; }
     OpenedScene scene;
@@ -129,7 +129,7 @@ std::optional<OpenedScene> openLive(const Context& context, const std::string& s
     settings.antialiased = load.antialiased;
     settings.pictures = purpose == StreamFor::kPictures;
     if (settings.pictures) { settings.look_ahead_rad = kPictureLookAhead; }
-    // Which level that was is nobody's concern.
+    // Nobody needs to know the sample's level.
     std::erase_if(scene.notes.lines, [](const std::string& line) { return line.find(": level of detail ") != std::string::npos; });
     scene.notes.lines.push_back(fmt::format("{}: streamed, {} leaves in levels chosen by what is seen", source, chunks->leaves().size()));
     auto stream = std::make_unique<SceneStream>(context, std::move(chunks), settings);

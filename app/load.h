@@ -1,4 +1,4 @@
-// Loading a scene as the options ask for it, from wherever it is.
+// Loading a scene by the options, from wherever it is.
 #pragma once
 
 #include "app/options/options.h"
@@ -14,11 +14,11 @@
 
 namespace binosplat {
 
-// What a frame needs beside the scene depends on the view and is not known yet: the level's splats alone are held against the limit.
+// A frame's other memory depends on the view and is not known yet: only the level's splats are compared with the limit.
 LevelChoice levelChoice(const LoadOptions& options, std::uint64_t memory_limit_mib);
 
 // SCENE of any command: a file, a folder, a built-in scene (then `builtin_splats` sets the size, 0 for its default), or an address.
-// `memory_limit_mib` is of the device, 0 for none.
+// `memory_limit_mib` limits device memory, 0: no limit.
 Scene loadAsAsked(const std::string& source, const LoadOptions& options, std::uint64_t memory_limit_mib, LoadNotes& notes,
                   const Progress& progress = {}, std::uint64_t builtin_splats = 0);
 
@@ -28,24 +28,24 @@ Scene loadWithProgress(const std::string& source, const LoadOptions& options, Lo
 // A scene that is not loaded whole: streamed, or moving.
 struct OpenedScene {
     std::unique_ptr<LiveScene> live;
-    SceneStream* stream = nullptr;  // the same, where it is streamed
-    MovingScene* moving = nullptr;  // likewise
-    Scene sample;                   // its coarsest level or its first frame, for what asks how a scene lies
-    LoadNotes notes;                // of that
+    SceneStream* stream = nullptr;  // the same, if it is streamed
+    MovingScene* moving = nullptr;  // the same, if it moves
+    Scene sample;                   // its coarsest level or its first frame, to find a view of it
+    LoadNotes notes;                // of the sample
 };
 enum class StreamFor {
-    kPictures,  // loaded whole where its finest level fits and nobody asks for less
+    kPictures,  // loaded whole if the finest level fits and no budget is set
     kFrames,    // loaded while it is shown
 };
-// Whether `source` is one, and is not to be loaded whole as a level that the options name. Throws Error where the options ask for splats of
-// a scene that has no levels to choose from, or for a level as well.
+// True if `source` is streamed or moving, unless the options name a level, which is loaded whole. Throws Error if the options set a splat
+// budget for a scene without levels to choose from, or together with a level.
 bool mayLive(const std::string& source, const LoadOptions& options);
-// Of such a source; empty where it is to be loaded whole all the same.
+// Opens such a source; empty if it should be loaded whole after all.
 std::optional<OpenedScene> openLive(const Context& context, const std::string& source, const RunOptions& run, StreamFor purpose,
                                     const Progress& progress = {});
-// Until all is there that the eyes and the time ask for. Says what cannot be had.
+// Waits until all is there that the eyes and the time need. Prints what cannot be loaded.
 void settle(LiveScene& scene, std::span<const Eye> eyes, const Progress& progress = {});
-// What there is of it, for reports.
+// What is resident of it, for reports.
 FrameCounters::Streaming streamingOf(const LiveScene& scene);
 
 // For commands that print no notes.

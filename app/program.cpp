@@ -1,4 +1,4 @@
-// Reads the options, runs one command, and turns what went wrong into one line and an exit code.
+// Reads the options, runs one command, and turns errors into one line and an exit code.
 #include "app/program.h"
 #include "app/bench/bench.h"
 #include "app/commands.h"
@@ -30,7 +30,7 @@ struct Match : Handlers... {
 template <typename... Handlers>
 Match(Handlers...) -> Match<Handlers...>;  // clang needs it before its 17th version
 
-// A click on the program gives it no words.
+// A program started by a click gets no arguments.
 Options startOptions(int argument_count, const char* const* arguments) {
     if (argument_count > 1 || !isStartedByClick()) { return parseOptions(argument_count, arguments); }
     constexpr std::array kWords{"binosplat", "view", "builtin:atelier"};
@@ -71,7 +71,7 @@ int runProgram(int argument_count, const char* const* arguments) {
         return report(explained.code(), explained.what());
     } catch (const Interrupted& stop) {
         fmt::print(stderr, "binosplat: stopped by {}, nothing was written\n", stop.signal == SIGINT ? "SIGINT" : "SIGTERM");
-        return 128 + stop.signal;  // as a shell has it
+        return 128 + stop.signal;  // as in a shell
     } catch (const std::exception& error) { return report(ExitCode::kBadInput, error.what()); }
 }
 

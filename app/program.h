@@ -3,7 +3,7 @@
 
 namespace binosplat {
 
-// What `main` does: arguments as it has them, the first is the program's name; returns the exit code. Once in a process.
+// Called by `main` with its arguments, the first being the program's name; returns the exit code. Only once in a process.
 int runProgram(int argument_count, const char* const* arguments);
 
 }  // namespace binosplat

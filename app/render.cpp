@@ -1,4 +1,4 @@
-// `binosplat render`: one frame, or those along a path, their pictures and the report.
+// `binosplat render`: one frame, or frames along a path, with pictures and a report.
 #include "app/blind_camera.h"
 #include "app/commands.h"
 #include "app/load.h"
@@ -38,7 +38,7 @@ void writePictures(OutputFiles& files, StereoFrame& frame, const FrameSettings& 
         const std::array<Image, 2> pictures{frame.readPicture(kLeft), frame.readPicture(kRight)};
         write("left", pictures[kLeft]);
         write("right", pictures[kRight]);
-        // Tinted by what made each tile; a mode that renders every eye in full has nothing to tint.
+        // Tinted by how each tile was made; a mode that renders every eye in full has nothing to tint.
         const Image& affiliated = pictures[static_cast<std::size_t>(1 - settings.dominant)];
         writePicture(files.staging() / "roi", PictureKind::kDisplay,
                      makeRoiPicture(affiliated, frame.readTileKinds(), frame.readPixelClasses()));
@@ -46,14 +46,14 @@ void writePictures(OutputFiles& files, StereoFrame& frame, const FrameSettings& 
     writePicture(files.staging() / "dominant_depth", PictureKind::kFloat, frame.readDominantDepth());
 }
 
-// The first frame of a device says more about its driver than about the passes; the report is about the second, unless that takes long.
+// A device's first frame tells more about its driver than about the passes; the report is about the second, unless it takes long.
 FrameResult renderTimed(StereoFrame& frame, std::span<const Eye> eyes, const FrameSettings& settings) {
     const FrameResult first = frame.render(eyes, settings);
     stopIfInterrupted();
     return first.gpu_total_ms < kLongFrameMs ? frame.render(eyes, settings) : first;
 }
 
-// The options with what they left to the file and the memory.
+// The options, completed with choices that they left to the file and the memory.
 RenderOptions asUsed(RenderOptions options, const Scene& scene, const LoadNotes& notes, const LiveScene* live) {
     LoadOptions& load = options.run.load;
     if (live != nullptr) {
@@ -83,7 +83,7 @@ void warnOfBlindFrames(const PathReport& report, std::span<const glm::vec3> posi
 
 void runRender(const RenderOptions& options) {
     const StereoOptions& stereo = options.run.stereo;
-    // Whatever can be known to fail is found out before the scene is loaded.
+    // Errors that can be detected early are reported before the scene is loaded.
     requirePeriphery(stereo);
     OutputFiles files(options.out);
     const CameraFiles camera_files = readCameraFiles(options.run.camera);
@@ -111,7 +111,7 @@ void runRender(const RenderOptions& options) {
     if (live == nullptr) { whole.emplace(context, scene, ProgressLine("uploading " + options.scene).progress()); }
     const GpuScene& gpu_scene = whole ? *whole : live->scene();
     const RenderOptions used = asUsed(options, scene, notes, live);
-    const std::vector<glm::vec3> positions = std::move(scene.positions);  // for a camera that sees none of them
+    const std::vector<glm::vec3> positions = std::move(scene.positions);  // for the warning if a camera sees none of them
     scene = {};
 
     StereoFrame frame(context, gpu_scene);

@@ -1,4 +1,4 @@
-// Frames along a recorded way of the head.
+// Frames along a recorded path of the head.
 #include "app/render_path.h"
 
 #include "app/load.h"
@@ -26,7 +26,7 @@ std::vector<std::string_view> eyeNames(bool mono) {
     return mono ? std::vector<std::string_view>{"mono"} : std::vector<std::string_view>{"left", "right"};
 }
 
-// Whether a path of so many frames writes a picture of this name over the one that is there.
+// True if a path of this many frames overwrites the picture of this name.
 bool isReplaced(std::string_view name, std::size_t frames, bool mono) {
     static constexpr std::string_view kBegin = "frame_";
     const std::string_view number = name.substr(std::min(kBegin.size(), name.size()));
@@ -75,7 +75,7 @@ std::vector<PathFrame> renderPath(StereoFrame& frame, LiveScene* live, const Fra
             live->setTime(time_s - path.times_s.front());
             settle(*live, eyes);
         }
-        // The first frame of a device makes its kernels, which the report is not about.
+        // A device's first frame compiles kernels, which must not count in the report.
         if (frames.empty()) { frame.render(eyes, settings); }
         line.show(static_cast<double>(frames.size()) / static_cast<double>(path.times_s.size()));
         FrameResult result = frame.render(eyes, settings);
@@ -87,7 +87,7 @@ std::vector<PathFrame> renderPath(StereoFrame& frame, LiveScene* live, const Fra
         }
         frames.push_back({time_s, cameras, std::move(result)});
     }
-    // What made the tiles of the last frame, where both eyes have some that were not rendered.
+    // How the tiles of the last frame were made, if both eyes have tiles that were not rendered.
     if (!mono && !frame.readTileKinds(kLeft).empty() && !frame.readTileKinds(kRight).empty()) {
         for (const int eye : {kLeft, kRight}) {
             writePicture(files.staging() / (eye == kLeft ? "roi_left" : "roi_right"), PictureKind::kDisplay,

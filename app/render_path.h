@@ -1,4 +1,4 @@
-// Frames along a recorded way of the head: numbered pictures of what each eye sees, and what each frame took.
+// Frames along a recorded path of the head: numbered pictures of each eye, and each frame's costs.
 #pragma once
 
 #include "app/options/camera_options.h"
@@ -17,12 +17,12 @@ struct HeadPath {
     std::vector<double> times_s;  // of the frames, since the motion's first pose
 };
 
-// --path, at each of its poses or --rate times a second. Throws Error where the file cannot be used, or where the output folder holds
-// numbered pictures that the new ones would not replace: nobody could tell them apart.
+// --path, at each of its poses or --rate times a second. Throws Error if the file cannot be used, or if the output folder holds numbered
+// pictures that the new ones would not replace: nobody could tell them apart.
 HeadPath readHeadPath(const RenderOptions& options);
 
-// Every frame's pictures, staged in `files`; cameras start as `start` and move with the head. Each frame waits until all is there that it
-// asks for of a `live` scene, which is null where the scene is whole; one that moves begins with the first frame.
+// Renders every frame and stages its pictures in `files`; cameras begin at `start` and move with the head. Each frame waits until all that
+// it needs of a `live` scene is there (null: the scene is whole); a moving scene begins with its first frame.
 std::vector<PathFrame> renderPath(StereoFrame& frame, LiveScene* live, const FrameSettings& settings, const Cameras& start,
                                   double units_per_metre, const HeadPath& path, OutputFiles& files);
 

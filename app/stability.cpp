@@ -1,4 +1,4 @@
-// `binosplat stability`: the stiff and extreme cases on the present device, beside their float64 twins.
+// `binosplat stability`: the stiff and extreme cases on this device, compared with their float64 twins.
 #include "app/commands.h"
 #include "app/report/stability_report.h"
 #include "app/terminal/progress.h"

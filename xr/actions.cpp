@@ -1,4 +1,4 @@
-// Calls for actions.
+// OpenXR's calls for actions.
 #include "xr/actions.h"
 
 #include "xr/convert.h"
@@ -8,7 +8,7 @@
 namespace binosplat::xr {
 namespace {
 
-// By the function of the state's type, which has this name.
+// Reads an action's state with `get`; `name` is that function's, for messages.
 template <typename State>
 State ask(XrResult(XRAPI_PTR* get)(XrSession, const XrActionStateGetInfo*, State*), const char* name, XrStructureType type,
           const Session& session, XrAction action, XrPath hand) {

@@ -1,4 +1,4 @@
-// OpenXR's actions: made, bound to what controllers have, and read.
+// OpenXR's actions: making, binding and reading them.
 #pragma once
 
 #include "engine/geometry.h"
@@ -16,20 +16,20 @@ class Actions {
 public:
     explicit Actions(const Session& session);
 
-    // One for each of `hands`, or one in all.
+    // With a state for each of `hands`, or a single one.
     [[nodiscard]] XrAction make(const char* name, const char* description, XrActionType type, std::span<const XrPath> hands = {}) const;
-    // `profile` is below /interaction_profiles. A runtime need not know it: returns what it says, but throws InstanceLost.
+    // `profile` is relative to /interaction_profiles. A runtime need not know it: returns the result, but throws InstanceLost.
     [[nodiscard]] XrResult suggest(const std::string& profile, std::span<const XrActionSuggestedBinding> bindings) const;
     void attach() const;
-    // Where a pose action is; of one hand, or of no hand in particular.
+    // The space of a pose action, for one hand or for none in particular.
     [[nodiscard]] OwnedSpace makeSpace(XrAction action, XrPath hand = XR_NULL_PATH) const;
 
-    // As of now on; false while another program has the input.
+    // Updates the states read below; false while another program has the input.
     [[nodiscard]] bool sync() const;
-    // Empty: there is none.
+    // Empty if the action is inactive.
     [[nodiscard]] std::optional<double> readNumber(XrAction action, XrPath hand) const;
     [[nodiscard]] std::optional<bool> readButton(XrAction action, XrPath hand) const;
-    // At rest where there is none.
+    // Zero if the action is inactive.
     [[nodiscard]] glm::dvec2 readStick(XrAction action, XrPath hand) const;
     // At the open frame's display time, in the room; empty unless the location has all of `needed`.
     [[nodiscard]] std::optional<Pose> locate(XrAction action, XrPath hand, const OwnedSpace& space, XrSpaceLocationFlags needed) const;
@@ -39,7 +39,7 @@ public:
 
 private:
     const Session& session_;
-    OwnedActionSet set_;  // the instance's: it would outlive the session
+    OwnedActionSet set_;  // belongs to the instance: it would outlive the session
 };
 
 }  // namespace binosplat::xr

@@ -1,4 +1,4 @@
-// The controllers that people have.
+// The supported controllers.
 #include "xr/bindings.h"
 
 namespace binosplat::xr {
@@ -18,7 +18,7 @@ constexpr ProfileBindings withFourButtons(const char* path, const char* extensio
 constexpr ProfileBindings kProfiles[] = {
     {"khr/simple_controller", nullptr, "input/select/click", nullptr, nullptr, nullptr, nullptr, kMenus, kNone, kHaptic},
     withFourButtons("oculus/touch_controller", nullptr),
-    // Its value is full as soon as the fingers close; only what they press is meant.
+    // Its squeeze value is 1 as soon as the fingers close; a grab is pressure, so its force counts.
     {"valve/index_controller", nullptr, kTrigger, "input/squeeze/force", kStick, nullptr, kPress, kButtonB, kButtonA, kHaptic},
     {"microsoft/motion_controller", nullptr, kTrigger, kGrip, kStick, nullptr, kPress, kMenus, kNone, kHaptic},
     {"htc/vive_controller", nullptr, kTrigger, kGrip, "input/trackpad", "input/trackpad/click", nullptr, kMenus, kNone, kHaptic},
@@ -30,7 +30,7 @@ constexpr ProfileBindings kProfiles[] = {
     withFourButtons("bytedance/pico4_controller", "XR_BD_controller_interaction"),
     withFourButtons("facebook/touch_controller_pro", "XR_FB_touch_controller_pro"),
     withFourButtons("meta/touch_controller_plus", "XR_META_touch_controller_plus"),
-    // Bare hands: a pinch that points clicks, a fist grabs.
+    // Bare hands: pinching while pointing clicks, a fist grabs.
     {"ext/hand_interaction_ext", "XR_EXT_hand_interaction", "input/aim_activate_ext/value", "input/grasp_ext/value", nullptr, nullptr,
      nullptr, kNone, kNone, nullptr},
     {"microsoft/hand_interaction", "XR_MSFT_hand_interaction", "input/select/value", kSqueeze, nullptr, nullptr, nullptr, kNone, kNone,

@@ -12,8 +12,8 @@
 
 namespace binosplat::xr {
 
-// The session is gone, or the headset; the runtime may give another one. Neither this nor InstanceLost is an Error: what goes on without
-// something that failed must not go on here.
+// The session is gone, or the headset; the runtime may give another one. Neither this nor InstanceLost is an Error: code that goes on
+// without a failed feature must not go on after these.
 class Lost : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;
@@ -44,7 +44,7 @@ template <typename Struct>
     return made;
 }
 
-// What a call in two steps lists: it is given the array's capacity, a place for the count, and the array.
+// The list from a call with the two-call idiom; `call` takes the array's capacity, a pointer to the count, and the array.
 template <typename Value>
 [[nodiscard]] std::vector<Value> listAll(const auto& call) {
     std::uint32_t count = 0;

@@ -7,9 +7,9 @@
 namespace binosplat::xr {
 namespace {
 
-// Longer than that nobody waits for a device: the runtime paused, or the machine slept.
+// A longer gap is not the device's fault: the runtime paused, or the machine slept.
 constexpr double kMostLostPeriods = 10.0;
-constexpr double kJitter = 0.02;  // of a period that is the same
+constexpr double kJitter = 0.02;  // tolerance of isMultiple, in periods
 
 // True if `stated` is `display` or a multiple of it.
 bool isMultiple(XrDuration stated, XrDuration display) {

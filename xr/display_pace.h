@@ -8,16 +8,16 @@ namespace binosplat::xr {
 
 class DisplayPace {
 public:
-    // Each answer of xrWaitFrame, with the period that the runtime states: it may be several of the display's if the program needs that
-    // long (as Monado's is); taking it for the display's would settle for half the rate. `told_period` is the display's period
+    // Call with each result of xrWaitFrame and the period that the runtime states: it may be several of the display's if the program needs
+    // that long (as with Monado); taking it for the display's would settle for half the rate. `told_period` is the display's period
     // if the runtime reports it (XR_FB_display_refresh_rate), otherwise 0.
     void begin(XrTime display_time, XrDuration stated_period, XrDuration told_period = 0);
-    // For each xrEndFrame: does the frame show something, and the program's own working time. A frame that shows nothing, or in
-    // which the program alone needed more than the period, says nothing about the device.
+    // Call for each xrEndFrame, with the program's own working time. A frame that shows nothing, or in which the program alone needed more
+    // than the period, says nothing about the device.
     void end(bool shows, double busy_seconds);
     // The session's state changed: the next frames are unrelated to the previous ones.
     void interrupt() { says_something_ = false; }
-    // The display's period in nanoseconds: the stated one, or the part of it that was stated before.
+    // The display's period in nanoseconds: the stated one, or the one stated before if that divides it.
     [[nodiscard]] XrDuration period() const { return period_; }
 
     // Periods between the last frame's display and this one's, less one; negative if it came early, zero

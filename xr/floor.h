@@ -1,4 +1,4 @@
-// How far the floor is below the wearer, where the runtime knows it.
+// How far the floor is below the wearer, if the runtime knows.
 #pragma once
 
 #include "xr/instance.h"
@@ -9,7 +9,7 @@ namespace binosplat::xr {
 
 class Floor {
 public:
-    // The stage's floor, or that of XR_EXT_local_floor.
+    // Uses the stage's floor, or else XR_EXT_local_floor.
     Floor(const Instance& instance, XrSession session);
 
     // The distance of the floor below the origin of `space` in metres; empty if the runtime does not know it.

@@ -10,10 +10,10 @@
 namespace binosplat::xr {
 namespace {
 
-// Twice the signed area of a, b and p: positive where p lies to one side of the edge.
+// Twice the signed area of the triangle a, b, p: its sign tells on which side of the edge p lies.
 double side(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& p) { return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x); }
 
-// Marks the pixels whose centres lie in the triangle, edges included: neighbours leave no seam.
+// Marks the pixels whose centres lie in the triangle, edges included, so that neighbours leave no seam.
 void markTriangle(const std::array<glm::dvec2, 3>& corners, glm::uvec2 size_px, std::vector<std::uint8_t>& hidden) {
     const auto& [a, b, c] = corners;
     const glm::dvec2 low = glm::max(glm::min(glm::min(a, b), c), glm::dvec2(0.0)),
@@ -32,7 +32,7 @@ void markTriangle(const std::array<glm::dvec2, 3>& corners, glm::uvec2 size_px, 
 }  // namespace
 
 std::uint32_t hiddenMarginPx(const Intrinsics& intrinsics) {
-    constexpr double kMarginRadians = 0.0175;  // a degree: a quick turn of 100 degrees a second, ten milliseconds after it was foreseen
+    constexpr double kMarginRadians = 0.0175;  // a degree: a quick turn of 100 degrees/s, ten milliseconds after its prediction
     return static_cast<std::uint32_t>(std::ceil(kMarginRadians * std::max(intrinsics.fx, intrinsics.fy)));
 }
 
@@ -46,7 +46,7 @@ std::vector<std::uint8_t> findHiddenTiles(const HiddenMesh& mesh, const Intrinsi
             const std::uint32_t index = mesh.indices[i + corner];
             known = known && index < mesh.vertices.size();
             if (!known) { break; }
-            // The plane z = -1 of OpenXR is ours at 1, with y the other way.
+            // OpenXR's plane z = -1 is ours at z = 1, with y flipped.
             const XrVector2f& v = mesh.vertices[index];
             corners[corner] = {intrinsics.fx * static_cast<double>(v.x) + intrinsics.cx,
                                -intrinsics.fy * static_cast<double>(v.y) + intrinsics.cy};
@@ -55,7 +55,7 @@ std::vector<std::uint8_t> findHiddenTiles(const HiddenMesh& mesh, const Intrinsi
     }
     const glm::uvec2 tiles = (size_px + gpu::kTileSize - 1u) / gpu::kTileSize;
     std::vector<std::uint8_t> hidden_tiles(std::size_t{tiles.x} * tiles.y, 1);
-    // A pixel that shows keeps every tile within the margin.
+    // A visible pixel keeps every tile within the margin.
     const auto firstTile = [&](std::uint32_t at) { return (at - std::min(at, margin_px)) / gpu::kTileSize; };
     const auto lastTile = [&](std::uint32_t at, std::uint32_t end) { return std::min((at + margin_px) / gpu::kTileSize, end - 1); };
     for (std::uint32_t y = 0; y < size_px.y; ++y) {

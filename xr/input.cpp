@@ -1,4 +1,4 @@
-// What the controllers' buttons are for.
+// Suggesting bindings, and reading the hands.
 #include "xr/input.h"
 
 #include "xr/bindings.h"
@@ -78,7 +78,7 @@ std::array<Hand, 2> Input::read() {
             for (Hold& hold : *holds) { hold.forget(); }
         }
     }
-    // Where the focus went and came back between two frames, hands rest in one all the same, so that nothing is let go in its place.
+    // Even if the focus went and came back between two frames, hands rest for one frame, so that no press seems to be released in place.
     if (!is_focused || (is_new && !was_at_rest)) { return hands; }
     for (std::size_t h = 0; h < 2; ++h) { readHand(h, hands[h]); }
     return hands;
@@ -91,7 +91,7 @@ void Input::readHand(std::size_t h, Hand& hand) {
     hand.joints = tracking_.locate(static_cast<int>(h));
     hand.clicks = clicks_[h].update(actions_.readNumber(trigger_, path));
     hand.grabs = grabs_[h].update(actions_.readNumber(squeeze_, path));
-    // A pad that only feels the thumb is at rest.
+    // A pad that is touched but not pressed is at rest.
     if (actions_.readButton(stick_click_, path).value_or(true)) { hand.stick = actions_.readStick(stick_, path); }
     const auto isHeld = [&](XrAction button, Hold& hold) {
         const std::optional<bool> pressed = actions_.readButton(button, path);

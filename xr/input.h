@@ -14,12 +14,12 @@ namespace binosplat::xr {
 struct Hand {
     std::optional<Pose> aim;             // the ray goes along its z
     std::optional<Pose> grip;            // where the hand is
-    std::optional<HandJoints> joints;    // where the runtime finds them
+    std::optional<HandJoints> joints;    // if the runtime finds them
     bool clicks = false, grabs = false;  // trigger and squeeze, with hysteresis
-    glm::dvec2 stick{0.0};               // right and up are positive; of a pad, only while it is pressed
+    glm::dvec2 stick{0.0};               // right and up are positive; pads count only while pressed
     bool menu = false;
     bool play = false;           // the lower button
-    bool stick_presses = false;  // it is pressed in; never of a pad
+    bool stick_presses = false;  // the stick is pressed in; never a pad
 };
 
 // Tells if a trigger or a grip is pressed, with hysteresis, since values jitter. A button that was not read for a while may have been
@@ -52,7 +52,7 @@ public:
     // The gaze as of the last read(): a direction in the room (our axes). Empty if the headset does not track it reliably, or this
     // program may not see it.
     [[nodiscard]] std::optional<glm::dvec3> gaze() { return gaze_.find(); }
-    // A short buzz in a hand, where its controller can.
+    // A short buzz in a hand, if its controller can.
     void pulse(int hand);
 
 private:
@@ -69,7 +69,7 @@ private:
     std::array<Hold, 2> clicks_, grabs_, menus_, presses_, plays_;
     bool pulses_ = true;       // until one fails
     int times_focused_ = 0;    // of the session, as of the last read()
-    bool is_at_rest_ = false;  // the same
+    bool is_at_rest_ = false;  // as of the last read()
 };
 
 }  // namespace binosplat::xr

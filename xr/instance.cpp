@@ -32,7 +32,7 @@ std::vector<XrExtensionProperties> listExtensions() {
     return extensions;
 }
 
-// What is used where the runtime has it.
+// Used if the runtime has them.
 std::vector<const char*> wantedExtensions(const InstanceOptions& options) {
     std::vector<const char*> wanted{XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME, kLocalFloorExtension,
                                     XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME, XR_EXT_HAND_TRACKING_EXTENSION_NAME};
@@ -54,7 +54,7 @@ XrResult getSystem(XrInstance instance, XrSystemId& system) {
 }  // namespace
 
 Instance::Instance(const InstanceOptions& options) {
-    // The loader speaks on stderr where it finds nothing; one line of ours says it better.
+    // The loader prints to stderr if it finds nothing; one line of ours says it better.
     if (environment("XR_LOADER_DEBUG").empty()) { setEnvironment("XR_LOADER_DEBUG", "none"); }
     create(options);
     findSystem(options);
@@ -101,14 +101,14 @@ void Instance::findSystem(const InstanceOptions& options) {
 }
 
 bool Instance::findHeadset(const Context& context) {
-    // Nobody is left for whom they were, but that the runtime itself goes away.
+    // These events were for a session that is gone; only the end of the runtime itself still matters.
     for (;;) {
         auto event = structure<XrEventDataBuffer>(XR_TYPE_EVENT_DATA_BUFFER);
         if (BINOSPLAT_XR(xrPollEvent(handle(), &event)) == XR_EVENT_UNAVAILABLE) { break; }
         if (event.type == XR_TYPE_EVENT_DATA_INSTANCE_LOSS_PENDING) { throw InstanceLost(kGoingAway); }
     }
     const XrResult result = getSystem(handle(), system_);
-    // Some runtimes have no better word for it.
+    // Some runtimes report a missing headset as the latter.
     if (result == XR_ERROR_FORM_FACTOR_UNAVAILABLE || result == XR_ERROR_RUNTIME_FAILURE) { return false; }
     checkResult(result, "xrGetSystem");
     readSystem();

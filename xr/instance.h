@@ -34,13 +34,13 @@ struct InstanceOptions {
 
 class Instance {
 public:
-    // Asks for API 1.0 and XR_KHR_vulkan_enable2; uses those of extensions/ and of controllers (bindings.h) where they are available.
+    // Asks for API 1.0 and XR_KHR_vulkan_enable2; uses the extensions of extensions/ and bindings.h that are available.
     // Throws Error (exit code 3, one line with what was looked for) if there is no runtime or no headset, and rethrows from
     // `wait_for_headset`.
     explicit Instance(const InstanceOptions& options = {});
     // After a session is lost, which may mean that the headset was unplugged: finds it again, or another one in its place, for a session on
-    // `context`. False while there is none. Throws Lost, InstanceLost, and Error (exit code 3) where the headset is on another graphics
-    // device now.
+    // `context`. False while there is none. Throws Lost, InstanceLost, and Error (exit code 3) if the headset is now on another graphics
+    // device.
     bool findHeadset(const Context& context);
     Instance(const Instance&) = delete;
     Instance& operator=(const Instance&) = delete;
@@ -49,7 +49,7 @@ public:
     [[nodiscard]] XrSystemId system() const { return system_; }
     // "Monado: Rift S", for people.
     [[nodiscard]] const std::string& description() const { return description_; }
-    // The runtime has it, and it was wanted: it is enabled.
+    // True if it is enabled: the runtime has it, and it was wanted.
     [[nodiscard]] bool hasExtension(std::string_view name) const { return extensions_.contains(name); }
     [[nodiscard]] bool takesDepth() const { return hasExtension(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME); }
     // The extension is enabled, and this headset finds hands.
@@ -59,15 +59,15 @@ public:
     // The recommended pixels of an eye, the larger of both, since the methods need eyes of one size; and the maximum.
     [[nodiscard]] glm::uvec2 recommendedSizePx() const { return recommended_size_px_; }
     [[nodiscard]] glm::uvec2 maxSizePx() const { return max_size_px_; }
-    // How layers are blended with the world: opaque if the headset has it, otherwise its preference; or with the room visible behind
-    // them, if it has that.
+    // How layers are blended with the world: opaque if the headset can, otherwise its preference; if `see_through`, with the room visible
+    // behind them, if it can.
     [[nodiscard]] XrEnvironmentBlendMode blendMode(bool see_through) const {
         return see_through && see_through_ ? *see_through_ : blend_mode_;
     }
     [[nodiscard]] bool canSeeThrough() const { return see_through_.has_value(); }
 
     [[nodiscard]] XrPath path(const char* text) const;
-    // Of the present headset: fills an extension's struct, XrSystem...Properties, which has its type.
+    // Fills an extension's XrSystem...Properties, whose type is set, for the current headset.
     void readProperties(void* of_extension) const;
     // The optional features that this headset is used without.
     [[nodiscard]] Troubles& troubles() const { return troubles_; }
@@ -82,7 +82,7 @@ public:
 private:
     void create(const InstanceOptions& options);
     void findSystem(const InstanceOptions& options);
-    // The features of the headset of system_.
+    // Read the features of the headset system_.
     void readSystem();
     void readViews();
     void readBlendModes();

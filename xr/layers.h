@@ -15,14 +15,14 @@ namespace binosplat::xr {
 struct LayerEye {
     EyeView view;
     const Swapchain* colour = nullptr;
-    const Swapchain* depth = nullptr;  // near_m / depth, 0 where nothing is
+    const Swapchain* depth = nullptr;  // near_m / depth, 0 where there is nothing
     double near_m = 0.0;
     glm::uvec2 part_px{0, 0};  // of the images, from their top left corner
 };
 
-// A flat picture, seen from the side of its -z and blended over what lies behind; its colours are multiplied by alpha already.
+// A flat picture, visible from its -z side and blended over what lies behind; its colours are premultiplied by alpha.
 struct LayerQuad {
-    Pose pose;  // room axes; or the head's, where it follows that
+    Pose pose;  // room axes, or the head's if follows_head
     glm::dvec2 size_m{0.0};
     const Swapchain* swapchain = nullptr;
     glm::uvec2 from_px{0, 0}, size_px{0, 0};  // of its image
@@ -35,12 +35,12 @@ public:
     Layers(const Layers&) = delete;
     Layers& operator=(const Layers&) = delete;
 
-    // If `see_through`, the background shows as far as the pictures' alpha lets it; their colours are multiplied by alpha.
+    // If `see_through`, the room shows as far as the pictures' alpha lets it; their colours are premultiplied by alpha.
     void addEyes(const std::array<LayerEye, 2>& eyes, bool see_through) { addViews(eyes, see_through); }
     // The same in a session with insets, which follow after the eyes.
     void addEyesAndInsets(const std::array<LayerEye, 4>& eyes_and_insets, bool see_through) { addViews(eyes_and_insets, see_through); }
-    // A panel whose middle is at `pose` (room axes, facing along -z of it) and that is size_m wide and high. Its picture is
-    // blended over what lies behind; its colours are multiplied by alpha already.
+    // A panel centred at `room_from_panel`, facing along its -z, size_m wide and high. Its picture is blended over what lies behind; its
+    // colours are premultiplied by alpha.
     void addPanel(const Pose& room_from_panel, const glm::dvec2& size_m, const Swapchain& swapchain);
     void addQuad(const LayerQuad& quad);
 

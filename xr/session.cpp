@@ -88,7 +88,7 @@ double Session::periodMs() const {
 
 void Session::requestExit() {
     const XrResult result = xrRequestExitSession(handle());
-    // A session that does not run can just be left.
+    // A session that is not running can just be left.
     if (XR_FAILED(result)) { end("the session was stopped before it ran"); }
 }
 

@@ -21,19 +21,19 @@ namespace binosplat::xr {
 enum class FrameOutcome {
     kRender,  // a frame is open and will be seen: draw, then endFrame with its layers
     kSkip,    // a frame is open but nobody sees it: endFrame without layers
-    kWait,    // no frame is open since the session does not run (yet, or for now): call again
+    kWait,    // no frame is open since the session is not running (yet, or for now): call again
     kExit,    // the runtime or the user wants to end: leave; whyEnded() says which
 };
 
 class Session {
 public:
-    // `context` must have been opened with deviceMaker(instance); both outlive the session. `views` is kStereo, or kStereoWithInset where
+    // `context` must have been opened with deviceMaker(instance); both outlive the session. `views` is kStereo, or kStereoWithInset if
     // findInset() found one.
     Session(const Instance& instance, const Context& context, XrViewConfigurationType views = kStereo);
     Session(const Session&) = delete;
     Session& operator=(const Session&) = delete;
 
-    // Takes the runtime's events, waits for the next frame and opens it. Throws Lost if the session is lost or about to be, InstanceLost
+    // Handles the runtime's events, waits for the next frame and opens it. Throws Lost if the session is lost or about to be, InstanceLost
     // if the runtime is.
     FrameOutcome beginFrame();
     // Closes the frame with these layers, back to front. Throws Lost and InstanceLost, and Error if the runtime refuses a layer; then
@@ -48,7 +48,7 @@ public:
     [[nodiscard]] XrTime displayTime() const { return frame_state_.predictedDisplayTime; }
     // Seconds from the last frame to this one, at most a tenth, whatever period the runtime states.
     [[nodiscard]] double stepSeconds() const { return step_seconds_; }
-    // The display's period, see DisplayPace, in milliseconds, for a frame to fit in; that of 90 Hz if the runtime states none.
+    // The display's period in milliseconds, see DisplayPace; that of 90 Hz if the runtime states none, or an absurd one.
     [[nodiscard]] double periodMs() const;
     // See DisplayPace.
     [[nodiscard]] double lostPeriods() const { return pace_.lostPeriods(); }
@@ -75,7 +75,7 @@ public:
     [[nodiscard]] int hiddenMeshVersion() const { return hidden_meshes_.version(); }
 
 private:
-    // With all that is made of it.
+    // Destroys the session and its children, with the queue locked.
     struct DestroyLocked {
         const Context* context;
         void operator()(XrSession session) const;
@@ -101,7 +101,7 @@ private:
     double step_seconds_ = 0.0;
     DisplayPace pace_;
     XrDuration told_period_ = 0, told_for_ = 0;  // the display's period from the runtime, and the stated period at the time of the request
-    double busy_from_seconds_ = 0.0;             // of this thread, since the frame began
+    double busy_from_seconds_ = 0.0;             // this thread's time when the frame began
     bool running_ = false, ended_ = false;
     std::string why_ended_;
     XrEnvironmentBlendMode blend_mode_;

@@ -85,7 +85,7 @@ bool Spaces::settle(XrTime time, bool demanded) {
     const bool moved = recentred_from_ && time >= *recentred_from_;
     if (turn_settled_ && place_settled_ && !moved && !demanded) { return false; }
     Located located = locate(local_.get(), time);
-    // A headset that never says where it is turns all the same.
+    // A headset that never knows its position still turns.
     const bool first = !turn_settled_ || (!place_settled_ && located.place_known);
     if (!located.turn_known || (!first && !moved && !demanded)) { return false; }
     if (!located.place_known) {

@@ -27,7 +27,7 @@ public:
     // Places the room for `time` and after, the first time that the head's pose is known, again when the runtime recentred its space, and
     // when `demanded`. Returns true if it did.
     bool settle(XrTime time, bool demanded);
-    // The runtime recentres its space itself.
+    // The runtime recentres its space at `time`.
     void recentreFrom(XrTime time) { recentred_from_ = time; }
     // The poses of the eyes in room(); empty if the headset's orientation is unknown. While its position is unknown, the last known one is
     // used.
@@ -38,11 +38,11 @@ public:
 
     // LOCAL until it is settled.
     [[nodiscard]] XrSpace room() const { return room_.get(); }
-    // It moves with the head.
+    // Moves with the head.
     [[nodiscard]] XrSpace head() const { return head_.get(); }
 
 private:
-    // Of xrLocateViews, with what is known of it.
+    // A result of xrLocateViews, and which parts of it are known.
     struct Located {
         std::array<EyeView, 2> eyes;
         std::array<XrFovf, 2> insets;
@@ -56,7 +56,7 @@ private:
     bool turn_settled_ = false, place_settled_ = false;
     std::optional<XrTime> recentred_from_;
     std::optional<std::array<XrFovf, 2>> insets_;
-    XrVector3f last_place_{};  // of the head in the room, as it was last known
+    XrVector3f last_place_{};  // the head's last known position in the room
 };
 
 }  // namespace binosplat::xr

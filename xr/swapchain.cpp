@@ -49,7 +49,7 @@ Swapchain::Swapchain(const Session& session, const std::string& name, glm::uvec2
     XrSwapchain made = XR_NULL_HANDLE;
     if (use == ImageUse::kFar && Commands::canMakeMips(session.context(), format)) {
         info.mipCount = levels_ = static_cast<std::uint32_t>(std::bit_width(std::max(size_px.x, size_px.y)));
-        // Not every runtime has such images.
+        // Not every runtime has images with mips.
         if (XR_FAILED(xrCreateSwapchain(session.handle(), &info, &made))) { info.mipCount = levels_ = 1; }
     }
     if (levels_ == 1) { BINOSPLAT_XR(xrCreateSwapchain(session.handle(), &info, &made)); }
@@ -66,7 +66,7 @@ void Swapchain::DestroyIdle::operator()(XrSwapchain swapchain) const {
     const std::lock_guard lock(context->queueMutex());
     try {
         context->queue().waitIdle();
-    } catch (const vk::SystemError&) {}  // a device that is lost has none under way
+    } catch (const vk::SystemError&) {}  // a lost device has no work in flight
     xrDestroySwapchain(swapchain);
 }
 

@@ -9,7 +9,7 @@
 
 namespace binosplat::xr {
 
-// The use of images.
+// How images are used.
 enum class ImageUse {
     kCopy,   // pictures and depths, copied in
     kDraw,   // the overlay, drawn and copied in
@@ -34,13 +34,13 @@ public:
     [[nodiscard]] XrSwapchain handle() const { return swapchain_.get(); }
     [[nodiscard]] glm::uvec2 sizePx() const { return size_px_; }
     [[nodiscard]] vk::Format format() const { return format_; }
-    // Of each image: 1, or down to a single pixel.
+    // Mip levels of each image: 1, or down to a single pixel.
     [[nodiscard]] std::uint32_t levels() const { return levels_; }
     // The image from its top left corner on, for a layer.
     [[nodiscard]] XrSwapchainSubImage subImage(glm::uvec2 part_px) const;
 
 private:
-    // Once no frame is on its way into the images.
+    // Waits until no frame in flight writes the images.
     struct DestroyIdle {
         const Context* context;
         void operator()(XrSwapchain swapchain) const;

@@ -1,4 +1,4 @@
-// Optional features of a headset that failed: a line for each, once, in however many frames and sessions it fails.
+// Optional features of a headset that failed: one line for each, however many frames and sessions it fails in.
 #pragma once
 
 #include "xr/check.h"
@@ -15,7 +15,7 @@ public:
     void add(const std::string& line) {
         if (said_.insert(line).second) { news_.push_back(line); }
     }
-    // Those that were not fetched yet.
+    // The lines that were not taken yet.
     [[nodiscard]] std::vector<std::string> take() { return std::exchange(news_, {}); }
 
     // Does `act`; if that throws Error, goes on without `what` ("pulses") and returns false.

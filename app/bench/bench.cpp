@@ -20,7 +20,7 @@ namespace binosplat {
 namespace {
 
 std::vector<std::uint64_t> countsOf(const std::string& source, const BenchSeries& series) {
-    // A file has the splats it has: it is measured once for all counts of a series.
+    // A file's splat count is fixed: it is measured once for all counts of a series.
     return isBuiltin(source) ? series.splats : std::vector<std::uint64_t>{0};
 }
 
@@ -55,7 +55,7 @@ void benchScene(const Context& context, const BenchPlan& plan, const BenchSeries
     }
 }
 
-// Headsets, cameras: whatever can be known to fail is found out before anything is measured.
+// Reports errors in scenes, headsets and cameras before anything is measured.
 void requireFiles(const BenchPlan& plan, const RunOptions& run) {
     requireScenes(plan);
     for (const std::string& headset : plan.headsets) {
@@ -71,7 +71,7 @@ void benchSpeed(const BenchOptions& options, const BenchPlan& plan) {
     const Context context(contextOptions(options.run));
     BenchRun run{context.deviceName(), options.run.config, {}};
     {
-        // Points take about as long as each other.
+        // All points are assumed to take equally long.
         const auto points = static_cast<double>(pointCount(plan, options.run));
         double done = 0.0;
         ProgressLine progress("bench");

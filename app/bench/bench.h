@@ -1,4 +1,4 @@
-// `binosplat bench`, its kinds, and what they have in common.
+// `binosplat bench`, its kinds, and their common parts.
 #pragma once
 
 #include "app/bench/bench_plan.h"
@@ -8,7 +8,7 @@ namespace binosplat {
 // Throws Error.
 void runBench(const BenchOptions& options);
 
-// A scene that is not there is found out before the others are measured. Throws Error naming it.
+// Reports a missing scene before the others are measured. Throws Error naming it.
 void requireScenes(const BenchPlan& plan);
 
 // `bench --motion`: every method at every pose of a recorded head; error, time and flicker. Writes motion.csv, .json and .svg.
@@ -17,8 +17,8 @@ void benchMotion(const BenchOptions& options, const BenchPlan& plan);
 // `bench --photos`: the affiliated eye where a photograph was taken, against the photograph. Writes photos.csv and .json.
 void benchPhotos(const BenchOptions& options, const BenchPlan& plan);
 
-// `bench --orders`: pictures by each order of splats against one in which every pixel has its own, and what pops while the head turns; on
-// the CPU alone, of the plan's scenes, views and first size. Writes orders.csv.
+// `bench --orders`: pictures by each order of splats against one in which every pixel has its own, and popping while the head turns; only
+// on the CPU, for the plan's scenes, views and first size. Writes orders.csv.
 void benchOrders(const BenchOptions& options, const BenchPlan& plan);
 
 }  // namespace binosplat

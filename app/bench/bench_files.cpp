@@ -1,4 +1,4 @@
-// What `bench` measured, as JSON and CSV.
+// The results of `bench` as JSON and CSV.
 #include "app/bench/bench_results.h"
 
 #include <fmt/format.h>
@@ -21,7 +21,7 @@ Json timesJson(const NamedTimes& times) {
     return json;
 }
 
-// PSNR is null where the pictures are equal: JSON has no infinity.
+// PSNR is null if the pictures are equal: JSON has no infinity.
 Json numberOrNull(const std::optional<double>& value) { return value && std::isfinite(*value) ? Json(*value) : Json(); }
 
 Json qualityJson(const std::vector<OriginScores>& quality) {
@@ -36,7 +36,7 @@ Json qualityJson(const std::vector<OriginScores>& quality) {
     return json;
 }
 
-// What both files have, null where a result has none of it.
+// The fields of both files; null if a result lacks them.
 Json fieldsOf(const BenchResult& r) {
     return {{"series", r.series},
             {"scene", r.scene},

@@ -14,7 +14,7 @@ bool isMethodKey(const std::string& key) {
     return key == "name" || (row != nullptr && (row->text.commands & kMethods) != 0);
 }
 
-// A method on the way: its name so far, and one entry for each key.
+// A method under construction: its name so far, and one value for each key.
 struct Combination {
     std::string name;
     Settings settings;

@@ -14,8 +14,8 @@ struct BenchMethod {
 };
 
 // One [[methods]] table: name, mode, and any of depth, order, resampling, per-eye, margin, budget, gap-px, center-roi, edge-bounds,
-// edge-samples, hole-error, newcomer-error and move-cost. What it does not say is as in `base`. A key with an array stands for a method per
-// entry, several such keys for every combination, each named "name key=value ...". Throws Error with file and line.
+// edge-samples, hole-error, newcomer-error and move-cost. Missing keys are as in `base`. A key with an array stands for a method per entry,
+// several such keys for every combination, each named "name key=value ...". Throws Error with file and line.
 std::vector<BenchMethod> readMethods(const SettingsTable& table, const RunOptions& base);
 
 // A mode with the settings of `base`, named as the mode.

@@ -40,7 +40,7 @@ void playView(const Context& context, const BenchOptions& options, const BenchPl
         return cameras;
     };
     if (live != nullptr) { settle(*live, start.eyes); }
-    // A GPU shows how fast it is only while nobody keeps it waiting: its times are those of a run without pictures.
+    // A GPU runs at full speed only while it is kept busy: its times are from a run without pictures.
     std::vector<std::vector<FrameResult>> timed;
     if (!context.isSoftware()) {
         MotionPoint point(context, gpu_scene, view_run, plan, name);

@@ -1,5 +1,5 @@
-// `binosplat bench --orders`: how near the picture of each order of splats is to one in which every pixel has an order of its own, and what
-// pops while the head turns. In float64 on the CPU, so that nothing but the order differs.
+// `binosplat bench --orders`: how close the picture of each order of splats is to one in which every pixel has its own order, and popping
+// while the head turns. In float64 on the CPU, so that nothing but the order differs.
 #include "app/bench/bench.h"
 #include "app/bench/order_results.h"
 #include "app/load.h"
@@ -23,7 +23,7 @@ namespace binosplat {
 
 namespace {
 
-// What a pixel is blended by: splats in one order, of which each pixel may put a few right.
+// How pixels are blended: splats in one order, in which each pixel may reorder a few.
 struct OrderMethod {
     const char* name;
     bool by_distance;
@@ -43,7 +43,7 @@ struct HeadEye {
     glm::dvec3 middle;  // between this eye and the other
 };
 
-// The head's eye after it turned to the right about a point that far behind the middle between the eyes.
+// The eye after the head turned right about a point `behind` the middle between the eyes.
 HeadEye turnHead(const Cameras& cameras, Side side, double angle_rad, double behind) {
     const Pose& world_from_middle = cameras.middle.world_from_camera;
     const glm::dvec3 neck(0.0, 0.0, -behind);

@@ -32,7 +32,7 @@ struct PhotoRow {
     double total_ms = 0.0;
     double psnr_db = 0.0, ssim = 0.0;  // against the photograph, both clamped to 0 to 1
     double mean_square_to_full = 0.0;  // against the full render of the same eye
-    std::optional<double> lpips;       // against the photograph, where its weights are given
+    std::optional<double> lpips;       // against the photograph, if there are weights
 };
 
 // Camera files name pictures with or without their extension.
@@ -82,7 +82,7 @@ std::vector<Means> meansOf(const std::vector<PhotoRow>& rows) {
     return means;
 }
 
-// Nothing where LPIPS was not measured.
+// Empty if LPIPS was not measured.
 std::optional<double> meanLpips(const Means& means) {
     if (means.lpips.empty()) { return std::nullopt; }
     return std::accumulate(means.lpips.begin(), means.lpips.end(), 0.0) / static_cast<double>(means.lpips.size());

@@ -1,4 +1,4 @@
-// What `bench` measures.
+// Reading the plan of `bench`.
 #include "app/bench/bench_plan.h"
 
 #include "app/bench/bench_results.h"
@@ -46,8 +46,8 @@ void readScores(const Setting& setting, BenchPlan& plan) {
     }
 }
 
-// The file of LPIPS's weights; empty where it is not measured. The config's file counts unless its scores leave LPIPS out, that of the
-// command line always.
+// The file of LPIPS weights; empty if LPIPS is not measured. The config's file counts unless its scores omit LPIPS, the command line's
+// always.
 std::string lpipsWeights(const SettingsTable& bench, const BenchOptions& options) {
     if (!options.lpips_weights.empty()) { return options.lpips_weights; }
     const auto scores = bench.settings.find("scores"), weights = bench.settings.find("lpips");
@@ -102,7 +102,7 @@ BenchView readView(const SettingsTable& table, const RunOptions& base) {
     return view;
 }
 
-// The two that all others are compared with come first and once.
+// The two methods that all others are compared with come first, and once.
 void addReferences(BenchPlan& plan, const RunOptions& run) {
     std::vector<BenchMethod> methods;
     for (const Mode mode : {Mode::kTwoPass, Mode::kShared}) {
@@ -118,7 +118,7 @@ bool belongsTo(const BenchView& view, const std::string& scene) {
     return view.scenes.empty() || std::ranges::count(view.scenes, bareSceneName(scene)) > 0;
 }
 
-// What is measured twice under one name could not be told apart.
+// Things measured twice under one name could not be told apart.
 void refuseTwins(const BenchPlan& plan) {
     const auto refuse = [](const char* what, auto&& all, auto&& nameOf) {
         std::set<std::string> names;
@@ -169,7 +169,7 @@ BenchPlan planBench(const BenchOptions& options) {
     if (plan.series.empty()) { plan.series.push_back({"frame", {0}, {default_size_px}}); }
     if (const std::string weights = lpipsWeights(bench, options); !weights.empty()) {
         plan.lpips.emplace(weights);
-        plan.psnr = true;  // the command line asks for pictures to be compared, though the config may not
+        plan.psnr = true;  // --lpips needs pictures to be compared, even if the config does not
     }
     const CameraOptions& asked = options.asked;
     if (asked.size_px) {

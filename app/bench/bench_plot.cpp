@@ -23,8 +23,8 @@ std::optional<double> errorOf(const BenchResult& result) {
 
 std::optional<double> seenErrorOf(const BenchResult& result) { return result.seen ? std::optional(result.seen->psnrDb()) : std::nullopt; }
 
-// One panel per point whose methods have an error: a series of points per mode; those of the front, which is one of the whole error,
-// joined.
+// One panel per point whose methods have an error: a series of points per mode; the points of the Pareto front are joined if
+// `draws_front`.
 std::vector<PlotPanel> errorPanels(const BenchRun& run, const char* y_label, std::optional<double> (*psnrDbOf)(const BenchResult&),
                                    bool draws_front) {
     std::vector<PlotPanel> panels;
@@ -43,7 +43,7 @@ std::vector<PlotPanel> errorPanels(const BenchRun& run, const char* y_label, std
             PlotLine& line = lineOf(panel, modeNameOf(result));
             line.joined = false;
             line.points.emplace_back(result.total_ms, *psnr_db);
-            // In a crowd only the front is named.
+            // If there are many, only the front is named.
             line.names.push_back(methods[result.mode] < 6 || result.on_front ? result.method : "");
             if (result.on_front) { front.points.emplace_back(result.total_ms, *psnr_db); }
         }
@@ -57,7 +57,7 @@ std::vector<PlotPanel> errorPanels(const BenchRun& run, const char* y_label, std
     return panels;
 }
 
-// Which results belong together in a panel: all but splats and size.
+// Results that share a panel: equal in everything but splats and size.
 using Group = std::array<std::string, 4>;
 Group groupOf(const BenchResult& result) { return {result.scene, result.series, result.view, result.headset}; }
 
@@ -78,7 +78,7 @@ Extent extentOf(const BenchRun& run, const Group& group) {
     return extent;
 }
 
-// Time against splats or pixels, whichever the group varies; pixels if it varies both.
+// Time against splats or pixels, whichever varies in the group; pixels if both do.
 std::vector<PlotPanel> scalingPanels(const BenchRun& run, const Group& group) {
     const Extent extent = extentOf(run, group);
     const bool against_splats = extent.splats.size() > 1 && extent.pixels.size() == 1;

@@ -16,10 +16,10 @@ namespace binosplat {
 
 namespace {
 
-// One method and what its frames took.
+// One method and the costs of its frames.
 struct Runner {
     BenchMethod method;
-    BenchResult result;                                  // to which summarize adds what follows from the frames
+    BenchResult result;                                  // completed by summarize() from the frames
     std::map<std::string, std::vector<double>> pass_ms;  // by the text of its label
     FrameResult last, compared;
 
@@ -51,7 +51,7 @@ BenchResult summarize(const Runner& runner, const BenchPoint& point) {
     FrameCounters counters = runner.last.counters;
     if (point.live != nullptr) { counters.streaming = streamingOf(*point.live); }
     result.counters = counters.named();
-    result.counters.merge(runner.compared.counters.named());  // those that cost time
+    result.counters.merge(runner.compared.counters.named());  // including counters that cost time
     result.tiles_rendered = runner.last.tiles_rendered;
     result.work_rendered = runner.last.work_rendered;
     if (!runner.last.stereo_bytes_per_pixel.empty()) { result.stereo_bytes_per_pixel = runner.last.stereo_bytes_per_pixel.back().second; }
@@ -80,14 +80,14 @@ FrameResult renderTwin(const BenchPoint& point) {
     return result;
 }
 
-// The affiliated eye in full, as `stereo` orders its splats.
+// The affiliated eye in full, with splats in the order of `stereo`.
 Image renderFull(const StereoOptions& stereo, const BenchPoint& point, MethodFrames& frames) {
     BenchMethod shared = plainMethod(Mode::kShared, point.run);
     shared.stereo.order = stereo.order;
     return frames.render(point.cameras, point.run.camera, shared.stereo, true).frame->readPicture(1 - shared.stereo.dominant);
 }
 
-// Memory and pictures of a method, before any of its frames count.
+// Measures memory and pictures of a method, before its frames are timed.
 Runner prepare(const BenchMethod& method, const BenchPoint& point, const BenchPlan& plan, MethodFrames& frames, const Image& full) {
     Runner runner;
     runner.method = method;
@@ -119,7 +119,7 @@ Runner prepare(const BenchMethod& method, const BenchPoint& point, const BenchPl
     return runner;
 }
 
-// Whether they do with the same buffers. A frame of `predicted` also remembers of the one before what that asked for.
+// True if both can share buffers. A frame of `predicted` also remembers the settings of the previous one.
 bool needSame(const StereoOptions& a, const StereoOptions& b) {
     if (a.mode != b.mode || a.half_periphery != b.half_periphery) { return false; }
     if (a.mode == Mode::kPredicted || hasPast(a.mode) || hasPast(b.mode)) { return a == b; }
@@ -142,8 +142,8 @@ MethodFrames::Rendered MethodFrames::render(const Cameras& cameras, const Camera
     settings.gazes = gazesOf(cameras, stereo);
     settings.keep_classes = settings.square_boxes = compared;
     settings.keep_past = keep_past;
-    settings.half_floats = !compared;  // as a viewer has it
-    settings.keep_depth = false;       // nobody reads it here, so no mode pays for it unless it needs it itself
+    settings.half_floats = !compared;  // as in the viewer
+    settings.keep_depth = false;       // nobody reads it here, so a mode pays for it only if it needs it itself
     StereoFrame& frame = frameFor(stereo);
     const std::span<const Eye> eyes = settings.mode == Mode::kMono ? std::span(&cameras.middle, 1) : std::span<const Eye>(cameras.eyes);
     return {frame.render(eyes, settings), &frame};

@@ -1,4 +1,4 @@
-// All methods at one scene, view and size, in turn, again and again, so that a device that drifts drifts for all of them alike.
+// All methods at one scene, view and size, in turn and repeatedly, so that a device's drift affects all of them alike.
 #pragma once
 
 #include "app/bench/bench_plan.h"
@@ -15,24 +15,24 @@
 
 namespace binosplat {
 
-// Renders methods, each in buffers that no method with other needs touches: what one allocates, no other pays for.
+// Renders methods, each in buffers shared only with methods of the same needs: none pays for another's allocations.
 class MethodFrames {
 public:
     MethodFrames(const Context& context, const GpuScene& scene) : context_(context), scene_(scene) {}
 
-    // `frame` is where the pictures can be read until the next call.
+    // The pictures can be read from `frame` until the next call.
     struct Rendered {
         FrameResult result;
         StereoFrame* frame;
     };
-    // `compared`: the pictures are read and compared, with what made each pixel and with counters that cost time; otherwise they are as a
-    // viewer has them.
-    // `keep_past`: see FrameSettings.
+    // `compared`: for pictures that are read and compared, with the origin of each pixel
+    // and counters that cost time; otherwise as in the viewer. `keep_past`: see
+    // FrameSettings.
     Rendered render(const Cameras& cameras, const CameraOptions& camera, const StereoOptions& stereo, bool compared = false,
                     bool keep_past = false);
 
-    // The most memory, in bytes, that the program holds while nothing but this method's buffers are there, as a viewer has them. Lets go of
-    // all others.
+    // The program's peak memory, in bytes, while it holds only this method's buffers, as in the viewer. Frees the buffers of all other
+    // methods.
     std::uint64_t peakAlone(const Cameras& cameras, const CameraOptions& camera, const StereoOptions& stereo);
 
 private:
@@ -53,10 +53,10 @@ struct BenchPoint {
     const RunOptions& run;
     const Cameras& cameras;
     std::string series, view, headset;
-    LiveScene* live = nullptr;  // where it is streamed or moves; `scene` is a sample of it then
+    LiveScene* live = nullptr;  // if it is streamed or moves; then `scene` is a sample of it
 };
 
-// Renders `round` until the device is as fast as it gets: `rounds` times, and two seconds long on a GPU, whose clocks fall while it waits
+// Renders `round` until the device is as fast as it gets: `rounds` times, and for two seconds on a GPU, whose clocks fall while it waits
 // for scenes to load or pictures to be compared (by a factor of four, NVIDIA H100) and take more than half a second to rise again.
 void warmUp(const Context& context, std::uint32_t rounds, const std::function<void()>& round);
 

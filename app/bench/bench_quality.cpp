@@ -14,14 +14,14 @@ namespace binosplat {
 
 namespace {
 
-// The three groups of origins that are told apart, as classes for PixelScores::meanWhere.
+// The three groups of origins, as classes for PixelScores::meanWhere.
 constexpr std::array<const char*, 3> kGroups{"reprojected", "interpolated", "patched"};
 
 std::uint8_t groupOf(PixelOrigin origin) {
     return origin == PixelOrigin::kReprojected ? 0 : origin == PixelOrigin::kGap || origin == PixelOrigin::kHole ? 1 : 2;
 }
 
-// Nothing where it is not asked for, or where the network needs more pixels.
+// Empty if it is not wanted, or if the network needs more pixels.
 std::optional<double> lpipsOf(const Image& a, const Image& b, const Lpips* lpips) {
     const bool fits = std::min(a.size_px.x, a.size_px.y) >= kLpipsLeastSide_px;
     return lpips != nullptr && fits ? std::optional(lpips->measure(a, b)) : std::nullopt;

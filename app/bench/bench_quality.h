@@ -1,4 +1,4 @@
-// How far the affiliated eye's picture is from its own full render: over all pixels, and by what made them.
+// How far the affiliated eye's picture is from its own full render: over all pixels, and by their origin.
 #pragma once
 
 #include "engine/picture/lpips.h"
@@ -17,27 +17,27 @@ struct OriginScores {
     std::uint64_t pixels = 0;
     double mean_square = 0.0;  // of R, G and B, as encoded, 0 to 1
     std::optional<double> ssim, flip;
-    std::optional<double> lpips;  // of all pixels alone: the network sees the whole picture
+    std::optional<double> lpips;  // only of all pixels: the network sees the whole picture
 
-    // Infinity where the pictures are equal.
+    // Infinity if the pictures are equal.
     [[nodiscard]] double psnrDb() const;
 };
 
 struct QualityOptions {
     bool ssim = true, flip = true;
-    double focal_px = 3840.0;      // what FLIP takes for the distance of the eye: as a headset shows the picture
-    const Lpips* lpips = nullptr;  // null: not asked for
+    double focal_px = 3840.0;      // the eye's distance for FLIP: as a headset shows the picture
+    const Lpips* lpips = nullptr;  // null: not wanted
 };
 
-// "all" first; then every origin that occurs. The lists are those of StereoFrame and may be empty. What is not defined for pictures of
-// this size or angle (FLIP, LPIPS) is left out.
+// "all" first; then every origin that occurs. The lists are those of StereoFrame and may be empty. Scores not defined for pictures of this
+// size or angle (FLIP, LPIPS) are left out.
 std::vector<OriginScores> measureQuality(const Image& full, const Image& picture, std::span<const std::uint32_t> tile_kinds,
                                          std::span<const std::uint8_t> pixel_classes, const QualityOptions& options);
 
-// What an eye that looks somewhere sees of the error.
+// The part of the error that is visible to an eye with this gaze.
 struct SeenScores {
     double mean_square = 0.0;
-    double noticed = 0.0;  // share of the tiles with an error in which what is seen of it is kLeastSeenError or more
+    double noticed = 0.0;  // share of the tiles with an error whose visible part is kLeastSeenError or more
 
     [[nodiscard]] double psnrDb() const;
 };

@@ -1,4 +1,4 @@
-// What follows from what `bench` measured.
+// Evaluating the results of `bench`.
 #include "app/bench/bench_results.h"
 
 #include "engine/scene/procedural.h"
@@ -27,7 +27,7 @@ std::optional<double> ratioTo(const BenchResult& result, const BenchResult* othe
     return median(ratios);
 }
 
-// What the reprojection of a tile took, in the time that rendering the affiliated eye takes a pair of tile and splat.
+// The time to reproject a tile, in units of the affiliated eye's rendering time per pair of tile and splat.
 std::optional<double> moveCost(const BenchResult& predicted, const BenchResult* shared) {
     const std::uint64_t moved = counterOf(predicted, "tiles_weighed_as_moved");
     if (predicted.mode != Mode::kPredicted || shared == nullptr || moved == 0) { return std::nullopt; }
@@ -37,7 +37,7 @@ std::optional<double> moveCost(const BenchResult& predicted, const BenchResult* 
     return sumOf(stagesOf(Mode::kPredicted, predicted.pass_ms), "reprojection").value_or(0.0) / static_cast<double>(moved) / pair_ms;
 }
 
-// Whether a result takes part in the comparison of error and time.
+// True if a result takes part in the comparison of error and time.
 bool isPair(const BenchResult& result) { return result.mode && result.mode != Mode::kMono; }
 
 std::optional<double> meanSquareOf(const BenchResult& result) {

@@ -1,4 +1,4 @@
-// A scene as `bench` measures it: whole on the device, streamed where the options have it so, or moving.
+// A scene as `bench` measures it: whole on the device, streamed if the options say so, or moving.
 #pragma once
 
 #include "app/load.h"
@@ -22,7 +22,7 @@ public:
     [[nodiscard]] const Scene& scene() const { return opened_ ? opened_->sample : scene_; }
     [[nodiscard]] const GpuScene& gpuScene() const { return whole_ ? *whole_ : opened_->live->scene(); }
     [[nodiscard]] bool moves() const { return opened_ && opened_->moving != nullptr; }
-    // Null where it is whole.
+    // Null if it is whole.
     [[nodiscard]] LiveScene* live() const { return opened_ ? opened_->live.get() : nullptr; }
 
 private:

@@ -1,4 +1,4 @@
-// Which pass belongs to which stage.
+// Assigning passes to stages.
 #include "app/bench/bench_stages.h"
 
 #include <algorithm>

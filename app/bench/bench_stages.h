@@ -16,18 +16,18 @@ using NamedTimes = std::vector<std::pair<std::string, double>>;
 // The stages that have a column, by the names of stagesOf().
 inline constexpr const char* kStages[] = {"cull+sort", "dominant", "reprojection", "ROI choice", "patch", "affiliated"};
 
-// The times by what their passes are called: "dominant project".
+// The times by the labels of their passes: "dominant project".
 NamedTimes byLabel(const PassTimes& pass_ms);
 
-// The times by bare pass, in the order in which they come: "dominant project" and "affiliated project" add up to "project".
+// The times by bare pass, in the order of first appearance: "dominant project" and "affiliated project" add up to "project".
 NamedTimes byPass(const PassTimes& pass_ms);
 
 // The times by stage: "cull+sort" (FrameStage::kSort), "dominant" (FrameStage::kSplat), "reprojection" (FrameStage::kWarp), "ROI choice"
-// (FrameStage::kChoose), and of the affiliated eye's FrameStage::kSplat "patch", or "affiliated" where it is rendered in full. Stages that
+// (FrameStage::kChoose), and for the affiliated eye's FrameStage::kSplat "patch", or "affiliated" if it is rendered in full. Stages that
 // did not run are left out.
 NamedTimes stagesOf(std::optional<Mode> mode, const PassTimes& pass_ms);
 
-// Of all times with this name; nothing of none.
+// The sum of all times with this name; empty if there are none.
 std::optional<double> sumOf(const NamedTimes& times, const std::string& name);
 
 }  // namespace binosplat

@@ -1,4 +1,4 @@
-// What `bench` measured, as tables on a terminal: per point one of methods and one of passes.
+// The results of `bench` as tables on a terminal: per point one of methods and one of passes.
 #include "app/bench/bench_results.h"
 #include "app/report/text_columns.h"
 
@@ -19,7 +19,7 @@ std::string psnrText(const OriginScores* scores) {
 
 std::string scoreText(const std::optional<double>& score) { return score ? fmt::format("{:.4f}", *score) : "-"; }
 
-// A counter that is kept per eye, added up.
+// The sum of a counter that is kept per eye.
 std::uint64_t ofBothEyes(const BenchResult& result, const std::string& name) {
     return counterOf(result, name) + counterOf(result, name + "_left") + counterOf(result, name + "_right");
 }
@@ -61,7 +61,7 @@ std::string methodsTable(const std::vector<const BenchResult*>& point, bool with
 std::string timesTable(const std::vector<const BenchResult*>& point) {
     std::vector<std::string> passes;
     for (const BenchResult* r : point) {
-        auto next = passes.begin();  // a new one comes after the one before it
+        auto next = passes.begin();  // a new pass is inserted after its predecessor
         for (const auto& [name, ms] : byPass(r->pass_ms)) {
             const auto found = std::ranges::find(passes, name);
             next = (found != passes.end() ? found : passes.insert(next, name)) + 1;

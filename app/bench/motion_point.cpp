@@ -1,4 +1,4 @@
-// What a frame of each method took, and how far its pictures are from full renders.
+// The costs of a frame of each method, and the distance of its pictures from full renders.
 #include "app/bench/motion_point.h"
 
 #include "engine/picture/metrics.h"
@@ -19,7 +19,7 @@ double pairsOf(const FrameResult& frame) {
     return pairs;
 }
 
-// In tiles that are shown and were not rendered, of the pictures that are made from others.
+// Pixels in visible tiles that were not rendered, of pictures that are made from others.
 std::uint64_t pixelsWarped(const FrameResult& frame) {
     if (!frame.counters.warped) { return 0; }
     const WarpedCounters& warped = *frame.counters.warped;
@@ -27,7 +27,7 @@ std::uint64_t pixelsWarped(const FrameResult& frame) {
     return std::min(frame.counters.targets.size() * frame.counters.targets[0].pixels, 256 * tiles);
 }
 
-// R, G and B of a less those of b.
+// R, G and B of a - b.
 Image subtract(const Image& a, const Image& b) {
     Image difference{a.size_px, 3, {}};
     difference.values.reserve(3 * a.pixelCount());
@@ -49,7 +49,7 @@ double meanChange(const Image& a, const Image& b) {
     return sum / static_cast<double>(difference.values.size());
 }
 
-// Of the pixels of both eyes that `now` shows otherwise than `still`.
+// For the pixels of both eyes in which `now` differs from `still`.
 struct Moved {
     double share = 0.0;
     std::optional<double> mean_square;

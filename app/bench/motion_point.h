@@ -1,4 +1,4 @@
-// `bench --motion`: one scene, view and size at every pose of a recorded head, and at each all methods.
+// `bench --motion`: one scene, view and size at every pose of a recorded head, with all methods at each pose.
 #pragma once
 
 #include "app/bench/bench_point.h"
@@ -16,23 +16,23 @@ class MotionPoint {
 public:
     MotionPoint(const Context& context, const GpuScene& scene, const RunOptions& run, const BenchPlan& plan, std::string name);
 
-    // What each method's frame took.
+    // Renders a frame of each method, only to measure it.
     std::vector<FrameResult> time(const Cameras& cameras);
-    // A pose that is not scored, and still is the past of one that is.
+    // Renders a pose that is not scored, but is the past of one that is.
     void pass(const Cameras& cameras);
-    // Of a scene that moves, before it is shown as at the next pose: what that would show otherwise.
+    // For a moving scene, before it moves on: renders the next pose without that motion.
     void rememberStill(const Cameras& cameras);
     // Adds a frame of each method to `result`.
     void play(const Cameras& cameras, std::size_t number, double time_s, std::vector<MotionFrame>& result);
 
 private:
-    // What is recorded for one method between frames.
+    // What is kept for one method between frames.
     struct MethodHistory {
         BenchMethod method;
-        std::array<Image, 2> error;  // pictures less full renders, of the frame before
+        std::array<Image, 2> error;  // pictures - full renders, of the previous frame
     };
 
-    // Both eyes in full, and how many pairs of tile and splat they took.
+    // Both eyes in full, and their pairs of tile and splat.
     struct FullRender {
         std::array<Image, 2> eyes;
         double pairs = 0.0;
@@ -47,7 +47,7 @@ private:
     std::map<std::optional<Order>, std::array<Image, 2>> still_;
 };
 
-// The frame took what another run of it took.
+// Sets the frame's times from another run of it.
 void setTimes(MotionFrame& frame, const FrameResult& result);
 
 }  // namespace binosplat

@@ -1,4 +1,4 @@
-// What a bench with head motion measured.
+// The results of a bench with head motion.
 #include "app/bench/motion_results.h"
 
 #include "app/plot/svg_plot.h"
@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// All frames of one method at one point, in the order of time.
+// All frames of one method at one point, in order of time.
 struct Sequence {
     std::string point, method;
     std::vector<const MotionFrame*> frames;
@@ -41,7 +41,7 @@ std::vector<double> valuesOf(const std::vector<const MotionFrame*>& frames, Valu
 
 double stageMs(const MotionFrame& frame, const std::string& stage) { return sumOf(frame.stage_ms, stage).value_or(0.0); }
 
-// Frames whose errors do not count where there are more: a method that reuses its past has none yet in the first, and little after it.
+// The number of first frames whose errors do not count if there are more: a method that reuses its past has none, or little, in these.
 constexpr std::size_t kSettling = 10;
 
 std::vector<const MotionFrame*> steadyFrames(const Sequence& sequence) {
@@ -65,7 +65,7 @@ double runSquare(const Sequence& sequence) {
 // Of the worse eye.
 std::vector<double> steadySquares(const Sequence& sequence) { return valuesOf(steadyFrames(sequence), &MotionFrame::worseSquare); }
 
-// The first frame has none before it.
+// Without the first frame, which has no predecessor.
 std::vector<double> flickerOf(const Sequence& sequence) {
     std::vector<double> values = valuesOf(sequence.frames, &MotionFrame::worseFlicker);
     if (!values.empty()) { values.erase(values.begin()); }
@@ -82,7 +82,7 @@ Json statisticsJson(const std::vector<double>& values) {
             {"worst", std::ranges::max(values)}};
 }
 
-// Medians, in the order of the last frame, which has a past if any has.
+// Medians, in the order of the last frame, which has a past if any frame has.
 Json passesJson(const Sequence& sequence) {
     Json passes = Json::object();
     for (const auto& [label, ms] : sequence.frames.back()->pass_ms) {
@@ -92,7 +92,7 @@ Json passesJson(const Sequence& sequence) {
     return passes;
 }
 
-// Mean squared errors where the scene had moved, of the frames in which it had.
+// Mean squared errors of the pixels that the scene's motion changed, for frames with any.
 std::vector<double> movedSquares(const Sequence& sequence) {
     std::vector<double> squares;
     for (const MotionFrame* frame : steadyFrames(sequence)) {
@@ -100,7 +100,7 @@ std::vector<double> movedSquares(const Sequence& sequence) {
     }
     return squares;
 }
-// As runSquare(): of all these pixels.
+// Like runSquare(), over all these pixels.
 double movedRunSquare(const Sequence& sequence) {
     double sum = 0.0, share = 0.0;
     for (const MotionFrame* frame : steadyFrames(sequence)) {
@@ -110,7 +110,7 @@ double movedRunSquare(const Sequence& sequence) {
     return share > 0.0 ? sum / share : 0.0;
 }
 
-// Null where the pictures are equal: JSON has no infinity.
+// Null if the pictures are equal: JSON has no infinity.
 Json psnrJson(double mean_square) { return mean_square > 0.0 ? Json(psnrOf(mean_square)) : Json(); }
 
 std::string psnrText(double mean_square) { return mean_square > 0.0 ? fmt::format("{:.2f}", psnrOf(mean_square)) : "equal"; }

@@ -1,4 +1,4 @@
-// What a bench with head motion measured: frames as CSV and plot, percentiles as JSON and table.
+// The results of a bench with head motion: frames as CSV and plot, percentiles as JSON and table.
 #pragma once
 
 #include "app/bench/bench_results.h"
@@ -22,20 +22,20 @@ struct MotionFrame {
     double time_s = 0.0;     // of the segment
     double total_ms = 0.0;
     NamedTimes stage_ms, pass_ms;     // the latter by label
-    double work_rendered = 1.0;       // pairs of tile and splat, of those of both full eyes
+    double work_rendered = 1.0;       // share of the pairs of tile and splat of both full eyes
     std::uint64_t pixels_warped = 0;  // in tiles that were not rendered
     std::array<double, 2> mean_square{};
-    // Mean absolute change of the error image since the frame before: by so much the picture changes otherwise than the full render
-    // does. 0 for the first frame.
+    // Mean absolute change of the error image since the previous frame: how much the picture's change differs from the full render's. 0 for
+    // the first frame.
     std::array<double, 2> flicker{};
     double full_change = 0.0;  // of the full renders, mean of both eyes
     // engine/picture/pair_metrics.h; the greater of both eyes' steps.
     double tile_steps = 0.0, sharpness_gap = 0.0;
-    // Where the scene shows something else than in the frame before, seen from here (kLeastMoved): the share of both pictures' pixels, and
-    // the mean squared error of these. Nothing where none does.
+    // The pixels that the scene's motion has changed since the previous frame, seen from this pose (kLeastMoved): their share in both
+    // pictures, and their mean squared error, if there are any.
     double moved_share = 0.0;
     std::optional<double> moved_square;
-    // Of a scene that is streamed or moves: what was there of it, and how many splats the frame went through.
+    // For a streamed or moving scene: what was resident, and how many splats the frame read.
     std::optional<FrameCounters::Streaming> streaming;
     std::uint64_t splats_read = 0;
 
@@ -43,7 +43,7 @@ struct MotionFrame {
     [[nodiscard]] double worseFlicker() const { return std::max(flicker[0], flicker[1]); }
 };
 
-// The change of a channel, of 0 to 1, from which on a pixel has moved.
+// The least change of a channel, of 0 to 1, that counts as motion of a pixel.
 inline constexpr double kLeastMoved = 2.0 / 255.0;
 
 struct MotionRun {
@@ -52,8 +52,8 @@ struct MotionRun {
 };
 
 std::string motionCsv(const MotionRun& run);
-// Medians, 95th and 99th percentiles and worst frames by point and method; of the error the PSNR that so many frames reach in both eyes,
-// and the run's: that of the mean square of both eyes. Errors are those of all frames after the tenth, or of all where there are no more.
+// Medians, 95th and 99th percentiles and worst frames by point and method; for the error the PSNR that as many frames reach in both eyes,
+// and the run's, from both eyes' mean square. Errors are of all frames after the tenth, or of all if there are no more.
 std::string motionJson(const MotionRun& run);
 std::string motionTable(const MotionRun& run);
 std::string motionPlot(const MotionRun& run);

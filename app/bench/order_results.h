@@ -1,4 +1,4 @@
-// What a bench of orders measured.
+// The results of a bench of orders.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -14,14 +14,14 @@ constexpr int kTurns = 20;
 
 struct OrderChange {
     double mean_square = 0.0;  // of R, G and B
-    double share_off = 0.0;    // of the pixels of which any of these is off by more than two steps of a display
+    double share_off = 0.0;    // of pixels in which any of these is off by more than two display steps
 };
 
 struct OrderResult {
     std::string point, method;
     glm::uvec2 size_px;
     OrderChange from_own, from_depth;
-    // Shares of pixels that change from one turn to the next by the order alone: mean and most.
+    // Shares of pixels that change from one turn to the next only because of the order: mean and most.
     double popped_eyes = 0.0, most_eyes = 0.0, popped_neck = 0.0, most_neck = 0.0;
 };
 

@@ -1,4 +1,4 @@
-// The commands: their words, their options, and what is made of both.
+// The commands: their words, their options, and reading both.
 #include "app/command_line/commands_table.h"
 
 #include "app/command_line/option_documents.h"
@@ -31,7 +31,7 @@ std::string wordOf(const Settings& line, const char* name) {
     return found == line.end() ? "" : found->second.text();
 }
 
-// The cameras that lie with a scene count where --view asks for one of them and nobody names others.
+// Uses the scene's own cameras.json if --view is given but no cameras file.
 void addOwnCameras(Settings& line, const Settings& config) {
     const auto view = line.find("view"), scene = line.find("SCENE");
     if (view == line.end() || scene == line.end() || line.contains("cameras") || config.contains("cameras")) { return; }
@@ -40,8 +40,8 @@ void addOwnCameras(Settings& line, const Settings& config) {
     if (!cameras.empty()) { line.emplace("cameras", Setting{"--view", {cameras.string()}}); }
 }
 
-// The command line, to which cameras may be added, over the config and `standard`. Tables of the config that `foreign` names are left
-// alone, and go to `rest`.
+// The command line, to which cameras may be added, over the config and `standard`. Tables of the config that are in `foreign` are not read
+// but go to `rest`.
 RunOptions readRun(Settings& line, const std::set<std::string>& foreign, const RunOptions& standard,
                    std::vector<SettingsTable>* rest = nullptr) {
     const std::string config = wordOf(line, kConfig.text.key);
@@ -59,7 +59,7 @@ RunOptions readRun(Settings& line, const std::set<std::string>& foreign, const R
     return options;
 }
 
-// Of frames that follow one another.
+// Defaults for consecutive frames.
 RunOptions withPast() {
     RunOptions standard;
     standard.stereo.mode = Mode::kTemporal;
@@ -78,7 +78,7 @@ Options makeRender(const Settings& given) {
     return render;
 }
 
-// A motion starts from one camera, photographs have one camera each.
+// Refuses options that do not fit the kind of bench: a motion starts from one camera, photographs have one camera each.
 void requireBenchKind(const BenchOptions& bench) {
     const bool cameras = !bench.run.camera.cameras_file.empty();
     const auto refuse = [](bool wrong, const char* message) {

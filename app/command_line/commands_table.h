@@ -1,4 +1,4 @@
-// The commands: their words, their options, and the calls that run them.
+// The commands: their words, their options, and the functions that read them.
 #pragma once
 
 #include "app/options/option_table.h"
@@ -7,7 +7,7 @@
 
 namespace binosplat {
 
-// An argument of the command line without a name.
+// A positional argument of the command line.
 struct Word {
     const char* name;
     const char* help;
@@ -20,16 +20,16 @@ struct Command {
     CommandBit bit;
     const char* help;
     std::vector<Word> words;
-    std::vector<OptionDescription> own;  // beside those that it shares with others
+    std::vector<OptionDescription> own;  // besides those that it shares with others
     Options (*make)(const Settings& line);
     const char* footer = "";
-    bool hidden = false;  // from --help: of use to the build alone
+    bool hidden = false;  // from --help: only for the build
 };
 
 std::span<const Command> commands();
 std::vector<std::reference_wrapper<const Command>> shownCommands();  // by --help
 
-// Its own options and those it shares, as the help lists them.
+// A command's own options and those it shares, in the order of the help.
 std::vector<OptionDescription> optionsOf(const Command& command);
 
 }  // namespace binosplat

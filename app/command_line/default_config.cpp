@@ -1,4 +1,4 @@
-// Options and settings of the viewer as lines of TOML.
+// Options and the viewer's settings as lines of TOML.
 #include "app/command_line/option_documents.h"
 
 #include "app/options/option_table.h"
@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kHelpFrom = 36;  // columns
 
-// Values of keys that have none if nobody says so.
+// Examples for keys without a default.
 constexpr std::array<std::pair<std::string_view, const char*>, 15> kExamples{{
     {"eye", "[0.0, -1.5, -3.0]"},
     {"look", "[0.0, -1.0, 0.0]"},

@@ -80,7 +80,7 @@ std::string markdown() {
     return text;
 }
 
-// docs/render.md has these at greater length.
+// docs/render.md explains these in detail.
 constexpr std::array<std::pair<const char*, const char*>, 6> kEnvironment{{
     {"BINOSPLAT_DATA", "folder that holds configs/headsets"},
     {"BINOSPLAT_PIPELINE_CACHE", "folder for what the driver compiles; 0: none"},

@@ -5,8 +5,8 @@
 
 namespace binosplat {
 
-// `kind`: markdown (docs/options.md), config (configs/default.toml), man (section 1) or bash (completion). Throws Error (usage) for
-// another.
+// `kind`: markdown (docs/options.md), config (configs/default.toml), man (section 1) or bash (completion). Throws Error (usage) for any
+// other.
 std::string documentOf(const std::string& kind);
 
 // configs/default.toml. A key without a default of its own, or with one that depends on the command, is a comment there, with an example

@@ -18,12 +18,12 @@ namespace binosplat {
 
 namespace {
 
-// Filled in by CLI11 for one command; values stay text until they are laid over those of a config.
+// Filled in by CLI11 for one command; values stay text until they are merged with those of a config.
 struct CommandLine {
     const Command* command = nullptr;
     CLI::App* parser = nullptr;
     std::map<std::string, std::string> values;
-    std::map<std::string, std::vector<std::string>> words;  // of which there may be many
+    std::map<std::string, std::vector<std::string>> words;  // words that may be repeated
     std::map<std::string, CLI::Option*> given;
 };
 
@@ -68,7 +68,7 @@ Settings settingsOf(const CommandLine& line) {
         if (const auto words = line.words.find(key); words != line.words.end()) {
             settings.emplace(key, Setting{key, words->second});
         } else {
-            // A flag holds "true", or what is written after its =.
+            // A flag holds "true", or the text after its =.
             const auto value = line.values.find(key);
             settings.emplace(key, Setting{"--" + key, {value == line.values.end() ? option->results().back() : value->second}});
         }
@@ -87,8 +87,8 @@ std::vector<std::string> readableArguments(std::vector<std::string> words) {
     return words;
 }
 
-// A scene instead of a command is one to view: a file that is dropped onto the program, or opened with it. CLI11 would say of any other
-// word that a command is missing.
+// A scene in place of a command is viewed: a file that was dropped onto the program, or opened with it. For any other word CLI11 would only
+// say that a command is missing.
 std::vector<std::string> withCommand(std::vector<std::string> words) {
     const std::string word = words.empty() ? "-" : words.front();
     if (word.starts_with('-') || std::ranges::find(commands(), word, &Command::name) != commands().end()) { return words; }

@@ -34,7 +34,7 @@ Cameras makeCameras(const RunOptions& options, const CameraFiles& files, const S
         return {middle, stereoPair(middle, eye_distance), eye_distance, std::nullopt};
     }
     View view = startView(scene, camera, options.metres_per_unit);
-    // A built-in scene's own angle belongs to its own view; whoever places the eye gets the usual one.
+    // A built-in scene's own angle belongs to its own view; if the eye is placed by options, the usual one is used.
     const bool placed = camera.eye || camera.look;
     view.fov_x_deg = camera.fov_x_deg.value_or(placed ? kDefaultFovXDegrees : view.fov_x_deg);
     const Pose world_from_middle = lookAt(view.eye, view.look, view.up);
@@ -54,7 +54,7 @@ std::array<std::optional<Gaze>, 2> gazesOf(const Cameras& cameras, const StereoO
     if (stereo.foveation_deg == 0.0) { return gazes; }
     const double clear_rad = glm::radians(stereo.foveation_deg);
     if (stereo.mode == Mode::kMono) {
-        // Seen through either lens: between the directions in which these are best.
+        // Seen through both lenses: midway between the directions in which they are best.
         glm::dvec3 middle(0.0);
         for (std::size_t side = 0; side < 2; ++side) {
             middle += cameras.eyes[side].world_from_camera.orientation * glm::normalize(cameras.lens_centres[side]);
@@ -63,7 +63,7 @@ std::array<std::optional<Gaze>, 2> gazesOf(const Cameras& cameras, const StereoO
         return gazes;
     }
     for (std::size_t side = 0; side < 2; ++side) {
-        // The point looked at is far away: both eyes turn alike.
+        // The target is assumed to be far away: both eyes turn alike.
         const glm::dquat eye_from_middle =
             glm::conjugate(cameras.eyes[side].world_from_camera.orientation) * cameras.middle.world_from_camera.orientation;
         const glm::dvec3 direction = stereo.gaze ? eye_from_middle * *stereo.gaze : cameras.lens_centres[side];

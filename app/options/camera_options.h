@@ -13,7 +13,7 @@
 
 namespace binosplat {
 
-// The files that the options name, read; so that a bad one is known before the scene is loaded.
+// Contents of the files that the options name, so that errors in them are reported before the scene is loaded.
 struct CameraFiles {
     std::optional<FileCamera> camera;
     std::optional<Headset> headset;
@@ -24,15 +24,15 @@ struct Cameras {
     Eye middle;                // for `mono`
     std::array<Eye, 2> eyes;   // by Side
     double eye_distance;       // scene units
-    std::optional<View> view;  // where --eye, --look, --up and --fov-x (0 with a headset) came out; empty with a camera file
-    // Each lens's centre: directions in the eyes' axes.
+    std::optional<View> view;  // the resulting --eye, --look, --up and --fov-x (0 with a headset); empty with a camera file
+    // Directions to the lenses' centres, in the eyes' axes.
     std::array<glm::dvec3, 2> lens_centres{glm::dvec3(0.0, 0.0, 1.0), glm::dvec3(0.0, 0.0, 1.0)};
 };
 
 // Missing options come from the files, then from the scene. Throws Error if the points span no view.
 Cameras makeCameras(const RunOptions& options, const CameraFiles& files, const Scene& scene);
 
-// By Side, or of the one eye of `mono`, for FrameSettings: the gazes of the options; nothing without foveation.
+// The options' gazes for FrameSettings, by Side, or of the one eye of `mono`; empty without foveation.
 std::array<std::optional<Gaze>, 2> gazesOf(const Cameras& cameras, const StereoOptions& stereo);
 
 // The same eyes on a head that moved.

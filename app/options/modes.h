@@ -6,11 +6,11 @@
 
 namespace binosplat {
 
-// Throws Error (bad input) where they ask for half the resolution of a mode that cannot give it, or do not say where. The references are
-// left as they are.
+// Throws Error (bad input) if the options ask for half resolution in the periphery without an angle of foveation. Modes that have no
+// periphery just ignore it.
 void requirePeriphery(const StereoOptions& stereo);
 
-// The settings of a frame as the options say.
+// A frame's settings from the options.
 FrameSettings frameSettings(const CameraOptions& camera, const StereoOptions& stereo, Order usual = Order::kDepth);
 
 }  // namespace binosplat

@@ -1,4 +1,4 @@
-// The command line laid over the config file.
+// Merging the command line with the config file.
 #include "app/options/option_layers.h"
 
 #include "app/options/option_table.h"
@@ -10,7 +10,7 @@ namespace binosplat {
 
 namespace {
 
-// Each of these pairs says two different things about the camera.
+// Each of these pairs contradicts itself about the camera.
 constexpr std::pair<const char*, const char*> kContradictions[] = {
     {"cameras", "headset"}, {"cameras", "eye"}, {"cameras", "look"}, {"cameras", "up"}, {"cameras", "fov-x"}, {"headset", "fov-x"},
 };

@@ -1,4 +1,4 @@
-// The command line laid over the config file.
+// Merging the command line with the config file.
 #pragma once
 
 #include "engine/setup/settings.h"
@@ -10,11 +10,11 @@
 
 namespace binosplat {
 
-// The settings of a config file, known keys only, each in its own table or at the top. Tables named in `foreign` are left alone.
+// The settings of a config file, known keys only, each in its own table or at the top. Tables named in `foreign` are skipped.
 // Throws Error with file and line for an unknown table or key. Paths in the file are relative to the file.
 Settings configLayer(const std::filesystem::path& config, const std::vector<SettingsTable>& tables, const std::set<std::string>& foreign);
 
-// Settings of the command line win; those of the config that contradict one (a camera file against an eye, say) go.
+// Settings of the command line win; those of the config that contradict one (say, a camera file and an eye) are dropped.
 // Two settings of one layer that contradict each other are an Error: kUsage on the command line, kBadInput in a config.
 Settings mergeLayers(const Settings& command_line, const Settings& config);
 

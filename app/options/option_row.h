@@ -30,7 +30,7 @@ enum CommandBit : unsigned {
     kMethods = 512,
 };
 
-// An option's value as it is reported; nothing where there is none.
+// An option's value for reports; monostate if there is none.
 using OptionValue = std::variant<std::monostate, bool, std::uint64_t, double, std::string, glm::dvec3>;
 
 // One field of Owner: the reader of its text, its value, and its range in words.
@@ -40,19 +40,19 @@ struct OptionField {
     std::function<OptionValue(const Owner&)> value;
     std::string range;
     std::optional<double> least, most;      // of a number
-    std::optional<double> slider_most;      // the end of a slider: few want values beyond it, up to `most`
-    std::vector<std::string_view> choices;  // where it is one of a few names
+    std::optional<double> slider_most;      // the end of a slider, before `most`: few want larger values
+    std::vector<std::string_view> choices;  // if it is one of a few names
     bool is_file = false;                   // the name of a file or a folder
 };
 
 // The description of an option.
 struct OptionText {
     const char* key;    // --key on the command line, key in a config
-    const char* table;  // the config table it may stand in, at whose place it may also stand at the top; "": command line alone
+    const char* table;  // the config table for it, unless it is at the top; "": only on the command line
     unsigned commands;
-    const char* value;  // placeholder, which says the unit; "" for a flag, in brackets if it may be left out
+    const char* value;  // placeholder, with the unit; "" for a flag, in brackets if optional
     const char* help;
-    const char* standard = "";  // the default, if the field does not have it
+    const char* standard = "";  // the default, if the field's own does not tell
     bool required = false;
     bool by_command = false;  // the default depends on the command
 
@@ -88,7 +88,7 @@ OptionValue toValue(const Value& value) {
     if constexpr (std::is_same_v<Value, bool> || std::is_same_v<Value, glm::dvec3>) {
         return value;
     } else if constexpr (std::is_integral_v<Value> || std::is_enum_v<Value>) {
-        return static_cast<std::uint64_t>(value);  // of an enum, which named() has a word for
+        return static_cast<std::uint64_t>(value);  // for an enum, named() replaces this by a word
     } else if constexpr (std::is_floating_point_v<Value>) {
         return static_cast<double>(value);
     } else if constexpr (std::is_same_v<Value, glm::uvec2>) {
@@ -161,7 +161,7 @@ auto file(std::string (*parse)(const Setting&) = readText) {
     return made;
 }
 
-// Of an enum, which may be absent, or of a bool, by the names of its values from 0 on.
+// An enum, which may be absent, or a bool, by the names of its values from 0.
 template <auto... Members>
 auto named(std::vector<std::string_view> names) {
     using At = Path<Members...>;

@@ -11,10 +11,10 @@ namespace binosplat {
 namespace {
 
 constexpr std::uint64_t kAny32 = std::numeric_limits<std::uint32_t>::max();
-// A gap is filled pixel by pixel from its two ends; beyond this it is no crack in a surface but something hidden.
+// A gap is filled pixel by pixel from its two ends; a longer one is not a crack in a surface but a disocclusion.
 constexpr std::uint64_t kMaxGapPx = 64;
 constexpr std::uint64_t kMaxMoveCost = 1'000'000;
-// Colours lie between 0 and a few, and no pixel of a moved tile counts for more than a squared error of 4 (kMaxPixelError).
+// Colours lie between 0 and a few, and a pixel of a warped tile counts at most for a squared error of 4 (kMaxPixelError).
 constexpr double kMaxExpectedError = 8.0;
 constexpr std::uint64_t kMaxMemoryMib = std::uint64_t{1} << 30;
 constexpr std::uint64_t kMaxSplats = std::uint64_t{1} << 31;
@@ -22,11 +22,11 @@ constexpr std::uint64_t kMaxFrames = 1'000'000'000;
 constexpr std::uint64_t kMaxStep = 1'000'000;
 constexpr double kMaxSeconds = 1e6, kMaxRateHz = 10'000.0;
 
-constexpr unsigned kPictures = kRender | kBench;          // what makes pictures without a headset
-constexpr unsigned kWearer = kPictures | kView;           // what shows a scene to two eyes
-constexpr unsigned kScenes = kWearer | kInfo | kConvert;  // what loads one
+constexpr unsigned kPictures = kRender | kBench;          // commands that make pictures without a headset
+constexpr unsigned kWearer = kPictures | kView;           // commands that show a scene to two eyes
+constexpr unsigned kScenes = kWearer | kInfo | kConvert;  // commands that load a scene
 constexpr unsigned kDevices = kPictures | kStability | kKernels;
-constexpr unsigned kTried = kWearer | kMethods;  // what a bench varies
+constexpr unsigned kTried = kWearer | kMethods;  // options that a bench varies
 
 constexpr auto kCamera = &RunOptions::camera;
 constexpr auto kStereo = &RunOptions::stereo;
@@ -36,7 +36,7 @@ constexpr auto kPathSegment = &RenderOptions::segment;
 constexpr auto kMotionSegment = &BenchOptions::segment;
 constexpr auto kLoad = &RunOptions::load;
 
-// A count of 0 that stands for no limit.
+// A count whose 0 means none.
 template <typename Owner>
 OptionField<Owner> noneIfZero(OptionField<Owner> field) {
     field.value = [value = std::move(field.value)](const Owner& owner) {
@@ -46,7 +46,7 @@ OptionField<Owner> noneIfZero(OptionField<Owner> field) {
     return field;
 }
 
-// A number whose slider ends before what is allowed does.
+// A number whose slider ends before its range does.
 template <typename Owner>
 OptionField<Owner> slidesTo(double most, OptionField<Owner> field) {
     field.slider_most = most;

@@ -11,11 +11,11 @@
 
 namespace binosplat {
 
-// Options of more than one command, which config files may hold as well.
+// Options of more than one command, also allowed in config files.
 std::span<const OptionRow<RunOptions>> runRows();
 const OptionRow<RunOptions>* findRunRow(std::string_view key);  // nullptr: there is none
 
-// Those of one command alone.
+// Options of a single command.
 std::span<const OptionRow<RenderOptions>> renderRows();
 std::span<const OptionRow<BenchOptions>> benchRows();
 std::span<const OptionRow<ViewOptions>> viewRows();
@@ -25,24 +25,24 @@ std::span<const OptionRow<CompareOptions>> compareRows();
 std::span<const OptionRow<StabilityOptions>> stabilityRows();
 std::span<const OptionRow<KernelsOptions>> kernelsRows();
 
-// "text", "0.5", "1,2,3", "true"; empty where there is none.
+// "text", "0.5", "1,2,3", "true"; empty if there is none.
 std::string textOf(const OptionValue& value);
 
 // An option's description for people.
 struct OptionDescription {
     OptionText text;
-    std::string range, standard;              // its range and default; empty if the help says it, or nothing does
-    std::vector<std::string_view> choices{};  // as of its field
+    std::string range, standard;              // empty if there is none, or the help tells
+    std::vector<std::string_view> choices{};  // as in its field
     bool is_file = false;
 
-    [[nodiscard]] std::string help() const;  // with both in brackets
+    [[nodiscard]] std::string help() const;  // with range and default in brackets
 };
 
 // In a fresh `Owner` fields have their defaults.
 template <typename Owner>
 OptionDescription describe(const OptionRow<Owner>& row) {
     std::string standard = *row.text.standard != '\0' ? row.text.standard : textOf(row.field.value(Owner{}));
-    if (row.text.isFlag() && standard == "false") { standard.clear(); }  // of a flag that goes without saying
+    if (row.text.isFlag() && standard == "false") { standard.clear(); }  // obvious for a flag
     return {row.text, row.field.range, standard, row.field.choices, row.field.is_file};
 }
 template <typename Owner>
@@ -52,7 +52,7 @@ std::vector<OptionDescription> describe(std::span<const OptionRow<Owner>> rows) 
     return descriptions;
 }
 
-// `options` with the `rows` that `settings` have; the others stay.
+// `options`, with the rows that are in `settings` replaced.
 template <typename Owner>
 Owner readRows(std::span<const OptionRow<Owner>> rows, const Settings& settings, Owner options = {}) {
     for (const OptionRow<Owner>& row : rows) {

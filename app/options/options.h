@@ -31,28 +31,28 @@ struct CameraOptions {
 struct StereoOptions {
     Mode mode = Mode::kPredicted;
     Side dominant = kLeft;
-    std::optional<Order> order;  // absent: as the scene asks, by depth mostly
+    std::optional<Order> order;  // absent: the scene's, usually by depth
     bool per_eye = false;
     StereoSettings warp{.move_cost = kDefaultMoveCost};
     std::optional<double> ipd_m;
-    double foveation_deg = 0.0;      // about where the eyes look, in which all is seen; 0: everywhere
-    bool half_periphery = false;     // with foveation: half the resolution where the eyes would not see more
-    std::optional<glm::dvec3> gaze;  // in the head's axes: x right, y down, z forward; absent: where the lenses are best
+    double foveation_deg = 0.0;      // around the gaze, within which all errors count; 0: everywhere
+    bool half_periphery = false;     // with foveation: half resolution where the eyes would not see more
+    std::optional<glm::dvec3> gaze;  // in the head's axes: x right, y down, z forward; absent: at the lenses' centres
     bool operator==(const StereoOptions&) const = default;
 };
 
 inline constexpr double kDefaultIpdMetres = 0.063;
 
-// How a scene is loaded: which part, and how 3D Gaussians are drawn.
+// How a scene is loaded: its level, and how 3D Gaussians are drawn.
 struct LoadOptions {
     std::optional<std::uint32_t> lod;        // level of detail, 0 the finest; absent: the finest that fits
-    std::uint64_t splat_budget = 0;          // of a scene with levels, chosen leaf by leaf by what the eyes see; 0: as many as fit
-    std::optional<std::uint32_t> sh_degree;  // of colours, at most; absent: the scene's
+    std::uint64_t splat_budget = 0;          // for a scene with levels, chosen for each leaf by the view; 0: as many as fit
+    std::optional<std::uint32_t> sh_degree;  // the most that is kept; absent: the scene's
     bool flatten = false;                    // 3D Gaussians as discs, without their shortest axis
-    std::uint64_t cache_limit_mib = 4096;    // of the disk, for scenes from the web
+    std::uint64_t cache_limit_mib = 4096;    // on disk, for scenes from the web
     double scene_rate_hz = 30.0;             // frames of a moving scene a second
-    bool scene_blend = false;                // what lies between two of them, where their splats correspond
-    bool antialiased = false;                // with opacities that the low-pass dims, also where the file does not say so
+    bool scene_blend = false;                // interpolate between two of them if their splats correspond
+    bool antialiased = false;                // dim opacities by the low-pass, even if the file does not say so
     bool operator==(const LoadOptions&) const = default;
 };
 
@@ -81,29 +81,29 @@ struct BenchOptions {
     std::filesystem::path out;
     RunOptions run;
     CameraOptions asked;                           // the part of `run.camera` from the command line, not from the config
-    std::vector<SettingsTable> tables;             // the config's tables that the bench alone reads, see bench_plan.h
+    std::vector<SettingsTable> tables;             // the config's tables that only the bench reads, see bench_plan.h
     std::string motion_file;                       // --motion: head poses to play, relative to the camera
     MotionAxes motion_axes = MotionAxes::kOpenXr;  // --motion-axes: of the recording
     MotionSegment segment;                         // --from, --seconds, --rate: of the motion
     std::string photos_folder;                     // --photos: photographs of the cameras of --cameras
     std::uint32_t every = 1;                       // --every: of a motion's poses or of the cameras
     std::uint32_t repeats = 0;                     // --repeats: measured frames per method; 0: as the config says
-    bool orders = false;                           // --orders: how near each order of splats is to one that every pixel has of its own
-    std::string lpips_weights;  // --lpips: LPIPS too is measured, whatever the config's scores are; empty: as the config says
+    bool orders = false;                           // --orders: compare each order of splats with each pixel's own order
+    std::string lpips_weights;                     // --lpips: also measure LPIPS, whatever the config's scores; empty: as in the config
 };
 
 struct ViewOptions {
     std::string scene;
-    RunOptions run;                     // of the camera: where the wearer starts, near, background
+    RunOptions run;                     // its camera: where the wearer starts, near, background
     std::vector<SettingsTable> tables;  // the config's [view], see view_settings.h
     bool simulate = false;
-    std::string script;             // of the simulated headset; empty: it rests
+    std::string script;             // of the simulated headset; empty: at rest
     std::filesystem::path out;      // directory for the simulated headset's pictures; empty: chosen by the command
-    std::uint64_t frames = 0;       // stop after so many; 0: never
-    bool load_first = false;        // before the session starts, so that runs repeat
+    std::uint64_t frames = 0;       // stop after this many; 0: never
+    bool load_first = false;        // before the session starts, so that runs are repeatable
     bool hide_panel = false;        // at the start
-    bool browse = false;            // the panel begins with the scenes there are
-    bool hide_hands = false;        // nor controllers
+    bool browse = false;            // the panel opens with the list of scenes
+    bool hide_hands = false;        // and controllers
     std::filesystem::path shaders;  // folder to reload them from; see shaderFolder
 };
 
@@ -115,7 +115,7 @@ struct InfoOptions {
 struct SceneOptions {
     std::string name;
     std::uint64_t splats = 0;  // 0: the scene's own default
-    std::uint64_t frame = 0;   // of one that moves
+    std::uint64_t frame = 0;   // of a moving scene
     std::filesystem::path out;
 };
 

@@ -1,4 +1,4 @@
-// Cameras first, then the splats.
+// Start views from cameras or, failing that, from the splats.
 #include "app/options/start_view.h"
 
 #include "app/options/camera_options.h"
@@ -14,7 +14,7 @@ namespace binosplat {
 namespace {
 
 constexpr double kUsualFovXDegrees = 60.0;
-// A camera that sees fewer of the splats is of another scene.
+// A camera that sees a smaller share of the splats belongs to another scene.
 constexpr double kLeastSeen = 0.02;
 constexpr std::size_t kMostForCameras = 4096;
 
@@ -52,7 +52,7 @@ SceneCameras readSceneCameras(const std::filesystem::path& scene) {
     if (own.file.empty()) { return own; }
     try {
         own.cameras = readCameraFile(own.file);
-    } catch (const Error& error) { own.trouble = error.what(); }  // the scene may well be without
+    } catch (const Error& error) { own.trouble = error.what(); }  // the scene can be shown without it
     return own;
 }
 
@@ -66,7 +66,7 @@ std::optional<glm::dvec3> upOfCameras(const std::vector<FileCamera>& cameras) {
 View viewFrom(const Pose& world_from_camera, const std::optional<glm::dvec3>& up, const Scene& scene, double fov_x_deg) {
     const glm::dvec3 eye = world_from_camera.position, ahead = world_from_camera.orientation * glm::dvec3(0.0, 0.0, 1.0),
                      own_up = world_from_camera.orientation * glm::dvec3(0.0, -1.0, 0.0);
-    // Straight along the mean up there is no other one than the camera's.
+    // For a view straight along the mean up, only the camera's own up is usable.
     const bool usable = up && std::abs(glm::dot(glm::normalize(*up), ahead)) < 0.99;
     std::vector<double> depths;
     for (const SplatSample& sample : sampleSplats(scene, kMostForCameras)) {

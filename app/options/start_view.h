@@ -24,7 +24,7 @@ SceneCameras readSceneCameras(const std::filesystem::path& scene);
 // The mean up of cameras, unless they look every way.
 std::optional<glm::dvec3> upOfCameras(const std::vector<FileCamera>& cameras);
 
-// The camera's view, upright along `up`: look is as far away as the middle of the scene.
+// The camera's view, upright along `up`: `look` is at the median depth of the scene.
 View viewFrom(const Pose& world_from_camera, const std::optional<glm::dvec3>& up, const Scene& scene, double fov_x_deg);
 
 struct StartView {
@@ -36,7 +36,7 @@ struct StartView {
 // the splats, see judgeStandpoint.
 StartView startView(const Scene& scene, const StandpointWish& wish = {});
 
-// The same, overridden by the options; of --cameras its --view. Throws Error if that cannot be read.
+// The same, overridden by the options; with --cameras, its --view. Throws Error if that cannot be read.
 View startView(const Scene& scene, const CameraOptions& camera, double metres_per_unit);
 
 }  // namespace binosplat

@@ -24,7 +24,7 @@ void PlotAxis::round() {
         roundLinear();
     }
     low_ = ticks_.front(), high_ = ticks_.back();
-    // Over three decades, powers of ten are enough; over nine, every second, third ... of them.
+    // Beyond three decades, powers of ten are enough; beyond nine, every second, third ... of them.
     const double decades = scale_ == Scale::kLog ? std::log10(high_ / low_) : 0.0;
     if (decades > 3.0) {
         constexpr double kMostDecades = 9.0;  // with a label each

@@ -1,4 +1,4 @@
-// An axis of a plot: from values to a range between round numbers, its ticks, and places along it.
+// An axis of a plot: a range between round numbers, its ticks, and positions of values along it.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@ class PlotAxis {
 public:
     explicit PlotAxis(Scale scale) : scale_(scale) {}
 
-    // Whether the value has a place: finite, and greater than 0 on a logarithmic axis.
+    // True if the value has a place: finite, and greater than 0 on a logarithmic axis.
     [[nodiscard]] bool shows(double value) const;
     // Makes room for a value that the axis shows.
     void include(double value);

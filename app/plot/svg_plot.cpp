@@ -24,7 +24,7 @@ std::string escape(const std::string& text) {
     return result;
 }
 
-// Where names stand beside their points: in the panel, and none on another.
+// Places of names beside their points: inside the panel, without overlap.
 class NamePlaces {
 public:
     struct Place {
@@ -34,7 +34,7 @@ public:
 
     NamePlaces(double left, double right, double top, double bottom) : left_(left), right_(right), top_(top), bottom_(bottom) {}
 
-    // Nothing where there is no room.
+    // Empty if there is no room.
     std::optional<Place> find(double x, double y, const std::string& name) {
         const double width = kNameCharacter * static_cast<double>(name.size());
         for (const double below : {-5.0, 13.0}) {
@@ -54,7 +54,7 @@ private:
     struct Box {
         double left, right, top, bottom;
     };
-    static constexpr double kNameCharacter = 5.6;  // of a name's letters of 10 px, about as wide as they become
+    static constexpr double kNameCharacter = 5.6;  // approximate width of a letter at 10 px
     static bool overlap(const Box& a, const Box& b) { return a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom; }
 
     double left_, right_, top_, bottom_;
@@ -134,7 +134,7 @@ private:
         const char* colour = kColours[index % kColours.size()];
         const char* dash = index < kColours.size() ? "" : " stroke-dasharray='6 3'";
         std::string svg, path;
-        bool broken = true;  // the line begins anew after a point that has no place
+        bool broken = true;  // the line starts again after a point without a place
         for (std::size_t i = 0; i < line.points.size(); ++i) {
             if (!isShown(line.points[i])) {
                 broken = true;

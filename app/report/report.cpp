@@ -49,7 +49,7 @@ Json optionsJson(const RenderOptions& options, const Cameras& cameras) {
     for (const OptionRow<RenderOptions>& row : renderRows()) { json[row.text.key] = valueJson(row.field.value(options)); }
     if (options.path.empty()) { json["path-axes"] = Json(); }
     for (const OptionRow<RunOptions>& row : runRows()) { json[row.text.key] = valueJson(row.field.value(options.run)); }
-    // What the camera's options leave open comes from the scene, a headset or a camera file.
+    // Missing camera options come from the scene, a headset or a camera file.
     json["eye"] = cameras.view ? vectorJson(cameras.view->eye) : Json();
     json["look"] = cameras.view ? vectorJson(cameras.view->look) : Json();
     json["up"] = cameras.view ? vectorJson(cameras.view->up) : Json();
@@ -65,7 +65,7 @@ Json eyesJson(const Cameras& cameras, bool mono) {
     return {{"left", eyeJson(cameras.eyes[kLeft])}, {"right", eyeJson(cameras.eyes[kRight])}};
 }
 
-// `json` and what a frame took.
+// `json`, with a frame's costs added.
 Json withCosts(Json json, const FrameResult& frame) {
     Json passes = Json::object(), counters = Json::object(), bytes = Json::object();
     for (const auto& [label, ms] : addUp(frame.gpu_ms)) { passes[label.text()] = ms; }
@@ -89,7 +89,7 @@ std::vector<double> sortedTotals(const PathReport& report) {
     return totals;
 }
 
-// What of a streamed scene there was to see, from frame to frame; empty for others.
+// The numbers of splats drawn of a streamed scene; empty for others.
 std::string streamedLine(const PathReport& report) {
     const auto of = [](const PathFrame& frame) { return frame.frame.counters.splats_read; };
     if (!report.frames.front().frame.counters.streaming) { return {}; }

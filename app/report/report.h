@@ -1,4 +1,4 @@
-// report.json of `render`: what was asked for, what ran, how long it took.
+// report.json of `render`: the options, what ran, and how long it took.
 #pragma once
 
 #include "app/options/camera_options.h"
@@ -39,7 +39,7 @@ std::string reportJson(const FrameReport& report);
 // The same on a terminal, a line per pass.
 std::string reportTable(const FrameReport& report);
 
-// Likewise of a path: what each frame took, and in a line what they took in all.
+// The same for a path: the costs of each frame, and a summary in a line.
 std::string reportJson(const PathReport& report);
 std::string reportTable(const PathReport& report);
 

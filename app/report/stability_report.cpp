@@ -15,7 +15,7 @@ using stability::PictureScore;
 
 namespace {
 
-// Where equal pictures are drawn: a bit more than single precision can tell of a whole picture.
+// Where equal pictures are plotted: slightly above what single precision can resolve.
 constexpr double kEqualDb = 150.0;
 
 std::string decibels(double psnr_db) { return std::isinf(psnr_db) ? "equal" : fmt::format("{:.1f}", psnr_db); }

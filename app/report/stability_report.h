@@ -1,4 +1,4 @@
-// What `stability` found: a table, all figures, and a plot a family of cases.
+// The results of `stability`: a table, all figures, and a plot for each family of cases.
 #pragma once
 
 #include "engine/stability/run_case.h"
@@ -15,7 +15,7 @@ struct StabilityRun {
     std::vector<std::pair<stability::Path, stability::PathScore>> paths;
     std::vector<std::pair<stability::Sequence, stability::SequenceScore>> sequences;
 
-    // Names of what misses its bounds.
+    // Names of the cases that miss their bounds.
     [[nodiscard]] std::vector<std::string> failures() const;
 };
 

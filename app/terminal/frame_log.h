@@ -1,4 +1,4 @@
-// What the viewer says on stdout, by the number of the frame.
+// The viewer's output on stdout, with frame numbers.
 #pragma once
 
 #include <fmt/format.h>
@@ -10,10 +10,10 @@
 namespace binosplat {
 
 struct FrameLog {
-    std::uint64_t frame = 0;  // shown so far
+    std::uint64_t frame = 0;  // frames shown so far
 
     void say(const std::string& message) const { print(fmt::format("frame {}: {}", frame, message)); }
-    // A line without it. Each is written at once: who looks into a crash wants the last ones.
+    // A line without the frame. Lines are flushed at once: after a crash the last ones matter.
     static void print(const std::string& line) {
         fmt::print("{}\n", line);
         std::fflush(stdout);

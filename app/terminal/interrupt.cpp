@@ -1,4 +1,4 @@
-// A signal handler may only set a mark, and only a global one.
+// A signal handler may only set a flag, and only a global one.
 #include "app/terminal/interrupt.h"
 
 #include "engine/platform.h"
@@ -9,7 +9,7 @@ namespace binosplat {
 
 namespace {
 
-volatile std::sig_atomic_t g_signal = 0;  // the one that came, or 0
+volatile std::sig_atomic_t g_signal = 0;  // the signal received, or 0
 int g_living = 0;
 
 void mark(int signal) {

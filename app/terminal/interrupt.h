@@ -1,9 +1,9 @@
-// Ctrl-C and SIGTERM: asked for where work can stop, so that nothing half-written is left.
+// Ctrl-C and SIGTERM: checked where work can stop, so that nothing half-written is left.
 #pragma once
 
 namespace binosplat {
 
-// While one lives, SIGINT and SIGTERM only set a mark; the second one ends the program as ever. One within another does nothing.
+// While one exists, SIGINT and SIGTERM only set a flag; a second signal ends the program as usual. A nested one does nothing.
 class Interrupt {
 public:
     Interrupt();
@@ -14,12 +14,12 @@ public:
     [[nodiscard]] bool came() const;
 };
 
-// No error, so that nobody takes it for one: `main` alone catches it.
+// Not an Error, so that nobody handles it as one; runProgram catches it.
 struct Interrupted {
     int signal;  // SIGINT or SIGTERM
 };
 
-// Throws Interrupted if the mark is set. For the main thread, between steps of work that has nothing to show yet.
+// Throws Interrupted if the flag is set. For the main thread, between steps of work that has no output yet.
 void stopIfInterrupted();
 
 }  // namespace binosplat

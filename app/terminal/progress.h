@@ -1,5 +1,5 @@
-// One line on a terminal for work that takes longer than a second; nothing where stderr is not a terminal. Work that reports its progress
-// can also be stopped there.
+// One line on a terminal for work that takes longer than a second; nothing if stderr is not a terminal. Work that reports its progress can
+// also be interrupted there.
 #pragma once
 
 #include <chrono>
@@ -16,7 +16,7 @@ public:
     ProgressLine& operator=(const ProgressLine&) = delete;
     ~ProgressLine();  // clears the line
 
-    // `share` done, 0 to 1. Throws Interrupted after a Ctrl-C, but only where the line was made on the same thread. Cheap enough for inner
+    // `share` done, 0 to 1. Throws Interrupted after a Ctrl-C, but only on the thread that made the line. Cheap enough for inner
     // loops: the line is drawn at most ten times a second.
     void show(double share);
 

@@ -1,4 +1,4 @@
-// What `binosplat --version` says.
+// The version that `binosplat --version` prints.
 #pragma once
 
 namespace binosplat {

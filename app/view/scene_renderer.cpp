@@ -62,7 +62,7 @@ void SceneRenderer::makeImages(ConnectedHeadset& headset, glm::uvec2 size_px, gl
 }
 
 void SceneRenderer::govern(ConnectedHeadset& headset, const ViewSettings& settings) {
-    // In two pictures each both eyes are rendered, whatever the budget.
+    // With two pictures per eye, both eyes are rendered whatever the budget.
     const StereoOptions& stereo = settings.stereo;
     const bool in_two = stereo.mode == Mode::kPredicted && stereo.half_periphery && stereo.foveation_deg > 0.0 && !headset.inset;
     governor_.wish(settings.quality, in_two ? Mode::kShared : stereo.mode, {stereo.warp.budget, settings.resolution_scale});
@@ -90,9 +90,9 @@ FrameSettings SceneRenderer::settingsOfFrame(ConnectedHeadset& headset, const Vi
                                              Order usual_order) {
     StereoOptions stereo = settings.stereo;
     stereo.warp.budget = governor_.settings().budget;
-    if (headset.inset) { stereo.half_periphery = false; }  // the runtime lays one picture over the other
+    if (headset.inset) { stereo.half_periphery = false; }  // the runtime overlays the inset
     FrameSettings frame = frameSettings(options_.camera, stereo, usual_order);
-    // Of the wearer, however large the scene is.
+    // In the wearer's metres, however large the scene is.
     frame.near = options_.camera.near * scale;
     frame.units_per_metre = scale;
     frame.keep_depth = frame.keep_both_depths = headset.images->takesDepth();
@@ -104,7 +104,7 @@ FrameSettings SceneRenderer::settingsOfFrame(ConnectedHeadset& headset, const Vi
     frame.keep_past = true;
     if (settings.backdrop != Backdrop::kAsSet) { frame.background = colourOf(settings.backdrop); }
     if (seesThrough(settings)) { frame.background = glm::dvec3(0.0); }
-    // One eye's picture for both is seen through either lens.
+    // If both eyes share a picture, it is seen through either lens.
     if (!settings.showsOneEye() && settings.visibility_mask) {
         frame.hidden_tiles = headset.lens_mask.update(headset.session.hiddenMeshes(), headset.session.hiddenMeshVersion(), views.eyes,
                                                       headset.images->partPx());
@@ -151,7 +151,7 @@ void SceneRenderer::aimInsets(const ConnectedHeadset& headset, const Similarity&
         const auto at = static_cast<std::size_t>(e);
         const Eye& inset =
             inset_eyes_.emplace_back(eyeInScene(scene_from_room, views.room_from_eyes[at], views.insets->at(at).fov, size_px));
-        // One low-pass for both, or thin splats would be wider about the inset than within.
+        // One low-pass for both, or thin splats would be wider around the inset than within.
         Eye& about = eyes_[inset_eyes_.size() - 1];
         about.own_pixel_px = std::min(about.intrinsics.fx / inset.intrinsics.fx, 1.0);
     }
@@ -204,14 +204,14 @@ void SceneRenderer::recordEyes(Commands& commands, EyeImages& images, const Ster
     for (const int e : drawnEyes()) {
         const bool is_mono = frame_.mode == Mode::kMono;
         images.present(commands, e, frame.picture(is_mono ? 0 : e), tint ? frame.chosenTiles(e) : nullptr, frame_.near);
-        // The window shows the dominant eye, or what is made of it where that is the point.
+        // The window shows the dominant eye or, with tint, the eye that is made from it.
         const bool shown = is_mono || (e == frame_.dominant) != tint;
         if (window != nullptr && window->drawn() && shown) { window->keepEye(commands, presenter_.pixels(), images.partPx(), format_); }
     }
 }
 
 void SceneRenderer::fitSplats(SceneStream& stream, double period_ms) {
-    // A processor has no time for any number.
+    // A software device is too slow for any number.
     if (options_.load.splat_budget > 0 || !has_gpu_) { return; }
     if (!splat_budget_) { splat_budget_.emplace(stream.mostSplats()); }
     if (splat_budget_->measure(last_.gpu_total_ms, period_ms, last_.counters.splats_read)) {
@@ -222,7 +222,7 @@ void SceneRenderer::fitSplats(SceneStream& stream, double period_ms) {
 void SceneRenderer::sayGoverned() {
     const bool is_other = governor_.settings() != governed_;
     if (is_other || (governor_.isBeaten() && !said_beaten_)) { log_.say(governor_.sentence()); }
-    // Once for the same settings, though frames may fit now and then.
+    // Once for the same settings, even if frames fit now and then.
     said_beaten_ = governor_.isBeaten() || (said_beaten_ && !is_other);
 }
 
@@ -235,7 +235,7 @@ void SceneRenderer::sayHidden(bool one_eye) {
     const std::vector<TargetCounters>& targets = last_.counters.targets;
     if (one_eye || targets.size() != 2) { return; }
     const std::array<std::uint64_t, 2> hidden{targets[kLeft].tiles_hidden, targets[kRight].tiles_hidden};
-    // None, where the lenses hid some before: that frame was for a picture.
+    // No hidden tiles: perhaps a frame for a picture file, rendered without the mask.
     if (hidden == std::array<std::uint64_t, 2>{} || std::exchange(hidden_tiles_, hidden) == hidden) { return; }
     log_.say(fmt::format("the lenses hide {} and {} of {} tiles", hidden[kLeft], hidden[kRight], targets[kLeft].tiles));
 }

@@ -16,49 +16,49 @@
 
 namespace binosplat {
 
-// What a headset's frame looks from.
+// The views of a headset's frame.
 struct FrameViews {
     std::array<xr::EyeView, 2> eyes;
     std::array<Pose, 2> room_from_eyes;
     Pose room_from_head;
-    std::optional<std::array<xr::EyeView, 2>> insets;  // from the same places, where the headset takes them
-    std::array<std::optional<Gaze>, 2> gazes;          // by Side: where the eyes look, where it matters
+    std::optional<std::array<xr::EyeView, 2>> insets;  // from the same places, if the headset takes insets
+    std::array<std::optional<Gaze>, 2> gazes;          // by Side: where the eyes look, if it matters
 };
 
 class SceneRenderer {
 public:
-    // `format` is that of every session's images; the rest outlives this.
+    // `format` is the format of every session's images; the rest outlives this.
     SceneRenderer(const xr::Instance& instance, const Context& context, const RunOptions& options, const FrameLog& log, vk::Format format);
 
-    // Of an eye's images, as large as the wearer wants them; beside insets those of the picture about them.
+    // The size of an eye's images that the wearer wants; with insets, of the context's images.
     [[nodiscard]] glm::uvec2 sizePx(const ViewSettings& settings) const { return sizePx(settings.resolution_scale); }
-    // Images of the headset as large as the wearer wants them. Throws Error where there cannot be any; they are as large as before then.
+    // Makes the headset's images as large as the wearer wants. Throws Error if that fails; then they keep their size.
     void fitImages(ConnectedHeadset& headset, const ViewSettings& settings);
-    // What the governor makes of the wearer's settings, in images as large as that.
+    // Applies the governor to the wearer's settings, within images of their size.
     void govern(ConnectedHeadset& headset, const ViewSettings& settings);
-    // The runtime refuses depth after all; false: there was none.
+    // The runtime refuses depth after all; false: depth was off already.
     bool dropDepth(ConnectedHeadset& headset);
 
-    // What render() will show. Throws Error where there is no memory for it; nothing is shown then, until this succeeds with less.
+    // Prepares what render() will show. Throws Error if memory is short; then nothing is shown until this succeeds with less.
     void prepare(ConnectedHeadset& headset, ShownScene& shown, const Similarity& scene_from_room, const ViewSettings& settings,
                  const FrameViews& views);
-    // Renders and presents that, in one submission with what `record_panel` records, and does not wait for it. With a `window` it keeps
-    // an eye for that.
+    // Renders and presents that, in one submission with what `record_panel` records, and does not wait for it. With a `window`, one eye's
+    // picture is kept for it.
     void render(ConnectedHeadset& headset, ShownScene& shown, const ViewSettings& settings, MirrorWindow* window,
                 const std::function<void(Commands&)>& record_panel);
 
-    // The wearer wants the room behind the scene, and the headset can show it.
+    // True if the wearer wants the room behind the scene, and the headset can show it.
     [[nodiscard]] bool seesThrough(const ViewSettings& settings) const { return settings.passthrough && instance_.canSeeThrough(); }
-    // Of those that the device is done with. No counters before the first frame of a scene.
+    // The last frame that the device has finished. No counters before a scene's first frame.
     [[nodiscard]] const FrameResult& lastFrame() const { return last_; }
-    // Another scene is shown: neither its counters nor what it takes are those of the one before.
+    // Another scene is shown: counters and costs of the previous one do not apply.
     void forgetScene() {
         last_ = {};
         governor_.forget();
         splat_budget_.reset();
     }
     [[nodiscard]] const std::string& governorSentence() const { return governor_.sentence(); }
-    // How many displays have a new picture, and how large that is.
+    // How many displays have a new picture, and its resolution.
     [[nodiscard]] ShownRate rate() const;
     [[nodiscard]] Presenter& presenter() { return presenter_; }
 
@@ -66,16 +66,16 @@ private:
     void makeImages(ConnectedHeadset& headset, glm::uvec2 size_px, glm::uvec2 inset_px);
     [[nodiscard]] glm::uvec2 sizePx(double scale) const;
     [[nodiscard]] glm::uvec2 insetPx(const ConnectedHeadset& headset, double scale) const;
-    // Where they look, after the eyes that they are part of.
+    // Sets up the insets' eyes, after the eyes that they are part of.
     void aimInsets(const ConnectedHeadset& headset, const Similarity& scene_from_room, const FrameViews& views);
     [[nodiscard]] std::vector<int> drawnEyes() const {
         return frame_.mode == Mode::kMono ? std::vector<int>{frame_.dominant} : std::vector<int>{kLeft, kRight};
     }
     [[nodiscard]] FrameSettings settingsOfFrame(ConnectedHeadset& headset, const ViewSettings& settings, double scale,
                                                 const FrameViews& views, Order usual_order);
-    // Those of `frame` into `images`.
+    // Presents the eyes of `frame` into `images`.
     void recordEyes(Commands& commands, EyeImages& images, const StereoFrame& frame, bool tint, MirrorWindow* window);
-    // As many splats of a streamed scene as a frame has time for, where nobody says a number.
+    // Fits the splats of a streamed scene to the frame time, unless the user sets a number.
     void fitSplats(SceneStream& stream, double period_ms);
     void sayHidden(bool one_eye);
     void sayCutShort();
@@ -92,11 +92,11 @@ private:
     MetDisplays met_;
     FrameSettings frame_;        // prepared
     std::vector<Eye> eyes_;      // prepared
-    FrameSettings inset_frame_;  // likewise, of insets
+    FrameSettings inset_frame_;  // prepared, for insets
     std::vector<Eye> inset_eyes_;
-    std::optional<glm::uvec2> context_px_;  // recommended for what lies about insets, where there are any
-    double insets_ms_ = 0.0;                // of the last ones known
-    GovernedSettings governed_;             // as of the frame drawn last
+    std::optional<glm::uvec2> context_px_;  // recommended for the context, if there are insets
+    double insets_ms_ = 0.0;                // GPU time of the last known insets
+    GovernedSettings governed_;             // in the frame drawn last
     std::uint64_t governed_count_ = 0;
     bool said_beaten_ = false;
     std::uint64_t cut_short_ = 0;  // frames, as last said

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A folder of its own, gone with this.
+// A temporary folder, removed with this object.
 struct TemporaryFolder {
     TemporaryFolder() : path(createFolder(fs::temp_directory_path(), "binosplat-shaders-")) {
         check(!path.empty(), "{}: cannot be written ({})", fs::temp_directory_path().string(), std::strerror(errno));
@@ -56,7 +56,7 @@ std::vector<std::uint32_t> compileShader(const fs::path& folder, const std::stri
     std::error_code ignored;
     check(fs::exists(source, ignored), "{} is not there", source.string());
     check(fs::is_regular_file(source, ignored), "{} is not a file", source.string());  // the compiler would wait for a pipe
-    // As shaders/CMakeLists.txt has it. The compiler comes with the package glslang-tools.
+    // As in shaders/CMakeLists.txt. The compiler comes with the package glslang-tools.
     const bool ok = runProgram({"glslangValidator", "--quiet", "--target-env", "vulkan1.2", "-I" + (folder / "shared").string(),
                                 "-I" + folder.string(), "-o", words.string(), source.string()},
                                log);

@@ -9,14 +9,14 @@
 
 namespace binosplat {
 
-// Where the sources are: `folder` if it is not empty, else BINOSPLAT_SHADERS of the environment. Empty: nobody asked for reloading.
+// Where the sources are: `folder` if it is not empty, else BINOSPLAT_SHADERS of the environment. Empty: reloading is off.
 std::filesystem::path shaderFolder(const std::filesystem::path& folder);
 
-// Every shader of `folder` by glslang. Throws Error with file, line and reason of the first that does not compile.
+// Compiles every shader of `folder` with glslang. Throws Error with file, line and reason of the first that does not compile.
 ShaderWords compileShaders(const std::filesystem::path& folder);
 
-// Compiles them, puts them in the place of the context's and calls `rebuild`, which makes all kernels anew. Where either fails, all
-// stays as it was. What became of it, as one line. Structs that shaders share with C++ (shaders/shared) must be those of the build.
+// Compiles them, replaces the context's shaders and calls `rebuild`, which remakes all kernels. If either fails, everything stays as it
+// was. Returns the outcome in one line. Structs that shaders share with C++ (shaders/shared) must be those of the build.
 std::string reloadShaders(const Context& context, const std::filesystem::path& folder, const std::function<void()>& rebuild);
 
 }  // namespace binosplat

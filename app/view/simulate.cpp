@@ -15,10 +15,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A headset that rests has been seen after a second.
+// One second is enough of a headset at rest.
 constexpr std::uint64_t kFramesAtRest = 90;
 
-// Beside the program, as it is built, or where it and its package are installed.
+// Beside the program in a build, or where it and its package are installed.
 fs::path findManifest() {
     const fs::path folder = programFile().parent_path();
     const fs::path installed = fs::path("share") / "openxr" / "1" / "binosplat_simulated_runtime.json";

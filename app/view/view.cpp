@@ -33,7 +33,7 @@ ViewSettings startSettings(const ViewOptions& options) {
     return settings;
 }
 
-// Until the headset is there, or until Ctrl-C, Escape or the window's cross. The first look opens the window.
+// Called until the headset is there; throws Interrupted on Ctrl-C, Escape or the window's close button. The first call opens the window.
 void waitForHeadset(const std::string& runtime, std::unique_ptr<WaitingWindow>& window) {
     if (!window) {
         FrameLog::print(runtime + " has no headset yet: waiting for it (Ctrl-C ends)");
@@ -61,7 +61,7 @@ void showScene(const ViewOptions& options, const ViewSettings& settings, xr::Ins
 
 void viewOnce(ViewOptions options) {
     if (options.simulate) { simulateHeadset(options); }
-    readCameraFiles(options.run.camera);  // what is wrong with them is known before there is a headset
+    readCameraFiles(options.run.camera);  // reports their errors before waiting for a headset
     const ViewSettings settings = startSettings(options);
     xr::InstanceOptions instance_options;
     instance_options.visibility_mask = settings.visibility_mask;
@@ -74,12 +74,12 @@ void viewOnce(ViewOptions options) {
         instance = std::make_unique<xr::Instance>(instance_options);
         waiting.reset();
         showScene(options, settings, *instance);
-    } catch (const Interrupted&) {  // while one was waited for
+    } catch (const Interrupted&) {  // while waiting for a headset
         fmt::print("0 frames; stopped before there was a headset\n");
     } catch (const xr::Lost& lost) { throw Error(ExitCode::kNoDevice, lost.what()); } catch (const xr::InstanceLost& lost) {
         throw Error(ExitCode::kNoDevice, lost.what());
     } catch (const xr::RuntimeFailed&) {
-        // The runtime has said where and why.
+        // The runtime has printed where and why.
         check(!options.simulate || options.script.empty(),
               "--simulate: the simulated headset does not begin with {}, see docs/simulated_script.md", options.script);
         check(!options.simulate || options.out.empty(), "--out: the simulated headset does not begin with {}", options.out.string());

@@ -1,4 +1,4 @@
-// What the viewer does with files: scenes, settings, pictures, shaders.
+// The viewer's files: scenes, settings, pictures, shaders.
 #include "app/view/scenes/recent_scenes.h"
 #include "app/view/settings/view_files.h"
 #include "app/view/shader_reload.h"
@@ -64,7 +64,7 @@ void Viewer::load() {
             if (scene != scenes_.name()) { return; }  // another one came meanwhile
             ViewSettings loaded = state_.settings();
             say(takeSavedSettings(saved, loaded));
-            loaded.panel = state_.settings().panel;  // it was just pressed
+            loaded.panel = state_.settings().panel;  // it is open: Load was just pressed
             state_.set(loaded);
             sayChange();
         };
@@ -73,7 +73,7 @@ void Viewer::load() {
 
 void Viewer::reloadShaders() {
     if (scenes_.get() == nullptr || !panel_.status().can_reload_shaders) { return; }
-    // Its thread may be making kernels.
+    // The loading thread may be making kernels.
     if (scenes_.isLoading()) {
         say("shaders stay as they are until the next scene is there");
         return;

@@ -8,7 +8,7 @@ namespace binosplat {
 
 namespace {
 
-// While the scene loads, unless a background is asked for.
+// While the scene loads, unless a background is set.
 constexpr glm::vec3 kWaitingColour(0.06f, 0.07f, 0.09f);
 
 }  // namespace
@@ -57,7 +57,7 @@ void Viewer::drawFrame() {
     panel_.status().state.clear();
     panel_hangs_ = state_.settings().panel;
     if (panel_hangs_ || window_) { layOutPanel(panel_hangs_, step_seconds); }
-    // Last, since the panel and the window may change what is wished for.
+    // Last, since the panel and the window may change the settings.
     const bool fits = prepareScene(views);
     onWindow(&MirrorWindow::acquire);
     if (LoadedScene* scene = scenes_.get(); scene != nullptr && fits) {
@@ -101,7 +101,7 @@ bool Viewer::prepareScene(const FrameViews& views) {
     try {
         renderer_.govern(headset(), drawn_);
         ViewSettings wished = drawn_;
-        if (picture_asked_) { wished.visibility_mask = false; }  // no lens hides anything of a picture
+        if (picture_asked_) { wished.visibility_mask = false; }  // picture files have no lens mask
         if (scenes_.get() != nullptr) { renderer_.prepare(headset(), scenes_, state_.sceneFromRoom(), wished, views); }
         state_.keepFitting(drawn_);
         return true;
@@ -175,7 +175,7 @@ void Viewer::submitFrame(const FrameViews& views) {
         return false;
     };
     if (isTaken(true)) { return; }
-    // What can be done without is left out, the cheaper first.
+    // Drops optional layers, the least important first.
     if (headset().things.areShown() && isTaken(false)) {
         instance_.troubles().add(refusal + "; on without hands, rays and the vignette");
         headset().things.giveUp();
@@ -187,7 +187,7 @@ void Viewer::submitFrame(const FrameViews& views) {
 
 void Viewer::addEyes(xr::Layers& layers, const FrameViews& views) const {
     const auto layerEye = [&](const EyeImages& images, const std::array<xr::EyeView, 2>& eyes, int shown_to) {
-        // One eye's picture for both is shown as that eye saw it.
+        // If both eyes share a picture, both use the pose and angles of its eye.
         const int e = scenes_.get() != nullptr && drawn_.showsOneEye() ? drawn_.stereo.dominant : shown_to;
         return images.layerEye(e, eyes[static_cast<std::size_t>(e)], options_.run.camera.near);
     };

@@ -7,7 +7,7 @@ namespace binosplat {
 
 namespace {
 
-// How often the window is drawn while no frame is.
+// How often the window is drawn while no frames are.
 constexpr std::chrono::milliseconds kWindowAlone(16);
 
 }  // namespace
@@ -41,7 +41,7 @@ void Viewer::drawWindowAlone(const std::string& why) {
     sayPicture(pictures_.takeOutcome());
     onWindow(&MirrorWindow::acquire);
     if (!window_) { return; }
-    waitForQueue();  // what the panel is drawn from is that of the last frame
+    waitForQueue();  // the panel's draw buffers are those of the last frame
     commands_.begin();
     recordPanel(commands_);
     commands_.submit(window_->drawn());

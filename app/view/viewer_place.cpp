@@ -1,4 +1,4 @@
-// Where the wearer stands in the scene, and what the viewer keeps of that.
+// The wearer's place in the scene, and what the viewer keeps of it.
 #include "app/view/placement/placement.h"
 #include "app/view/scenes/recent_scenes.h"
 #include "app/view/scenes/seen_scenes.h"
@@ -12,9 +12,9 @@ namespace binosplat {
 
 namespace {
 
-// Where neither the scene nor the runtime knows a floor: below the eyes of somebody who stands.
+// If the scene has no known floor: its distance below the eyes of somebody who stands.
 constexpr double kUsualEyesMetres = 1.6;
-// A scene that was seen for less than a third of a second was only passed by.
+// A scene that was seen for less than a third of a second was only passed on the way.
 constexpr std::uint64_t kLeastFramesSeen = 30;
 
 }  // namespace
@@ -38,7 +38,7 @@ void Viewer::movePlace(const PanelRequests& requests) {
     if (requests.level_scene) { state_.place(levelledAlong(state_.sceneFromRoom(), scene.up, room_from_head_.position)); }
     const double growth = requests.natural_size ? options_.run.metres_per_unit * state_.sceneFromRoom().scale : requests.growth;
     if (growth != 1.0) {
-        // About the feet, so that one stands on the same floor.
+        // About the feet, so that the wearer stays on the floor.
         const ShownPlace place = shownPlace();
         glm::dvec3 feet = room_from_head_.position;
         feet.y += place.has_floor && place.eyes_m > 0.0 ? place.eyes_m : kUsualEyesMetres;
@@ -105,7 +105,7 @@ void Viewer::keepPictureOfScene() {
                          return {};
                      });
     } catch (const vk::DeviceLostError&) { throw; } catch (const std::runtime_error&) {
-        // One is not worth a word.
+        // A missing picture is not worth a message.
     }
 }
 

@@ -1,4 +1,4 @@
-// Laptops with two GPUs: their drivers look for these names, and give the program the fast one.
+// For laptops with two GPUs, whose drivers look for these symbols and give the program the fast GPU.
 extern "C" {
 __declspec(dllexport) extern const unsigned long NvOptimusEnablement;
 __declspec(dllexport) extern const unsigned long AmdPowerXpressRequestHighPerformance;

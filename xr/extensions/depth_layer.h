@@ -7,7 +7,7 @@
 
 namespace binosplat::xr {
 
-// Reversed and without an end: 0 is infinitely far, 1 is `near_m`, the near plane.
+// Reversed, with an infinite far plane: 0 is infinitely far, 1 is `near_m`, the near plane.
 inline XrCompositionLayerDepthInfoKHR depthInfo(const XrSwapchainSubImage& depth, double near_m) {
     auto info = structure<XrCompositionLayerDepthInfoKHR>(XR_TYPE_COMPOSITION_LAYER_DEPTH_INFO_KHR);
     info.subImage = depth;

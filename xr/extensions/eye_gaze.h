@@ -7,14 +7,14 @@
 
 namespace binosplat::xr {
 
-// Whether the present headset tracks it.
+// True if the current headset tracks the gaze.
 [[nodiscard]] bool findsGaze(const Instance& instance);
 
 class EyeGaze {
 public:
     // `actions` outlives this.
     EyeGaze(const Session& session, const Actions& actions) : session_(session), actions_(actions) {}
-    // Before the actions are attached, and after it; where the headset does not track the gaze, or that was not requested, nothing.
+    // bind() comes before the actions are attached, makeSpace() after. Without eye tracking, or if it was not requested, they do nothing.
     void bind();
     void makeSpace();
 

@@ -10,7 +10,7 @@
 
 namespace binosplat::xr {
 
-// Whether the present headset does.
+// True if the current headset tracks hands.
 [[nodiscard]] bool findsHands(const Instance& instance);
 
 // A hand's joints in room axes (ours), in the order of XrHandJointEXT.
@@ -20,12 +20,12 @@ struct HandJoint {
 };
 using HandJoints = std::array<HandJoint, XR_HAND_JOINT_COUNT_EXT>;
 
-// Both hands of a session; empty ones where the runtime has none, or fails to find them: see Troubles.
+// Both hands of a session; never found if the runtime has no hand tracking or it fails, see Troubles.
 class HandTracking {
 public:
     explicit HandTracking(const Session& session);
 
-    // At the open frame's display time; empty while the hand is not seen whole.
+    // At the open frame's display time; empty unless all joints are known.
     [[nodiscard]] std::optional<HandJoints> locate(int hand);
 
 private:

@@ -31,7 +31,7 @@ std::string RefreshRate::request(double rate_hz) {
     if (rate_hz == std::exchange(requested_hz_, rate_hz)) { return {}; }
     const std::vector<double> rates = list();
     if (rates.empty()) { return "refresh-rate: this headset's rate cannot be chosen"; }
-    // As people write them: 72 for 71.999.
+    // Rates as people write them: 72 for 71.999.
     const auto isIt = [&](double rate) { return std::abs(rate - rate_hz) < 0.5; };
     const auto found = std::ranges::find_if(rates, isIt);
     if (rate_hz != 0.0 && found == rates.end()) {

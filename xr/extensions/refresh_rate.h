@@ -1,4 +1,4 @@
-// XR_FB_display_refresh_rate: how often the display shows a picture, and a choice of it.
+// XR_FB_display_refresh_rate: the display's refresh rate, and a choice of rates.
 #pragma once
 
 #include "xr/instance.h"
@@ -16,7 +16,7 @@ public:
     [[nodiscard]] std::vector<double> list() const;
     // The display's period; 0 if the runtime does not report it.
     [[nodiscard]] XrDuration period() const;
-    // Requests a rate, unless it was the last one requested; 0: the runtime's choice. Returns a sentence for people if that fails,
+    // Requests a rate, unless it was the last one requested; 0: the runtime's choice. Returns a message for people if that fails,
     // otherwise empty.
     std::string request(double rate_hz);
 

@@ -1,4 +1,4 @@
-// XR_KHR_visibility_mask: what of the eyes' pictures the lenses never show.
+// XR_KHR_visibility_mask: the parts of the eyes' pictures that the lenses never show.
 #pragma once
 
 #include "xr/instance.h"
@@ -15,7 +15,7 @@ struct HiddenMesh {
     std::vector<std::uint32_t> indices;
 };
 
-// Both eyes' of a session; empty without the extension.
+// The meshes of both eyes in a session; empty without the extension.
 class HiddenMeshes {
 public:
     HiddenMeshes(const Instance& instance, XrSession session, XrViewConfigurationType views);
@@ -23,7 +23,7 @@ public:
     // After XR_TYPE_EVENT_DATA_VISIBILITY_MASK_CHANGED_KHR.
     void read(std::uint32_t eye);
     [[nodiscard]] const std::array<HiddenMesh, 2>& meshes() const { return meshes_; }
-    // A new number whenever they were read.
+    // Changes whenever a mesh is read again.
     [[nodiscard]] int version() const { return version_; }
 
 private:

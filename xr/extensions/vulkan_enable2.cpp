@@ -1,10 +1,10 @@
-// The runtime's requirements of Vulkan, and its own ways to make it.
+// The runtime's Vulkan requirements, and making instance and device through it.
 #include "xr/extensions/vulkan_enable2.h"
 
 namespace binosplat::xr {
 namespace {
 
-// Both are to be asked for each headset anew.
+// Both must be asked again for each headset.
 XrVersion leastVulkan(const Instance& instance) {
     auto needs = structure<XrGraphicsRequirementsVulkan2KHR>(XR_TYPE_GRAPHICS_REQUIREMENTS_VULKAN2_KHR);
     BINOSPLAT_XR(instance.function<PFN_xrGetVulkanGraphicsRequirements2KHR>("xrGetVulkanGraphicsRequirements2KHR")(
@@ -21,7 +21,7 @@ VkPhysicalDevice graphicsDevice(const Instance& instance, VkInstance vulkan_inst
     return chosen;
 }
 
-// By the runtime's `function`, which has Vulkan's result besides its own.
+// Calls the runtime's `function`, which has Vulkan's result besides its own.
 template <typename Function, typename Made, typename Info>
 Made create(const Instance& instance, PFN_vkGetInstanceProcAddr get_address, Info info, const char* function) {
     info.systemId = instance.system();
@@ -70,7 +70,7 @@ DeviceMaker deviceMaker(const Instance& instance) {
 }
 
 void requireSameDevice(const Instance& instance, const Context& context) {
-    static_cast<void>(leastVulkan(instance));  // to be asked before a session
+    static_cast<void>(leastVulkan(instance));  // required before a session
     if (vk::PhysicalDevice(graphicsDevice(instance, *context.instance())) != *context.physicalDevice()) {
         throw Error(ExitCode::kNoDevice, fmt::format("{} is on another graphics device than before: start anew", instance.description()));
     }

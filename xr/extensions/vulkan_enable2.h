@@ -7,10 +7,10 @@
 
 namespace binosplat::xr {
 
-// The instance and the device that Context opens must be this runtime's. Valid as long as `instance`.
+// Lets Context open instance and device through this runtime. Valid as long as `instance`.
 [[nodiscard]] DeviceMaker deviceMaker(const Instance& instance);
 
-// Throws Error (exit code 3) where the present headset is not on the device of `context`.
+// Throws Error (exit code 3) if the current headset is not on the device of `context`.
 void requireSameDevice(const Instance& instance, const Context& context);
 
 // For a session.

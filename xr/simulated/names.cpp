@@ -1,4 +1,4 @@
-// Names from the lists of OpenXR's own headers, and those of values that they may not have yet.
+// Names from the lists in OpenXR's own headers, and of values that these may not have yet.
 #include "xr/simulated/names.h"
 
 #include <openxr/openxr_reflection.h>

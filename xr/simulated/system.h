@@ -10,7 +10,7 @@ namespace simulated {
 
 std::optional<std::string> readEnvironmentVariable(const std::string& name);
 
-// A file that was not there, for writing. Null, with the reason in errno, if anything has that name.
+// Creates a file for writing. Null, with the reason in errno, if that fails or anything has that name.
 std::FILE* createFile(const std::filesystem::path& path);
 
 // A function of the system's Vulkan loader; null without it. The library is held open for good: the application's Vulkan objects may
@@ -19,7 +19,7 @@ void* findVulkanFunction(const char* name);
 // The name of that loader in messages.
 extern const char* const kVulkanLoader;
 
-// This library's state must outlive the instance, though the loader closes the library with it.
+// Keeps this library loaded: its state must outlive the instance, though the loader closes the library with it.
 void keepThisLibrary();
 
 }  // namespace simulated

@@ -21,6 +21,6 @@ void* findVulkanFunction(const char* name) {
     return library != nullptr ? dlsym(library, name) : nullptr;
 }
 
-void keepThisLibrary() {}  // it is linked so
+void keepThisLibrary() {}  // the linker flags do it
 
 }  // namespace simulated

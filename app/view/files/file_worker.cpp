@@ -46,7 +46,7 @@ void FileWorker::run() {
     }
 }
 
-// But for what is under way.
+// Except the task under way.
 void FileWorker::dropReading() {
     if (tasks_.empty()) { return; }
     const auto second = tasks_.begin() + 1;

@@ -1,4 +1,4 @@
-// Files that are read and written beside the frames, which must wait for no disk and no network.
+// Reads and writes files beside the frames, which must not wait for a disk or a network.
 #pragma once
 
 #include <condition_variable>
@@ -12,30 +12,30 @@
 
 namespace binosplat {
 
-// One thread, which does one thing after the other.
+// One thread, which does one task after the other.
 class FileWorker {
 public:
-    // What is to be done with what was read, by whoever calls deliver().
+    // Uses the result; runs on the thread that calls deliver().
     using Done = std::function<void()>;
-    // On the worker's thread. What it throws, deliver() throws.
+    // Runs on the worker's thread; deliver() rethrows its exceptions.
     using Work = std::function<Done()>;
 
     FileWorker();
     FileWorker(const FileWorker&) = delete;
     FileWorker& operator=(const FileWorker&) = delete;
-    // What is to be written is written first.
+    // Finishes all writing first.
     ~FileWorker();
 
     // `what` in words: "reading /a/folder".
     void read(std::string what, Work work) { ask({std::move(what), std::move(work), false}); }
-    // Likewise; it is done even if the program ends.
+    // Like read(), but done even if the program ends.
     void write(std::string what, Work work) { ask({std::move(what), std::move(work), true}); }
-    // What goes on, in words; empty: nothing does.
+    // The task under way, in words; empty: none.
     [[nodiscard]] std::string now() const;
 
-    // Between frames: what is done is handed over, to the functions that go with it. Waits for nothing.
+    // Between frames: calls the Done functions of finished tasks. Does not wait.
     void deliver();
-    // Waits until all is written, without what else was only asked for, and hands over what is done.
+    // Waits until all is written, drops reads that have not begun, and delivers what is done.
     void finish();
 
 private:

@@ -1,4 +1,4 @@
-// Side by side.
+// Writes both eyes side by side.
 #include "app/view/files/picture_writer.h"
 
 #include "engine/error.h"
@@ -30,12 +30,12 @@ Image besideOneAnother(const Image& left, const Image& right) {
 std::string freePictureName(const std::filesystem::path& folder) {
     for (int number = 1;; ++number) {
         const std::string name = fmt::format("binosplat-{:04}", number);
-        std::error_code ignored;  // what cannot be looked at is not written either, and that says why
+        std::error_code ignored;  // if looking fails, writing will fail too, and will say why
         if (!std::filesystem::exists(folder / (name + extensionOf(PictureKind::kDisplay)), ignored)) { return name; }
     }
 }
 
-// What there is to say of it.
+// Returns a message about the outcome.
 std::string write(const Image& picture, const std::filesystem::path& folder) {
     try {
         OutputFiles files(folder);

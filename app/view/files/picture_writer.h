@@ -1,4 +1,4 @@
-// What both eyes see, beside one another, as a file.
+// The pictures of both eyes, side by side, as a file.
 #pragma once
 
 #include "engine/frame/stereo_frame.h"
@@ -13,12 +13,12 @@ namespace binosplat {
 // Writes pictures on a thread of its own: frames must not wait for files.
 class PictureWriter {
 public:
-    // Begins to write what `frame` rendered last for each of its eyes into `folder`, under a name that is free there. Waits for the device,
-    // and for the picture before.
+    // Begins to write the last pictures of each eye of `frame` into `folder`, under a free name. Waits for the device, and for the previous
+    // picture.
     void begin(StereoFrame& frame, bool one_eye, const std::filesystem::path& folder);
-    // The name of a picture that was written since, once, or why it was not.
+    // The name of a picture that was written since, or why it was not; once.
     [[nodiscard]] std::optional<std::string> takeOutcome();
-    // Likewise, waiting for it.
+    // The same, but waits for it.
     [[nodiscard]] std::optional<std::string> finish();
 
 private:

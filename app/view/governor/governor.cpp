@@ -12,19 +12,19 @@ namespace binosplat {
 
 namespace {
 
-// A tenth of the period is spared: what the compositor and the machine do besides is not ours to know. Settings that have not proven
-// themselves, and what is changed calmly, are not to need all of it; after a change that was not enough, less.
+// A tenth of the period is left free, since we cannot know what the compositor and the machine do besides. Settings that are still
+// unproven, and calm changes, must need even less; so must a change after one that was not enough.
 constexpr double kTarget = 0.9, kCalmly = 0.85, kAgain = 0.7;
-// A budget that rises by less is not worth a change, and one of which less is spent is not what frames take their time for.
+// A smaller rise of the budget is not worth a change; if a smaller share of it is spent, it does not determine the frame time.
 constexpr double kLeastRise = 1.1, kSpent = 0.75;
-// Pixels are not all of a frame: fewer of them save less than their share, more of them are taken to cost all of it.
+// Pixels are not all of a frame's cost: fewer of them save less than their share, more are assumed to cost all of it.
 constexpr double kPowerDown = 1.2, kPowerUp = 2.0;
 constexpr int kSettlingFrames = 1;
 constexpr std::size_t kOverAtOnce = 3, kOverAgain = 2, kCalmFrames = 8;
 constexpr std::size_t kWindow = MissedDisplays::kWindow, kOftenOver = MissedDisplays::kOftenOver, kOftenOf = MissedDisplays::kOftenOf;
 constexpr double kBetweenChangesSeconds = 1.0, kProvenSeconds = 3.0, kFirstWaitSeconds = 10.0, kLongestWaitSeconds = 300.0;
-// Where the least settings miss no fewer displays than the best ones did the misses are others' doing. What paces frames may follow what
-// they take only after some.
+// If the least settings miss as many displays as the best ones did, others cause the misses. The pacing may react to frame times only after
+// some frames.
 constexpr std::size_t kBlameFrames = 20;
 constexpr const char* kOthersMiss = "displays are missed whatever is drawn";
 constexpr double kSameLost = 0.25;
@@ -37,10 +37,10 @@ Least leastOf(Quality quality) {
     return quality == Quality::kSharp ? Least{0.2, 0.8} : quality == Quality::kBalanced ? Least{0.1, 0.6} : Least{0.05, 0.4};
 }
 
-// What a frame takes whatever the budget is, in units of what all work would take: by docs/results/motion.md `temporal` takes 0.22 of
+// The cost of a frame regardless of the budget, in units of the cost of all work: by docs/results/motion.md `temporal` takes 0.22 of
 // `two-pass` for culling, sorting and warping, and 0.28 for 0.21 of the work; `predicted` the dominant eye and the warp.
 double fixedWork(Mode mode) { return mode == Mode::kTemporal ? 0.17 : 1.0; }
-// Upwards less of that is counted on.
+// The share of fixedWork that is counted on when raising.
 constexpr double kFixedUpwards = 0.5;
 
 double medianOf(const std::deque<double>& values, std::size_t newest) {
@@ -56,7 +56,7 @@ void keep(std::deque<double>& recent, double value) {
     if (recent.size() > kWindow) { recent.pop_front(); }
 }
 
-// As many digits as are shown.
+// With as many digits as are shown.
 double inHundredths(double value) { return std::floor(100.0 * value + 1e-6) / 100.0; }
 
 std::string percent(double share) { return fmt::format("{:.0f} %", 100.0 * share); }
@@ -189,12 +189,12 @@ void Governor::giveBack(double now_ms) {
     if (is_raised_ && now_s_ - changed_s_ >= kProvenSeconds) { wait_s_ = 0.0; }
     if (now_s_ - changed_s_ < kBetweenChangesSeconds || recent_ms_.size() < kWindow) { return describe(now_ms, why_); }
     const double work = medianOf(recent_work_, kWindow);
-    // Under the period, but with less to spare than a tenth.
+    // Within the period, but with less than a tenth to spare.
     if (now_ms > kTarget * period_ms_) {
         const GovernedSettings to = lowered(kCalmly * roomMs() / now_ms, work);
         if (to != settings_) { return stepDown(to, fmt::format("{:.1f} of {:.1f} ms left too little room", now_ms, period_ms_)); }
     } else if (now_s_ - lowered_s_ >= wait_s_) {
-        // A head that stands still leaves nothing to mend: once it moves frames take what the budget allows.
+        // A still head leaves nothing to re-render: once it moves, frames take what the budget allows.
         const double spent_ms = hasBudget(mode_)
                                     ? now_ms * (settings_.budget + fixedWork(mode_)) / (std::min(work, settings_.budget) + fixedWork(mode_))
                                     : now_ms;
@@ -208,7 +208,7 @@ void Governor::giveBack(double now_ms) {
 }
 
 void Governor::stepDown(const GovernedSettings& to, const std::string& why) {
-    // What was given back too early is given back later the next time.
+    // If quality was given back too early, it is given back later the next time.
     if (is_raised_ && now_s_ - changed_s_ < kProvenSeconds) { wait_s_ = std::clamp(2.0 * wait_s_, kFirstWaitSeconds, kLongestWaitSeconds); }
     is_raised_ = false;
     lowered_s_ = now_s_;

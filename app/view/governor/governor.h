@@ -1,5 +1,5 @@
-// Holding the frame rate: how much of the eyes is rendered again, and how large their pictures are, so that frames fit into the runtime's
-// period, as measured here and now. Pure: no clock, no device; a frame goes in, the settings of the next come out.
+// Holds the frame rate: chooses how much of the eyes is rendered again, and how large their pictures are, so that frames fit into the
+// runtime's period, as measured. Pure: no clock, no device; a frame goes in, the next frame's settings come out.
 #pragma once
 
 #include "app/view/governor/missed_displays.h"
@@ -11,63 +11,63 @@
 
 namespace binosplat {
 
-// How little work and resolution may become. kOff: nothing is chosen, the settings stay as the wearer made them.
+// How little work and resolution may become. kOff: nothing is governed, the settings stay as the wearer made them.
 enum class Quality { kOff, kSharp, kBalanced, kFast };
 inline constexpr const char* kQualityNames[] = {"off", "sharp", "balanced", "fast"};
 
-// What is chosen.
+// The settings that are chosen.
 struct GovernedSettings {
-    double budget = 0.0;            // of modes that have one, see hasBudget: the share of work that is rendered again
+    double budget = 0.0;            // for modes that have one, see hasBudget: the share of work that is rendered again
     double resolution_scale = 1.0;  // each way
     bool operator==(const GovernedSettings&) const = default;
 };
 
 // A frame that was rendered with the settings last chosen.
 struct GovernedFrame {
-    double gpu_ms = 0.0;     // 0: the device does not tell
-    double period_ms = 0.0;  // what the runtime gives a frame
-    bool is_old = false;     // drawn with settings from before: it says nothing of the present ones, but time has passed
-    // Periods that passed before the frame was displayed beyond its own, as the runtime shows: independent of the device's own times.
+    double gpu_ms = 0.0;     // 0: the device does not measure it
+    double period_ms = 0.0;  // the runtime's time for a frame
+    bool is_old = false;     // drawn with earlier settings: it says nothing about the present ones, but time has passed
+    // Periods beyond its own that passed before the frame was displayed, by the runtime's times: independent of the device's.
     double lost_periods = 0.0;
-    double work = 1.0;  // of the budget's kind, the share that was rendered again: less than the budget where there was nothing to mend
+    double work = 1.0;  // the share that was rendered again: less than the budget if there was less to re-render
 };
 
-// Whether a share of work is rendered again: of an eye's (kPredicted), of both eyes' (kTemporal).
+// True if a share of work is rendered again: of one eye's (kPredicted), of both eyes' (kTemporal).
 constexpr bool hasBudget(Mode mode) { return mode == Mode::kPredicted || mode == Mode::kTemporal; }
 
 class Governor {
 public:
-    // From the next frame on. Another wish, or quality, begins anew, with the wearer's own settings: no resolution is higher, while the
-    // budget goes as far as all work.
+    // From the next frame on. Another wish or quality starts over with the wearer's own settings: the resolution never exceeds them, while
+    // the budget may rise to all work.
     void wish(Quality quality, Mode mode, const GovernedSettings& own);
-    // From the next frame on another scene is shown: what was measured says nothing of it.
+    // From the next frame on another scene is shown: the measurements do not apply to it.
     void forget();
-    // Takes what the last frame cost. The settings change at most three times while a new load is found out, and then at most once a
+    // Takes the last frame's cost. The settings change at most three times while adapting to a new load, and then at most once a
     // second.
     void measure(const GovernedFrame& frame);
 
     [[nodiscard]] const GovernedSettings& settings() const { return settings_; }
-    // What it does and why, for people; empty where it does nothing.
+    // What it does and why, for people; empty if it does nothing.
     [[nodiscard]] const std::string& sentence() const { return sentence_; }
-    // Whether not even the least settings fit.
+    // True if not even the least settings fit.
     [[nodiscard]] bool isBeaten() const { return beaten_; }
 
 private:
     void clearRecent();
     [[nodiscard]] std::size_t countOver(std::size_t of_last) const;
-    // What frames may take: the period, or as much of it as others leave.
+    // The time for a frame: the period, or as much of it as others leave.
     [[nodiscard]] double roomMs() const { return misses_.share() * period_ms_; }
-    // Whether to give up quality has gained nothing: then it is given back, and for a while misses change nothing.
+    // True if giving up quality has gained nothing: then it is given back, and misses are ignored for a while.
     [[nodiscard]] bool missesWhateverIsDrawn() const;
     void leaveMissesAlone();
-    // The resolution, in tenths of the wearer's, that is expected to take this much of what the present one does.
+    // The resolution, in tenths of the wearer's, whose expected cost is `ratio` times the present one's.
     [[nodiscard]] double scaleFor(double ratio) const;
-    // What is expected to take this much of what the present settings do where `work` is rendered again: first the budget becomes less,
+    // Settings whose expected cost is `ratio` times that of the present ones, if `work` is rendered again: first the budget is lowered,
     // then the resolution.
     [[nodiscard]] GovernedSettings lowered(double ratio, double work) const;
-    // And the other way round, where all of the budget is spent.
+    // The reverse; the budget rises only if it is spent.
     [[nodiscard]] GovernedSettings raised(double ratio) const;
-    // What to do about frames that took too long, and about those that did not.
+    // Reactions to frames that took too long, and to those that did not.
     void makeItFit(double now_ms, std::size_t frames);
     void giveBack(double now_ms);
     void stepDown(const GovernedSettings& to, const std::string& why);
@@ -80,19 +80,19 @@ private:
     GovernedSettings own_, settings_;
     double now_s_ = 0.0, period_ms_ = 0.0;
     std::deque<double> recent_ms_, recent_work_;  // since the last change, newest last
-    int settling_ = 0;                            // frames that still show what the change itself cost
+    int settling_ = 0;                            // frames that still include the cost of the change itself
     int downs_ = 0;                               // changes in a row that were not enough
     double changed_s_ = 0.0, lowered_s_ = 0.0;
-    bool is_raised_ = false;  // by the last change
-    double wait_s_ = 0.0;     // after settings were lowered, until something is given back: longer each time that this was too early
+    bool is_raised_ = false;  // the last change was a rise
+    double wait_s_ = 0.0;     // from lowering the settings until something is given back: longer each time that this was too early
     std::string why_, sentence_;
     bool beaten_ = false;
     MissedDisplays misses_;
     struct Before {
         GovernedSettings settings;
-        double lost = 0.0;  // by a frame
+        double lost = 0.0;  // per frame
     };
-    std::optional<Before> before_misses_;  // and before anything was given up for them
+    std::optional<Before> before_misses_;  // before quality was given up for them
 };
 
 }  // namespace binosplat

@@ -1,4 +1,4 @@
-// How many of the headset's displays had a new picture, of late. Pure: no clock.
+// How many of the headset's recent displays had a new picture. Pure: no clock.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@ public:
         if (period_ms != period_ms_) { lost_.clear(); }
         period_ms_ = period_ms;
         lost_.push_back(std::max(lost, 0.0));
-        // Of a second.
+        // Keeps one second.
         if (static_cast<double>(lost_.size()) * period_ms > 1000.0) { lost_.pop_front(); }
     }
     // 0: not known yet.

@@ -1,4 +1,4 @@
-// What missed displays say.
+// Counting missed displays, and the room that they leave.
 #include "app/view/governor/missed_displays.h"
 
 #include <algorithm>
@@ -10,10 +10,10 @@ namespace binosplat {
 
 namespace {
 
-// A frame that comes late once may be anybody's doing, however late it is: it counts as one period. Where periods are irregular a frame is
-// early for one that was late, so that a sum stays below one.
+// A single late frame may have any cause, however late it is: it counts as one period. If periods are irregular, early frames make up for
+// late ones, so that the sum stays below one.
 constexpr double kMostLostByOne = 1.0, kLostSlack = 0.5;
-// Where displays are missed less than what was used is room; once a while has passed without a miss there is more each second.
+// If displays are missed, there is less room than was used; after a while without a miss, the room grows each second.
 constexpr double kLowerShare = 0.85, kRaisedPerSecond = 1.1, kFirstHoldSeconds = 10.0, kLongestHoldSeconds = 300.0;
 constexpr double kFirstUnheededSeconds = 60.0, kLongestUnheededSeconds = 600.0;
 
@@ -56,23 +56,23 @@ bool MissedDisplays::areLost(std::size_t lost, std::size_t of_last) const {
 }
 
 void MissedDisplays::lowerShare(double now_ms, double period_ms) {
-    if (share_ * period_ms < now_ms) { return; }  // it is less already
+    if (share_ * period_ms < now_ms) { return; }  // the share is already lower
     share_ = kLowerShare * now_ms / period_ms;
-    // What was given back too early is given back later the next time.
+    // If room was given back too early, it is given back later the next time.
     hold_s_ = is_raised_ ? std::min(2.0 * hold_s_, kLongestHoldSeconds) : std::max(hold_s_, kFirstHoldSeconds);
     is_raised_ = false;
 }
 
 void MissedDisplays::raiseShare(double period_ms) {
     if (now_s_ < held_until_s_) { return; }
-    if (share_ >= 1.0) {  // and it was not too early
+    if (share_ >= 1.0) {  // all was given back, and not too early
         hold_s_ = 0.0;
         is_raised_ = false;
         return;
     }
     share_ = std::min(share_ * std::pow(kRaisedPerSecond, 1e-3 * period_ms), 1.0);
     is_raised_ = true;
-    if (share_ == 1.0) { hold(); }  // of all there is, once more
+    if (share_ == 1.0) { hold(); }  // once more, for the whole period
 }
 
 void MissedDisplays::leaveAlone() {

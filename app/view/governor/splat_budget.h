@@ -1,4 +1,4 @@
-// How many splats of a streamed scene frames have time for, where nobody says a number.
+// How many splats of a streamed scene frames have time for, if the user sets no number.
 #pragma once
 
 #include <cstdint>
@@ -7,14 +7,14 @@ namespace binosplat {
 
 class SplatBudget {
 public:
-    static constexpr std::uint64_t kLeast = 500'000;  // below that other things than splats take the time
+    static constexpr std::uint64_t kLeast = 500'000;  // below that, other things than splats dominate
 
-    // `most`: what the memory holds.
+    // `most`: as many as fit in memory.
     explicit SplatBudget(std::uint64_t most) : most_(most), splats_(most) {}
 
     [[nodiscard]] std::uint64_t splats() const { return splats_; }
-    // A frame of the device, of `shown` splats. What forty of them took together, as a share of the displays' periods, decides: above nine
-    // tenths there are to be fewer splats than are shown, below six tenths there may be more. True where it is another budget then.
+    // A frame's GPU time, with `shown` splats. The time of forty frames as a share of their periods decides: above nine tenths the budget
+    // falls below the splats shown, below six tenths it may rise. True if the budget has changed.
     bool measure(double gpu_ms, double period_ms, std::uint64_t shown);
 
 private:

@@ -1,4 +1,4 @@
-// What the viewer has of the headset for as long as one session lasts. A session may be lost, and another one takes its place.
+// The viewer's objects of one session with the headset. A session may be lost, and another one takes its place.
 #pragma once
 
 #include "app/view/headset/eye_images.h"
@@ -14,8 +14,8 @@
 namespace binosplat {
 
 struct ConnectedHeadset {
-    // `panel_px` is the size of the panel's picture. The session has foveated insets where `instance` was asked for them and the headset
-    // takes them. Throws xr::Lost where the session is lost at once.
+    // `panel_px` is the size of the panel's picture. The session has foveated insets if `instance` was asked for them and the headset takes
+    // them. Throws xr::Lost if the session is lost at once.
     ConnectedHeadset(const xr::Instance& instance, const Context& context, glm::uvec2 panel_px);
 
     std::optional<xr::InsetSizes> inset;  // as recommended
@@ -24,7 +24,7 @@ struct ConnectedHeadset {
     std::vector<double> refresh_rates;
     xr::Input input;
     xr::Swapchain panel_images;
-    std::uint64_t panel_revision = 0;  // of the canvas, that they show; 0: none yet
+    std::uint64_t panel_revision = 0;  // of the canvas that they show; 0: none yet
     RoomThings things;
     std::unique_ptr<EyeImages> images;        // once their size is known
     std::unique_ptr<EyeImages> inset_images;  // with them, in a session with insets

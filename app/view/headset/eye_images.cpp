@@ -26,7 +26,7 @@ EyeImages::EyeImages(const xr::Session& session, Presenter& presenter, vk::Forma
         for (std::size_t e = 0; e < 2; ++e) {
             depth_[e] = xr::Swapchain(session, nameOf(e) + "'s depth", size_px, vk::Format::eD32Sfloat, xr::ImageUse::kDepth);
         }
-    } catch (const Error&) { dropDepth(); }  // offered, and not there: the picture does without
+    } catch (const Error&) { dropDepth(); }  // offered, but not available: go on without depth
 }
 
 void EyeImages::dropDepth() {

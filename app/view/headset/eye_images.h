@@ -24,24 +24,24 @@ public:
     void dropDepth();
     [[nodiscard]] bool takesDepth() const { return depth_[0].handle() != XR_NULL_HANDLE; }
 
-    // Before anything is recorded: the images of a frame, with that of the eye's depth where it will have one and the runtime takes it.
+    // Before anything is recorded: takes an eye's image of this frame, and its depth image if `with_depth` and the runtime takes depth.
     void acquire(int eye, bool with_depth);
-    // Whether alpha goes along, for the room behind the scene.
+    // Whether alpha is kept, to show the room behind the scene.
     void seeThrough(bool see_through) { see_through_ = see_through; }
-    // Between begin and submit of `commands`, with what acquire() took, also more than once. `near` in scene units.
+    // Between begin and submit of `commands`, into the images that acquire() took; may be repeated. `near` in scene units.
     void present(Commands& commands, int eye, const Picture& image, const WarpBuffers* tinted_by, double near);
     void clear(Commands& commands, int eye, const glm::vec4& colour);
-    // After submit: gives back what acquire() took.
+    // After submit: releases what acquire() took.
     void release();
 
-    // What of `eye` was presented in this frame, as a layer shows it.
+    // The part of `eye` that was presented in this frame, for a layer.
     [[nodiscard]] xr::LayerEye layerEye(int eye, const xr::EyeView& view, double near_m) const;
 
 private:
     Presenter& presenter_;
     glm::uvec2 size_px_, part_px_;
     std::array<xr::Swapchain, 2> colour_, depth_;
-    std::array<vk::Image, 2> colour_now_{}, depth_now_{};  // of this frame; null: not taken
+    std::array<vk::Image, 2> colour_now_{}, depth_now_{};  // this frame's; null: not acquired
     std::array<bool, 2> shows_depth_{};
     bool see_through_ = false;
 };

@@ -14,7 +14,7 @@ namespace {
 
 // How often to look whether an unplugged headset is there again.
 constexpr std::chrono::milliseconds kBetweenSearches(200), kPause(5);
-// So often, so far apart, a session is asked for that a headset which was just plugged in again refuses.
+// How often, and how far apart, to ask again for a session that a headset refuses just after it was plugged in.
 constexpr int kMostFailures = 10;
 constexpr std::chrono::milliseconds kBetweenFailures(1000);
 
@@ -64,7 +64,7 @@ HeadsetConnection::Search HeadsetConnection::search(const Say& say) {
         headset_ = std::make_unique<ConnectedHeadset>(instance_, context_, panel_px_);
         failures_ = 0;
     } catch (const Error& error) {
-        // It was found, but is not awake yet.
+        // The headset was found, but is not awake yet.
         if (++failures_ > kMostFailures) { throw; }
         why_lost_ = error.what();
         next_search_ = now + kBetweenFailures;

@@ -15,25 +15,25 @@ class HeadsetConnection {
 public:
     using Say = std::function<void(const std::string&)>;
 
-    // Begins the first one; where that is lost before it is there, waits for the next as ever. `instance` and `context` outlive this;
-    // `panel_px` is the size of the panel's picture. Throws Interrupted as it waits, and what search() throws.
+    // Begins the first session; if that is lost at once, waits for the next as usual. `instance` and `context` outlive this;
+    // `panel_px` is the size of the panel's picture. Throws Interrupted while waiting, and what search() throws.
     HeadsetConnection(xr::Instance& instance, const Context& context, glm::uvec2 panel_px, const Say& say);
 
-    // The present one; null while there is none.
+    // Null while there is none.
     [[nodiscard]] ConnectedHeadset* headset() const { return headset_.get(); }
-    // Of every session's images.
+    // The format of every session's images.
     [[nodiscard]] vk::Format format() const { return format_; }
 
     void showedFrame() { losses_.forget(); }
-    // Waits until the device is done with it. Throws Error (exit code 3) where too many were lost before one showed a frame.
+    // Drops the session once the device is idle. Throws Error (exit code 3) if too many were lost before one showed a frame.
     void lose(const std::string& why);
 
     enum class Search {
         kLater,  // it is too early to look again
         kNone,   // no headset, or one that is not awake yet
-        kFound,  // and a session has begun
+        kFound,  // a session has begun
     };
-    // Throws xr::Lost where that is lost at once, and Error where a headset goes on refusing one.
+    // Throws xr::Lost if that session is lost at once, and Error if the headset keeps refusing one.
     Search search(const Say& say);
 
 private:
@@ -43,9 +43,9 @@ private:
     std::unique_ptr<ConnectedHeadset> headset_;
     vk::Format format_ = vk::Format::eUndefined;
     Losses losses_;     // since a frame was shown
-    int failures_ = 0;  // of sessions that were to come after it, in a row
+    int failures_ = 0;  // in a row, to begin the next session
     std::string why_lost_;
-    bool is_gone_ = false;  // the headset, since then
+    bool is_gone_ = false;  // the headset is gone, and that was said
     std::chrono::steady_clock::time_point next_search_{};
 };
 

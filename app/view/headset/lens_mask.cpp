@@ -11,7 +11,7 @@ namespace binosplat {
 
 namespace {
 
-// Angles, and corners of meshes with them, may shiver by what float32 is exact to; a tenth of a milliradian is less than a pixel of any
+// Angles, and with them the corners of meshes, may jitter by float32 rounding; a tenth of a milliradian is less than a pixel of any
 // headset.
 bool areNear(float a, float b) { return std::abs(a - b) <= 1e-4f; }
 

@@ -9,7 +9,7 @@ class Losses {
 public:
     using Time = std::chrono::steady_clock::time_point;
 
-    // One more at `now`; false: these are too many in a row. One that comes long after another is the first of a row.
+    // One more at `now`; false: too many in a row. A loss long after the previous one begins a new row.
     [[nodiscard]] bool add(Time now) {
         if (count_ > 0 && now - last_ > kLong) { count_ = 0; }
         last_ = now;

@@ -90,7 +90,7 @@ void Canvas::startImGui() {
 }
 
 void Canvas::startBackend() {
-    // Where the backend is compiled without Vulkan's functions of its own.
+    // In case the backend is compiled without Vulkan's prototypes.
     const auto find = [](const char* name, void* context) {
         const Context& my = *static_cast<const Context*>(context);
         return my.instance().getDispatcher()->vkGetInstanceProcAddr(*my.instance(), name);
@@ -118,13 +118,13 @@ void Canvas::startBackend() {
 void Canvas::takeLetters() {
     {
         const std::lock_guard lock(context_.queueMutex());
-        context_.queue().waitIdle();  // frames under way read the letters there were
+        context_.queue().waitIdle();  // frames in flight read the old letters
     }
     ImGui_ImplVulkan_Shutdown();
     descriptors_.reset();
     font_->take();
     startBackend();
-    draw_list_.clear();  // letters may have moved
+    draw_list_.clear();  // the letters' places may have changed
 }
 
 void Canvas::begin(const PanelPointer& pointer, double step_seconds) {

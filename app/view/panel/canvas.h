@@ -1,5 +1,5 @@
-// Dear ImGui on a picture of our own, from where it is copied to a headset's panel or a window. Values are display-encoded: an sRGB image,
-// and a window, show them as they are.
+// Dear ImGui on a picture of our own, which is copied to a headset's panel or a window. Values are display-encoded: an sRGB image or a
+// window shows them as they are.
 #pragma once
 
 #include "app/view/room/panel_pointer.h"
@@ -22,29 +22,29 @@ struct OwnImage {
     vk::raii::Image image{nullptr};
 };
 
-// One at a time: ImGui has one current context. Throws Error (exit code 3) where the queue cannot draw.
+// One at a time: ImGui has one current context. Throws Error (exit code 3) if the queue cannot draw.
 class Canvas {
 public:
-    // `format` is 8-bit RGBA or BGRA; what the canvas is copied to has the same order of channels.
+    // `format` is 8-bit RGBA or BGRA; copy targets have the same order of channels.
     Canvas(const Context& context, glm::uvec2 size_px, vk::Format format);
     Canvas(const Canvas&) = delete;
     Canvas& operator=(const Canvas&) = delete;
     ~Canvas();
 
-    // What it wants before begin() is shown as boxes until takeLetters() has brought it, before another begin(). This waits for the queue.
+    // Letters wanted before begin() are shown as boxes until takeLetters(), between frames, has brought them; that waits for the queue.
     [[nodiscard]] PanelFont& font() const { return *font_; }
     void takeLetters();
     // Widgets are drawn between this and end() or giveUp().
     void begin(const PanelPointer& pointer, double step_seconds);
     void end();
-    // Nothing comes of the widgets, or of what was recorded last.
+    // Discards the widgets and the last recording.
     void giveUp();
-    // Draws, unless the image shows it already; then the canvas may be copied from.
+    // Draws, unless the image is up to date; then the canvas may be copied from.
     void record(Commands& commands);
-    // After record(): the picture in an image of the format that it was made for; as light, where that format is not sRGB.
+    // After record(): the picture in an image of the format that it was made for; as linear light if that format is not sRGB.
     void copyTo(Commands& commands, vk::Image image) const;
 
-    // Of what the image shows once record() has run: another number for another picture, never 0.
+    // The revision that the image shows once record() has run: changes with the picture, never 0.
     [[nodiscard]] std::uint64_t revision() const { return revision_; }
 
     [[nodiscard]] glm::uvec2 sizePx() const { return size_px_; }
@@ -56,7 +56,7 @@ private:
     void startImGui();
     void startBackend();
 
-    // What ImGui draws, to the byte.
+    // ImGui's draw data, byte by byte.
     using DrawList = std::vector<unsigned char>;
     static DrawList drawList();
 
@@ -66,9 +66,9 @@ private:
     DrawList draw_list_;
     std::uint64_t revision_ = 0;
     bool is_new_ = true, is_recorded_ = false;  // of the last end()
-    std::unique_ptr<PanelFont> font_;           // once there is an ImGui context
+    std::unique_ptr<PanelFont> font_;           // needs an ImGui context
     std::optional<OwnImage> picture_;
-    std::optional<OwnImage> encoded_;  // see Commands::decodeImage; none where the copies are raw
+    std::optional<OwnImage> encoded_;  // see Commands::decodeImage; none if copies are raw
     vk::raii::ImageView view_{nullptr};
     vk::raii::RenderPass render_pass_{nullptr};
     vk::raii::Framebuffer framebuffer_{nullptr};

@@ -1,4 +1,4 @@
-// HarfBuzz says which signs stand where, FreeType draws them.
+// HarfBuzz chooses and places the signs, FreeType draws them.
 #include "app/view/panel/formed_words.h"
 
 #include "app/view/panel/unique_of.h"
@@ -33,7 +33,7 @@ public:
         font_.reset(hb_font_create(tables.get()));
     }
 
-    // In units, of lines that are as high as from its ascent to its descent, as ImGui has it; 0: it has none.
+    // In units, for lines as high as from the font's ascent to its descent, like ImGui's; 0: no font.
     [[nodiscard]] int em(float line_px) const {
         const int line_units = face_ ? face_->ascender - face_->descender : 0;
         return line_units <= 0 ? 0
@@ -45,7 +45,7 @@ public:
         if (font_) { hb_font_set_scale(font_.get(), em, em); }
     }
 
-    // From left to right; empty if it lacks one.
+    // From left to right; empty if the font lacks a sign.
     [[nodiscard]] std::vector<PlacedSign> form(const std::u32string& word) const {
         if (!font_) { return {}; }
         const UniqueOf<hb_buffer_t, hb_buffer_destroy> buffer(hb_buffer_create());
@@ -95,7 +95,7 @@ FormedWords formWords(const std::set<std::u32string>& words, std::span<const Loa
     const UniqueOf<FT_LibraryRec_, FT_Done_FreeType> library(begun);
     std::vector<FormingFont> forming;
     for (const LoadedFont& font : fonts) { forming.emplace_back(library.get(), font); }
-    // Fonts with tall letters have high lines, which would make all of them small: they are as large as the first one.
+    // Fonts with tall letters have high lines, which would make all their letters small: all fonts get the first one's em.
     const int em = forming.empty() ? 0 : forming.front().em(line_px);
     if (em == 0) { return formed; }
     for (FormingFont& font : forming) { font.setEm(em); }

@@ -19,7 +19,7 @@ struct LoadedFont {
     std::string bytes;
 };
 
-// What a font draws for a letter or for several, moved to where it belongs in its word.
+// A font's picture of one or several letters, and its place in the word.
 struct FormedSign {
     glm::uvec2 size_px;                   // of its picture, whose pixels are half as wide as the panel's
     std::vector<unsigned char> coverage;  // row by row
@@ -32,8 +32,8 @@ struct FormedWords {
     std::vector<FormedSign> signs;
 };
 
-// Of these words those that one of the fonts has whole, by the first such; at most `most_signs` different signs. Lines of the first are
-// `line_px` high.
+// Forms each word with the first font that has all of it; words that none has are left out. At most `most_signs` different signs. The first
+// font's lines are `line_px` high.
 FormedWords formWords(const std::set<std::u32string>& words, std::span<const LoadedFont> fonts, float line_px, std::size_t most_signs);
 
 }  // namespace binosplat

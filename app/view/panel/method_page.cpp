@@ -1,4 +1,4 @@
-// All methods and what they take.
+// All methods and their costs.
 #include "app/options/option_table.h"
 #include "app/report/report.h"
 #include "app/view/panel/panel_pages.h"
@@ -31,7 +31,7 @@ void choose(PanelWidgets& widgets, const char* label, const OptionRow<Owner>& ro
     choose(widgets, label, row, row.field.choices, owner, per_row);
 }
 
-// What the table says of a number; more than a slider has is for the command line.
+// The table's range of a number; values beyond the slider are for the command line.
 struct SliderRange {
     double least, most;
 };
@@ -76,7 +76,7 @@ void drawMethod(PanelWidgets& widgets, ViewSettings& settings, Order usual_order
     settings.stereo = stereo;
 }
 
-// The images are made anew for another resolution, so it changes once the slider is let go.
+// Another resolution needs new images, so it changes once the slider is released.
 void drawResolution(PanelWidgets& widgets, ViewSettings& settings) {
     const SliderRange scales = sliderOf(*findViewRow("resolution-scale"));
     ImGuiStorage* storage = ImGui::GetStateStorage();
@@ -99,7 +99,7 @@ void drawTimes(const PanelStatus& status) {
     const std::vector<float>& times = status.frame_ms;
     const float last = times.empty() ? 0.0f : times.back();
     const std::string label = last > 0.0f ? fmt::format("{:.1f} ms, {:.0f} frames/s", last, 1000.0f / last) : "";
-    // A first frame that makes its kernels does not press the others flat.
+    // A slow first frame, which compiles kernels, must not flatten the others.
     std::vector<float> sorted = times;
     std::ranges::sort(sorted);
     const float highest = sorted.empty() ? 0.0f : 2.0f * sorted[sorted.size() / 2];
@@ -129,7 +129,7 @@ void drawFiles(PanelWidgets& widgets, ViewSettings& settings, bool can_reload_sh
     requests.reload_shaders = widgets.button("Shaders");
 }
 
-// What is known of the scene, and the time of each pass.
+// Facts about the scene.
 void drawFacts(const PanelStatus& status) {
     const float width = ImGui::GetContentRegionAvail().x;
     for (const auto& [name, value] : status.facts) {

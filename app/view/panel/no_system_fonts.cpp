@@ -1,4 +1,4 @@
-// Where the system does not tell which fonts have which letters, and nobody forms words of them.
+// For systems that do not tell which fonts have which letters, and without shaping of words.
 #include "app/view/panel/formed_words.h"
 
 namespace binosplat {

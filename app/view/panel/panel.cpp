@@ -10,7 +10,7 @@ namespace binosplat {
 namespace {
 
 constexpr std::size_t kPlottedFrames = 120;
-// How long the times of a frame are shown. The panel is drawn only when it changes.
+// How long a frame's times are shown. The panel is drawn only when it changes.
 constexpr double kTimesSeconds = 0.25;
 
 }  // namespace
@@ -55,12 +55,12 @@ void Panel::askFor(FileWorker& files, const ViewSettings& settings) {
 
 PanelRequests Panel::layOut(ConnectedHeadset* hung, const PanelPointer& mouse, bool uses_mouse, const ViewSettings& settings,
                             double step_seconds) {
-    // A mouse that lies still is nobody's wish while a hand points, and one that is pushed takes no button from a hand that holds it.
+    // A mouse at rest does not count while a hand points, and a moving one takes over only once the hand has released the trigger.
     const PanelPointer& hand = in_room_.pointer();
     const bool mouse_pointed = mouse_points_;
     mouse_points_ = hung != nullptr && hand.place_px ? uses_mouse && !hand.pressed : mouse_points_ || uses_mouse;
     PanelPointer pointer = mouse_points_ ? mouse : hand;
-    if (mouse_points_ != mouse_pointed) { pointer.pressed = false; }  // what one of them drags the other does not take along
+    if (mouse_points_ != mouse_pointed) { pointer.pressed = false; }  // the other one must not continue a drag
     canvas_.begin(pointer, step_seconds);
     PanelRequests requests = drawPanel(kPanelPx, settings, chooser_, status_);
     canvas_.end();

@@ -14,9 +14,9 @@ namespace binosplat {
 
 namespace {
 
-constexpr float kTabsShare = 0.64f, kFourTabsShare = 0.78f;  // of the width; Quit stands at the right, away from what is pressed often
+constexpr float kTabsShare = 0.64f, kFourTabsShare = 0.78f;  // of the width; Quit is at the right, away from what is pressed often
 
-// Which page is shown; each is drawn anew when it is asked for.
+// Chooses the page; the list of scenes is refreshed when its page is opened.
 void drawTabs(PanelWidgets& widgets, ViewSettings& settings, SceneChooser& chooser, const PanelStatus& status) {
     static constexpr std::array kTabs{"View", "Scenes", "Method", "Time"};
     const std::span<const char* const> tabs(kTabs.data(), status.time ? 4u : 3u);
@@ -85,7 +85,7 @@ PanelRequests drawPanel(glm::uvec2 size_px, const ViewSettings& current, SceneCh
     } else {
         drawMethodPage(widgets, settings, status, requests);
     }
-    // The ray's end.
+    // The end of the ray.
     if (ImGui::IsMousePosValid()) {
         ImGui::GetForegroundDrawList()->AddCircleFilled(ImGui::GetIO().MousePos, 6.0f, IM_COL32(255, 220, 80, 255));
     }

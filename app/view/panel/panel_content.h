@@ -17,47 +17,47 @@
 
 namespace binosplat {
 
-// How the scene lies about the wearer.
+// How the scene is placed around the wearer.
 struct ShownPlace {
-    double size_m = 0.0;              // of the scene as it is shown, along its longest side; 0: unknown
-    double growth = 1.0;              // times as large as it is
-    double eyes_m = 0.0;              // the eyes' height over the scene's floor or, where that is unknown, over where they began
-    bool has_floor = false;           // it is known
+    double size_m = 0.0;              // of the scene as shown, along its longest side; 0: unknown
+    double growth = 1.0;              // times its true size
+    double eyes_m = 0.0;              // the eyes' height above the scene's floor or, if that is unknown, above their start
+    bool has_floor = false;           // the floor is known
     std::optional<std::size_t> view;  // the viewpoint gone to last
 };
 
-// What of the pictures reaches the eyes.
+// The rate and resolution that reach the eyes.
 struct ShownRate {
     double met_hz = 0.0, display_hz = 0.0;  // displays that had a new picture, and all; 0: not known yet
     double resolution = 1.0;                // each way, of what the headset recommends
-    std::optional<double> budget;           // how much of the pictures is rendered again at most, where the method has such a share
-    bool is_beaten = false;                 // the rate is to be held, and nothing that may be given up is enough
+    std::optional<double> budget;           // the most that is rendered again, if the method has a budget
+    bool is_beaten = false;                 // the rate cannot be held even with the least settings
 };
 
-// Of a scene that moves.
+// The time of a scene that moves.
 struct ShownTime {
     std::size_t frame = 0, frames = 1;
     double rate_hz = 1.0;
     bool plays = true;
-    std::uint64_t late = 0;  // frames that were not there in time
+    std::uint64_t late = 0;  // frames that were not loaded in time
 };
 
-// What the panel shows.
+// The panel's content.
 struct PanelStatus {
     std::string scene;
-    std::string state;                                       // why the headset shows nothing; empty: it does
+    std::string state;                                       // why the headset shows nothing; empty: it shows something
     bool has_scene = false;                                  // there is something to see
-    Order usual_order = Order::kDepth;                       // the scene's, where nobody chose one
+    Order usual_order = Order::kDepth;                       // the scene's, unless the wearer chooses one
     std::optional<double> loading;                           // share done, while a scene is on its way
     const FrameResult* frame = nullptr;                      // the last one; null before the first
-    std::vector<float> frame_ms;                             // from frame to frame by the clock on the wall, oldest first
-    std::string governor;                                    // what it does about the frame rate, and why
-    std::string message;                                     // what came of the last button
-    std::string files;                                       // what of them is read or written beside the frames; empty: nothing
-    bool can_reload_shaders = false;                         // whether there is a button for it
-    bool can_pass_through = false;                           // likewise
-    std::vector<ToolChoice> tools;                           // what they let the wearer choose
-    std::vector<double> refresh_rates;                       // that the headset can be asked for; where there are any, a row of them
+    std::vector<float> frame_ms;                             // wall-clock time from frame to frame, oldest first
+    std::string governor;                                    // what the governor does about the frame rate, and why
+    std::string message;                                     // the outcome of the last button
+    std::string files;                                       // the file task beside the frames; empty: none
+    bool can_reload_shaders = false;                         // there is a button for it
+    bool can_pass_through = false;                           // there is a box for it
+    std::vector<ToolChoice> tools;                           // the tools' choices for the wearer
+    std::vector<double> refresh_rates;                       // that the headset offers; if any, shown as a row
     std::vector<std::pair<std::string, std::string>> facts;  // of the scene, see describeFacts
     ShownPlace place;
     ShownRate rate;
@@ -67,25 +67,25 @@ struct PanelStatus {
     const PicturePlaces* pictures = nullptr;  // of scenes, in the font's texture; null: none
 };
 
-// What was asked for.
+// What the wearer asked for.
 struct PanelRequests {
     bool save = false, load = false, reset_scene = false, quit = false, reload_shaders = false, recentre = false, level_scene = false,
          take_picture = false, natural_size = false, keep_viewpoint = false, last_scene = false, play = false;
-    double growth = 1.0;               // of the scene about the wearer's feet
+    double growth = 1.0;               // of the scene, around the wearer's feet
     double rise_m = 0.0;               // of the wearer
-    int scene_step = 0;                // to the scene before or after
-    int viewpoint_step = 0;            // to the viewpoint before or after
+    int scene_step = 0;                // to the previous or next scene
+    int viewpoint_step = 0;            // to the previous or next viewpoint
     int frame_step = 0;                // of a scene that moves
     std::optional<std::size_t> frame;  // to go to
     std::string chosen_scene;          // empty: none
-    std::string favourite;             // a scene that is to become a favourite, or to be none any more; empty: none
+    std::string favourite;             // a scene to mark as favourite, or to unmark; empty: none
     WidgetPlaces places;               // of what was drawn
-    ViewSettings settings;             // as they are to be from now on
+    ViewSettings settings;             // as they should be from now on
 };
 
-// All that a canvas shows of names and messages, a line each; see PanelFont::want.
+// All names and messages on the canvas, a line each; see PanelFont::want.
 std::string namesOn(const ViewSettings& settings, const SceneChooser& chooser, const PanelStatus& status);
-// Likewise the pictures.
+// All pictures on it.
 std::vector<ScenePicture> picturesOn(const ViewSettings& settings, const SceneChooser& chooser);
 
 // Draws the widgets that fill a canvas of `size_px`, between Canvas::begin and record. Changes `chooser` as the wearer does.

@@ -1,4 +1,4 @@
-// ImGui's atlas of letters, made anew when there are more.
+// ImGui's atlas of letters, rebuilt when there are more.
 #include "app/view/panel/panel_font.h"
 
 #include "engine/error.h"
@@ -22,13 +22,13 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr ImWchar kBox = 0x25a1;
-// Latin with all its marks (also those that stand alone, as some systems write names), Greek, Cyrillic, punctuation, currencies, the box,
+// Latin with all its marks (also combining ones, which some systems use in names), Greek, Cyrillic, punctuation, currencies, the box,
 // stars.
 constexpr std::array<ImWchar, 17> kRanges{0x0020, 0x024f, 0x0300, 0x052f, 0x1e00, 0x1fff, 0x2010, 0x205e, 0x20a0,
                                           0x20bf, 0x2190, 0x2193, kBox,   kBox,   0x2605, 0x2606, 0};
-// Fonts of all of Unicode take 20 MB.
+// Fonts with all of Unicode take 20 MB.
 constexpr std::size_t kMostFontBytes = std::size_t{64} << 20;
-// With them the atlas stays below 4096x2048, which every device can sample.
+// With these limits the atlas stays below 4096x2048, which every device can sample.
 constexpr std::size_t kMostAdded = 3000, kMostSigns = 1500;
 constexpr std::size_t kMostPictures = 48, kMostWords = 400;
 
@@ -45,7 +45,7 @@ std::uint64_t numberAt(std::span<const unsigned char> bytes, std::size_t at, std
     return number;
 }
 
-// Its bytes, or why there are none.
+// A font's bytes, or why there are none.
 std::string readFont(const fs::path& file, std::string& complaint) {
     try {
         std::string bytes = readTextFile(file, "a TrueType font", kMostFontBytes);
@@ -55,11 +55,11 @@ std::string readFont(const fs::path& file, std::string& complaint) {
     return {};
 }
 
-// What else lies in the atlas.
+// A picture in the atlas besides the letters.
 struct AtlasPicture {
     glm::uvec2 size_px;
     std::vector<unsigned char> rgba;
-    std::function<void(ImFont& font, const ImVec2& low, const ImVec2& high)> use;  // by where it lies, in shares of the texture
+    std::function<void(ImFont& font, const ImVec2& low, const ImVec2& high)> use;  // takes its corners, in shares of the texture
 };
 
 void drawPictures(ImFontAtlas& atlas, std::span<const AtlasPicture> pictures, int first_rect) {
@@ -80,7 +80,7 @@ void drawPictures(ImFontAtlas& atlas, std::span<const AtlasPicture> pictures, in
     }
 }
 
-// With the letters of the beginning and those added, each from the first font that has it. False, and an empty atlas: one is none.
+// With the initial letters and those added, each from the first font that has it. False, and an empty atlas, if one is not a font.
 bool buildAtlas(ImFontAtlas& atlas, std::span<const LoadedFont> fonts, const std::set<ImWchar>& added,
                 std::span<const AtlasPicture> pictures = {}) {
     atlas.Clear();
@@ -104,7 +104,7 @@ bool buildAtlas(ImFontAtlas& atlas, std::span<const LoadedFont> fonts, const std
         return false;
     }
     drawPictures(atlas, pictures, first_rect);
-    // The fonts' bytes are not asked for again, nor where what else is there lies.
+    // Neither the fonts' bytes nor the pictures' places are needed again.
     atlas.ClearInputData();
     atlas.Fonts[0]->FallbackChar = kBox;
     atlas.Fonts[0]->BuildLookupTable();
@@ -209,7 +209,7 @@ bool PanelFont::want(std::string_view text, const std::vector<ScenePicture>& pic
 }
 
 void PanelFont::build() {
-    // They are large, and only now needed.
+    // Fonts are large, and only needed now.
     std::set<std::uint32_t> letters(added_.begin(), added_.end());
     for (const std::u32string& word : words_) { letters.insert(word.begin(), word.end()); }
     std::vector<SystemFont> wanted = fontsWith(letters);
@@ -247,7 +247,7 @@ void PanelFont::take() {
     if (!built_) { return; }
     places_ = std::exchange(built_places_, {});
     forms_ = std::exchange(built_forms_, {});
-    // The context owns the font that it has.
+    // The context owns its current atlas.
     ImGuiIO& io = ImGui::GetIO();
     IM_DELETE(std::exchange(io.Fonts, built_.release()));
     io.UserData = &forms_;

@@ -5,17 +5,17 @@
 
 namespace binosplat {
 
-// For whoever wears the headset: how sharp and how smooth, where one stands, how large the scene is, how one moves.
+// For wearers: sharpness and smoothness, place, size of the scene, and ways to move.
 void drawViewPage(PanelWidgets& widgets, ViewSettings& settings, const PanelStatus& status, PanelRequests& requests);
-// Which scene, and from where.
+// Choice of scene and viewpoint.
 void drawScenesPage(PanelWidgets& widgets, SceneChooser& chooser, const PanelStatus& status, PanelRequests& requests);
-// For whoever studies how the pictures are made, and what they take.
+// For those who study how the pictures are made, and at what cost.
 void drawMethodPage(PanelWidgets& widgets, ViewSettings& settings, const PanelStatus& status, PanelRequests& requests);
 
-// Of a scene that moves, while status.time has a value.
+// For a scene that moves, while status.time has a value.
 void drawTimePage(PanelWidgets& widgets, const PanelStatus& status, PanelRequests& requests);
 
-// What came of what was done, and what goes on; it may take several lines, and moves nothing that is pointed at.
+// Outcomes and work in progress, below all buttons since it may take several lines.
 void drawSaid(const PanelStatus& status);
 
 }  // namespace binosplat

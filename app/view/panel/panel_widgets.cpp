@@ -46,7 +46,7 @@ std::optional<std::string_view> PanelWidgets::chooseFrom(const char* label, std:
                ImGui::CalcTextSize(name.data(), name.data() + name.size()).x;
     };
     const float column = (1.0f - kLabelShare) * width / static_cast<float>(per_row);
-    // One row whose words are too long for columns of one width has gaps of one width.
+    // If words are too long for equal columns, they get equal gaps.
     const bool has_columns = std::ranges::all_of(names, [&](std::string_view name) { return widthOf(name) < column; });
     float used = 0.0f;
     for (const std::string_view name : names) { used += widthOf(name); }
@@ -70,7 +70,7 @@ std::optional<std::string_view> PanelWidgets::chooseFrom(const char* label, std:
 
 bool PanelWidgets::entry(const std::string& name, const std::string& about, const std::string& trouble, const glm::vec2& size_px,
                          float indent_px) {
-    // ImGui takes ## in a label for the beginning of what is not shown: the text is drawn by itself, on a button without any.
+    // ImGui does not show what follows ## in a label: the text is drawn by itself, on a button without text.
     ImGui::PushID(name.c_str());
     ImGui::BeginDisabled(!trouble.empty());
     const bool pressed = ImGui::Button("##entry", ImVec2(size_px.x, size_px.y));
@@ -108,7 +108,7 @@ void writeLine(const std::string& line) { ImGui::TextUnformatted(line.c_str()); 
 std::string endOf(std::string line) {
     const float room = ImGui::GetContentRegionAvail().x;
     if (ImGui::CalcTextSize(line.c_str()).x <= room) { return line; }
-    // A letter's first byte, not one of those that continue it.
+    // A letter's first byte, not a continuation byte.
     const auto begins = [](char byte) { return (static_cast<unsigned char>(byte) & 0xc0) != 0x80; };
     while (!line.empty() && ImGui::CalcTextSize(("..." + line).c_str()).x > room) {
         line.erase(0, 1);
@@ -118,7 +118,7 @@ std::string endOf(std::string line) {
 }
 
 void writeWrapped(std::string_view text) {
-    // Lines first: what is read from right to left begins on the first of them.
+    // Split into lines first: text read from right to left begins on the first line.
     const std::string clean = withoutControls(text);
     const float width = ImGui::GetContentRegionAvail().x;
     std::string shown;

@@ -46,7 +46,7 @@ void SceneChooser::goUp() {
 
 void SceneChooser::refresh(const std::string& scene) {
     if (isNew()) { return showFolder(folderOf(scene)); }
-    want();  // what is seen stays until then
+    want();  // the old list stays until the new one is there
 }
 
 void SceneChooser::turn(int pages) {
@@ -57,7 +57,7 @@ void SceneChooser::turn(int pages) {
 std::string SceneChooser::open(const SceneEntry& entry) {
     if (!entry.trouble.empty()) { return {}; }
     if (!entry.is_folder) { return entry.place; }
-    showFolder(std::string(entry.place));  // `entry` goes with the list
+    showFolder(std::string(entry.place));  // a copy, since `entry` goes with the list
     return {};
 }
 

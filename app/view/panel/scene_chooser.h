@@ -1,4 +1,4 @@
-// Looking for a scene on the panel: which folder is open, which part of it is shown. It reads no folder itself, see takeWish().
+// Looking for a scene on the panel: the open folder, and the part of it that is shown. It reads no folders itself, see takeWish().
 #pragma once
 
 #include "app/view/scenes/scene_list.h"
@@ -11,16 +11,16 @@
 
 namespace binosplat {
 
-// A list that somebody wants to see.
+// A request for a list.
 struct SceneListWish {
-    bool recent = false;       // the scenes that were shown last; otherwise
+    bool recent = false;       // the scenes shown last; otherwise
     std::string folder;        // see listFolder
-    std::uint64_t number = 0;  // the latest one counts
+    std::uint64_t number = 0;  // only the latest one counts
 
     [[nodiscard]] const char* name() const { return recent ? "the recent scenes" : folder.c_str(); }
 };
 
-// On any thread: reads folders, and opens what lies in them.
+// On any thread: reads folders, and opens files in them.
 SceneList makeSceneList(const SceneListWish& wish);
 
 class SceneChooser {
@@ -31,19 +31,19 @@ public:
     void showFolder(const std::string& folder);
     void showRecent() { showAnother(true, "Recent scenes"); }
     void goUp();
-    // Looks again where it looked last; the first time where `scene` lies.
+    // Looks again where it looked last; the first time in the folder of `scene`.
     void refresh(const std::string& scene);
-    // Nothing was looked at yet.
+    // True if nothing was looked at yet.
     [[nodiscard]] bool isNew() const { return !wish_.recent && wish_.folder.empty(); }
-    // The next kRows entries, or those before.
+    // Turns `pages` pages of kRows entries on or, below 0, back.
     void turn(int pages);
-    // Looks into an entry of the list that is a folder; the place of a scene to load, else empty.
+    // Looks into an entry that is a folder; returns the place of a scene to load, otherwise empty.
     [[nodiscard]] std::string open(const SceneEntry& entry);
 
-    // The list that it wants to see, once; show() brings it.
+    // The list that it wants, once; answer with show().
     [[nodiscard]] std::optional<SceneListWish> takeWish();
     void show(SceneList list, const SceneListWish& wish);
-    // Until then.
+    // True until the list is there.
     [[nodiscard]] bool isReading() const { return is_reading_; }
 
     [[nodiscard]] const SceneList& list() const { return list_; }
@@ -56,7 +56,7 @@ private:
     void want();
 
     SceneList list_;
-    SceneListWish wish_;  // the latest; its folder is the one that was looked into last, if any was
+    SceneListWish wish_;  // the latest; its folder is the one looked into last, if any
     bool is_reading_ = false, is_wish_new_ = false;
     std::size_t page_ = 0;
 };

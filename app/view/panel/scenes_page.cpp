@@ -1,4 +1,4 @@
-// A browser of folders, with pictures of what was seen before, and the viewpoints of the scene that is shown.
+// A browser of folders, with pictures of scenes seen before, and the viewpoints of the current scene.
 #include "app/view/panel/panel_pages.h"
 #include "app/view/panel/panel_style.h"
 #include "app/view/panel/shown_text.h"
@@ -48,7 +48,7 @@ void drawPicture(const SceneEntry& entry, const ImVec2& low, const PicturePlaces
 }
 
 void drawEntries(PanelWidgets& widgets, SceneChooser& chooser, const PicturePlaces* places, PanelRequests& requests) {
-    // As many lines as there may be entries, so that what is below stays where it is.
+    // Always room for kRows entries, so that the widgets below stay in place.
     const float rows = static_cast<float>(SceneChooser::kRows) * (kRowPx + ImGui::GetStyle().ItemSpacing.y);
     ImGui::BeginChild("scenes", ImVec2(0.0f, rows + ImGui::GetTextLineHeightWithSpacing()));
     writeLine(endOf(asShown(chooser.list().title)));

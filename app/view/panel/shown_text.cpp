@@ -1,4 +1,4 @@
-// By FriBidi, which wants its letters in 32 bits.
+// Uses FriBidi, which takes letters of 32 bits.
 #include "app/view/panel/shown_text.h"
 
 #include <fribidi.h>
@@ -15,20 +15,20 @@ namespace {
 
 constexpr std::string_view kReplacement = "\xef\xbf\xbd";  // U+FFFD, which is shown as a box
 
-// Hebrew, U+0590, begins the letters that are read from right to left, and those that change with others.
+// Letters that are read from right to left, or change with their neighbours, begin with Hebrew, U+0590.
 bool mayChange(std::string_view text) {
     return std::ranges::any_of(text, [](char byte) { return static_cast<unsigned char>(byte) >= 0xd6; });
 }
 
-// The scripts from Hebrew to Burmese, Korean in parts, the rest of South and South-East Asia, and what lies beyond the 16 bits that ImGui
-// has for a letter.
+// The scripts from Hebrew to Burmese, Korean in parts, the rest of South and South-East Asia, and letters beyond the 16 bits of
+// ImGui's.
 bool isOfWord(char32_t letter) {
     constexpr std::array<std::pair<char32_t, char32_t>, 4> kScripts{
         {{0x0590, 0x11ff}, {0x1700, 0x1cff}, {0xa800, 0xabff}, {0x10000, 0x10ffff}}};
     return std::ranges::any_of(kScripts, [&](const auto& range) { return letter >= range.first && letter <= range.second; });
 }
 
-// What joins letters, keeps them apart or chooses between their forms.
+// Also signs that join letters, keep them apart or choose between their forms.
 bool isWithinWord(char32_t letter) {
     return isOfWord(letter) || letter == 0x200c || letter == 0x200d || (letter >= 0x0300 && letter <= 0x036f) ||
            (letter >= 0xfe00 && letter <= 0xfe0f);
@@ -39,7 +39,7 @@ std::u32string lettersOf(std::string_view text) {
     for (const char *at = text.data(), *const end = at + text.size(); at < end;) {
         unsigned int letter = 0;
         const int bytes = std::max(ImTextCharFromUtf8(&letter, at, end), 1);
-        if (bytes == 4) {  // which ImGui knows the length of, and no more
+        if (bytes == 4) {  // ImGui knows only the length of these
             const auto bits = [&](int i) { return static_cast<unsigned>(static_cast<unsigned char>(at[i])) & 0x3fu; };
             const auto continues = [&](int i) { return (static_cast<unsigned char>(at[i]) & 0xc0) == 0x80; };
             const unsigned whole = (bits(0) & 7u) << 18 | bits(1) << 12 | bits(2) << 6 | bits(3);
@@ -52,7 +52,7 @@ std::u32string lettersOf(std::string_view text) {
     return letters;
 }
 
-// Calls `use` with where each word begins and ends.
+// Calls `use` with the begin and end of each word.
 template <typename Use>
 void forEachWord(const std::u32string& letters, const Use& use) {
     for (auto at = letters.begin(); (at = std::find_if(at, letters.end(), isOfWord)) != letters.end();) {
@@ -72,7 +72,7 @@ std::string changed(const std::string& text) {
     const std::u32string letters = lettersOf(text);
     const std::vector<FriBidiChar> read(letters.begin(), letters.end());
     std::vector<FriBidiChar> seen(letters.size() + 1);
-    std::vector<FriBidiStrIndex> places(letters.size() + 1);  // of what is seen, in what is read
+    std::vector<FriBidiStrIndex> places(letters.size() + 1);  // of the letters seen, among those read
     FriBidiParType base = FRIBIDI_PAR_LTR;                    // a path, or a sentence in English
     if (fribidi_log2vis(read.data(), static_cast<FriBidiStrIndex>(read.size()), &base, seen.data(), nullptr, places.data(), nullptr) == 0) {
         return text;
@@ -88,7 +88,7 @@ std::string changed(const std::string& text) {
     const std::u32string* before = nullptr;
     for (std::size_t i = 0; i < letters.size(); ++i) {
         const std::u32string* const form = forms_at[static_cast<std::size_t>(places[i])];
-        if (form == nullptr && seen[i] != FRIBIDI_CHAR_FILL) { append(shown, seen[i]); }  // that: what is left of letters that became one
+        if (form == nullptr && seen[i] != FRIBIDI_CHAR_FILL) { append(shown, seen[i]); }  // fill: left over from letters that became one
         if (form != nullptr && form != before) {
             for (const char32_t letter : *form) { append(shown, letter); }
         }

@@ -8,19 +8,19 @@
 
 namespace binosplat {
 
-// Letters of nobody's script, which stand for signs that a font has formed: ImGui draws letters alone.
+// Private-use letters, which stand for signs that a font has formed: ImGui draws only letters.
 inline constexpr char32_t kFirstPrivate = 0xe000, kLastPrivate = 0xf8ff;
 
 // Words of scripts in which letters change with those beside them, and the private letters that stand for them, from left to right.
 using WordForms = std::map<std::u32string, std::u32string>;
 
-// UTF-8 from left to right, as ImGui draws it, of text that may hold anything: control characters and private letters become boxes, words
-// of Hebrew and Arabic are turned round (Unicode's bidirectional algorithm, by FriBidi), and words that the current ImGui context has forms
-// of (WordForms, its UserData) take these; of others Arabic letters are joined at least.
+// Any text as UTF-8 from left to right, as ImGui draws it: control characters and private letters become boxes, words of Hebrew and Arabic
+// are reversed (Unicode's bidirectional algorithm, by FriBidi), and words for which the current ImGui context has forms (WordForms, its
+// UserData) take these; in other words Arabic letters are at least joined.
 std::string asShown(std::string_view text);
-// Without control characters alone.
+// Only replaces control characters by boxes.
 std::string withoutControls(std::string_view text);
-// The words of such scripts.
+// The text's words in scripts that need forms.
 std::set<std::u32string> wordsToForm(std::string_view text);
 
 }  // namespace binosplat

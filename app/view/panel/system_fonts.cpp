@@ -1,4 +1,4 @@
-// By fontconfig.
+// Uses fontconfig.
 #include "app/view/panel/system_fonts.h"
 
 #include "app/view/panel/unique_of.h"
@@ -19,7 +19,7 @@ bool isTrue(FcPattern* font, const char* property) {
     return FcPatternGetBool(font, property, 0, &value) == FcResultMatch && value == FcTrue;
 }
 
-// ImGui's reader of fonts knows outlines of one shape and one colour.
+// ImGui's font reader knows only plain outlines: no colours and no variable fonts.
 bool isReadable(FcPattern* font) { return isTrue(font, FC_OUTLINE) && !isTrue(font, FC_COLOR) && !isTrue(font, FC_VARIABLE); }
 
 }  // namespace

@@ -8,14 +8,14 @@
 
 namespace binosplat {
 
-// A font of a file; of a collection the one with this number.
+// A font in a file; in a collection, the one with this number.
 struct SystemFont {
     std::filesystem::path file;
     int number = 0;
 };
 
-// As few as have as many of these letters (Unicode) as any do, the user's favourite ones first. Reads what the system knows of its fonts,
-// and no font.
+// A short list of fonts that together have all of these letters (Unicode) that any font has, the user's preferred ones first. Reads only
+// the system's index of fonts, not the fonts.
 std::vector<SystemFont> fontsWith(const std::set<std::uint32_t>& letters);
 
 }  // namespace binosplat

@@ -1,4 +1,4 @@
-// What a library hands out, given back by its own function.
+// Owns a library's object, and releases it with the library's own function.
 #pragma once
 
 #include <memory>

@@ -14,11 +14,11 @@ namespace binosplat {
 namespace {
 
 constexpr float kTextShare = 0.46f;  // of a line, for words before buttons
-// In one row; headsets have up to five, and more are for the command line.
+// In one row; headsets offer up to five, and more are for the command line.
 constexpr std::size_t kMostRates = 5;
 constexpr double kGrowthStep = 1.25, kRiseStepMetres = 0.1;
 
-// Words on the left of a row of buttons of this height.
+// Words to the left of a row of buttons of this height.
 void writeBefore(const std::string& words, float height_px) {
     const float y = ImGui::GetCursorPosY(), x = ImGui::GetCursorPosX();
     ImGui::SetCursorPosY(y + 0.5f * (height_px - ImGui::GetTextLineHeight()));
@@ -27,7 +27,7 @@ void writeBefore(const std::string& words, float height_px) {
     ImGui::SetCursorPosY(y);
 }
 
-// What the eyes get, in plain words.
+// Rate and resolution, in plain words.
 std::string describeRate(const ShownRate& rate, Quality quality) {
     const std::string resolution = fmt::format("resolution {:.0f} %", 100.0 * rate.resolution);
     if (!(rate.display_hz > 0.0)) { return resolution; }
@@ -80,7 +80,7 @@ void drawPlace(PanelWidgets& widgets, const ShownPlace& place, PanelRequests& re
     if (height) { requests.rise_m = *height == 0 ? -kRiseStepMetres : kRiseStepMetres; }
 }
 
-// One of a few, after a word.
+// Some words, and a choice of one of a few names.
 template <typename Chosen, std::size_t kCount>
 void choose(PanelWidgets& widgets, const char* words, const std::array<const char*, kCount>& names, Chosen& chosen) {
     writeBefore(words, kTargetPx);
@@ -108,7 +108,7 @@ void drawMoving(PanelWidgets& widgets, ViewSettings& settings, const std::vector
     if (can_pass_through) { tick("Passthrough", settings.passthrough); }
 }
 
-// The headset's; nothing where it cannot be asked for any.
+// The headset's refresh rates; nothing if it offers none.
 void drawRates(PanelWidgets& widgets, ViewSettings& settings, const std::vector<double>& rates_hz) {
     if (rates_hz.empty()) { return; }
     const std::size_t shown = std::min(rates_hz.size(), kMostRates);
@@ -117,7 +117,7 @@ void drawRates(PanelWidgets& widgets, ViewSettings& settings, const std::vector<
     std::optional<std::size_t> chosen;
     if (settings.refresh_rate == 0.0) { chosen = 0; }
     for (std::size_t i = 0; i < shown; ++i) {
-        // As people write them: 72 for 71.999. What is shown alike, as 59.94 and 60 are, has a name of its own for ImGui.
+        // As people write them: 72 for 71.999. Rates that look alike, such as 59.94 and 60, get different names for ImGui.
         const std::string hz = fmt::format("{:.0f} Hz", rates_hz[i]);
         words.push_back(std::ranges::find(words, hz) == words.end() ? hz : fmt::format("{}##{}", hz, i));
         if (std::abs(settings.refresh_rate - rates_hz[i]) < 0.5) { chosen = i + 1; }

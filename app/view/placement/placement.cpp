@@ -1,4 +1,4 @@
-// Placing the scene about the wearer.
+// Placing the scene around the wearer.
 #include "app/view/placement/placement.h"
 
 #include <algorithm>
@@ -9,36 +9,36 @@ namespace binosplat {
 namespace {
 
 const glm::dvec3 kDown(0.0, 1.0, 0.0);
-// Hands nearer to one another than this say nothing about size, and level ones nearer than this nothing about direction.
+// Hands closer together than this tell nothing about size; if their horizontal distance is less, nothing about direction.
 constexpr double kLeastSpanMetres = 0.02;
 constexpr double kLeastScale = 1e-6, kMostScale = 1e6;
 
-// About the vertical; x turns towards z.
+// About the vertical; a positive turn is to the right.
 glm::dquat turnAboutDown(double angle_rad) { return glm::angleAxis(angle_rad, kDown); }
 
-// `turn` and `growth` make the room as it was of the room as it is, in which `about` stays.
+// `turn` and `growth` take the new room to the old one; `about` stays in place.
 Similarity turnedAndGrown(const Similarity& scene_from_room, const glm::dquat& turn, double growth, const glm::dvec3& about) {
     return compose(scene_from_room, {turn, about - growth * (turn * about), growth});
 }
 
-// The shortest one that brings `from` to the direction of `to`.
+// The shortest turn that brings `from` to the direction of `to`.
 glm::dquat turnBetween(const glm::dvec3& from, const glm::dvec3& to) {
     const glm::dvec3 a = glm::normalize(from), b = glm::normalize(to);
     const double cosine = glm::dot(a, b);
     if (cosine > -0.999999) { return glm::normalize(glm::dquat(1.0 + cosine, glm::cross(a, b))); }
-    // Half a turn, about any axis across.
+    // Half a turn, about any perpendicular axis.
     const glm::dvec3 across = glm::cross(a, std::abs(a.x) < 0.7 ? glm::dvec3(1.0, 0.0, 0.0) : glm::dvec3(0.0, 0.0, 1.0));
     return glm::angleAxis(3.14159265358979323846, glm::normalize(across));
 }
 
-// Of a level direction: 0 ahead, positive to the right.
+// Of a horizontal direction: 0 ahead, positive to the right.
 double headingOf(const glm::dvec3& direction) { return std::atan2(direction.x, direction.z); }
 
 }  // namespace
 
 Similarity startPlacement(const View& view, double metres_per_unit) {
     const Pose looking = lookAt(view.eye, view.look, view.up);
-    // The wearer stands upright: gravity is against `up`, whatever the view's tilt.
+    // The wearer stands upright: gravity is opposite to `up`, whatever the view's tilt.
     const glm::dvec3 up = glm::normalize(view.up), forward = view.look - view.eye;
     const glm::dvec3 level = forward - glm::dot(forward, up) * up;
     return {lookAt(glm::dvec3(0.0), glm::length(level) > 0.0 ? level : looking.orientation * glm::dvec3(0.0, 0.0, 1.0), up).orientation,
@@ -78,7 +78,7 @@ Similarity heldBy(const Similarity& scene_from_room, const std::array<glm::dvec3
     double growth = has_size ? glm::length(span_from) / glm::length(span_to) : 1.0;
     const double turn = areApart(level(span_from), level(span_to)) ? headingOf(span_from) - headingOf(span_to) : 0.0;
     growth = std::clamp(scene_from_room.scale * growth, kLeastScale, kMostScale) / scene_from_room.scale;
-    // The room as it was, seen from the room as it is: `to` must lie where `from` lay.
+    // From the new room to the old one: `to` must lie where `from` lay.
     const glm::dquat old_from_new = tilted && has_size ? turnBetween(span_to, span_from) : turnAboutDown(turn);
     const glm::dvec3 middle_from = 0.5 * (from[0] + from[1]), middle_to = 0.5 * (to[0] + to[1]);
     return compose(scene_from_room, {old_from_new, middle_from - growth * (old_from_new * middle_to), growth});

@@ -1,4 +1,4 @@
-// Where the wearer's room lies in the scene. Room axes are those of a camera that looks ahead (x right, y down, z forward), metres.
+// Where the wearer's room lies in the scene. Room axes are those of a camera looking ahead (x right, y down, z forward), metres.
 #pragma once
 
 #include "engine/scene/procedural.h"
@@ -8,29 +8,29 @@ namespace binosplat {
 
 // The room's origin where the view's eye is, upright, looking that way. A room metre is 1 / metres_per_unit scene units.
 Similarity startPlacement(const View& view, double metres_per_unit);
-// How many times as large as it is a scene is shown, so that what is looked at is no nearer than half a metre: nearer eyes would have to
-// squint, and what is nearer than the near plane is not there.
+// The factor by which a scene is enlarged, so that what the view looks at is at least half a metre away: closer, the eyes would have to
+// squint, and what is before the near plane is not drawn.
 double growthToSee(const View& view, double metres_per_unit);
 
-// What moves the wearer through the scene: each is a scene_from_room to follow `scene_from_room`.
-// By `step_m` in the room.
+// These move the wearer through the scene: each returns the scene_from_room that follows `scene_from_room`. By `step_m` in the
+// room.
 Similarity movedBy(const Similarity& scene_from_room, const glm::dvec3& step_m);
-// About the vertical through `about`, to the right where `angle_rad` is positive.
+// About the vertical through `about`, to the right if `angle_rad` is positive.
 Similarity turnedBy(const Similarity& scene_from_room, double angle_rad, const glm::dvec3& about);
 
-// The scene grows by `growth` about `about` in the room, within the bounds of heldBy; or turns there as `turn` does.
+// The scene grows by `growth` about `about` in the room, within the bounds of heldBy; or is turned there by `turn`.
 Similarity grownBy(const Similarity& scene_from_room, double growth, const glm::dvec3& about);
 Similarity tiltedBy(const Similarity& scene_from_room, const glm::dquat& turn, const glm::dvec3& about);
 
-// Two points of the scene that are held, at `from` before and at `to` now: the scene moves, turns about the vertical and grows with
-// them, or turns as they do where it may be `tilted`. Points that lie above one another do not turn it about the vertical, and scale
-// changes stay within 1000 in all from `scene_from_room`.
+// Two points of the scene are held, at `from` before and at `to` now: the scene moves, turns about the vertical and grows with them, or
+// turns freely with them if `tilted`. Points above one another do not turn it about the vertical, and the scale stays within 1e-6 and 1e6
+// scene units in a metre.
 Similarity heldBy(const Similarity& scene_from_room, const std::array<glm::dvec3, 2>& from, const std::array<glm::dvec3, 2>& to,
                   bool tilted = false);
-// Stands upright where `up` is up in the scene, a unit vector, with the same heading; `about`, in the room, stays where it is.
+// Makes the scene upright, given its up direction `up`, a unit vector, with the same heading; `about`, in the room, stays in place.
 Similarity levelledAlong(const Similarity& scene_from_room, const glm::dvec3& up, const glm::dvec3& about);
 
-// How the wearer looks ahead, level: the horizontal part of that, or straight ahead if there is none.
+// The horizontal part of the wearer's view direction, or straight ahead if there is none.
 glm::dvec3 levelAhead(const Pose& room_from_head);
 
 }  // namespace binosplat

@@ -15,7 +15,7 @@ constexpr double kNoise = 2e-6;  // metres and radians
 
 std::array<Pose, 2> roomFromEyes(const std::array<xr::EyeView, 2>& views) {
     std::array<Pose, 2> eyes{xr::fromXr(views[kLeft].pose), xr::fromXr(views[kRight].pose)};
-    // Twice the sine of half the angle between them.
+    // The difference's length is twice the sine of a quarter of the angle between them.
     const double alike = glm::dot(eyes[kLeft].orientation, eyes[kRight].orientation);
     const glm::dquat right = alike < 0.0 ? -eyes[kRight].orientation : eyes[kRight].orientation;
     if (glm::length(right - eyes[kLeft].orientation) > 0.5 * kNoise) { return eyes; }

@@ -8,11 +8,11 @@
 
 namespace binosplat {
 
-// Angles up and down that differ by rounding alone are made equal: rows of parallel eyes are one row then.
+// Makes angles up and down equal if they differ only by rounding, so that the rows of parallel eyes coincide.
 std::array<xr::EyeView, 2> withoutNoise(std::array<xr::EyeView, 2> views);
 
-// Both eyes in room axes. What float32 added to parallel, side-by-side eyes is taken out again, so that they are exactly that: under
-// 2 micrometres and microradians, hundredths of a pixel.
+// Both eyes in room axes. Removes float32 noise from parallel, side-by-side eyes, so that they are exactly parallel: under 2 micrometres
+// and microradians, hundredths of a pixel.
 std::array<Pose, 2> roomFromEyes(const std::array<xr::EyeView, 2>& views);
 
 // The middle between the eyes.

@@ -9,13 +9,13 @@ namespace binosplat {
 
 namespace {
 
-constexpr double kPictureMetres = 0.3;  // a hand that is spread, and its wrist
+constexpr double kPictureMetres = 0.3;  // fits a spread hand with its wrist
 constexpr glm::dvec3 kSkinLight(0.3, 0.42, 0.55);
-constexpr double kLeastRadiusMetres = 0.004;  // of joints whose runtime does not say
-constexpr double kRimTexels = 1.2;            // over which a border fades
+constexpr double kLeastRadiusMetres = 0.004;  // if the runtime does not tell
+constexpr double kRimTexels = 1.2;            // width over which a border fades
 
 constexpr std::size_t kWrist = XR_HAND_JOINT_WRIST_EXT;
-// Those next to it, of the palm and of each finger, whose other joints follow up to its tip.
+// The joints next to the wrist, of the palm and of each finger; a finger's other joints follow up to its tip.
 constexpr std::array<std::size_t, 6> kFirstJoints{XR_HAND_JOINT_PALM_EXT,
                                                   XR_HAND_JOINT_THUMB_METACARPAL_EXT,
                                                   XR_HAND_JOINT_INDEX_METACARPAL_EXT,
@@ -50,7 +50,7 @@ void drawBone(const SeenJoint& a, const SeenJoint& b, const glm::uvec2& size_px,
             const double facing_eye = std::sqrt(std::max(0.0, 1.0 - aside * aside / (radius * radius)));
             const double depth = glm::mix(a.depth, b.depth, t) - radius * facing_eye;
             Hit& hit = hits[std::size_t{y} * size_px.x + x];
-            // A rim lets what was drawn behind it through.
+            // A rim is translucent: what was drawn behind it shows through.
             if (alpha == 1.0 ? depth < hit.depth : hit.alpha < 1.0) { hit = {depth, 0.3 + 0.7 * facing_eye, std::max(alpha, hit.alpha)}; }
         }
     }

@@ -1,4 +1,4 @@
-// What points at the panel.
+// The hand or mouse that points at the panel.
 #pragma once
 
 #include <glm/glm.hpp>

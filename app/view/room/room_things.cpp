@@ -75,7 +75,7 @@ void RoomThings::chooseHand(const xr::Hand& hand, HandImage& image, const glm::d
         quads_.push_back({place.room_from_strip, place.size_m, &image.images, {0, 0}, kHandPicturePx});
         return;
     }
-    if (has_picture) { image = {}; }  // it could not be had
+    if (has_picture) { image = {}; }  // no image was available
     if (hand.grip) {
         const auto along = [&](double metres) { return transform(*hand.grip, glm::dvec3(0.0, 0.0, metres)); };
         const Strip knob = facing(along(kHandleAheadMetres), glm::dvec2(kKnobMetres), eye);

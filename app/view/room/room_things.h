@@ -1,5 +1,5 @@
-// What hangs in the room besides the panel: hands or controllers, rays, where a wearer will stand, and the vignette. All are layers of
-// their own, which the runtime blends over the scene: no frame of ours takes longer for them.
+// Things in the room besides the panel: hands or controllers, rays, the teleport target, and the vignette. All are layers of their own,
+// which the runtime blends over the scene, so that our frames take no longer for them.
 #pragma once
 
 #include "app/view/room/hand_picture.h"
@@ -9,31 +9,31 @@
 
 namespace binosplat {
 
-// What there is to draw in a frame.
+// The things to draw in a frame.
 struct RoomSight {
-    glm::dvec3 eye{0.0};                           // the middle between the wearer's
+    glm::dvec3 eye{0.0};                           // the middle between the wearer's eyes
     std::optional<std::array<xr::Hand, 2>> hands;  // absent: not to be drawn
-    std::vector<Thing> things;                     // rays and what else there is
-    std::optional<double> vignette_m;              // how wide
+    std::vector<Thing> things;                     // rays and others
+    std::optional<double> vignette_m;              // its width
 };
 
-// At most so many layers, of 16 that every runtime takes: the vignette, two parts of each controller, a ray, the arc and its end.
+// All of them fit into the 16 layers that every runtime takes: the vignette, two parts of each controller, a ray, the arc and its end.
 class RoomThings {
 public:
-    // For as long as the session lasts, with images of `format`. What the runtime does not make is not drawn: see xr::Troubles.
+    // For the session's lifetime, with images of `format`. Things whose images the runtime cannot make are not drawn: see xr::Troubles.
     RoomThings(const xr::Session& session, const Context& context, vk::Format format);
 
-    // Before anything is recorded: takes the images that a frame of this needs.
+    // Before anything is recorded: acquires the images that this frame needs.
     void choose(const RoomSight& sight);
     // Between begin and submitAndWait.
     void record(Commands& commands);
-    // After submitAndWait: gives back what choose() took.
+    // After submitAndWait: releases what choose() acquired.
     void release();
-    // Whether that frame has any.
+    // True if that frame has any things.
     [[nodiscard]] bool areShown() const { return vignette_.has_value() || !quads_.empty(); }
-    // The runtime does not show them: from now on there are none.
+    // The runtime does not show them: from now on nothing is drawn.
     void giveUp();
-    // Of the frame that was chosen last: behind the panel, and before it.
+    // Add the layers of the last chosen frame: those behind the panel, and those before it.
     void addBehindPanel(xr::Layers& layers) const;
     void addBeforePanel(xr::Layers& layers) const;
 
@@ -41,7 +41,7 @@ private:
     struct HandImage {
         xr::Swapchain images;
         Buffer texels;
-        vk::Image now;         // of this frame; null: not taken
+        vk::Image now;         // of this frame; null: not acquired
         TexelPicture picture;  // of this frame
     };
     void makeSheet(const xr::Session& session, const Context& context, vk::Format format);

@@ -14,7 +14,7 @@ namespace {
 using Format = vk::Format;
 
 constexpr glm::uvec2 kSheetPx(512, 256);
-// Filters read a texel beyond what is shown. Pictures lie farther than two rims from one another.
+// Filters read a texel beyond the edge. Pictures are more than two rims apart.
 constexpr glm::uvec2 kRimPx(2, 2);
 constexpr glm::dvec3 kRayLight(1.0, 0.7, 0.1), kTargetLight(0.2, 0.8, 1.0), kHandleLight(0.16, 0.17, 0.2), kKnobLight(0.35, 0.38, 0.42);
 constexpr double kVignetteAlpha = 0.92;
@@ -24,7 +24,7 @@ struct Texel {
     double alpha;
 };
 
-// 0 below `from`, 1 above `to`, smooth between them.
+// Smoothstep: 0 below `from`, 1 above `to`.
 double rise(double from, double to, double at) {
     const double t = std::clamp((at - from) / (to - from), 0.0, 1.0);
     return t * t * (3.0 - 2.0 * t);
@@ -45,7 +45,7 @@ Texel draw(Sprite sprite, const glm::dvec2& at) {
         case Sprite::kFadingRay:
             return {kRayLight, (1.0 - rise(0.5, 1.0, std::abs(at.x))) * (1.0 - rise(-0.8, 1.0, at.y))};
         case Sprite::kHandle: {
-            // Ends that are round, and a little thinner below; four times as long as broad.
+            // Round ends, a little thinner below; four times as long as wide.
             const double beyond = std::max(0.0, std::abs(at.y) - 0.75) / 0.25;
             return roundThing(kHandleLight, std::hypot(at.x / (0.9 + 0.1 * at.y), beyond));
         }
@@ -96,7 +96,7 @@ TexelPicture drawSprites(const TexelLayout& layout) {
     TexelPicture sheet{kSheetPx, std::vector<std::uint32_t>(std::size_t{kSheetPx.x} * kSheetPx.y, 0)};
     for (const Sprite sprite : {Sprite::kRay, Sprite::kFadingRay, Sprite::kHandle, Sprite::kKnob, Sprite::kTarget, Sprite::kVignette}) {
         const SpritePlace place = placeOf(sprite);
-        // A rim about it goes on as the picture does.
+        // The picture is continued into a rim around it.
         const glm::uvec2 low = place.from_px - glm::min(kRimPx, place.from_px), high = place.from_px + place.size_px + kRimPx;
         for (std::uint32_t y = low.y; y < std::min(high.y, kSheetPx.y); ++y) {
             for (std::uint32_t x = low.x; x < std::min(high.x, kSheetPx.x); ++x) {

@@ -14,7 +14,7 @@ std::optional<Strip> stripBetween(const glm::dvec3& from, const glm::dvec3& to, 
     const double length_m = glm::length(to - from);
     if (length_m < kLeastMetres) { return std::nullopt; }
     const glm::dvec3 along = (to - from) / length_m, middle = 0.5 * (from + to);
-    // Its z points away from the eye, as near to that as a direction across it can.
+    // Its z points away from the eye, as far as a direction perpendicular to it can.
     glm::dvec3 away = middle - eye;
     away -= glm::dot(away, along) * along;
     if (glm::length(away) < kLeastMetres) { return std::nullopt; }

@@ -12,9 +12,9 @@ namespace binosplat {
 namespace {
 
 constexpr double kClosesInSeconds = 0.15, kOpensInSeconds = 0.3;
-constexpr double kMargin = 1.05;          // for eyes that are beside the head's middle
-constexpr double kLeastCosine = 0.1;      // of canted eyes, whose corners may look aside of the head
-constexpr double kCorner = 1.4142135624;  // of a square, by its half width
+constexpr double kMargin = 1.05;          // for eyes beside the head's middle
+constexpr double kLeastCosine = 0.1;      // for canted eyes, whose corners may look past the head's side
+constexpr double kCorner = 1.4142135624;  // of a square, relative to its half width
 
 // The half width of the square that both eyes see, at a distance of 1 straight before the head.
 double halfWidthSeen(const std::array<xr::EyeView, 2>& views) {
@@ -42,7 +42,7 @@ void Vignette::update(bool moves, double step_seconds) {
 
 std::optional<double> Vignette::widthMetres(const std::array<xr::EyeView, 2>& views) const {
     if (closed_ == 0.0) { return std::nullopt; }
-    constexpr double kOpen = kCorner / kVignetteClear;  // then all that is seen is clear
+    constexpr double kOpen = kCorner / kVignetteClear;  // then everything visible is clear
     return 2.0 * kVignetteMetres * kMargin * halfWidthSeen(views) * (kOpen + closed_ * (1.0 - kOpen));
 }
 

@@ -1,4 +1,4 @@
-// The view's edge is dark while the wearer moves by stick, since what only the edge sees move makes people ill.
+// The view's edge is dark while the wearer moves by stick, since motion seen only at the edge makes people ill.
 #pragma once
 
 #include "xr/session.h"
@@ -8,15 +8,15 @@
 
 namespace binosplat {
 
-// Of the picture's half width: what lies nearer to its middle than the first is clear, what is farther than the second is dark.
+// In shares of the picture's half width: clear nearer to the middle than the first, dark beyond the second.
 constexpr double kVignetteClear = 0.55, kVignetteDark = 0.95;
 
 class Vignette {
 public:
     // Closes while the wearer `moves` and opens again otherwise, each within a moment.
     void update(bool moves, double step_seconds);
-    // A square picture straight before the head, `kVignetteMetres` away: how wide it is, so that it covers what both eyes see. The opening
-    // in it grows with it: the wider, the less of it is seen. Empty while nothing of it would be.
+    // The width of a square picture straight before the head, `kVignetteMetres` away, so that it covers what both eyes see. Its opening
+    // grows with it: the wider it is, the less of it is seen. Empty while nothing of it would be seen.
     [[nodiscard]] std::optional<double> widthMetres(const std::array<xr::EyeView, 2>& views) const;
 
 private:

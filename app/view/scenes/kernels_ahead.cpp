@@ -17,14 +17,14 @@ constexpr std::array kShares{1.0, 0.8, 0.6, 0.4};
 
 std::array<Eye, 2> smallEyes(std::uint32_t width_px, bool canted) {
     Eye middle{};
-    middle.size_px = {width_px, 16};  // kernels depend on how wide a picture is alone
+    middle.size_px = {width_px, 16};  // kernels depend only on a picture's width
     middle.intrinsics = intrinsicsFromFovX(1.5, middle.size_px);
     std::array<Eye, 2> eyes = stereoPair(middle, 0.063);
     if (canted) { eyes[kRight].world_from_camera.orientation = glm::angleAxis(0.1, glm::dvec3(0.0, 1.0, 0.0)); }
     return eyes;
 }
 
-// Of widths with the same steps one is enough, see resample.
+// One of the widths with the same steps is enough, see resample.
 std::vector<std::uint32_t> widthsOf(std::uint32_t width_px) {
     std::vector<std::uint32_t> widths, steps;
     for (const double share : kShares) {
@@ -37,7 +37,7 @@ std::vector<std::uint32_t> widthsOf(std::uint32_t width_px) {
     return widths;
 }
 
-// A method in all its variants, for eyes such as these.
+// A method in all its variants, for eyes like these.
 void makeKernelsOf(StereoFrame& small, const FrameSettings& settings, std::span<const Eye> eyes) {
     const auto seen = settings.mode == Mode::kMono ? eyes.first(1) : eyes;
     small.makeKernels(seen, settings);
@@ -69,7 +69,7 @@ void makeKernelsAt(std::uint32_t width_px, StereoFrame& small, const CameraOptio
         settings.keep_depth = settings.keep_both_depths = ahead.with_depth;
         settings.keep_classes = ahead.tint;
         settings.square_boxes = false;
-        // One eye's picture for both is seen through either lens.
+        // If both eyes share a picture, it is seen through either lens.
         if (hides && settings.mode != Mode::kMono) { settings.hidden_tiles = {hidden, hidden}; }
         makeKernelsOf(small, settings, eyes);
     }
@@ -78,7 +78,7 @@ void makeKernelsAt(std::uint32_t width_px, StereoFrame& small, const CameraOptio
 }  // namespace
 
 bool FramesAhead::isLike(const FramesAhead& other) const {
-    // These change while a slider is dragged, and are numbers that kernels are told; any foveation has the same ones.
+    // These change while a slider is dragged, and are parameters of kernels; any foveation needs the same kernels.
     const auto withoutNumbers = [](StereoOptions options) {
         options.warp.budget = 0.0;
         options.warp.margin_px = 0;
@@ -94,7 +94,7 @@ std::unique_ptr<StereoFrame> makeKernelsAhead(const Context& context, const GpuS
     auto small = std::make_unique<StereoFrame>(context, scene, FrameOptions{.first_capacity = {1, 1}, .threads_per_cell = 0});
     try {
         for (const std::uint32_t width : widthsOf(ahead.size_px.x)) { makeKernelsAt(width, *small, camera, ahead, between); }
-    } catch (const Error&) {}  // said when a frame wants it
+    } catch (const Error&) {}  // reported when a frame needs it
     return small;
 }
 

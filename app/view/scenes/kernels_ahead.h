@@ -1,4 +1,4 @@
-// Kernels before the first frame that wants them.
+// Compiling kernels before the first frame that needs them.
 #pragma once
 
 #include "app/options/options.h"
@@ -13,7 +13,7 @@
 
 namespace binosplat {
 
-// What there is to know of a headset's frames before there are any.
+// What is known about a headset's frames before there are any.
 struct FramesAhead {
     StereoOptions stereo;
     glm::uvec2 size_px{0, 0};
@@ -21,13 +21,13 @@ struct FramesAhead {
     // Kinds of splats and degrees of colour that kernels were made for before.
     std::set<std::pair<std::uint32_t, int>> known;
 
-    // Whether their frames need the same kernels.
+    // True if the frames of both need the same kernels.
     [[nodiscard]] bool isLike(const FramesAhead& other) const;
 };
 
-// A frame of `scene` that is never drawn, and has the kernels of what may come without a click, for StereoFrame::takeKernels: those of the
-// method that was chosen, with and without what a lens hides and foveation, with eyes side by side and canted ones. Takes what drivers
-// take; `between` is called now and then and may throw.
+// A frame of `scene` that is never drawn and has the kernels for whatever may come without a click, for StereoFrame::takeKernels: those of
+// the chosen method, with and without hidden tiles and foveation, with parallel and canted eyes. Takes as long as the driver needs;
+// `between` is called now and then and may throw.
 std::unique_ptr<StereoFrame> makeKernelsAhead(const Context& context, const GpuScene& scene, const CameraOptions& camera,
                                               const FramesAhead& ahead, const std::function<void()>& between);
 
@@ -38,15 +38,15 @@ public:
     KernelMaker(const Context& context, const GpuScene& scene, CameraOptions camera, FramesAhead ahead);
     KernelMaker(const KernelMaker&) = delete;
     KernelMaker& operator=(const KernelMaker&) = delete;
-    // Gives up where it can, and waits for the rest.
+    // Gives up if it can, and waits for the rest.
     ~KernelMaker();
 
     void cancel() { cancelled_ = true; }
     [[nodiscard]] const FramesAhead& ahead() const { return ahead_; }
     [[nodiscard]] bool isDone() const { return done_; }
-    // Of one that is done: it was cancelled in time.
+    // Once done: true if it was cancelled in time.
     [[nodiscard]] bool hasGivenUp() const { return gave_up_; }
-    // Of one that is done: null where it gave up or failed, which a frame that wants the kernels will say.
+    // Once done: null if it gave up or failed; a frame that needs the kernels will report that.
     [[nodiscard]] StereoFrame* made() { return made_.get(); }
 
 private:

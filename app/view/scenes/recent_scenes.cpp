@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 constexpr const char *kRecentName = "recent-scenes.txt", *kFavouritesName = "favourite-scenes.txt";
 constexpr std::size_t kMostFavourites = 1000;
 
-// One in each line. A list that is not there, or cannot be read, is begun anew by the next scene.
+// One in each line. If the list is missing or unreadable, the next scene begins a new one.
 std::vector<std::string> readList(const char* name, std::size_t most) {
     std::vector<std::string> scenes;
     try {
@@ -53,7 +53,7 @@ std::vector<std::string> recentScenes() { return readList(kRecentName, kMostRece
 std::vector<std::string> favouriteScenes() { return readList(kFavouritesName, kMostFavourites); }
 
 void toggleFavourite(const std::string& scene) {
-    if (scene.find('\n') != std::string::npos) { return; }  // it would be two
+    if (scene.find('\n') != std::string::npos) { return; }  // it would be two lines
     std::vector<std::string> scenes = favouriteScenes();
     if (std::erase(scenes, scene) == 0) { scenes.push_back(scene); }
     writeList(kFavouritesName, scenes);
@@ -63,7 +63,7 @@ void rememberScene(const std::string& scene) {
     std::error_code error;
     const std::string whole = isBuiltin(scene) || isAddress(scene) ? scene : fs::absolute(scene, error).lexically_normal().string();
     check(!error, "{}: cannot be added to the recent scenes: the working directory no longer exists", scene);
-    if (whole.find('\n') != std::string::npos) { return; }  // it would be two
+    if (whole.find('\n') != std::string::npos) { return; }  // it would be two lines
     const std::vector<std::string> before = recentScenes(), after = withLatest(before, whole);
     if (after == before) { return; }
     writeList(kRecentName, after);

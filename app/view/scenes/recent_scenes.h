@@ -9,18 +9,18 @@ namespace binosplat {
 
 inline constexpr std::size_t kMostRecentScenes = 10;
 
-// As the user's configuration folder keeps them; none where nothing is kept or it cannot be read.
+// From the user's configuration folder; none if nothing is kept or it cannot be read.
 std::vector<std::string> recentScenes();
 
-// Puts `scene` first, its path in full, and keeps the list, whole or as it was. Throws Error where it cannot be kept.
+// Puts `scene` first, with its full path, and saves the list atomically. Throws Error if that fails.
 void rememberScene(const std::string& scene);
 
-// Those that the wearer marked, in the order in which that was done.
+// The scenes that the wearer marked, in the order of marking.
 std::vector<std::string> favouriteScenes();
-// Marks `scene`, or no longer. Throws Error where it cannot be kept.
+// Marks or unmarks `scene`. Throws Error if that cannot be saved.
 void toggleFavourite(const std::string& scene);
 
-// The same on a list alone: a scene stands in it once.
+// `scenes` with `scene` first, and only once.
 std::vector<std::string> withLatest(std::vector<std::string> scenes, const std::string& scene);
 
 }  // namespace binosplat

@@ -1,4 +1,4 @@
-// The time of a scene that moves: it plays, rests, and goes where somebody wants it.
+// The time of a scene that moves: it plays, rests, and can be moved.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@ public:
     SceneClock() = default;
     SceneClock(double rate_hz, std::size_t frames) : rate_hz_(rate_hz), frames_(frames) {}
 
-    // Seconds since the first frame; goes on beyond the last one, which the first follows.
+    // Seconds since the first frame; goes on beyond the last one, after which the first follows.
     [[nodiscard]] double time_s() const { return time_s_; }
     [[nodiscard]] bool plays() const { return plays_; }
     [[nodiscard]] std::size_t frameCount() const { return frames_; }
@@ -25,7 +25,7 @@ public:
 
     void pass(double step_seconds) { time_s_ += plays_ ? step_seconds : 0.0; }
     void togglePlaying() { plays_ = !plays_; }
-    // So many frames on or, below 0, back, around where the scene ends; it rests there.
+    // Steps `frames` on or, below 0, back, around the scene's end, and rests there.
     void step(std::ptrdiff_t frames) {
         plays_ = false;
         const auto count = static_cast<std::ptrdiff_t>(frames_);
@@ -35,7 +35,7 @@ public:
     void goTo(std::size_t frame) { time_s_ = static_cast<double>(std::min(frame, frames_ - 1)) / rate_hz_; }
 
 private:
-    static constexpr double kHairFrames = 1e-4;  // as MovingScene has it
+    static constexpr double kHairFrames = 1e-4;  // as in MovingScene
 
     double rate_hz_ = 1.0, time_s_ = 0.0;
     std::size_t frames_ = 1;

@@ -1,4 +1,4 @@
-// What a scene is, in words, for whoever stands in it.
+// A description of a scene, for the wearer.
 #pragma once
 
 #include "engine/scene/scene.h"
@@ -11,16 +11,16 @@
 namespace binosplat {
 
 struct SceneFacts {
-    std::uint64_t splats = 0, left_out = 0;  // left_out: broken ones of the file
-    std::string kind;                        // what is drawn, and what it was made of
+    std::uint64_t splats = 0, left_out = 0;  // left_out: broken ones in the file
+    std::string kind;                        // how splats are drawn, and what they are in the file
     int sh_degree = 0, sh_degree_in_file = 0;
     std::uint64_t device_bytes = 0;
     double size_units = 0.0;       // see coreSize
-    std::uint64_t file_bytes = 0;  // of a folder all that lies in it; 0: made by the program, or from the web
+    std::uint64_t file_bytes = 0;  // for a folder, of everything in it; 0: made by the program, or from the web
     bool is_from_web = false;
 };
 
-// Of a scene as it was loaded from `source`.
+// For a scene as it was loaded from `source`.
 SceneFacts factsOf(const Scene& scene, const LoadNotes& notes, const std::string& source);
 
 // "12.3 MiB".
@@ -28,7 +28,7 @@ std::string inMib(std::uint64_t bytes);
 // In a line: "125 000 splats, 3D Gaussians, 12.3 MiB".
 std::string describeBriefly(const SceneFacts& facts);
 
-// Names and values. `metres_per_unit` is as the wearer stands in it now.
+// Names and values. `metres_per_unit` is the wearer's current scale.
 std::vector<std::pair<std::string, std::string>> describeFacts(const SceneFacts& facts, double metres_per_unit);
 
 }  // namespace binosplat

@@ -38,7 +38,7 @@ SceneList listBuiltinScenes() {
     return list;
 }
 
-// Without a slash at its end, which would be a name of its own.
+// Without a trailing slash, which would count as an empty name.
 fs::path wholePath(const fs::path& place) {
     std::error_code ignored;
     fs::path whole = fs::absolute(place, ignored).lexically_normal();

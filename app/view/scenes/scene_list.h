@@ -1,4 +1,4 @@
-// What a folder holds for somebody who looks for a scene: folders and scenes, in the order of people.
+// A folder's contents for somebody looking for a scene: folders and scenes, in natural order.
 #pragma once
 
 #include "app/view/scenes/seen_scenes.h"
@@ -10,34 +10,34 @@ namespace binosplat {
 
 struct SceneEntry {
     std::string name;        // as it is shown
-    std::string place;       // folder to look into, or scene to load
-    bool is_folder = false;  // of scenes; one that is a scene itself is none
+    std::string place;       // the folder to look into, or the scene to load
+    bool is_folder = false;  // of scenes; false for a folder that is itself a scene
     std::string trouble;     // why it cannot be opened, in a few words; empty: it can
-    std::string about{};     // its size and, of one that was shown before, its kind
+    std::string about{};     // its size and, if it was shown before, its kind
     bool is_favourite = false;
-    ScenePicture picture{};  // of one that was shown before
+    ScenePicture picture{};  // if it was shown before
 };
 
 struct SceneList {
-    std::string title;    // the folder, or what else these are
-    std::string above;    // the folder that holds it; empty: none does
-    std::string trouble;  // why nothing of it can be seen; empty: all of it can
+    std::string title;    // the folder, or another title of the list
+    std::string above;    // the parent folder; empty: none
+    std::string trouble;  // why the folder cannot be read; empty: it can
     std::vector<SceneEntry> entries;
 };
 
-// In place of a folder's path: the built-in scenes.
+// Stands for the built-in scenes, in place of a folder's path.
 inline constexpr const char* kBuiltinFolder = "builtin:";
 
 // The folder that a scene lies in, in full, or kBuiltinFolder.
 std::string folderOf(const std::string& scene);
 
-// Folders first, then scenes; hidden files and whatever looks like no scene are left out.
+// Folders first, then scenes; hidden files and files that do not look like scenes are left out.
 SceneList listFolder(const std::string& folder);
 
 // Adds what is known of the scenes, and puts favourites first.
 void describeScenes(SceneList& list);
 
-// These scenes in this order, by their file names; what is not there any more can be seen to be so.
+// These scenes in this order, by their file names; missing ones are marked as such.
 SceneList listScenes(const std::string& title, const std::vector<std::string>& scenes);
 
 }  // namespace binosplat

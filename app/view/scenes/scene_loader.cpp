@@ -16,18 +16,18 @@ namespace binosplat {
 
 namespace {
 
-// Of the whole, what reading the file takes; the rest is the way to the device.
+// The share of reading the file; the rest is the upload to the device.
 constexpr double kReadingShare = 0.8;
 
 struct Cancelled {};
 
-// Somebody's who stands there, about as wide as a headset's.
+// The eye of somebody who stands there, with about a headset's view angle.
 Eye startEye(const View& start) {
     constexpr glm::uvec2 kSizePx(1024, 1024);
     return {lookAt(start.eye, start.look, start.up), intrinsicsFromFovX(glm::radians(100.0), kSizePx), kSizePx};
 }
 
-// Of the whole scene, not of its coarsest level.
+// Facts about the whole scene, not its coarsest level.
 void tellOfStream(SceneFacts& facts, const SceneStream& stream) {
     facts.splats = stream.source().meta().levels.front().splats + stream.source().environmentSplats();
     facts.device_bytes = stream.scene().bytes();
@@ -79,7 +79,7 @@ void SceneLoader::expect(const FramesAhead& ahead) {
 void SceneLoader::load(const Context& context, const RunOptions& options, bool settled) {
     try {
         LoadNotes notes;
-        // Readers may report from threads of their own, which must not throw.
+        // Readers may report from threads of their own, where it must not throw.
         const auto reading = [this, own = std::this_thread::get_id()](double share) {
             if (cancelled_ && std::this_thread::get_id() == own) { throw Cancelled(); }
             progress_ = kReadingShare * share;
@@ -125,7 +125,7 @@ void SceneLoader::load(const Context& context, const RunOptions& options, bool s
         loaded_.reset();  // nobody waits
     } catch (...) { error_ = std::current_exception(); }
     const std::lock_guard lock(mutex_);
-    if (cancelled_ || error_) { loaded_.reset(); }  // past the last look
+    if (cancelled_ || error_) { loaded_.reset(); }  // cancelled after the last check
     done_ = true;
 }
 

@@ -27,19 +27,19 @@ struct LoadedScene {
         : live(std::move(opened.live)), stream(opened.stream), moving(opened.moving), gpu_scene(live->scene()) {
         if (moving != nullptr) { clock = {moving->rateHz(), moving->series().size()}; }
     }
-    // Before a frame of such eyes: what they ask for comes nearer, and a scene that moves goes on. Never waits.
+    // Before a frame of these eyes: requests what they need, and moves a moving scene on. Never waits.
     void follow(std::span<const Eye> eyes, double step_seconds);
-    // What there is of it, into a frame's counters.
+    // Adds what is resident of it to a frame's counters.
     void count(FrameCounters& counters) const;
 
     std::string name;
     std::unique_ptr<GpuScene> whole;       // or
-    std::unique_ptr<LiveScene> live;       // that loads while it is shown
-    SceneStream* stream = nullptr;         // the same, where it is streamed
-    MovingScene* moving = nullptr;         // likewise
+    std::unique_ptr<LiveScene> live;       // one that loads while it is shown
+    SceneStream* stream = nullptr;         // the same, if it is streamed
+    MovingScene* moving = nullptr;         // the same, if it moves
     const GpuScene& gpu_scene;             // of either
     SceneClock clock;                      // of one that moves
-    std::unique_ptr<StereoFrame> kernels;  // of frames that show it, see makeKernelsAhead; null: none were made
+    std::unique_ptr<StereoFrame> kernels;  // for frames that show it, see makeKernelsAhead; null: none were made
     Similarity start;                      // see startPlacement
     glm::dvec3 up{0.0, -1.0, 0.0};         // see upOfScene
     std::optional<double> floor;           // see floorHeight, along `up`
@@ -48,29 +48,29 @@ struct LoadedScene {
     SceneFacts facts;
     std::string place;                     // one name for a scene, however it is spelled
     std::optional<Similarity> remembered;  // see rememberedPlacement
-    std::string remembering_trouble;       // why not, if there is one that cannot be read
+    std::string remembering_trouble;       // why not, if it exists but cannot be read
 };
 
 // One name for a scene, however it is spelled.
 std::string placeOf(const std::string& scene);
 
-// As FramesAhead::known has it.
+// As in FramesAhead::known.
 std::pair<std::uint32_t, int> kindOf(const LoadedScene& scene);
 
 // Loads on a thread of its own.
 class SceneLoader {
 public:
-    // With `ahead` it also makes the kernels of its frames, unless others of its kind were shown before. A streamed scene is done when the
-    // coarsest level of all its leaves is there, or with `settled` all that the start asks for.
+    // With `ahead` it also makes the kernels for the scene's frames, unless scenes of its kind were shown before. A streamed scene is done
+    // when the coarsest level of all its leaves is there or, if `settled`, all that the start view needs.
     SceneLoader(const Context& context, std::string scene, RunOptions options, std::optional<FramesAhead> ahead = {}, bool settled = false);
     SceneLoader(const SceneLoader&) = delete;
     SceneLoader& operator=(const SceneLoader&) = delete;
-    // Gives up where it can, and waits for the rest.
+    // Gives up if it can, and waits for the rest.
     ~SceneLoader();
 
-    // It is to give up where it can; then, or if it was done already, it has nothing to take, and keeps nothing in memory.
+    // Tells it to give up; then, or if it was done already, there is nothing to take, and it keeps nothing in memory.
     void cancel();
-    // Other frames than those it began with will be wanted.
+    // Frames will need other kernels than those it began with.
     void expect(const FramesAhead& ahead);
 
     [[nodiscard]] const std::string& scene() const { return scene_; }
@@ -79,17 +79,17 @@ public:
     [[nodiscard]] bool isDone() const { return done_; }
     // Waits for the scene and hands it over, once. Throws what loading threw.
     [[nodiscard]] std::unique_ptr<LoadedScene> take();
-    // After that, of one with kernels: what these are for.
+    // After that, with kernels: the frames that they are for.
     [[nodiscard]] const FramesAhead& madeFor() const { return *made_for_; }
 
 private:
     void load(const Context& context, const RunOptions& options, bool settled);
     void makeKernels(const Context& context, const RunOptions& options);
-    // The end, unless other kernels than those that were made are wanted.
+    // Ends, unless other kernels than those that were made are needed.
     bool finish();
 
     std::string scene_;
-    std::mutex mutex_;  // of how it ends, and of what is expected
+    std::mutex mutex_;  // guards how it ends, and `ahead_`
     std::optional<FramesAhead> ahead_, made_for_;
     std::atomic<double> progress_ = 0.0;
     std::atomic<bool> done_ = false, cancelled_ = false;

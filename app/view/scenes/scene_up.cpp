@@ -1,4 +1,4 @@
-// From cameras, or from the floor.
+// Finds up from cameras, or from the floor.
 #include "app/view/scenes/scene_up.h"
 
 #include "app/options/start_view.h"
@@ -12,9 +12,9 @@ namespace binosplat {
 
 namespace {
 
-// Splats that are looked at, at most.
+// The most splats that are examined.
 constexpr std::size_t kMostSplats = 262144;
-// A splat counts as so many median ones at most: the largest are hills and sky.
+// A splat's area counts at most as this many medians: the largest are hills and sky.
 constexpr double kMostMedians = 4.0;
 
 }  // namespace

@@ -14,7 +14,7 @@
 namespace binosplat {
 
 Image makeScenePicture(const Image& view) {
-    // The largest part of the same shape about the middle.
+    // The largest part of that aspect ratio around the middle.
     const glm::dvec2 whole(view.size_px), wanted(kScenePicturePx);
     const double shrink = std::min(whole.x / wanted.x, whole.y / wanted.y);
     const glm::dvec2 part = shrink * wanted, low = 0.5 * (whole - part);
@@ -75,7 +75,7 @@ SeenScene findSeenScene(const std::string& scene) {
             }
             seen.picture.rgba.push_back(255);
         }
-    } catch (const Error&) {}  // as one that was never shown
+    } catch (const Error&) {}  // treated as never shown
     return seen;
 }
 

@@ -1,4 +1,4 @@
-// What is kept of scenes that were shown: a small picture, and what they are in a few words.
+// Records of scenes that were shown: a small picture, and a short description.
 #pragma once
 
 #include "engine/picture/image.h"
@@ -12,22 +12,22 @@ namespace binosplat {
 
 inline constexpr glm::uvec2 kScenePicturePx(88, 66);
 
-// In 8-bit RGBA, kScenePicturePx large. `key` is another one for another picture, and empty where there is none; a later picture in the
-// same file takes the place of an earlier one.
+// In 8-bit RGBA, kScenePicturePx large. `key` differs for each picture, and is empty if there is none; a later picture in the same file
+// replaces an earlier one.
 struct ScenePicture {
     std::string key, file;
     std::vector<unsigned char> rgba;
 };
 
-// Its middle, made small. `view` is larger than nothing.
+// The middle of `view`, which must not be empty, scaled down.
 Image makeScenePicture(const Image& view);
 
-// Beside the scene's settings (view_files.h): keeps them, whole or not at all. What cannot be kept is no loss.
+// Saves them beside the scene's settings (view_files.h), all or nothing. Failures are ignored.
 void keepSeenScene(const std::string& scene, const Image& picture, const std::string& about);
 
 struct SeenScene {
     ScenePicture picture;
-    std::string about;  // empty: it was never shown, or changed since
+    std::string about;  // empty: it was never shown, or has changed since
 };
 SeenScene findSeenScene(const std::string& scene);
 

@@ -26,7 +26,7 @@ bool ShownScene::isLoading() const {
 }
 
 void ShownScene::begin(const std::string& scene) {
-    // Nobody waits for one that gives up.
+    // Loaders that are giving up are not waited for.
     std::erase_if(given_up_, [](const std::unique_ptr<SceneLoader>& loader) { return loader->isDone(); });
     if (loader_) {
         loader_->cancel();
@@ -35,7 +35,7 @@ void ShownScene::begin(const std::string& scene) {
     ++asked_count_;
     asked_ = scene;
     RunOptions run = options_.run;
-    if (scene != options_.scene) { run.camera.cameras_file.clear(); }  // which are of that one
+    if (scene != options_.scene) { run.camera.cameras_file.clear(); }  // these belong to the first scene
     loader_ = std::make_unique<SceneLoader>(context_, scene, std::move(run), ahead_, options_.load_first);
 }
 
@@ -50,7 +50,7 @@ void ShownScene::lookBeside(FileWorker& files) {
                [this, &files, scene = asked_, step = std::exchange(steps_asked_, 0), count = asked_count_]() -> FileWorker::Done {
                    return [this, &files, count, found = sceneBeside(scene, step)] {
                        is_looking_ = false;
-                       // Whoever asked for another one since wants that.
+                       // Unless another scene was asked for since.
                        if (count == asked_count_) { begin(found); }
                        if (steps_asked_ != 0) { lookBeside(files); }
                    };
@@ -84,7 +84,7 @@ void ShownScene::haveReady(const FramesAhead& ahead) {
 
 ViewSettings ShownScene::drawable(ViewSettings settings) const {
     if (!scene_ || !ready_ || options_.load_first) { return settings; }
-    FramesAhead wanted = *ready_;  // pictures of another size have it at once
+    FramesAhead wanted = *ready_;  // another size needs no new kernels to wait for
     wanted.stereo = settings.stereo;
     wanted.tint = settings.tint;
     if (!wanted.isLike(*ready_)) {
@@ -114,7 +114,7 @@ std::string ShownScene::take(ViewState& state) {
 }
 
 void ShownScene::showInFrames(const LoadedScene& scene) {
-    // Each waits for its own frames under way, and then nothing reads the scene before.
+    // Each waits for its own frames in flight; after that nothing reads the previous scene.
     if (frame_) {
         frame_->show(scene.gpu_scene);
     } else {
@@ -122,7 +122,7 @@ void ShownScene::showInFrames(const LoadedScene& scene) {
     }
     try {
         if (insets_) { insets_->show(scene.gpu_scene); }
-    } catch (const Error&) { insets_.reset(); }  // said when a headset takes some
+    } catch (const Error&) { insets_.reset(); }  // reported when a headset takes insets
 }
 
 StereoFrame& ShownScene::insets() {
@@ -131,14 +131,14 @@ StereoFrame& ShownScene::insets() {
 }
 
 void ShownScene::rebuildKernels() {
-    if (insets_) { (void)insets_->finish(); }  // it has the same ones
+    if (insets_) { (void)insets_->finish(); }  // it shares the kernels
     frame_->rebuildKernels();
 }
 
 std::string ShownScene::goOnWithout(const std::string& why) {
     if (scene_) { return why; }
     if (asked_ == options_.scene) { throw; }  // nothing to show instead
-    begin(options_.scene);                    // which another one had pushed aside
+    begin(options_.scene);                    // which another one had displaced
     return why;
 }
 

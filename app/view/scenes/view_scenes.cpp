@@ -1,4 +1,4 @@
-// Looking about in a folder.
+// Looking around in a folder.
 #include "app/view/scenes/view_scenes.h"
 
 #include "app/view/scenes/natural_order.h"
@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A folder with fewer numbered scenes is one to look into.
+// A folder with fewer numbered scenes is an ordinary folder, not a moving scene.
 constexpr std::size_t kLeastFrames = 24;
 
 bool looksMoving(const fs::path& folder) {
@@ -47,7 +47,7 @@ std::vector<std::string> scenesBeside(const std::string& scene) {
     if (isBuiltin(scene)) {
         for (const BuiltinInfo& info : listBuiltins()) { scenes.push_back("builtin:" + std::string(info.name)); }
     } else if (isAddress(scene)) {
-        scenes.push_back(scene);  // no server says what lies beside it
+        scenes.push_back(scene);  // servers do not list what lies beside it
     } else {
         fs::path place = scene;
         if (!place.has_filename()) { place = place.parent_path(); }

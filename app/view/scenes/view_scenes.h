@@ -1,4 +1,4 @@
-// Which scene comes next: those that lie beside one another.
+// The next scene, among those in the same folder.
 #pragma once
 
 #include <filesystem>
@@ -7,14 +7,14 @@
 
 namespace binosplat {
 
-// A file by its name; a folder by what lies in it.
+// Judges a file by its name, a folder by its contents.
 bool looksLikeScene(const std::filesystem::path& path);
 
-// Scenes in the folder of a file or folder, in the order of people (natural_order.h), or all built-in ones; hidden ones are left out, but
-// `scene` is among them.
+// Scenes in the folder of a file or folder, in natural order (natural_order.h), or all built-in ones; hidden ones are left out, but `scene`
+// is included.
 std::vector<std::string> scenesBeside(const std::string& scene);
 
-// The scene `step` further on, and round the end.
+// The scene `step` further on, wrapping around.
 std::string sceneBeside(const std::string& scene, int step);
 
 }  // namespace binosplat

@@ -39,7 +39,7 @@ std::vector<View> keptViews(const std::string& source) {
             for (glm::dvec3* const point : {&view.eye, &view.look, &view.up}) { numbers >> point->x >> point->y >> point->z; }
             if (numbers && isView(view)) { kept.push_back(view); }
         }
-    } catch (const Error&) {}  // none, or begun anew by the next one
+    } catch (const Error&) {}  // no list, or an unreadable one, which the next viewpoint replaces
     return kept;
 }
 
@@ -49,7 +49,7 @@ std::vector<Viewpoint> findViewpoints(const std::string& source, const fs::path&
     std::vector<FileCamera> cameras;
     try {
         cameras = camera_file.empty() ? readSceneCameras(source).cameras : readCameraFile(camera_file);
-    } catch (const Error&) {}  // it was read before, and is gone
+    } catch (const Error&) {}  // the file was read before, but is gone
     const std::optional<glm::dvec3> up = upOfCameras(cameras);
     std::vector<Viewpoint> viewpoints;
     for (const FileCamera& camera : cameras) {
@@ -79,7 +79,7 @@ void keepViewpoint(const std::string& source, const View& view) {
 }
 
 Similarity placedAt(const View& view, const Similarity& scene_from_room, const Pose& room_from_head) {
-    // Upright, looking that way, and turned back by where the head looks in the room.
+    // Upright, looking that way, and turned back by the head's heading in the room.
     const glm::dquat head_turn = lookAt(glm::dvec3(0.0), levelAhead(room_from_head), {0.0, -1.0, 0.0}).orientation;
     const glm::dquat upright = startPlacement(view, 1.0).orientation;
     Similarity placed{glm::normalize(upright * glm::conjugate(head_turn)), glm::dvec3(0.0), scene_from_room.scale};

@@ -16,17 +16,17 @@ struct Viewpoint {
     View view;  // of the eyes; its angle means nothing
 };
 
-// Those of the scene's cameras.json or of `camera_file`, upright, and then those that were kept. Whatever cannot be read is left out.
+// Cameras of the scene's cameras.json or of `camera_file`, upright, and then kept viewpoints. What cannot be read is left out.
 std::vector<Viewpoint> findViewpoints(const std::string& source, const std::filesystem::path& camera_file);
 
-// Beside the scene's settings. Throws Error where it cannot be kept.
+// Saves it beside the scene's settings. Throws Error if that fails.
 void keepViewpoint(const std::string& source, const View& view);
 Viewpoint ownViewpoint(std::size_t number, const View& view);
 std::vector<View> keptViews(const std::string& source);
 
-// The eyes are there and look that way, level in the room, a metre as long as before; the head stays as it is in the room.
+// Puts the eyes at the view's place, level and looking its way, at the same scale; the head's pose in the room stays as it is.
 Similarity placedAt(const View& view, const Similarity& scene_from_room, const Pose& room_from_head);
-// What the eyes see as they stand now.
+// The view of the head as it is now.
 View viewOf(const Similarity& scene_from_room, const Pose& room_from_head);
 
 }  // namespace binosplat

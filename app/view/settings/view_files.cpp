@@ -18,14 +18,14 @@ namespace fs = std::filesystem;
 
 fs::path configFolder() { return viewFolder() / "scenes"; }
 
-// FNV-1a: another scene has another one, and the same scene always this.
+// FNV-1a: the same for the same scene in every run.
 std::uint64_t fingerprint(const std::string& text) {
     std::uint64_t hash = 0xcbf29ce484222325;
     for (const char letter : text) { hash = (hash ^ static_cast<std::uint8_t>(letter)) * 0x100000001b3; }
     return hash;
 }
 
-// Names of files have at most 255 bytes. Cut between letters (UTF-8); scenes whose names begin alike differ in their fingerprints.
+// File names have at most 255 bytes. Cut between letters (UTF-8); scenes whose names begin alike differ in their fingerprints.
 std::string withRoomFor(std::size_t more_bytes, std::string name) {
     std::size_t bytes = std::min(name.size(), std::size_t{255} - more_bytes);
     while (bytes > 0 && bytes < name.size() && (static_cast<std::uint8_t>(name[bytes]) & 0xc0) == 0x80) { --bytes; }

@@ -1,4 +1,4 @@
-// Where the viewer keeps what the wearer sets, and what becomes of it.
+// Where the viewer keeps the wearer's settings; saving and loading them.
 #pragma once
 
 #include "app/view/settings/view_settings.h"
@@ -10,26 +10,26 @@
 
 namespace binosplat {
 
-// Of the user's configuration (XDG_CONFIG_HOME, or ~/.config). Throws Error where there is no such folder.
+// The viewer's folder in XDG_CONFIG_HOME or ~/.config. Throws Error if neither is known.
 std::filesystem::path viewFolder();
 
-// A file of the user's configuration folder (XDG_CONFIG_HOME, or ~/.config) for this scene alone: of a file by its place and its size, so
-// that another one in its place begins anew; of a folder by its place, of builtin:NAME by its name. Throws Error where there is no such
-// folder.
+// The settings file of this scene in that folder: for a file, by its place and size, so that another file in its place starts over; for a
+// folder or an address, by its place; for builtin:NAME, by its name. Throws as viewFolder()
+// does.
 std::filesystem::path viewSettingsFile(const std::string& scene);
-// The same without .view.toml, for what else is kept of the scene.
+// The same without .view.toml, for other files about the scene.
 std::filesystem::path viewFileStem(const std::string& scene);
 
-// Where the wearer stood when the scene's settings were saved; empty where they never were. Throws Error where the file is broken.
+// Where the wearer stood when the scene's settings were saved; empty if they never were. Throws Error if the file is broken.
 std::optional<Similarity> rememberedPlacement(const std::string& scene);
 
-// What was saved is read apart from being taken, which reads no file. Saving and taking say in a line how it went; a file that cannot be
-// read or written is no reason to leave the headset. What is written is whole or not there.
+// Reading saved settings and taking them are separate, so that taking reads no file. Saving and taking return the outcome in a line; a file
+// that cannot be read or written does not end the viewer. Files are written as a whole or not at all.
 std::string saveViewSettings(const std::string& scene, const ViewSettings& settings);
 struct SavedSettings {
     std::filesystem::path file;
     std::vector<SettingsTable> tables;
-    std::string trouble;  // why there are none
+    std::string trouble;  // why there are no settings
 };
 SavedSettings readSavedSettings(const std::string& scene);
 std::string takeSavedSettings(const SavedSettings& saved, ViewSettings& settings);

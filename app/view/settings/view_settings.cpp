@@ -41,7 +41,7 @@ std::vector<std::pair<std::string, std::string>> stereoLines(const StereoOptions
     std::vector<std::pair<std::string, std::string>> lines;
     for (const OptionRow<RunOptions>& row : runRows()) {
         if (std::string_view(row.text.table) != "stereo" || (row.text.commands & kView) == 0) { continue; }
-        // Half the resolution goes with foveation: other commands refuse it alone.
+        // Half resolution goes with foveation: other commands refuse it alone.
         if (std::string_view(row.text.key) == "periphery" && stereo.foveation_deg == 0.0) { continue; }
         lines.push_back(lineOf(row, options));
     }
@@ -122,7 +122,7 @@ ViewSettings readViewSettings(const std::vector<SettingsTable>& tables, ViewSett
 std::string viewSettingsToml(const ViewSettings& settings) {
     std::string text = "# What the viewer's panel was set to, and where the wearer's room lay in the scene.\n\n[stereo]\n";
     for (const auto& [key, value] : stereoLines(settings.stereo)) {
-        if (!value.empty()) { text += fmt::format("{} = {}\n", key, value); }  // else it is the scene's
+        if (!value.empty()) { text += fmt::format("{} = {}\n", key, value); }  // empty: left to the scene
     }
     text += "\n[view]\n";
     for (const auto& [key, value] : viewLines(settings)) { text += fmt::format("{} = {}\n", key, value); }

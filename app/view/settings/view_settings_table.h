@@ -1,4 +1,4 @@
-// The keys of [view] as rows, from which reading, writing and docs/options.md follow.
+// The keys of [view] as rows, the basis of reading, writing and docs/options.md.
 #pragma once
 
 #include "app/options/option_row.h"
@@ -9,7 +9,7 @@
 
 namespace binosplat {
 
-// All but those that place the scene.
+// All keys except those that place the scene.
 std::span<const OptionRow<ViewSettings>> viewSettingsRows();
 const OptionRow<ViewSettings>* findViewRow(std::string_view key);  // nullptr: there is none
 

@@ -1,4 +1,4 @@
-// What the wearer has set and where they stand, in one place: hands, the window, the panel and files ask for something else here.
+// The wearer's settings and place: hands, the window, the panel and files change them here.
 #pragma once
 
 #include "app/view/settings/view_settings.h"
@@ -16,7 +16,7 @@ public:
     // Without a placement.
     [[nodiscard]] const ViewSettings& settings() const { return settings_; }
     [[nodiscard]] const Similarity& sceneFromRoom() const { return scene_from_room_; }
-    // Both, as they are saved.
+    // Both, in the form in which they are saved.
     [[nodiscard]] ViewSettings withPlacement() const {
         ViewSettings saved = settings_;
         saved.scene_from_room = scene_from_room_;
@@ -26,28 +26,28 @@ public:
     void place(const Similarity& scene_from_room) { scene_from_room_ = scene_from_room; }
     // A placement that was asked for before there was a scene; once.
     [[nodiscard]] std::optional<Similarity> takeAsked() { return std::exchange(asked_, {}); }
-    // Also the placement, if there is one among them.
+    // Also sets the placement, if there is one among them.
     void set(ViewSettings settings) {
         scene_from_room_ = std::exchange(settings.scene_from_room, {}).value_or(scene_from_room_);
         settings_ = std::move(settings);
     }
     void togglePanel() { settings_.panel = !settings_.panel; }
 
-    // These were drawn: there is memory for them.
+    // These settings were drawn, so they fit in memory.
     void keepFitting(const ViewSettings& drawn) { fitting_ = drawn; }
-    // What was set otherwise since; empty if nothing was, or if none were drawn yet.
+    // Changes since then; empty if there are none, or if nothing was drawn yet.
     [[nodiscard]] std::string changeSinceFitting() const { return fitting_ ? describeChange(*fitting_, settings_) : ""; }
-    // To those, in that case.
+    // Back to the settings that fit; only if changeSinceFitting() is not empty.
     void goBack() { settings_ = *fitting_; }
 
-    // What has changed since it was said last, see describeChange.
+    // Changes since the last call, see describeChange.
     [[nodiscard]] std::string takeChange() { return describeChange(std::exchange(said_, settings_), settings_); }
 
 private:
     std::optional<Similarity> asked_;
     ViewSettings settings_, said_;
     Similarity scene_from_room_;
-    std::optional<ViewSettings> fitting_;  // of the last frame there was memory for
+    std::optional<ViewSettings> fitting_;  // of the last frame that fitted in memory
 };
 
 }  // namespace binosplat

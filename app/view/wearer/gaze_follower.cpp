@@ -19,10 +19,10 @@ std::array<std::optional<Gaze>, 2> GazeFollower::update(const std::optional<glm:
     const double seen_clear_rad = std::min(kSeenClearRadians, lens_clear_rad);
     std::array<std::optional<Gaze>, 2> gazes;
     for (std::size_t side = 0; side < 2; ++side) {
-        // What is looked at is taken for far away, so that both eyes turn alike.
+        // The target is assumed to be far away, so that both eyes turn alike.
         if (gaze_room) { last_[side] = glm::normalize(glm::conjugate(room_from_eyes[side].orientation) * *gaze_room); }
         gazes[side] = Gaze{glm::mix(glm::dvec3(0.0, 0.0, 1.0), last_[side], share_), glm::mix(lens_clear_rad, seen_clear_rad, share_)};
-        // Straight behind the eye, halfway there.
+        // The mix vanishes halfway to a gaze straight behind the eye.
         if (!(glm::length(gazes[side]->direction) > 1e-6)) { gazes[side]->direction = {0.0, 0.0, 1.0}; }
     }
     return gazes;

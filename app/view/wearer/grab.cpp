@@ -11,7 +11,7 @@ void Grab::update(const WearerNow& now, const PanelInRoom& panel, ViewState& sta
         const xr::Hand& hand = now.hands[static_cast<std::size_t>(h)];
         if (hand.grabs && hand.grip && !panel.isCarriedBy(h)) { holding[static_cast<std::size_t>(h)] = hand.grip->position; }
     }
-    // A hand that begins or ends to hold changes who holds, and moves nothing.
+    // If a hand begins or ceases to hold, nothing moves in this frame.
     const bool goes_on = holding[kLeft].has_value() == held_[kLeft].has_value() && holding[kRight].has_value() == held_[kRight].has_value();
     if (goes_on && holding[kLeft] && holding[kRight]) {
         state.place(

@@ -5,7 +5,7 @@
 
 namespace binosplat {
 
-// A hand squeezed: the scene moves with it; both: it turns and grows with them, too.
+// With one hand squeezed, the scene moves with it; with both, it also turns and grows with them.
 class Grab : public WearerTool {
 public:
     void update(const WearerNow& now, const PanelInRoom& panel, ViewState& state) override;
@@ -13,7 +13,7 @@ public:
     [[nodiscard]] std::vector<ToolChoice> choices() const override { return {{"Two-handed tilt", {}, &ViewSettings::tilt}}; }
 
 private:
-    std::array<std::optional<glm::dvec3>, 2> held_;  // where the hands were that hold the scene
+    std::array<std::optional<glm::dvec3>, 2> held_;  // the last places of the hands that hold the scene
 };
 
 }  // namespace binosplat

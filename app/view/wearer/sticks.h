@@ -1,14 +1,14 @@
-// Thumbsticks as what moves the wearer. The stick of the hand that points at the panel scrolls there instead, and moves nobody.
+// Moving the wearer with the thumbsticks. The stick of the hand that points at the panel scrolls there instead.
 #pragma once
 
 #include "app/view/wearer/wearer_tool.h"
 
 namespace binosplat {
 
-// A stick that is pushed this far does something, and has come back below that. Thumbs shiver within the dead zone.
+// A stick acts when it is pushed this far, and again only after it came back below the second value. Thumbs tremble within the dead zone.
 inline constexpr double kStickPushed = 0.7, kStickRests = 0.4, kStickDeadZone = 0.15;
 
-// The left one goes where the head looks, unless it teleports; the right one rises and sinks.
+// The left stick walks along the head's direction, unless it teleports; the right one rises and sinks.
 class Walk : public WearerTool {
 public:
     void update(const WearerNow& now, const PanelInRoom& panel, ViewState& state) override;
@@ -18,7 +18,7 @@ private:
     bool moves_ = false;
 };
 
-// The right one turns by 30 degrees at a time, or smoothly.
+// The right stick turns by 30 degrees at a time, or smoothly.
 class Turn : public WearerTool {
 public:
     void update(const WearerNow& now, const PanelInRoom& panel, ViewState& state) override;

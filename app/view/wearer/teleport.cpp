@@ -1,4 +1,4 @@
-// A throw.
+// The arc of a throw.
 #include "app/view/wearer/teleport.h"
 
 #include "app/view/placement/placement.h"
@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kThrowMetresPerSecond = 7.0, kFallMetresPerSecond2 = 9.8;
 constexpr double kArcWidthMetres = 0.012, kTargetMetres = 0.5, kAboveFloorMetres = 0.01;
-// Where the runtime knows no floor: below the head of a wearer who stands at the start.
+// If the runtime knows no floor: its distance below the head of a wearer who stands at the start.
 constexpr double kUsualFloorMetres = 1.6;
 
 }  // namespace
@@ -43,13 +43,13 @@ void Teleport::update(const WearerNow& now, const PanelInRoom& panel, ViewState&
     }
     const auto aims = [&](int h) {
         const xr::Hand& hand = now.hands[static_cast<std::size_t>(h)];
-        // Who aims may pass over the panel.
+        // While aiming, the ray may pass over the panel.
         const bool may_push = h == kLeft && (aiming_ == h || !panel.isPointedAtBy(h));
         const bool pushed = may_push && hand.stick.y > (aiming_ == h ? kStickRests : kStickPushed);
         return hand.aim.has_value() && (pushed || panel.clicksElsewhere(h));
     };
     if (aiming_ && !aims(*aiming_)) {
-        // A hand that was lost did not let go.
+        // A hand that lost tracking did not let go.
         if (now.hands[static_cast<std::size_t>(*aiming_)].aim && target) {
             glm::dvec3 step_m = *target - now.room_from_head.position;
             step_m.y = 0.0;

@@ -11,11 +11,11 @@ struct TeleportAim {
 };
 constexpr std::size_t kTeleportStrips = 6;
 
-// What is thrown from the hand along its aim falls there: the higher one points, the farther, up to some six metres. The floor's y is
+// The arc of something thrown from the hand along its aim: the higher it points, the farther, up to some six metres. The floor's y is
 // `floor_m`.
 TeleportAim aimTeleport(const Pose& room_from_aim, double floor_m);
 
-// Where that is chosen, the left stick ahead or a trigger away from the panel aims at the floor, and letting go moves the wearer there.
+// If chosen: pushing the left stick ahead, or a trigger pulled away from the panel, aims at the floor; letting go moves the wearer there.
 class Teleport : public WearerTool {
 public:
     void update(const WearerNow& now, const PanelInRoom& panel, ViewState& state) override;

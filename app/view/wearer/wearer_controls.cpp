@@ -1,4 +1,4 @@
-// Buttons, and tools one after the other.
+// The buttons, and then the tools in turn.
 #include "app/view/wearer/wearer_controls.h"
 
 #include "app/view/wearer/grab.h"

@@ -1,4 +1,4 @@
-// What the wearer's hands do to the scene about them.
+// Controlling the scene with the wearer's hands.
 #pragma once
 
 #include "app/view/wearer/wearer_tool.h"
@@ -7,19 +7,19 @@
 
 namespace binosplat {
 
-// The tools, and the buttons. Menu: the panel comes before the eyes, or goes.
+// The tools, and the buttons. Menu shows the panel before the eyes, or hides it.
 class WearerControls {
 public:
     WearerControls();
 
     void update(const WearerNow& now, PanelInRoom& panel, ViewState& state);
 
-    // To the next viewpoint where the right stick was pressed in just now, and back where the left one was.
+    // 1 if the right stick was just pressed in (next viewpoint), -1 for the left one (previous), or their sum.
     [[nodiscard]] int viewpointStep() const { return viewpoint_step_; }
-    // Whether a hand pressed just now what lets a scene play or rest.
+    // True if a hand has just pressed the button that plays or pauses a scene.
     [[nodiscard]] bool playPressed() const { return play_pressed_; }
 
-    // Of all tools, see WearerTool.
+    // For all tools, see WearerTool.
     void letGo();
     [[nodiscard]] bool isMoving() const;
     [[nodiscard]] std::optional<int> aimingHand() const;

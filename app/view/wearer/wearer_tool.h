@@ -1,4 +1,4 @@
-// What a wearer's hands can be used for: walking, teleporting, turning, holding the scene.
+// The wearer's tools: walking, teleporting, turning, holding the scene.
 #pragma once
 
 #include "app/view/room/panel_in_room.h"
@@ -15,14 +15,14 @@ namespace binosplat {
 struct WearerNow {
     std::array<xr::Hand, 2> hands;
     Pose room_from_head;
-    std::optional<double> floor_m;  // its y in the room, where the runtime knows
+    std::optional<double> floor_m;  // the floor's y in the room, if the runtime knows
     double step_seconds = 0.0;
 };
 
-// A widget of a tool: one of two after `words`, or a box to tick where there are no names.
+// A widget of a tool: a choice of two after `words`, or a check box if there are no names.
 struct ToolChoice {
     const char* words;
-    std::array<const char*, 2> names;  // of false and true; null: none
+    std::array<const char*, 2> names;  // for false and true; null: none
     bool ViewSettings::*chosen;
 };
 
@@ -32,16 +32,16 @@ public:
 
     // Once a frame, after the panel has followed the hands.
     virtual void update(const WearerNow& now, const PanelInRoom& panel, ViewState& state) = 0;
-    // The room begins elsewhere now: what is held is held from there on.
+    // The room's origin has moved: whatever is held is held from its new place.
     virtual void letGo() {}
 
-    // Whether it moved the wearer in this frame, step by step.
+    // True if it moved the wearer continuously in this frame.
     [[nodiscard]] virtual bool isMoving() const { return false; }
-    // The hand that it draws a ray of its own for.
+    // The hand for which it draws a ray of its own.
     [[nodiscard]] virtual std::optional<int> aimingHand() const { return {}; }
-    // What hangs in the room because of it, as an eye there sees that.
+    // The tool's things in the room, as an eye at that place sees them.
     [[nodiscard]] virtual std::vector<Thing> things(const glm::dvec3&) const { return {}; }
-    // What the panel lets the wearer choose.
+    // The tool's choices on the panel.
     [[nodiscard]] virtual std::vector<ToolChoice> choices() const { return {}; }
 };
 

@@ -31,12 +31,12 @@ void changeLayout(Commands& commands, vk::Image image, Layout from, Layout to) {
     commands.buffer().pipelineBarrier(stage, stage, {}, {}, {}, barrier);
 }
 
-// Of the window: the eye, as wide as high, and the panel beside it.
+// Width of the window: a square for the eye, and the panel beside it.
 int widthOf(const Canvas& canvas) {
     return kHeightPx + kHeightPx * static_cast<int>(canvas.sizePx().x) / static_cast<int>(canvas.sizePx().y);
 }
 
-// The whole of `from` into the columns [x0, x1) of `to`, as large as its shape allows.
+// Scales all of `from` into the columns [x0, x1) of `to`, as large as its aspect ratio allows.
 void blit(Commands& commands, vk::Image from, glm::uvec2 from_px, vk::Image to, int x0, int x1, int height) {
     const double scale = std::min(static_cast<double>(x1 - x0) / from_px.x, static_cast<double>(height) / from_px.y);
     const int w = std::max(static_cast<int>(scale * from_px.x), 1), h = std::max(static_cast<int>(scale * from_px.y), 1);
@@ -72,7 +72,7 @@ MirrorWindow::MirrorWindow(const Context& context, const Canvas& canvas)
     window_.reset(glfwCreateWindow(widthOf(canvas), kHeightPx, "binosplat", nullptr, nullptr));
     check(window_ != nullptr, "the window does not open");
     glfwSetWindowAspectRatio(window_.get(), widthOf(canvas), kHeightPx);
-    // What was let go before the next frame still counts once.
+    // Presses released before the next frame still count once.
     glfwSetInputMode(window_.get(), GLFW_STICKY_KEYS, GLFW_TRUE);
     glfwSetInputMode(window_.get(), GLFW_STICKY_MOUSE_BUTTONS, GLFW_TRUE);
     glfwSetWindowUserPointer(window_.get(), this);
@@ -99,7 +99,7 @@ MirrorWindow::~MirrorWindow() {
     const std::lock_guard lock(context_.queueMutex());
     try {
         context_.device().waitIdle();
-    } catch (const vk::SystemError&) {}  // a device that is lost draws nothing more
+    } catch (const vk::SystemError&) {}  // a lost device draws nothing more
 }
 
 WindowInput MirrorWindow::poll() {
@@ -121,7 +121,7 @@ WindowInput MirrorWindow::poll() {
     input.turn_rate = pressed(GLFW_KEY_RIGHT) - pressed(GLFW_KEY_LEFT);
     glm::dvec2 cursor;
     glfwGetCursorPos(window_.get(), &cursor.x, &cursor.y);
-    // A compositor may make the window another size than was asked for.
+    // A compositor may give the window another size than requested.
     int width = 0, height = 0;
     glfwGetWindowSize(window_.get(), &width, &height);
     cursor *= glm::dvec2(widthOf(canvas_), kHeightPx) / glm::dvec2(std::max(width, 1), std::max(height, 1));
@@ -131,7 +131,7 @@ WindowInput MirrorWindow::poll() {
     const glm::dvec2 size(canvas_.sizePx());
     const double wheel = std::exchange(wheel_, 0.0);
     const bool is_over = glm::all(glm::greaterThanEqual(place, glm::dvec2(0.0))) && glm::all(glm::lessThan(place, size));
-    // Where another window lies above this one, the mouse is that one's.
+    // If another window lies above this one, the mouse belongs to that one.
     if (is_over && (down || glfwGetWindowAttrib(window_.get(), GLFW_HOVERED) == GLFW_TRUE)) {
         input.pointer = {place, down, wheel};
         input.uses_panel = cursor != cursor_ || down || was_down_ || wheel != 0.0;
@@ -149,7 +149,7 @@ WindowInput MirrorWindow::poll() {
 }
 
 void MirrorWindow::keepEye(Commands& commands, const Buffer& pixels, glm::uvec2 size_px, vk::Format format) {
-    // Of another size than the frame before, which is over then.
+    // Another size than in the previous frame, which is finished by now.
     if (eye_px_ != size_px) {
         eye_px_ = size_px;
         try {
@@ -158,7 +158,7 @@ void MirrorWindow::keepEye(Commands& commands, const Buffer& pixels, glm::uvec2 
             eye_.emplace(context_, "the window's eye", size_px, raw, Usage::eTransferDst | Usage::eTransferSrc | Usage::eColorAttachment);
         } catch (const vk::OutOfDeviceMemoryError&) {
         } catch (const vk::OutOfHostMemoryError&) {
-            // The window shows the panel alone: the headset matters more.
+            // The window then shows only the panel: the headset matters more.
         }
     }
     if (!eye_) { return; }

@@ -1,4 +1,4 @@
-// A window on the desktop: what the dominant eye sees, and the panel beside it for the mouse.
+// A window on the desktop: the dominant eye's picture, and the panel beside it for the mouse.
 #pragma once
 
 #include "app/view/panel/canvas.h"
@@ -16,10 +16,10 @@ struct GLFWwindow;
 
 namespace binosplat {
 
-// GLFW, where there is a display. Before the Vulkan instance, which needs its extensions.
+// GLFW, if there is a display. Must come before the Vulkan instance, which needs its extensions.
 class WindowSystem {
 public:
-    // Null where there is no display, or none that Vulkan can show on.
+    // Null if there is no display, or none that Vulkan can show on.
     static std::unique_ptr<WindowSystem> find();
     WindowSystem(const WindowSystem&) = delete;
     WindowSystem& operator=(const WindowSystem&) = delete;
@@ -44,9 +44,9 @@ public:
     void acquire() { pictures_->acquire(); }
     // Between begin and submit: keeps an eye's presented pixels, of an image of `format`.
     void keepEye(Commands& commands, const Buffer& pixels, glm::uvec2 size_px, vk::Format format);
-    // Between begin and submit, once the canvas is drawn; also more than once.
+    // Between begin and submit, once the canvas is drawn; may be repeated.
     void record(Commands& commands);
-    // What the submission signals for show(); null where no picture was acquired.
+    // The semaphore that the submission signals for show(); null if no picture was acquired.
     [[nodiscard]] vk::Semaphore drawn() const { return pictures_->drawn(); }
     // After submit: shows the picture once it is drawn.
     void show() { pictures_->show(); }
@@ -60,9 +60,9 @@ private:
     glm::uvec2 eye_px_{0, 0};
     glm::dvec2 cursor_{0.0};  // at the last poll, and whether its left button was down
     bool was_down_ = false;
-    std::vector<int> pressed_;  // GLFW's keys, since the last poll
-    std::string dropped_;       // likewise
-    double wheel_ = 0.0;        // likewise
+    std::vector<int> pressed_;  // GLFW keys since the last poll
+    std::string dropped_;       // since the last poll
+    double wheel_ = 0.0;        // since the last poll
 };
 
 }  // namespace binosplat

@@ -1,4 +1,4 @@
-// GLFW alone: what is drawn on a device needs the headset first, which chooses the device.
+// Only GLFW: drawing needs a device, which the missing headset must choose first.
 #include "app/view/window/waiting_window.h"
 
 #define GLFW_INCLUDE_NONE

@@ -1,4 +1,4 @@
-// A window while there is no headset, so that Escape and its cross can end the wait.
+// A window while there is no headset, so that Escape or its close button can end the wait.
 #pragma once
 
 #include <chrono>
@@ -9,13 +9,13 @@ namespace binosplat {
 
 class WaitingWindow {
 public:
-    // No window, and nothing else, where there is no display.
+    // Without a display there is no window.
     WaitingWindow();
     WaitingWindow(const WaitingWindow&) = delete;
     WaitingWindow& operator=(const WaitingWindow&) = delete;
     ~WaitingWindow();
 
-    // Returns after that time at the latest; whether whoever waits has had enough.
+    // Returns after that time at the latest; true if the user ended the wait.
     [[nodiscard]] bool wait(std::chrono::milliseconds most);
 
 private:

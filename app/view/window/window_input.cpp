@@ -10,7 +10,7 @@ namespace binosplat {
 namespace {
 
 constexpr double kTurnRadiansPerSecond = 1.2, kWalkMetresPerSecond = 1.5;
-// What a step of the wheel makes of the scene.
+// Factor by which a step of the wheel enlarges the scene.
 constexpr double kGrowthPerStep = 1.1;
 
 }  // namespace

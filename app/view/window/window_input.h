@@ -8,25 +8,25 @@
 
 namespace binosplat {
 
-// What came from mouse and keyboard since the last time.
+// Input from mouse and keyboard since the last poll.
 struct WindowInput {
     PanelPointer pointer;      // on the panel
     bool uses_panel = false;   // the mouse was moved, pressed, let go or turned there
     glm::dvec3 walk{0.0};      // right, down, forward; -1 to 1
     double turn_rad = 0.0;     // to the right
     double turn_rate = 0.0;    // by keys, -1 to 1
-    double wheel = 0.0;        // steps, upwards, beside the panel: the scene grows
+    double wheel = 0.0;        // steps upwards, outside the panel: the scene grows
     glm::dvec2 tilt_rad{0.0};  // of the scene: to the right about the line of sight, and upwards about the wearer's right
     bool toggle_panel = false;
     bool reload_shaders = false;
     bool recentre = false;
-    bool play = false;   // a scene that moves, or have it rest
-    int frame_step = 0;  // likewise, one frame on or back
+    bool play = false;   // play or pause a moving scene
+    int frame_step = 0;  // of a moving scene, forward or back
     bool quit = false;
-    std::string dropped;  // a file let fall on the window; empty: none
+    std::string dropped;  // a file dropped on the window; empty: none
 };
 
-// Where the wearer stands after a step by keys and mouse that took so long.
+// The wearer's place after `step_seconds` of input from keys and mouse.
 Similarity movedByWindow(const Similarity& scene_from_room, const WindowInput& input, const Pose& room_from_head, double step_seconds);
 
 }  // namespace binosplat

@@ -1,4 +1,4 @@
-// A Vulkan swapchain that nobody waits for.
+// A Vulkan swapchain without waiting.
 #include "app/view/window/window_pictures.h"
 
 #include "app/view/window/window_surface.h"
@@ -67,20 +67,20 @@ void WindowPictures::make() {
 bool WindowPictures::isFree() const { return acquired_fence_.getStatus() == vk::Result::eSuccess; }
 
 void WindowPictures::acquire() {
-    // A promise is waited for before anything else is asked for, but not by the headset.
+    // A promised image must be free before the next one is acquired, but the headset does not wait for it.
     if (hold_ == Hold::kPromised && isFree()) { takePromised(); }
     if (hold_ == Hold::kPromised) { return; }
-    // Not every display says that its window has another size (Wayland does not).
+    // Not every display reports that its window was resized (Wayland does not).
     is_stale_ = is_stale_ || window_px_ != window_size_px_();
     if (is_stale_) {
         hold_ = Hold::kNone;
         is_remade_ = window_px_ == window_size_px_();
-        // What was presented is not written to again.
+        // Presented images must not be written to again.
         const std::lock_guard lock(context_.queueMutex());
         context_.queue().waitIdle();
         make();
     }
-    if (is_stale_ || hold_ == Hold::kOurs) { return; }  // put away; or of a frame that was given up
+    if (is_stale_ || hold_ == Hold::kOurs) { return; }  // minimized; or still held from a dropped frame
     try {
         const auto [result, index] = swapchain_.acquireNextImage(0, {}, *acquired_fence_);
         if (result != vk::Result::eSuccess && result != vk::Result::eSuboptimalKHR) { return; }  // none is free

@@ -12,26 +12,26 @@ namespace binosplat {
 
 class WindowPictures {
 public:
-    // `window_size_px` says how large the window is now. Throws Error if the device cannot show on the surface.
+    // `window_size_px` returns the window's current size. Throws Error if the device cannot show on the surface.
     WindowPictures(const Context& context, vk::raii::SurfaceKHR surface, std::function<glm::uvec2()> window_size_px);
 
     WindowPictures(const WindowPictures&) = delete;
     WindowPictures& operator=(const WindowPictures&) = delete;
     ~WindowPictures();
 
-    // Before anything is recorded: a picture to draw on, if one is free; that of a frame that was given up, if there is one.
+    // Before anything is recorded: a picture to draw on, if one is free; first that of a dropped frame, if there is one.
     void acquire();
     // That picture; null if none was free.
     [[nodiscard]] vk::Image current() const { return hold_ == Hold::kOurs ? images_[index_] : vk::Image(); }
     [[nodiscard]] glm::uvec2 sizePx() const { return size_px_; }
-    // What the submission that draws on it signals; null if none was free.
+    // The semaphore that the submission that draws on it signals; null if none was free.
     [[nodiscard]] vk::Semaphore drawn() const { return hold_ == Hold::kOurs ? *drawn_.at(index_) : vk::Semaphore(); }
     // Once the submission is under way: shows the picture when it is drawn.
     void show();
 
 private:
     void make();
-    // Whether the picture that was acquired is free to draw on by now.
+    // True if the acquired picture is free to draw on by now.
     [[nodiscard]] bool isFree() const;
     void takePromised();
 
@@ -45,8 +45,8 @@ private:
     glm::uvec2 size_px_{0, 0}, window_px_{0, 0};  // of the pictures, and of the window when they were made
     // Of the picture index_: none; promised, while the display may still read it; ours to draw on.
     enum class Hold { kNone, kPromised, kOurs } hold_ = Hold::kNone;
-    bool is_stale_ = false;   // the pictures are not as the display wants them any more
-    bool is_remade_ = false;  // at the same size: if the display still is not content, that is how it is
+    bool is_stale_ = false;   // the pictures no longer fit the display
+    bool is_remade_ = false;  // at the same size: if it is still suboptimal, keep it
     std::uint32_t index_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// Choosing.
+// Choosing size, format and alpha.
 #include "app/view/window/window_surface.h"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ std::optional<vk::Extent2D> windowExtent(const vk::SurfaceCapabilitiesKHR& able,
 
 std::optional<vk::SurfaceFormatKHR> windowFormat(std::span<const vk::SurfaceFormatKHR> offered) {
     using Format = vk::Format;
-    // Encoded values go to a window that takes them for what they are, of eight bits or more.
+    // UNORM formats, which show encoded values as they are, of eight bits or more.
     static constexpr std::array kWanted{Format::eB8G8R8A8Unorm,          Format::eR8G8B8A8Unorm,          Format::eA8B8G8R8UnormPack32,
                                         Format::eA2B10G10R10UnormPack32, Format::eA2R10G10B10UnormPack32, Format::eR16G16B16A16Unorm};
     for (const Format wanted : kWanted) {

@@ -1,4 +1,4 @@
-// What a display offers for a window's pictures, and what is taken of it.
+// Choosing from a display's offers for a window's pictures.
 #pragma once
 
 #include <vulkan/vulkan.hpp>
@@ -8,14 +8,14 @@
 
 namespace binosplat {
 
-// How large pictures are: as the compositor says, or where it leaves that to the program (Wayland says 0xffffffff) as the window is, within
-// what it allows. Empty while there is nothing to draw on, as of a window that is put away.
+// The size of pictures: the compositor's, or if it leaves that to the program (Wayland reports 0xffffffff) the window's, within the allowed
+// range. Empty while there is nothing to draw on, as when the window is minimized.
 std::optional<vk::Extent2D> windowExtent(const vk::SurfaceCapabilitiesKHR& able, vk::Extent2D window);
 
-// A format that shows bytes as they are; empty where there is none.
+// A format that shows bytes as they are; empty if there is none.
 std::optional<vk::SurfaceFormatKHR> windowFormat(std::span<const vk::SurfaceFormatKHR> offered);
 
-// Opaque where it can be had, since what lies behind the window is not to be seen.
+// Opaque if available, since the desktop behind the window must not show through.
 vk::CompositeAlphaFlagBitsKHR windowAlpha(vk::CompositeAlphaFlagsKHR offered);
 
 }  // namespace binosplat

@@ -1,4 +1,4 @@
-// Action sets and actions: made, their names and subaction paths checked, and the bindings that an application suggests for them.
+// Making action sets and actions, checks of their names and subaction paths, and the bindings that an application suggests.
 #include "xr/simulated/api/actions.h"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ void checkNames(const std::string& name, const std::string& localized_name) {
     require(isPathLevel(name), XR_ERROR_PATH_FORMAT_INVALID, name, ": a name has characters that a path may not have");
 }
 
-// Among live ones only: a destroyed one frees its names.
+// Only among live objects: a destroyed one frees its names.
 template <class T>
 void checkUnique(const Object& parent, const std::string& name, const std::string& localized_name) {
     for (const auto& child : parent.children) {

@@ -29,7 +29,7 @@ struct Action : Object {
     [[nodiscard]] ActionSet& set() const { return dynamic_cast<ActionSet&>(*parent); }
 };
 
-// XR_ERROR_HANDLE_INVALID also for those of another instance.
+// XR_ERROR_HANDLE_INVALID also for handles of another instance.
 ActionSet& getActionSet(const Instance& instance, XrActionSet set);
 Action& getAction(const Instance& instance, XrAction action);
 

@@ -1,4 +1,4 @@
-// The lock that every call takes, and what is said of calls that were refused or failed.
+// The lock that every call takes, and messages about calls that were refused or failed.
 #include "xr/simulated/api/answer.h"
 
 #include <cinttypes>
@@ -19,7 +19,7 @@ struct Said {
 };
 
 std::map<std::string, Said>& getSaidLines() {
-    // It outlives whatever the end of the process destroys, which may still have something to say.
+    // Never destroyed: destructors at the end of the process may still have something to say.
     static auto& lines = *new std::map<std::string, Said>();
     return lines;
 }
@@ -31,7 +31,7 @@ bool isPowerOfTen(std::uint64_t number) {
 
 // The runtime's lock guards what was said.
 void say(const std::string& line) {
-    // A program whose lines are all different is not remembered for ever.
+    // Limits the memory for a program whose lines are all different.
     constexpr std::size_t kMostLines = 1000;
     if (getSaidLines().size() == kMostLines && !getSaidLines().contains(line)) { sayTotals(); }
     Said& said = getSaidLines()[line];
@@ -69,8 +69,8 @@ void append(std::string& reason, XrStructureType type) {
 }
 
 void explain(const char* function, const Refusal& refusal) {
-    // A failure of the runtime itself is always said: no application can know what to do about it. The loader asks for every function
-    // that it has heard of, also without an instance after one was refused; that is no mistake of the application's.
+    // A failure of the runtime itself is always reported: no application can know what to do about it. The loader asks for every function
+    // that it has heard of, even without an instance after one was refused; that is not the application's mistake.
     const bool is_loaders = std::strcmp(function, "xrGetInstanceProcAddr") == 0 && refusal.result != XR_ERROR_VALIDATION_FAILURE;
     if (!is_loaders) { queueMessage(XR_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT, nameOf(refusal.result), function, refusal.reason); }
     const bool is_wanted = settingOf("EXPLAIN").is_there && !is_loaders;

@@ -1,4 +1,4 @@
-// How a function of the API answers: what is wrong with a call is thrown as a Refusal and becomes the result code in one place.
+// How API functions answer: an error in a call is thrown as a Refusal and becomes the result code in one place.
 #pragma once
 
 #include <charconv>
@@ -19,7 +19,7 @@ struct Refusal {
 };
 
 inline void append(std::string& reason, std::string_view part) { reason += part; }
-// Its name, or its number.
+// The type's name, or its number.
 void append(std::string& reason, XrStructureType type);
 template <class Number>
 requires std::is_arithmetic_v<Number>
@@ -38,19 +38,19 @@ template <class... Parts>
     throw refusal;
 }
 
-// The reason names what was refused: it is put together of words and values only where it is needed.
+// The reason names what was refused; it is put together from words and values only if it is needed.
 template <class... Parts>
 void require(bool holds, XrResult otherwise, const Parts&... parts) {
     if (!holds) { refuse(otherwise, parts...); }
 }
 
-// One lock for the whole runtime: calls are short, and only xrWaitFrame waits (and lets go of it meanwhile).
+// One lock for the whole runtime: calls are short, and only xrWaitFrame waits (and releases it meanwhile).
 std::mutex& getRuntimeLock();
 
-// With SIMULATED_OPENXR_EXPLAIN set, says on standard error which call was refused and why; failures of the runtime are always said.
+// With SIMULATED_OPENXR_EXPLAIN set, says on standard error which call was refused and why; failures of the runtime are always reported.
 void explain(const char* function, const Refusal& refusal);
 void explainFailure(const char* function, const char* what);
-// A line that comes again is counted: it is said at ten times, at a hundred and so on, and here, at the end.
+// Repeated lines are counted: a line is printed at ten times, at a hundred and so on, and here, at the end.
 void sayTotals();
 
 // A body without a result of its own succeeds.
@@ -77,7 +77,7 @@ XrResult answerUnlocked(const char* function, const Body& body) {
     }
 }
 
-// explain()'s message for the application's own function (messages.h), once the lock is free.
+// Passes explain()'s messages to the application's own function (messages.h), once the lock is free.
 void deliverMessages();
 
 template <class Body>

@@ -1,4 +1,4 @@
-// Which controls attached actions are bound to, which of those count, and what they read.
+// The controls that attached actions are bound to, which of these count, and what they read.
 #include "xr/simulated/api/attachment.h"
 
 #include <algorithm>
@@ -39,7 +39,7 @@ bool isActivated(const std::vector<ActiveSet>& active, const AttachedAction& act
 
 using Priorities = std::map<std::pair<std::size_t, std::string>, std::uint32_t>;
 
-// The highest priority that any active action has on each source; lower ones are as if they were not bound.
+// The highest priority that any active action has on each source; lower ones count as unbound.
 Priorities findHighestPriorities(const std::vector<AttachedAction>& actions, const std::vector<ActiveSet>& active) {
     Priorities highest;
     for (const AttachedAction& action : actions) {
@@ -68,7 +68,7 @@ ActionReading readAction(const AttachedAction& action, XrPath subaction_path, co
         reading.is_active = true;
         if (!reading.followed) { reading.followed = i; }
         if (action.type == XR_ACTION_TYPE_POSE_INPUT || action.type == XR_ACTION_TYPE_VIBRATION_OUTPUT) { continue; }
-        // Of several sources the strongest counts; for booleans that is "or".
+        // Among several sources the strongest counts; for booleans that is "or".
         const glm::dvec2 value = valueOf(controller, source, action.type);
         if (glm::dot(value, value) > glm::dot(reading.value, reading.value)) { reading.value = value; }
     }
@@ -79,7 +79,7 @@ ActionReading readAction(const AttachedAction& action, XrPath subaction_path, co
 }  // namespace
 
 Pose gripFromPose(std::string_view component, std::size_t device) {
-    // Of a right hand; a straight finger points along the grip's -y.
+    // For a right hand; a straight finger points along the grip's -y.
     double turn = 0.25;
     glm::dvec3 place_m(0.02, 0.0, 0.0);
     if (component == "pinch_ext/pose") { place_m = {0.01, -0.07, -0.05}; }

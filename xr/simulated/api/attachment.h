@@ -23,12 +23,12 @@ struct Automation;
 // As of the last xrSyncActions, for one subaction path or for all.
 struct ActionReading {
     bool is_active = false;
-    bool is_activated = false;   // some source of it was to be read, though it may not have been tracked
+    bool is_activated = false;   // some source of the action was to be read, even if it was not tracked
     glm::dvec2 value{0.0, 0.0};  // booleans are 0 or 1, scalars have y = 0
     bool has_changed = false;
     XrTime changed_at = 0;
-    // Of the action's sources, the one that its spaces stand on if it is a pose. It is kept as long as xrSyncActions activates it, even if
-    // it is not tracked for a while.
+    // For a pose, which of the action's sources its spaces follow. It is kept as long as xrSyncActions activates it, even while it is not
+    // tracked.
     std::optional<std::size_t> followed;
 };
 
@@ -53,21 +53,21 @@ struct Attachment {
     std::vector<AttachedAction> actions;
     // The profile that each device plays; none before the first xrSyncActions in focus.
     std::array<const Profile*, kDevices> profiles{};
-    // The hands' default profile, and the requested one when that was chosen; empty: any.
+    // The profile chosen for the hands, and the one that was wanted at that time; empty: any.
     const Profile* hands = nullptr;
     std::optional<std::string> hands_wanted;
 
     [[nodiscard]] AttachedAction* find(std::uint64_t action);
-    // True if any device plays another one now. Throws ScriptError if the script moves what the controllers lack.
+    // True if any device now plays another profile. Throws ScriptError if the script moves inputs that the controllers lack.
     bool chooseProfiles(Instance& instance, const Automation& automation, double time_s);
     [[nodiscard]] bool isSuggested(const Instance& instance, const Profile& profile) const;
     void bindSources(const Instance& instance);
     void read(const State& state, const std::vector<ActiveSet>& active, XrTime time);
 };
 
-// Of "grip/pose", "grip_surface/pose" (or "palm_ext/pose"), "pinch_ext/pose" and "poke_ext/pose". The palm's surface lies beside what the
-// hand holds: to the left of it in the left hand, and the other way round. A straightened index finger points half way between where the
-// held tube points, -z, and where the fingers of an open hand would, -y. Finger tips are where those of an open hand are.
+// For "grip/pose", "grip_surface/pose" (or "palm_ext/pose"), "pinch_ext/pose" and "poke_ext/pose". The palm's surface lies beside what the
+// hand holds: to its left in the left hand, to its right in the right hand. A straight index finger points halfway between the direction of
+// the held tube, -z, and that of an open hand's fingers, -y. Fingertips are where an open hand has them.
 Pose gripFromPose(std::string_view component, std::size_t device);
 
 // XR_ERROR_ACTIONSET_NOT_ATTACHED.
@@ -75,9 +75,9 @@ AttachedAction& getAttached(Session& session, XrAction action);
 
 // Where a pose action's source is; none while it is inactive.
 std::optional<Pose> stageFromAction(const Session& session, std::uint64_t action, XrPath subaction_path, const State& state);
-// True if its set was active then, with a source for it: otherwise its spaces cannot be located, not even in one another.
+// True if the last sync activated the action with a source: otherwise its spaces cannot be located, not even in one another.
 bool isLocatable(const Session& session, std::uint64_t action, XrPath subaction_path);
-// True if that source is the eye tracker.
+// True if the action's source is the eye tracker.
 bool isOfGaze(const Session& session, std::uint64_t action, XrPath subaction_path);
 
 }  // namespace simulated

@@ -1,4 +1,4 @@
-// Inputs that a program's own test sets, checked against the profiles and laid over what the script says.
+// Inputs that a program's own test sets, checked against the profiles; they override the script.
 #include "xr/simulated/api/automation.h"
 
 #include <algorithm>
@@ -27,7 +27,7 @@ struct Input {
     std::string name;  // "trigger/value"; "thumbstick" of a vector
 };
 
-// An input of the device, by its whole path. `suffix` is what a vector's components are called beyond that.
+// An input of the device, by its whole path. `suffix` completes a vector's path to that of a component.
 Input checkInput(Session& session, XrPath user_path, XrPath source_path, const char* suffix) {
     DeviceOverride& device = session.automation.devices[checkInputDevice(session, user_path)];
     const std::string &user = session.instance.paths.textOf(user_path), &source = session.instance.paths.textOf(source_path);
@@ -78,7 +78,7 @@ XrResult xrSetInputDeviceActiveEXT(XrSession session, XrPath interactionProfile,
         const bool is_for_it = std::find(profile->user_paths.begin(), profile->user_paths.end(), user_path) != profile->user_paths.end();
         require(is_for_it, XR_ERROR_PATH_UNSUPPORTED, name, " is not for ", user_path);
         DeviceOverride& moved = owner.automation.devices[device];
-        // Another controller's buttons are others.
+        // Another controller has other buttons.
         if (moved.profile != profile) { moved.inputs.clear(); }
         moved.profile = profile;
         moved.is_active = isActive != XR_FALSE;

@@ -1,5 +1,5 @@
-// XR_EXT_conformance_automation: a program's own test moves inputs, poses and profiles from inside; what it does not touch goes on as the
-// script says.
+// XR_EXT_conformance_automation: a program's own test moves inputs, poses and profiles from inside; the rest follows the
+// script.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ struct Profile;
 struct DeviceOverride {
     const Profile* profile = nullptr;
     std::optional<bool> is_active;
-    // By what follows /input/: "trigger/value".
+    // By the path after /input/: "trigger/value".
     std::map<std::string, double, std::less<>> inputs;
     std::optional<Pose> stage_from_grip, stage_from_aim;
 };

@@ -23,7 +23,7 @@ struct BoundSource {
     std::string component;  // "trigger/value"; "thumbstick" for both axes; "grip/pose"; "haptic"
 };
 
-// None where the profile has nothing for such an action there: it stays unbound.
+// None if the profile has nothing there for this type of action: it stays unbound.
 std::optional<BoundSource> bindSource(const Instance& instance, const Profile& profile, XrPath path, XrActionType type);
 
 }  // namespace simulated

@@ -19,7 +19,7 @@ XrDuration Clock::delayOf(std::int64_t of_frame) const {
 Clock::Frame Clock::nextFrame(std::int64_t skipped) {
     if (!birth_) { birth_ = std::chrono::steady_clock::now(); }
     frame_ += is_real_ ? 1 : 1 + skipped;
-    // A frame that comes late takes the next place that is left, as on a display.
+    // A late frame takes the next free slot, as on a display.
     if (is_real_ && (frame_ > 0 || is_early_)) { frame_ = std::max<std::int64_t>(frame_, (now() - origin_) / period_ + 1); }
     const std::chrono::nanoseconds wake(shown() - period_ - kStart);
     return {shown(), *birth_ + std::max(wake, std::chrono::nanoseconds(0))};

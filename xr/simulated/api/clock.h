@@ -21,9 +21,9 @@ public:
         // With the real clock: when its xrWaitFrame returns.
         std::chrono::steady_clock::time_point wake_time;
     };
-    // In lock-step, `skipped` periods pass before it.
+    // In lock-step, `skipped` periods pass before the frame.
     Frame nextFrame(std::int64_t skipped = 0);
-    // A period without a frame, as long as nobody asks for any.
+    // Lets a period pass without a frame, while nobody asks for one.
     void pass();
     XrTime now() const;
     XrDuration period() const { return period_; }
@@ -38,10 +38,10 @@ public:
     std::int64_t monotonicOffset();
 
 private:
-    // Not zero, which is no valid time, and the same in every run.
+    // Not zero, which is not a valid time; the same in every run.
     static constexpr XrTime kStart = 1'000'000'000;
 
-    // When the frame on display is.
+    // The display time of the frame on display.
     XrTime shown() const { return origin_ + std::max<std::int64_t>(frame_, 0) * period_ + delayOf(frame_); }
     XrDuration delayOf(std::int64_t of_frame) const;
 

@@ -63,7 +63,7 @@ struct Device::Implementation {
     Unique<vk::DeviceMemory> allocate(const vk::MemoryRequirements& needs, vk::MemoryPropertyFlags wanted);
     void transition(const DeviceImage& image, vk::ImageLayout from, vk::ImageLayout to) const;
     void begin();
-    // Submits and waits: what was read is there when this returns, and every run does the same in the same order.
+    // Submits and waits: results are there when this returns, and every run does the same in the same order.
     void finish();
 };
 
@@ -107,7 +107,7 @@ Unique<vk::DeviceMemory> Device::Implementation::allocate(const vk::MemoryRequir
 }
 
 void Device::Implementation::transition(const DeviceImage& image, vk::ImageLayout from, vk::ImageLayout to) const {
-    // Whatever the application did before and does after: all of it waits. Nothing here is about speed.
+    // Orders everything that the application did before and does after; speed does not matter here.
     const auto everything = vk::AccessFlagBits::eMemoryRead | vk::AccessFlagBits::eMemoryWrite;
     const vk::ImageMemoryBarrier barrier(everything, everything, from, to, VK_QUEUE_FAMILY_IGNORED, VK_QUEUE_FAMILY_IGNORED, image.handle(),
                                          {vk::ImageAspectFlags(image.info().format.aspects), 0, image.info().mips, 0, image.info().layers});

@@ -24,7 +24,7 @@ struct ImageInfo {
     std::uint32_t mips;
     VkImageUsageFlags usage;
     VkImageCreateFlags flags;
-    // 6 of a cube map, whose faces are array layers: `layers` counts them all.
+    // 6 for a cube map, whose faces are array layers: `layers` counts them all.
     std::uint32_t faces = 1;
 };
 
@@ -42,7 +42,7 @@ public:
     void checkImage(const ImageInfo& info) const;
     // XR_ERROR_OUT_OF_MEMORY.
     [[nodiscard]] std::unique_ptr<DeviceImage> createImage(const ImageInfo& info);
-    // A new image is brought into the layout that the application finds it in.
+    // Brings a new image into the layout in which the application gets it.
     void prepare(const DeviceImage& image);
     // The colour (or depth) of all array layers at the first mip level, tightly packed. The image is in the same layout before and after.
     [[nodiscard]] std::vector<std::byte> read(const DeviceImage& image);

@@ -1,4 +1,4 @@
-// Events in and out of the queue, those of a session taken back, and xrPollEvent.
+// Events in and out of the queue, removal of a session's events, and xrPollEvent.
 #include "xr/simulated/api/events.h"
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kMostEvents = 64;
 
-// Those of a session begin alike.
+// Events of sessions have the session right after type and next.
 XrSession sessionOf(const XrEventDataBuffer& event) {
     constexpr XrStructureType kOfSessions[] = {XR_TYPE_EVENT_DATA_SESSION_STATE_CHANGED, XR_TYPE_EVENT_DATA_INTERACTION_PROFILE_CHANGED,
                                                XR_TYPE_EVENT_DATA_VISIBILITY_MASK_CHANGED_KHR,

@@ -22,7 +22,7 @@ public:
     // False: nothing is waiting.
     bool pop(XrEventDataBuffer& event);
 
-    // Events of a session that is gone.
+    // Drops the events of a session that is gone.
     void forget(XrSession session);
 
 private:

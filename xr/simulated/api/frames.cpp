@@ -36,7 +36,7 @@ void checkBlendMode(XrEnvironmentBlendMode mode, const Script& script) {
     require(is_offered, XR_ERROR_ENVIRONMENT_BLEND_MODE_UNSUPPORTED, "the headset does not offer ", wordOf(mode));
 }
 
-// A frame that was begun and is refused stands in the log, once for each reason; it may be ended again.
+// A begun frame that is refused is logged, once for each reason; the program may try to end it again.
 const XrFrameEndInfo& checkFrame(Session& session, const XrFrameEndInfo* frame_end_info) {
     try {
         const XrFrameEndInfo& info = checkStruct(frame_end_info, XR_TYPE_FRAME_END_INFO);
@@ -53,7 +53,7 @@ const XrFrameEndInfo& checkFrame(Session& session, const XrFrameEndInfo* frame_e
     }
 }
 
-// The display shows a frame in the first period in which the device is done with it.
+// A frame is displayed in the first period in which the device is done with it.
 void loadGpu(Session& session, const XrFrameEndInfo& info) {
     const Simulation& simulation = *session.instance.simulation;
     const GpuLoad load = simulation.script.gpu_load.at(simulation.clock.secondsAt(info.displayTime));
@@ -84,14 +84,14 @@ XrResult xrWaitFrame(XrSession session, const XrFrameWaitInfo* frameWaitInfo, Xr
         getRunningSession(session);
         checkOptional(frameWaitInfo, XR_TYPE_FRAME_WAIT_INFO);
         XrFrameState& output = checkStruct(frameState, XR_TYPE_FRAME_STATE);
-        // The session may end meanwhile, so it is looked up anew each time.
+        // The session may end meanwhile, so it is looked up again each time.
         getFrameBegun().wait(lock, [&] {
             const Session* const waiting = find<Session>(session);
             return waiting == nullptr || !waiting->is_running || !waiting->frames.waited;
         });
         Session& owner = getRunningSession(session);
         Simulation& simulation = *owner.instance.simulation;
-        // Time goes on though no frame ends.
+        // Time goes on even though no frame ends.
         if (!owner.frames.refused_for.empty()) { owner.passFrame(simulation.clock.now()); }
         const std::int64_t missed = std::exchange(owner.frames.missed, 0);
         frame = simulation.clock.nextFrame(missed);

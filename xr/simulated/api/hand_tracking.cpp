@@ -20,7 +20,7 @@ struct HandTracker : SessionChild {
     HandTracker(Session& owner, Side of_side) : SessionChild(owner), side(of_side) {}
 };
 
-// In the base space; none while the hand is not seen.
+// Joints in the base space; none while the hand is not seen.
 std::optional<std::array<HandJoint, kHandJoints>> findJoints(const HandTracker& tracker, const Space& base, XrTime time) {
     const State state = tracker.session.at(time);
     const ControllerState& controller = state.controllers[tracker.side];
@@ -40,7 +40,7 @@ std::optional<std::array<HandJoint, kHandJoints>> findJoints(const HandTracker& 
 
 void locateJoints(const HandTracker& tracker, const Space& base, XrTime time, XrHandJointLocationsEXT& locations,
                   XrHandJointVelocitiesEXT* velocities) {
-    // Hands are seen in focus alone.
+    // Hands are seen only while the session has the focus.
     const bool is_seen = tracker.session.is_running && tracker.session.state == XR_SESSION_STATE_FOCUSED;
     const auto now = is_seen ? findJoints(tracker, base, time) : std::nullopt;
     locations.isActive = now ? XR_TRUE : XR_FALSE;

@@ -11,7 +11,7 @@ constexpr std::size_t kMostChildren = 4096;
 struct Table {
     Object root;
     std::unordered_map<std::uint64_t, Object*> objects;
-    // Far from small integers, so that an index taken for a handle is found out.
+    // Far from small integers, so that an index taken for a handle is detected.
     std::uint64_t next_number = 0x51A0'0000'0001;
 };
 

@@ -1,5 +1,5 @@
-// Every object behind a handle, in a tree: children end with their parent. A handle's number is never used twice, so that one
-// that was destroyed, or that belongs to another type, is known as invalid.
+// Every object behind a handle, in a tree: children end with their parent. Numbers are never reused, so that a handle that was destroyed,
+// or is of another type, is known to be invalid.
 #pragma once
 
 #include <cstdint>
@@ -25,14 +25,14 @@ struct Object {
 
 struct Session;
 
-// Whatever a session's calls make.
+// Anything that a session's calls make.
 struct SessionChild : Object {
     Session& session;
 
     explicit SessionChild(Session& owner) : session(owner) {}
 };
 
-// As destroyObject would, where the process ends with them.
+// Like destroyObject, for objects that end with the process.
 inline void endChildren(Object& object) {
     for (; !object.children.empty(); object.children.pop_back()) { endChildren(*object.children.back()); }
 }
@@ -41,7 +41,7 @@ inline void endChildren(Object& object) {
 Object& root();
 Object* findObject(std::uint64_t number);
 
-// XR_ERROR_LIMIT_REACHED if the parent has as many children as this runtime holds.
+// XR_ERROR_LIMIT_REACHED if the parent has as many children as this runtime allows.
 void adoptObject(Object& parent, std::unique_ptr<Object> child);
 // Children first, in the reverse order of their creation.
 void destroyObject(Object& object);
@@ -51,7 +51,7 @@ std::uint64_t numberOf(Handle handle) {
     return reinterpret_cast<std::uint64_t>(handle);
 }
 
-// Their names in the specification.
+// Handle types as the specification names them.
 constexpr const char* typeOf(XrInstance) { return "XrInstance"; }
 constexpr const char* typeOf(XrSession) { return "XrSession"; }
 constexpr const char* typeOf(XrSpace) { return "XrSpace"; }
@@ -93,7 +93,7 @@ T& adopt(Object& parent, std::unique_ptr<T> child) {
     return object;
 }
 
-// A call of an instance, a session or a session's child, which the body is given.
+// Answers a call on an instance, a session or a session's child, which is passed to the body.
 template <class T, class Body>
 XrResult answerFor(const char* function, typename T::Handle handle, const Body& body) {
     return answer(function, [&] {

@@ -1,4 +1,4 @@
-// Instances: what their creation checks, which extensions there are, and names of results and structure types.
+// Instances: checks on creation, the extensions on offer, and names of results and structure types.
 #include "xr/simulated/api/instance.h"
 
 #include <algorithm>
@@ -20,7 +20,7 @@ std::vector<Extension> listOfferedExtensions(const Script& script) {
     return offered;
 }
 
-// A broken script is reported when the instance is made; until then it takes nothing away.
+// A broken script is reported when the instance is made; until then it removes no extension.
 Script loadScriptBeforeInstance() {
     try {
         return loadScriptOfEnvironment();
@@ -38,7 +38,7 @@ void checkApplication(const XrApplicationInfo& application) {
 }
 
 [[noreturn]] void refuseExtension(const char* name) {
-    // Programs with other graphics could have no session here: they are told at once what there is.
+    // Programs with another graphics API could have no session here: they are told at once what is supported.
     for (const char* const graphics : {"XR_KHR_opengl_enable", "XR_KHR_opengl_es_enable", "XR_MNDX_egl_enable", "XR_KHR_metal_enable"}) {
         if (std::strcmp(name, graphics) != 0) { continue; }
         refuse(XR_ERROR_EXTENSION_NOT_PRESENT, name, ": this runtime has Vulkan alone, XR_KHR_vulkan_enable2 or XR_KHR_vulkan_enable");
@@ -97,12 +97,12 @@ XrResult xrCreateInstance(const XrInstanceCreateInfo* createInfo, XrInstance* in
         const XrInstanceCreateInfo& info = checkStruct(createInfo, XR_TYPE_INSTANCE_CREATE_INFO);
         XrInstance& output = checkOutput(instance);
         require(info.createFlags == 0, XR_ERROR_VALIDATION_FAILURE, "createFlags is ", info.createFlags, ", no flags are known");
-        // Layers are the loader's: it passes their names through, and a runtime has nothing to say about them.
+        // API layers are the loader's business: it passes their names through, and a runtime ignores them.
         checkApplication(info.applicationInfo);
         auto created = std::make_unique<Instance>();
         require(root().children.empty(), XR_ERROR_LIMIT_REACHED, "one instance at a time");
         created->is_1_1 = XR_VERSION_MINOR(info.applicationInfo.apiVersion) >= 1;
-        // Last, since it empties the folder that is written to and takes over from an instance that was lost.
+        // Last, since it empties the output folder and takes over from a lost instance.
         created->extensions = checkExtensions(info, loadScriptOfEnvironment());
         created->simulation = Simulation::begin();
         output = handleOf(adopt(root(), std::move(created)));

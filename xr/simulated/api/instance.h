@@ -26,7 +26,7 @@ struct Instance : Object, Enabled {
     std::unique_ptr<Simulation> simulation;
     // Announced by the script; calls fail once the grace is over.
     std::optional<XrTime> lost_from;
-    // The application's suggestions, by interaction profile, in the order in which it first named them.
+    // The application's suggestions, by interaction profile, in the order of their latest suggestions.
     std::vector<SuggestedProfile> suggestions;
     bool has_asked_requirements = false;
     ObjectNames object_names;
@@ -42,13 +42,13 @@ struct Instance : Object, Enabled {
     }
 
     [[nodiscard]] bool has(const Profile& profile) const { return meets(profile.depends); }
-    // /user/eyes_ext is the extension's.
+    // /user/eyes_ext exists only with the extension.
     [[nodiscard]] bool hasUserPath(std::string_view path) const {
         return isUserPath(path) && (path != "/user/eyes_ext" || extensions.contains(XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME));
     }
     // Features in the core since 1.1, and in 1.0 with an extension.
     [[nodiscard]] bool has1_1Or(const char* extension) const { return is_1_1 || extensions.contains(extension); }
-    // The system's for one that the application made without this runtime. XR_ERROR_RUNTIME_FAILURE without one.
+    // The system's for an instance that the application made without this runtime. XR_ERROR_RUNTIME_FAILURE if there is none.
     [[nodiscard]] PFN_vkGetInstanceProcAddr vulkanLoaderOf(VkInstance vulkan_instance) const;
 };
 

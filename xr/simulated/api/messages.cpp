@@ -1,4 +1,4 @@
-// Messengers, labels and objects' names of XR_EXT_debug_utils, and the messages that wait.
+// Messengers, labels and object names of XR_EXT_debug_utils, and the queue of messages.
 #include "xr/simulated/api/messages.h"
 
 #include <algorithm>
@@ -111,7 +111,7 @@ void queueMessage(XrDebugUtilsMessageTypeFlagsEXT type, const char* id, const ch
 }
 
 void deliverMessages() {
-    // A callback may queue others.
+    // A callback may queue more messages.
     for (const Pending& message : std::exchange(getPending(), {})) {
         std::vector<XrDebugUtilsLabelEXT> labels;
         for (const std::string& label : message.labels) { labels.push_back({XR_TYPE_DEBUG_UTILS_LABEL_EXT, nullptr, label.c_str()}); }
@@ -165,7 +165,7 @@ XrResult xrSubmitDebugUtilsMessageEXT(XrInstance instance, XrDebugUtilsMessageSe
         if (message.labels.empty()) { message.labels = labelsOf(&owner); }
         for (std::uint32_t i = 0; i < data.objectCount; ++i) {
             const auto& object = data.objects[i];
-            // The registered name counts, as in the loader's own messengers.
+            // The registered name wins, as in the loader's own messengers.
             const auto registered = owner.object_names.find({object.objectType, object.objectHandle});
             message.objects.emplace_back(object, registered == owner.object_names.end() ? copyOf(object.objectName) : registered->second);
         }

@@ -1,5 +1,5 @@
-// XR_EXT_debug_utils: why a call was refused, told to the application's own function. Messages wait until the runtime's lock is free, so
-// that this function may call whatever it likes.
+// XR_EXT_debug_utils: tells the application's callback why a call was refused. Messages wait until the runtime's lock is free, so that the
+// callback may call whatever it likes.
 #pragma once
 
 #include <map>
@@ -20,7 +20,7 @@ struct Messenger : Object {
     XrDebugUtilsMessengerCreateInfoEXT info{};  // as the application gave it; its chain may be gone
 };
 
-// By type and handle, for messages that speak of the object.
+// By type and handle, for messages that mention the object.
 using ObjectNames = std::map<std::pair<XrObjectType, std::uint64_t>, std::string>;
 
 // Regions that a session is in, and the label inserted last; the latest at the end.
@@ -29,7 +29,7 @@ struct Labels {
     std::optional<std::string> inserted;
 };
 
-// While it lives, the messenger in the chain of an xrCreateInstance hears of this thread's refusals.
+// While it lives, the messenger in the chain of an xrCreateInstance gets this thread's refusals.
 class CreationMessenger {
 public:
     explicit CreationMessenger(const XrInstanceCreateInfo* info);
@@ -39,7 +39,7 @@ public:
 };
 
 void queueMessage(XrDebugUtilsMessageTypeFlagsEXT type, const char* id, const char* function, const std::string& text);
-// Without the runtime's lock.
+// Call it without the runtime's lock.
 void deliverMessages();
 
 }  // namespace simulated

@@ -1,4 +1,4 @@
-// Which strings are paths, their numbers, and xrStringToPath and xrPathToString.
+// Well-formed paths and their numbers; xrStringToPath and xrPathToString.
 #include "xr/simulated/api/paths.h"
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kMostPaths = 1 << 16;
 
-// "/a/b": starts with a slash, ends with none, and no level is empty or made of dots alone.
+// "/a/b": starts with a slash, does not end with one, and no level is empty or made only of dots.
 bool isWellFormed(std::string_view text) {
     if (text.size() < 2 || text.size() >= XR_MAX_PATH_LENGTH || text.front() != '/') { return false; }
     for (std::size_t start = 1; start <= text.size();) {

@@ -24,7 +24,7 @@ private:
     std::unordered_map<std::string, XrPath> paths_;
 };
 
-// Letters, digits, and - _ . in lower case: one level of a path, and so the name of an action.
+// Lower-case letters, digits, and - _ . make a level of a path, and so the name of an action.
 bool isPathLevel(std::string_view text);
 
 }  // namespace simulated

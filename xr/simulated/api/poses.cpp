@@ -38,7 +38,7 @@ Motion motionOf(const Pose& a_step_before, const Pose& a_step_after) {
 void checkPose(const XrPosef& pose) {
     const auto& [x, y, z, w] = pose.orientation;
     const float length = std::sqrt(x * x + y * y + z * z + w * w);
-    // So written that NaN fails too.
+    // Written so that NaN fails, too.
     require(std::abs(length - 1) < 0.01f, XR_ERROR_POSE_INVALID, "the quaternion ", x, " ", y, " ", z, " ", w, " is not of length 1");
     require(std::isfinite(pose.position.x) && std::isfinite(pose.position.y) && std::isfinite(pose.position.z), XR_ERROR_POSE_INVALID,
             "the position ", pose.position.x, " ", pose.position.y, " ", pose.position.z, " is not finite");

@@ -1,4 +1,4 @@
-// Between OpenXR's single-precision poses and angles and this folder's own.
+// Conversions between OpenXR's single-precision poses and angles and this folder's own.
 #pragma once
 
 #include "xr/simulated/compose/geometry.h"

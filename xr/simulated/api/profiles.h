@@ -1,4 +1,4 @@
-// Section 6.4 of the specification: which input and output paths each interaction profile has.
+// Section 6.4 of the specification: the input and output paths of each interaction profile.
 #pragma once
 
 #include <functional>
@@ -10,7 +10,7 @@
 
 namespace simulated {
 
-// The kind of a component: its type in the registry.
+// A component's type in the registry.
 enum class ComponentKind { kBoolean, kFloat, kPose, kVibration };
 
 // `depends` is in the registry's words: names of versions and extensions, + is and, a comma is or; empty: always.
@@ -31,27 +31,27 @@ struct Profile {
 
 // The version and extensions of an instance.
 struct Enabled {
-    // Of API 1.1, not 1.0.
+    // API 1.1, not 1.0.
     bool is_1_1 = false;
     std::set<std::string, std::less<>> extensions;
 
     [[nodiscard]] bool meets(std::string_view depends) const;
 };
 
-// In the order in which the simulated controllers like to play them; those that they cannot play come last.
+// In the simulated controllers' order of preference; profiles that they cannot play come last.
 std::span<const Profile> listProfiles();
 // Null if the core has no such profile.
 const Profile* findProfile(std::string_view path);
-// Of controllers held in the hands, by what follows /interaction_profiles/; null if there is none.
+// A profile of hand-held controllers, by its path after /interaction_profiles/; null if there is none.
 const Profile* findHandProfile(std::string_view name);
-// All of these names, for messages.
+// The names of all such profiles, for messages.
 std::string listHandProfiles();
 // True if "/user/hand/left/input/trigger/value", or a parent of components such as ".../input/trigger", may be bound in this profile.
 bool allowsBinding(const Profile& profile, std::string_view binding, const Enabled& enabled);
-// Null if it has none: of this user path, with this version and these extensions.
+// Null if the profile has no such component at this user path, with this version and these extensions.
 const Component* findComponent(const Profile& profile, std::string_view user_path, std::string_view path, const Enabled& enabled);
 
-// The extension or version that the profile has this path with, if only that is missing; else empty.
+// The extension or version that this path needs in the profile, if only that is missing; else empty.
 std::string_view findNeeded(const Profile& profile, std::string_view binding);
 
 // /user/hand/left, /user/hand/right, /user/head, /user/gamepad, /user/treadmill, and /user/eyes_ext of XR_EXT_eye_gaze_interaction.

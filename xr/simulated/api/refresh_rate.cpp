@@ -1,4 +1,4 @@
-// XR_FB_display_refresh_rate: what the display can, among it what the script says.
+// XR_FB_display_refresh_rate: the display's rates, including those of the script.
 #include <algorithm>
 #include <cmath>
 
@@ -48,7 +48,7 @@ XrResult xrRequestDisplayRefreshRateFB(XrSession session, float displayRefreshRa
     return answerFor<Session>(__func__, session, [&](const Session& owner) {
         Simulation& simulation = *owner.instance.simulation;
         const auto before = static_cast<float>(simulation.rate_hz);
-        // 0 leaves it to the runtime.
+        // 0 leaves the choice to the runtime.
         const float wanted = displayRefreshRate == 0 ? static_cast<float>(simulation.script.rate_hz) : displayRefreshRate;
         const std::vector<float> rates = ratesOf(simulation.script);
         require(std::find(rates.begin(), rates.end(), wanted) != rates.end(), XR_ERROR_DISPLAY_REFRESH_RATE_UNSUPPORTED_FB,

@@ -12,7 +12,7 @@
 namespace simulated {
 namespace {
 
-// The state that the wearer and the script would have the session in.
+// The state that the wearer and the script want the session in.
 XrSessionState targetOf(const Session& session, const State& wanted) {
     if (session.wants_exit || !wanted.worn) { return XR_SESSION_STATE_STOPPING; }
     if (!wanted.visible) { return XR_SESSION_STATE_SYNCHRONIZED; }
@@ -24,7 +24,7 @@ void announceRecentring(const Session& session, double change_s) {
     const Simulation& simulation = *session.instance.simulation;
     const XrTime change_time = simulation.clock.timeAt(change_s);
     const auto announce = [&](XrReferenceSpaceType type, Pose (Script::*stage_from_space)(double) const) {
-        // Just before and after; the time itself was added up and may be off by a bit.
+        // Just before and after: the time itself is a sum and may be off by rounding.
         constexpr double kBeside = 1e-6;
         const Pose before = (simulation.script.*stage_from_space)(change_s - kBeside),
                    after = (simulation.script.*stage_from_space)(change_s + kBeside);
@@ -50,7 +50,7 @@ Session::~Session() {
         logBetween(*this);
     } catch (const std::exception& failure) { explainFailure("xrDestroySession", failure.what()); }
     instance.session = nullptr;
-    // It was unplugged: a program asks again for everything.
+    // The headset was unplugged: the program must ask for everything again.
     if (const std::uint32_t calls = instance.simulation->script.calls_after_loss; loss_announced && calls > 0) {
         instance.simulation->calls_until_plugged = calls;
         instance.has_asked_requirements = false;
@@ -79,7 +79,7 @@ void Session::step(const State& wanted) {
         enter(XR_SESSION_STATE_SYNCHRONIZED);
     } else if (target == XR_SESSION_STATE_STOPPING && state == XR_SESSION_STATE_SYNCHRONIZED) {
         enter(XR_SESSION_STATE_STOPPING);
-        // There may be no frame any more to tell of it.
+        // There may be no further frame to log it.
         if (!frames.begun) { logBetween(*this); }
     } else if (target == XR_SESSION_STATE_STOPPING || target < state) {
         enter(static_cast<XrSessionState>(state - 1));
@@ -108,7 +108,7 @@ void Session::passHeadlessFrame() {
     meetEvents(clock.now());
     announcePresence(instance.simulation->at(clock.now()));
     settle();
-    log_events.clear();  // nobody logs
+    log_events.clear();  // headless sessions log nothing
 }
 
 void Session::meetEvents(XrTime display_time) {

@@ -1,5 +1,5 @@
-// Chapter 9: a session and its life from IDLE to EXITING or LOSS_PENDING. The application's frames drive it: each moves it a state
-// towards the one that the script wants, also one that xrEndFrame refused.
+// Chapter 9: a session and its life from IDLE to EXITING or LOSS_PENDING. The application's frames drive it: each, even one that xrEndFrame
+// refused, moves it a state towards the one that the script wants.
 #pragma once
 
 #include <array>
@@ -15,17 +15,17 @@
 
 namespace simulated {
 
-// Where the calls xrWaitFrame, xrBeginFrame, xrEndFrame stand.
+// The progress of the calls xrWaitFrame, xrBeginFrame, xrEndFrame.
 struct FrameLoop {
     std::optional<XrTime> waited;  // returned by xrWaitFrame, not begun yet
     std::optional<XrTime> begun;   // begun, not ended yet
-    std::int64_t missed = 0;       // periods that the frame ended last took beyond its own
-    std::optional<double> gpu_ms;  // what the script says it took
-    bool should_render = false;    // as the frame that was waited for last was told
+    std::int64_t missed = 0;       // periods beyond its own that the last ended frame took
+    std::optional<double> gpu_ms;  // the GPU time that the script gives it
+    bool should_render = false;    // what the last frame waited for was told
     bool are_used = false;         // a frame was waited for since the session began
     bool moves_state = false;      // the frame that was begun has yet to move the session's state
-    std::string refused_for;       // why it could not be ended
-    // When the frame that was begun last is displayed. Another thread may have moved the clock on.
+    std::string refused_for;       // why the begun frame could not be ended
+    // Display time of the frame begun last. Another thread may have moved the clock on.
     std::optional<XrTime> last_begun;
 };
 
@@ -33,7 +33,7 @@ struct Session : Object {
     using Handle = XrSession;
 
     Instance& instance;
-    // None of a headless session (XR_MND_headless).
+    // Null for a headless session (XR_MND_headless).
     std::unique_ptr<Device> device;
     XrSessionState state = XR_SESSION_STATE_UNKNOWN;
     bool is_running = false;
@@ -45,7 +45,7 @@ struct Session : Object {
     std::optional<Attachment> attachment;
     std::optional<XrTime> loss_announced, lost_from;
     std::uint32_t slow_images = 0;
-    // The eyes' angles as of the frame before: a mask changes with them.
+    // The eyes' angles in the previous frame: a mask changes with them.
     std::optional<std::array<Fov, kEyes>> masked;
     std::vector<std::string> log_events;
     Automation automation;
@@ -56,25 +56,25 @@ struct Session : Object {
     Session(Instance& owner, std::unique_ptr<Device> graphics);
     ~Session() override;
 
-    // The script's state at a time, with what the program's own test says of the controllers.
+    // The script's state at a time, with the controllers as the program's own test sets them.
     [[nodiscard]] State at(XrTime time) const;
     void enter(XrSessionState next);
-    // A state nearer to what the headset's state at a frame wants.
+    // Moves one state towards the one that the headset's state at a frame asks for.
     void step(const State& wanted);
-    // The frame that was begun moves the session, once: when it ends, or when the program gives it up.
+    // A begun frame moves the session once: when it ends, or when the program gives it up.
     void passFrame(XrTime time);
-    // A headless session needs no frames: it goes at once where the script wants it, and each xrSyncActions is a frame's time. If the
-    // program waits for frames all the same, time and states go by them, as in any other session.
+    // A headless session needs no frames: it enters the script's state at once, and each xrSyncActions takes a frame's time. If the program
+    // waits for frames nevertheless, they drive time and states, as in any other session.
     [[nodiscard]] bool isHeadless() const { return device == nullptr; }
     void settle();
     void passHeadlessFrame();
-    // The script's events up to this display time.
+    // Handles the script's events up to this display time.
     void meetEvents(XrTime display_time);
-    // Tells whether somebody wears the headset, if that is new.
+    // Announces whether somebody wears the headset, if that changed.
     void announcePresence(const State& now);
-    // Time passes while nobody wears the headset: a period with every look for events that finds none.
+    // Lets time pass while nobody wears the headset: a period for each xrPollEvent that finds no event.
     void idle();
-    // Tells of visibility masks that are others than in the frame before.
+    // Announces visibility masks that changed since the previous frame.
     void announceMasks(const State& now);
 };
 
@@ -84,14 +84,14 @@ inline void checkNotLost(const SessionChild& child) { checkNotLost(child.session
 // XR_ERROR_SESSION_NOT_RUNNING.
 void checkRunning(const Session& session);
 
-// While a loss is pending, whatever succeeds says so.
+// While a loss is pending, every success becomes XR_SESSION_LOSS_PENDING.
 XrResult successOf(const Session& session, XrResult success);
 inline XrResult successOf(const SessionChild& child, XrResult success) { return successOf(child.session, success); }
 
-// Another display rate, from the next frame on; the application is told if it asked to be.
+// Another display rate, from the next frame on; the application is told if it enabled the extension.
 void changeRate(Instance& instance, double rate_hz);
 
-// For an xrWaitFrame on another thread that waits for a frame which will not come any more.
+// Wakes an xrWaitFrame on another thread: the frame that it waits for was begun, or never will be.
 void wakeFrameWaiters();
 
 constexpr int kFramesOfGrace = 3;

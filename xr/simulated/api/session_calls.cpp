@@ -53,7 +53,7 @@ XrResult xrDestroySession(XrSession session) {
 XrResult xrBeginSession(XrSession session, const XrSessionBeginInfo* beginInfo) {
     return answerFor<Session>(__func__, session, [&](Session& begun) {
         const XrSessionBeginInfo& info = checkStruct(beginInfo, XR_TYPE_SESSION_BEGIN_INFO);
-        // XR_MND_headless: whatever it says is ignored.
+        // XR_MND_headless: the view configuration is ignored.
         if (!begun.isHeadless()) { checkViewConfiguration(begun.instance, info.primaryViewConfigurationType); }
         require(!begun.is_running, XR_ERROR_SESSION_RUNNING, "the session runs already");
         require(begun.state == XR_SESSION_STATE_READY, XR_ERROR_SESSION_NOT_READY, "the session is ", wordOf(begun.state),

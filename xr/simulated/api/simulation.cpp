@@ -1,4 +1,4 @@
-// A simulation begun as the variables of the environment say; after a loss it is kept for the instance that comes next.
+// Begins a simulation as the environment's variables say; after a loss it is kept for the next instance.
 #include "xr/simulated/api/simulation.h"
 
 #include <cmath>
@@ -33,7 +33,7 @@ std::optional<Output> makeOutput(const Script& script) {
     return Output{folder, FrameLog(folder / kLogName)};
 }
 
-// The environment's word counts before the script's.
+// The environment overrides the script.
 std::string findFavouriteProfile(const Script& script) {
     const Setting setting = settingOf("PROFILE");
     const std::string name = setting.isSet() ? setting.value : script.profile;
@@ -64,7 +64,7 @@ Script loadScriptOfEnvironment() {
 }
 
 std::unique_ptr<Simulation> Simulation::begin() {
-    // Another script or folder is another run within the same process.
+    // Another script or folder means another run in the same process.
     const std::string origin = originOfEnvironment();
     std::unique_ptr<Simulation> survived = std::move(getSurvivor());
     if (survived != nullptr && survived->origin == origin) {

@@ -18,11 +18,11 @@ struct Output {
     FrameLog log;
 };
 
-// SIMULATED_OPENXR_SCRIPT, or the resting headset. Throws ScriptError.
+// The script in SIMULATED_OPENXR_SCRIPT, or a headset at rest. Throws ScriptError.
 Script loadScriptOfEnvironment();
 
 struct Simulation {
-    // The environment's settings.
+    // The environment's settings when it began.
     std::string origin;
     Script script;
     Clock clock;
@@ -30,14 +30,14 @@ struct Simulation {
     std::optional<Output> output;
     // The interaction profile that the controllers play if the application knows it.
     std::string favourite_profile;
-    // The display's, which the application may change.
+    // The display's rate, which the application may change.
     double rate_hz = 90;
     std::uint64_t frames_shown = 0;
     std::uint32_t calls_without_headset = 0;
-    // Of xrGetSystem, until the headset is plugged in again.
+    // Calls of xrGetSystem until the headset is plugged in again.
     std::uint32_t calls_until_plugged = 0;
     double events_until_s = -std::numeric_limits<double>::infinity();
-    // Something was lost: time goes on for the instance that comes after, so that the same loss does not come again.
+    // Something was lost: time goes on for the next instance, so that the same loss does not happen again.
     bool survives = false;
 
     // By SIMULATED_OPENXR_SCRIPT, _CLOCK, _OUT and _PROFILE. Throws ScriptError, std::runtime_error.

@@ -1,4 +1,4 @@
-// Chapter 11: which controls actions are bound to, what they are called, and haptics.
+// Chapter 11: the controls that actions are bound to, their names, and haptics.
 #include <algorithm>
 #include <cctype>
 
@@ -45,7 +45,7 @@ const Profile* profileOf(const Session& session, std::string_view user_path) {
     return device ? session.attachment->profiles[*device] : nullptr;
 }
 
-// A line in the log for each controller that would be felt.
+// A line in the log for each controller that would vibrate.
 void logHaptic(Session& session, const AttachedAction& action, XrPath subaction_path, const std::string& what) {
     if (session.state != XR_SESSION_STATE_FOCUSED) { return; }
     for (const BoundSource& source : action.sources) {
@@ -55,7 +55,7 @@ void logHaptic(Session& session, const AttachedAction& action, XrPath subaction_
     }
 }
 
-// Also before the session begins: what is sent then is dropped.
+// Even before the session begins: haptics are dropped then.
 XrResult successOfHaptic(const Session& session) { return session.state == XR_SESSION_STATE_FOCUSED ? XR_SUCCESS : XR_SESSION_NOT_FOCUSED; }
 
 }  // namespace
@@ -121,7 +121,7 @@ XrResult xrApplyHapticFeedback(XrSession session, const XrHapticActionInfo* hapt
         append(pulse, vibration.duration);
         pulse += ' ';
         append(pulse, vibration.amplitude);
-        // Nobody feels an amplitude of 0, which ends what is felt.
+        // An amplitude of 0 ends any vibration.
         logHaptic(owner, action, hapticActionInfo->subactionPath, vibration.amplitude > 0 ? pulse : "off");
         return successOfHaptic(owner);
     });

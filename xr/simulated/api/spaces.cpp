@@ -1,4 +1,4 @@
-// Spaces: made, checked, and located in one another, with their velocities.
+// Making and checking spaces, and locating them in one another, with velocities.
 #include "xr/simulated/api/spaces.h"
 
 #include <algorithm>
@@ -27,14 +27,14 @@ bool isKnown(const Session& session, XrReferenceSpaceType type) {
 
 bool isGaze(const Space& space) { return !space.reference && isOfGaze(space.session, space.action, space.subaction_path); }
 
-// Spaces of one pose action stand on one thing and never move against each other, though nobody may know where that thing is.
+// Spaces of one pose action are fixed to one thing and never move against each other, even if nobody knows where that thing is.
 bool areOnOneThing(const Space& space, const Space& base) {
     return !space.reference && !base.reference && space.action == base.action && space.subaction_path == base.subaction_path &&
            isLocatable(space.session, space.action, space.subaction_path);
 }
 
-// A head that is not tracked has no place but relative to itself; where only its turn is known, its place is given and not tracked. A gaze
-// is on the head, and tracked whole or not at all.
+// An untracked head has a pose only relative to itself; if only its orientation is known, its position is not valid. A gaze is on the head,
+// and its orientation and position are tracked together or not at all.
 XrSpaceLocationFlags locationFlagsOf(const Space& space, const Space& base, const State& state) {
     constexpr XrSpaceLocationFlags kTracked = XR_SPACE_LOCATION_ORIENTATION_TRACKED_BIT | XR_SPACE_LOCATION_POSITION_TRACKED_BIT;
     if (areOnOneThing(space, base)) { return kPoseKnown; }
@@ -108,7 +108,7 @@ std::optional<Pose> stageFromSpace(const Space& space, const State& state) {
 
 namespace {
 
-// Of 1.1's xrLocateSpaces and its predecessor.
+// For 1.1's xrLocateSpaces and its predecessor.
 void locateAll(const Session& owner, const XrSpacesLocateInfo* locate_info, XrSpaceLocations* space_locations) {
     const XrSpacesLocateInfo& info = checkStruct(locate_info, XR_TYPE_SPACES_LOCATE_INFO);
     XrSpaceLocations& output = checkStruct(space_locations, XR_TYPE_SPACE_LOCATIONS);
@@ -181,7 +181,7 @@ XrResult xrGetReferenceSpaceBoundsRect(XrSession session, XrReferenceSpaceType r
     return answerFor<Session>(__func__, session, [&](const Session& owner) {
         const bool is_stage = referenceSpaceType == XR_REFERENCE_SPACE_TYPE_STAGE;
         require(!is_stage || hasStage(owner), XR_ERROR_REFERENCE_SPACE_UNSUPPORTED, "there is no STAGE");
-        // Unlike xrCreateReferenceSpace: its conformance test wants XR_ERROR_REFERENCE_SPACE_UNSUPPORTED for whatever it does not know.
+        // Unlike xrCreateReferenceSpace, whose conformance test wants XR_ERROR_REFERENCE_SPACE_UNSUPPORTED for any unknown type.
         require(isKnown(owner, referenceSpaceType), XR_ERROR_VALIDATION_FAILURE, referenceSpaceType,
                 " is no reference space that this session has");
         checkOutput(bounds) = is_stage ? XrExtent2Df{3, 2} : XrExtent2Df{0, 0};
@@ -202,7 +202,7 @@ XrResult xrLocateSpace(XrSpace space, XrSpace baseSpace, XrTime time, XrSpaceLoc
         }
         const bool has_samples = located.session.instance.extensions.contains(XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME);
         auto* const sample = findInChain<XrEyeGazeSampleTimeEXT>(output.next, XR_TYPE_EYE_GAZE_SAMPLE_TIME_EXT);
-        // The script knows the gaze of any time; 0 stands for no sample.
+        // The script knows the gaze at any time; 0 means no sample.
         if (has_samples && sample != nullptr) {
             const bool is_seen = flags != 0 && isGaze(located) && stageFromSpace(located, located.session.at(time));
             sample->time = is_seen ? time : 0;

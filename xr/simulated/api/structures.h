@@ -13,7 +13,7 @@
 
 namespace simulated {
 
-// Unknown structures of a chain are passed over, as the specification demands; one that never ends is refused.
+// Unknown structures in a chain are skipped, as the specification demands; a chain that never ends is refused.
 void checkChain(const void* next);
 // Null if there is none.
 const XrBaseInStructure* findInChain(const void* next, XrStructureType type);
@@ -47,14 +47,14 @@ T& checkOutput(T* output) {
     return *output;
 }
 
-// `what` it holds is for a message.
+// `what` names the contents for a message.
 template <class T>
 std::span<T> checkArray(T* array, std::uint32_t count, const char* what) {
     require(array != nullptr || count == 0, XR_ERROR_VALIDATION_FAILURE, "the array of ", count, " ", what, " is missing");
     return {array, count};
 }
 
-// At least one flag, and none but those known.
+// Requires at least one flag, and only known ones.
 inline void checkFlags(XrFlags64 flags, XrFlags64 known, const char* name) {
     require(flags != 0 && (flags & ~known) == 0, XR_ERROR_VALIDATION_FAILURE, name, " is ", flags, ", must be of the bits ", known);
 }
@@ -74,7 +74,7 @@ void fillArray(std::uint32_t capacity, std::uint32_t* count, T* array, const std
     if (wantsArray(capacity, count, array, values.size())) { std::ranges::copy(values, array); }
 }
 
-// With the terminating zero, which counts.
+// With the terminating zero, which is counted.
 inline void fillString(std::uint32_t capacity, std::uint32_t* count, char* buffer, const std::string& text) {
     if (wantsArray(capacity, count, buffer, text.size() + 1)) { std::memcpy(buffer, text.c_str(), text.size() + 1); }
 }

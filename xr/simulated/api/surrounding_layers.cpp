@@ -13,7 +13,7 @@ namespace {
 constexpr float kSlack = 1e-4f;  // 2 pi rounded to float is more than 2 pi
 constexpr float kPi = std::numbers::pi_v<float>;
 
-// Also infinite: then it is as 0.
+// May be infinite, which means the same as 0.
 bool isRadius(float radius) { return radius >= 0; }
 bool isAngle(float angle, float least, float most) { return angle >= least - kSlack && angle <= most + kSlack; }
 

@@ -1,4 +1,4 @@
-// XR_KHR_composition_layer_cylinder, _equirect2 and _cube: layers that surround the wearer. And what all layers of one picture share.
+// XR_KHR_composition_layer_cylinder, _equirect2 and _cube: layers that surround the wearer. Also what all layers with one picture share.
 #pragma once
 
 #include "xr/simulated/api/layers.h"
@@ -16,7 +16,7 @@ void logSurrounding(const Session& session, const XrCompositionLayerBaseHeader& 
 void checkEyeVisibility(XrEyeVisibility visibility);
 Visibility visibilityOf(XrEyeVisibility visibility);
 const char* nameOf(XrEyeVisibility visibility);
-// XR_ERROR_LAYER_INVALID, XR_ERROR_SWAPCHAIN_RECT_INVALID ...: a picture in colour, not a cube map.
+// XR_ERROR_LAYER_INVALID, XR_ERROR_SWAPCHAIN_RECT_INVALID ...: must be a colour picture, not a cube map.
 void checkPicture(const Session& session, const XrSwapchainSubImage& image);
 // One array layer (or face) of the image on show.
 Picture pictureOf(Swapchain& swapchain, std::uint32_t array_layer);

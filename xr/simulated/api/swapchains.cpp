@@ -1,4 +1,4 @@
-// Swapchains: what is asked of their images, checked; and images made, acquired, waited for and released.
+// Swapchains: checks of the requested images; making, acquiring, waiting for and releasing images.
 #include "xr/simulated/api/swapchains.h"
 
 #include <algorithm>
@@ -29,7 +29,7 @@ VkImageUsageFlags usageOf(XrSwapchainUsageFlags asked, const SwapchainFormat& fo
 }
 
 // A mutable image may be written through a view of another format, which is how sRGB images are written by compute shaders. Vulkan 1.0
-// has no extended usage, so it is asked for only there.
+// has no extended usage, so it is requested only then.
 VkImageCreateFlags flagsOf(XrSwapchainUsageFlags asked) {
     if ((asked & XR_SWAPCHAIN_USAGE_MUTABLE_FORMAT_BIT) == 0) { return 0; }
     const bool is_written = (asked & XR_SWAPCHAIN_USAGE_UNORDERED_ACCESS_BIT) != 0;
@@ -110,7 +110,7 @@ Swapchain& getSwapchain(const Session& session, XrSwapchain swapchain) {
 }
 
 void fetchTexels(Swapchain& swapchain) {
-    // Depth is looked at by nobody here.
+    // Nothing here looks at depth.
     if (swapchain.has_texels || swapchain.info.format.aspects != VK_IMAGE_ASPECT_COLOR_BIT) { return; }
     swapchain.released_texels = swapchain.session.device->read(*swapchain.images[swapchain.released_index]);
     swapchain.has_texels = true;
@@ -164,7 +164,7 @@ XrResult xrAcquireSwapchainImage(XrSwapchain swapchain, const XrSwapchainImageAc
         require(owner.acquired.size() < owner.images.size(), XR_ERROR_CALL_ORDER_INVALID, "all ", owner.images.size(),
                 " images are acquired already");
         const std::uint32_t next = owner.nextImage();
-        // The image on show is given away again: the application holds all others.
+        // The image on show is handed out again: the application holds all others.
         if (owner.has_released && owner.released_index == next && owner.session.instance.simulation->output) { fetchTexels(owner); }
         if (!owner.is_prepared[next]) { owner.session.device->prepare(*owner.images[next]); }
         owner.is_prepared[next] = true;
@@ -179,7 +179,7 @@ XrResult xrWaitSwapchainImage(XrSwapchain swapchain, const XrSwapchainImageWaitI
         const XrSwapchainImageWaitInfo& info = checkStruct(waitInfo, XR_TYPE_SWAPCHAIN_IMAGE_WAIT_INFO);
         require(!owner.acquired.empty(), XR_ERROR_CALL_ORDER_INVALID, "no image is acquired");
         require(!owner.is_oldest_waited, XR_ERROR_CALL_ORDER_INVALID, "the image that was waited for is not released yet");
-        // Slow images are late for every wait that has an end. While a loss is pending no result could say so, and the wait succeeds.
+        // Slow images exceed every finite timeout. While a loss is pending, no result could say so, and the wait succeeds.
         if (owner.session.slow_images > 0 && info.timeout != XR_INFINITE_DURATION && !owner.session.loss_announced) {
             --owner.session.slow_images;
             return XR_TIMEOUT_EXPIRED;

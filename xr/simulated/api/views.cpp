@@ -1,4 +1,4 @@
-// Which views there are, how large their pictures should be, and where they are: section 10.3's xrLocateViews.
+// The views, their recommended sizes, and where they are: section 10.3's xrLocateViews.
 #include "xr/simulated/api/views.h"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ constexpr std::uint32_t kMostViewPixels = 4096;
 constexpr XrViewStateFlags kTurnsKnown = XR_VIEW_STATE_ORIENTATION_VALID_BIT | XR_VIEW_STATE_ORIENTATION_TRACKED_BIT,
                            kPlacesKnown = XR_VIEW_STATE_POSITION_VALID_BIT | XR_VIEW_STATE_POSITION_TRACKED_BIT;
 
-// Whether the program may name the inset; the script can take it from the headset, also where 1.1 has its name in the core.
+// True if the program may name the inset; the script can remove it from the headset even if 1.1 has its name in the core.
 bool knowsInset(const Instance& instance) { return instance.has1_1Or(XR_VARJO_QUAD_VIEWS_EXTENSION_NAME); }
 bool hasInset(const Instance& instance) {
     return knowsInset(instance) && instance.simulation->script.allowsExtension(XR_VARJO_QUAD_VIEWS_EXTENSION_NAME);
@@ -31,7 +31,7 @@ glm::uvec2 sizePxOf(const Script& script, XrViewConfigurationType type, std::siz
 }  // namespace
 
 void checkViewConfiguration(const Instance& instance, XrViewConfigurationType type) {
-    // Values of extensions that are not enabled are no view configurations at all.
+    // Values of extensions that are not enabled are not view configurations at all.
     const bool is_known = type == XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO || type == XR_VIEW_CONFIGURATION_TYPE_PRIMARY_MONO ||
                           (type == kInset && knowsInset(instance));
     require(is_known, XR_ERROR_VALIDATION_FAILURE, type, " is no view configuration");

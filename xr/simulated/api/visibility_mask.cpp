@@ -33,7 +33,7 @@ XrResult xrGetVisibilityMaskKHR(XrSession session, XrViewConfigurationType viewC
         const Simulation& simulation = *owner.instance.simulation;
         Mesh mesh = meshOf(simulation.at(simulation.clock.now()).eyes[sideOf(viewIndex)].fov, visibilityMaskType);
         if (simulation.script.visibility_mask_is_broken) { std::abort(); }
-        // No lens hides anything of an inset.
+        // Lenses hide nothing of an inset.
         if (!simulation.script.visibility_mask || isInset(viewIndex)) { mesh = {}; }
         output.vertexCountOutput = static_cast<std::uint32_t>(mesh.vertices.size());
         output.indexCountOutput = static_cast<std::uint32_t>(mesh.indices.size());

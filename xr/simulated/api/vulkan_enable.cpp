@@ -1,5 +1,5 @@
 // XR_KHR_vulkan_enable2 and its predecessor: the application's Vulkan instance and device are made through the runtime, which needs nothing
-// of them beyond what the application asks for.
+// beyond what the application asks for.
 #include <algorithm>
 #include <cstring>
 #include <vector>
@@ -75,7 +75,7 @@ XrResult answerNoExtensions(const char* function, XrInstance instance, XrSystemI
     });
 }
 
-// Of a VkInstance or a VkDevice.
+// For a VkInstance or a VkDevice.
 template <typename Info>
 void checkCreation(const Info& info, const char* made_from) {
     checkSystem(info.systemId);
@@ -167,7 +167,7 @@ XrResult xrCreateVulkanDeviceKHR(XrInstance instance, const XrVulkanDeviceCreate
         require(info.vulkanPhysicalDevice != VK_NULL_HANDLE && info.vulkanPhysicalDevice == owner.graphics_device, XR_ERROR_HANDLE_INVALID,
                 "not the device that xrGetVulkanGraphicsDevice2KHR gave");
         const auto create = resolve<PFN_vkCreateDevice>(info.pfnGetInstanceProcAddr, owner.graphics_instance, "vkCreateDevice");
-        // As Monado does it: a feature of the runtime's own, by its own struct.
+        // As Monado does: a feature of the runtime's own, in a struct of its own.
         VkPhysicalDeviceTimelineSemaphoreFeatures timeline{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_TIMELINE_SEMAPHORE_FEATURES,
                                                            const_cast<void*>(info.vulkanCreateInfo->pNext), VK_TRUE};
         VkDeviceCreateInfo with_additions = *info.vulkanCreateInfo;

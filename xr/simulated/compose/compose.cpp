@@ -34,7 +34,7 @@ glm::dvec2 pixelCentre(const glm::uvec2& size_px, std::uint32_t x, std::uint32_t
     return glm::dvec2(x + 0.5, y + 0.5) / glm::dvec2(size_px);
 }
 
-// Of an empty rectangle there is nothing to see.
+// An empty rectangle shows nothing.
 bool isEmpty(const Rect& rect) { return rect.extent.x == 0 || rect.extent.y == 0; }
 
 // A layer as one eye sees it: linear light and alpha where a pixel's ray meets it.
@@ -54,7 +54,7 @@ public:
     }
 
 private:
-    // Poses and angles went to the application and came back in single precision: what moves no corner by 0.02 pixels is the eye's own.
+    // Poses and angles went to the application and came back in single precision: a view that moves no corner by 0.02 pixels is the eye's.
     [[nodiscard]] bool isNearlyTheEye(const EyeView& eye) const {
         constexpr double kSameGrid_px = 0.02;
         const Tangents eye_tangents(eye.fov);
@@ -144,7 +144,7 @@ std::vector<SeenLayer> listSeen(const EyeView& eye, Side side, std::span<const L
     return seen;
 }
 
-// Light and alpha.
+// Returns light and alpha.
 glm::dvec4 blend(const glm::dvec4& below, const glm::dvec4& texel, const Blending& blending) {
     if (!blending.texture_source_alpha) { return {glm::dvec3(texel), 1.0}; }
     const double alpha = std::clamp(texel.a, 0.0, 1.0);

@@ -1,4 +1,4 @@
-// The wearer's view: layers over one another in linear light, one eye at a time, as 8-bit sRGB. On the CPU and the same on every run.
+// The wearer's view: layers blended in linear light, one eye at a time, to 8-bit sRGB. On the CPU, and the same in every run.
 #pragma once
 
 #include "xr/simulated/compose/geometry.h"
@@ -39,7 +39,7 @@ struct Rect {
     glm::uvec2 extent{0, 0};
 };
 
-// Both false: the layer covers what is below it. XrCompositionLayerFlagBits of the same names.
+// Both false: the layer covers what is below it. Named like XrCompositionLayerFlagBits.
 struct Blending {
     bool texture_source_alpha = false;
     bool unpremultiplied_alpha = false;
@@ -49,19 +49,19 @@ struct ProjectionView {
     Picture picture;
     Rect rect;
     Pose stage_from_view;
-    Fov fov;  // upside down or mirrored views (up < down, right < left) are read as they say
+    Fov fov;  // upside down or mirrored views (up < down, right < left) are taken as they are
 };
 struct ProjectionLayer {
     std::array<ProjectionView, 2> views;  // by Side
     Blending blending;
-    std::array<std::optional<ProjectionView>, 2> insets{};  // by Side: in the place of what its view shows there, where a program drew one
+    std::array<std::optional<ProjectionView>, 2> insets{};  // by Side: replaces that part of the view, if a program drew one
 };
 
 enum class Visibility { kBoth, kLeft, kRight };
 struct QuadLayer {
     Picture picture;
     Rect rect;
-    Pose stage_from_quad;  // its centre; it is seen from its +z side only
+    Pose stage_from_quad;  // its centre; visible only from its +z side
     glm::dvec2 size_m{0.0, 0.0};
     Visibility visibility = Visibility::kBoth;
     Blending blending;
@@ -79,7 +79,7 @@ struct CylinderLayer {
     Blending blending;
 };
 
-// The inside of a sphere, or of a piece of it between two latitudes and of a span of longitudes about -z. Radii as of cylinders.
+// The inside of a sphere, or of a piece of it between two latitudes and of a span of longitudes about -z. Radii as for cylinders.
 struct SphereLayer {
     Picture picture;
     Rect rect;
@@ -114,20 +114,20 @@ struct EyeView {
     Fov fov;
 };
 
-// The room behind all layers, where the headset does not shut it out: light that is added, or that shows as far as the layers' alpha lets
+// The room behind all layers, if the headset does not shut it out: light that is added, or that shows as far as the layers' alpha lets
 // it.
 struct Backdrop {
     glm::dvec3 light{0.0};  // linear
     bool adds = false;
 };
 
-// Layers in submission order over the backdrop. A projection layer is turned from its own view's orientation to the eye's, through
-// directions; nothing is drawn where the view had no picture. An inset takes the place of what its eye's view shows there, edges
+// Layers in submission order over the backdrop. A projection layer is reprojected from its own view's orientation to the eye's, by
+// directions; nothing is drawn where the view had no picture. An inset replaces that part of its eye's view, edges
 // included; the two are blended as one picture. With equal orientation, angles and size an sRGB picture comes through byte
 // for byte.
 [[nodiscard]] RgbPicture composeEye(const EyeView& eye, Side side, std::span<const Layer> layers, const Backdrop& backdrop = {});
 
-// Left and right eye beside one another, at the top of a picture as tall as the taller one.
+// Left and right eye side by side, at the top of a picture as tall as the taller one.
 [[nodiscard]] RgbPicture putSideBySide(const RgbPicture& left, const RgbPicture& right);
 
 // IEC 61966-2-1, both on 0 to 1; a byte decoded and encoded is the same byte.

@@ -22,7 +22,7 @@ struct Span {
 Span makeSpan(double middle, double half, const Span& whole) {
     if (whole.high - whole.low <= 2.0 * half) { return whole; }
     const double nearest = std::clamp(middle, whole.low + half, whole.high - half);
-    // Not a rounding error outside.
+    // Not outside by a rounding error.
     return {std::max(nearest - half, whole.low), std::min(nearest + half, whole.high)};
 }
 

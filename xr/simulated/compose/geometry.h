@@ -41,7 +41,7 @@ struct Fov {
     bool operator==(const Fov&) const = default;
 };
 
-// The part of a view within `half_angle_rad` of a direction, each way; moved as far as it has to be to lie in the view. The direction is an
+// The part of a view within `half_angle_rad` of a direction, each way; moved as far as needed to lie in the view. The direction is an
 // angle to the right of the view's axis and one above it.
 [[nodiscard]] Fov makeInset(const Fov& fov, const glm::dvec2& middle_rad, double half_angle_rad);
 

@@ -19,13 +19,13 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// A link is not what a run leaves, wherever it leads.
+// A run leaves no links, wherever they lead.
 bool isPlainFile(const fs::path& path) {
     std::error_code error;
     return fs::is_regular_file(fs::symlink_status(path, error));
 }
 
-// The frame whose picture bears this name.
+// The frame whose picture has this name.
 std::optional<std::uint64_t> frameOfPicture(std::string_view name) {
     constexpr std::string_view kPrefix = "frame_";
     if (!name.starts_with(kPrefix)) { return {}; }
@@ -42,7 +42,7 @@ std::string pictureOf(std::string name) {
     return name.substr(1, name.size() - 1 - kUnfinished.size()) + ".png";
 }
 
-// A run that ended before its first frame leaves an empty one. Others begin with a frame, a refused one, or a session's states.
+// A run that ended before its first frame leaves an empty log. Others begin with a frame, a refused frame, or a session's states.
 bool isOurLog(const fs::path& path) {
     if (!isPlainFile(path)) { return false; }
     std::error_code error;
@@ -53,7 +53,7 @@ bool isOurLog(const fs::path& path) {
            beginning.starts_with("{\"session_state\":\"");
 }
 
-// The names that the log's lines give, of those that pictures can have.
+// The valid picture names in the log's lines.
 std::set<std::string> loggedPictures(const fs::path& log) {
     std::set<std::string> names;
     std::ifstream stream(log, std::ios::binary);

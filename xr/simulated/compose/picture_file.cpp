@@ -48,9 +48,9 @@ void writePng(const fs::path& path, const RgbPicture& picture) {
     image.width = picture.size_px.x;
     image.height = picture.size_px.y;
     image.format = PNG_FORMAT_RGB;
-    // Fast to pack: a run writes many.
+    // Fast compression: a run writes many.
     image.flags = PNG_IMAGE_FLAG_FAST;
-    // Exclusively: what lies or links there is somebody else's.
+    // Exclusively: a file or link that is already there is somebody else's.
     std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(createFile(unfinished), &std::fclose);
     if (file == nullptr) { refuse(path, "written", std::strerror(errno)); }
     std::error_code error;

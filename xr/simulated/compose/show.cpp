@@ -64,7 +64,7 @@ void showFrame(Session& session, const XrFrameEndInfo& info, const State& state)
     FrameRecord record = recordOf(session, info, state);
     if (has_picture) { record.picture = namePicture(simulation.frames_shown); }
     ++simulation.frames_shown;
-    // The log first: whatever a run leaves that ends meanwhile, its log names it.
+    // The log first: whatever an interrupted run leaves, its log names it.
     simulation.output->log.write(makeFrameLine(record));
     if (has_picture) { writePicture(session, info, state, simulation.output->folder / record.picture); }
 }

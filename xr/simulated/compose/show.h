@@ -7,7 +7,7 @@ namespace simulated {
 
 // For a frame that passed every check.
 void showFrame(Session& session, const XrFrameEndInfo& info, const State& state);
-// A line of its own in the log for a frame that was refused, or for events that no frame will tell of.
+// A line of its own in the log for a frame that was refused, or for events that no frame will log.
 void logBetween(Session& session, const Refusal* refusal = nullptr);
 
 }  // namespace simulated

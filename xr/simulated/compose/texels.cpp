@@ -13,7 +13,7 @@ namespace simulated {
 
 namespace {
 
-// Decoding 256 bytes by table, and encoding by a first guess that the exact thresholds between bytes correct: `pow` per pixel would
+// Decoding 256 bytes by table, and encoding by a first guess, corrected with the exact thresholds between bytes: `pow` per pixel would
 // take most of the time of composing.
 struct SrgbTables {
     static constexpr std::size_t kGuesses = 4096;

@@ -77,7 +77,7 @@ public:
     [[nodiscard]] double number(std::string_view key, double least, double most) const { return numberOf(require(key), key, least, most); }
     [[nodiscard]] double numberOf(const toml::node& node, std::string_view key, double least, double most) const {
         const std::optional<double> value = node.value<double>();
-        // Not the other way round: NaN is refused, too.
+        // Written so that NaN is refused, too.
         if (!value || !(*value >= least && *value <= most)) {
             fail(node, prefix_, key, " is ", putInWords(node), ", must be a number from ", least, " to ", most);
         }

@@ -13,7 +13,7 @@ struct HeadsetAngles {
     double left_rad = 0.0, right_rad = 0.0, up_rad = 0.0, down_rad = 0.0;
 };
 
-// A foveated inset, for programs that draw one: its pictures' sizes where they are not those that follow from the eyes'.
+// A foveated inset, for programs that draw one: picture sizes, if they are not those that follow from the eyes'.
 struct HeadsetInset {
     double half_angle_rad = 0.0;  // about the gaze, each way
     std::optional<std::array<std::uint32_t, 2>> size_px, context_size_px;
@@ -26,7 +26,7 @@ struct HeadsetFile {
     double canting_rad = 0.0;                // each eye outwards
     double eye_distance_m = 0.0;
     std::array<HeadsetAngles, 2> angles;  // left, right
-    // In degrees too: the lens's centre, to the right of the eye's axis and above it.
+    // The lens's centre: angles to the right of the eye's axis and above it.
     std::array<std::array<double, 2>, 2> lens_centres_rad{};
     std::optional<HeadsetInset> inset;
 };

@@ -27,7 +27,7 @@ struct Time {
     std::optional<std::int64_t> whole;
 };
 
-// A line that counts.
+// A line that is neither empty nor a comment.
 struct Line {
     std::string_view file;
     std::size_t number = 0;
@@ -115,7 +115,7 @@ std::vector<MotionSample> parseMotion(std::string_view text, const std::string& 
         const Line line{file, number, splitFields(words)};
         if (line.fields.size() != kColumns) { line.fail(line.fields.size(), " columns, must be 8: ", kExpected); }
         const std::optional<Time> time = parseTime(line.fields[0]);
-        // A header has names where numbers would be: all of them, or it is a line with a mistake.
+        // A header has names in place of the first two numbers; otherwise it is a line with a mistake.
         if (std::exchange(header_possible, false) && !time && !parseNumber(line.fields[1])) {
             layout = readHeader(line.fields);
             continue;

@@ -1,4 +1,4 @@
-// Guards against TOML that crashes the library that reads it, toml++ 3.1 to 3.4. All who parse with it call this first.
+// Guards against TOML that crashes the library that reads it, toml++ 3.1 to 3.4. Whoever parses with it must call this first.
 #pragma once
 
 #include <optional>

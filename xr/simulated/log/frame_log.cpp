@@ -55,7 +55,7 @@ Json jsonOf(const LoggedLayer& layer) {
     return json;
 }
 
-// Names may come from an application: bytes that are no UTF-8 are replaced, not thrown at.
+// Names may come from an application: bytes that are not UTF-8 are replaced instead of throwing.
 std::string textOf(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 }  // namespace

@@ -22,7 +22,7 @@ struct LoggedDepth {
 
 // An XrSwapchainSubImage, and for projection views where and how it was seen.
 struct LoggedView {
-    std::string name;  // where there are insets: "left", "right", "left_inset", "right_inset"
+    std::string name;  // if there are insets: "left", "right", "left_inset", "right_inset"
     std::uint64_t swapchain = 0;
     std::uint32_t image_index = 0;  // the image last released
     std::uint32_t array_index = 0;
@@ -38,24 +38,24 @@ struct LoggedLayer {
     std::vector<std::string> flags;                            // "blend_texture_source_alpha" ...
     std::string space;                                         // "LOCAL", "STAGE", "VIEW", "action"
     Pose stage_from_space;                                     // at the display time
-    std::vector<LoggedView> views;                             // two or four of a projection layer, one of others
+    std::vector<LoggedView> views;                             // two or four for a projection layer, otherwise one
     std::optional<Pose> pose;                                  // quads: in the layer's space
     std::optional<glm::dvec2> size_m;                          // quads
-    std::string eye_visibility;                                // quads and all that surrounds: "both", "left", "right"
+    std::string eye_visibility;                                // quads and surrounding layers: "both", "left", "right"
     std::vector<std::pair<std::string, double>> numbers = {};  // of cylinders and spheres: "radius", "central_angle" ...
 };
 
 struct LoggedEye {
     Pose stage_from_eye;
     Fov fov;
-    std::optional<Fov> inset;  // where the session draws insets
+    std::optional<Fov> inset;  // if the session draws insets
 };
 
 struct FrameRecord {
     std::uint64_t frame = 0;
     std::int64_t display_time_ns = 0;
     std::int64_t period_ns = 0;
-    std::optional<double> gpu_ms;  // where the script says it
+    std::optional<double> gpu_ms;  // if the script sets it
     bool should_render = true;
     std::string session_state;  // "FOCUSED" ...
     std::string blend_mode;     // "OPAQUE" ...
@@ -68,7 +68,7 @@ struct FrameRecord {
 
 // Events between shown frames: a frame that xrEndFrame refused, or session states that no frame follows.
 struct BetweenRecord {
-    std::string refused;  // "XR_ERROR_VALIDATION_FAILURE"; empty: no frame was
+    std::string refused;  // "XR_ERROR_VALIDATION_FAILURE"; empty: no frame was refused
     std::string reason;
     std::int64_t display_time_ns = 0;
     bool should_render = true;  // of a frame that was refused
@@ -78,13 +78,13 @@ struct BetweenRecord {
 
 // One line without its end; numbers are written so that reading them gives the same number, quaternions as x, y, z, w, angles in radians.
 [[nodiscard]] std::string makeFrameLine(const FrameRecord& record);
-// Such a line has no "frame".
+// A line without "frame".
 [[nodiscard]] std::string makeBetweenLine(const BetweenRecord& record);
 
-// Lines are there as soon as they are written, so that a program that dies leaves a log of all frames before.
+// Lines are flushed at once, so that a program that dies leaves a log of all frames until then.
 class FrameLog {
 public:
-    // Makes the file, which must not be there. Throws std::runtime_error naming it.
+    // Creates the file, which must not exist. Throws std::runtime_error naming it.
     explicit FrameLog(const std::filesystem::path& path);
     void write(const std::string& line);
 

@@ -1,5 +1,5 @@
-// A hand of usual size: lengths in metres, in the axes of its wrist (x right, y out of the back of the hand, -z to the fingertips). Those
-// of the right hand; the left is its mirror image.
+// A hand of usual size: lengths in metres, in the axes of its wrist (x right, y out of the back of the hand, -z to the fingertips). They
+// are for the right hand; the left is its mirror image.
 #include "xr/simulated/script/hand_model.h"
 
 #include <glm/mat3x3.hpp>
@@ -23,7 +23,7 @@ constexpr std::array<glm::dvec3, 4> kThumb{
 constexpr glm::dvec3 kPalm(0.0, 0.0, -0.060);
 constexpr double kCurl_rad = 1.3;  // of each joint of a closed fist
 
-// The hand's axes in the grip's: fingers that open point along its -y, and its x goes through the palm.
+// The hand's axes in the grip's: open fingers point along its -y, and its x goes through the palm.
 Pose gripFromWrist(Side side) {
     const double mirror = side == kLeft ? -1.0 : 1.0;
     const glm::dmat3 axes(glm::dvec3(0, 0, mirror), glm::dvec3(mirror, 0, 0), glm::dvec3(0, 1, 0));

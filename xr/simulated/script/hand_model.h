@@ -1,4 +1,4 @@
-// The joints of a hand that holds what a controller's grip pose says, by XR_EXT_hand_tracking's names and axes.
+// The joints of a hand that holds a controller at its grip pose, by XR_EXT_hand_tracking's names and axes.
 #pragma once
 
 #include "xr/simulated/compose/geometry.h"
@@ -14,7 +14,7 @@ struct HandJoint {
 
 inline constexpr std::size_t kHandJoints = 26;
 
-// Curls are from 0, the finger is straight, to 1: the index finger's own, and that of the other three; the thumb stays.
+// Curls go from 0, straight, to 1, closed: one for the index finger, one for the other three; the thumb stays.
 [[nodiscard]] std::array<HandJoint, kHandJoints> makeHandJoints(Side side, const Pose& stage_from_grip, double index_curl,
                                                                 double others_curl);
 

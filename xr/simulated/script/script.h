@@ -37,19 +37,19 @@ private:
     }
 };
 
-// One controller at a time.
+// A controller at a given time.
 struct ControllerState {
     bool tracked = true;  // else poses are neither valid nor tracked and all inputs rest
     Pose stage_from_grip;
     Pose stage_from_aim;
-    // By what follows /input/ in a binding path: "trigger/value", "thumbstick/x", "a/click", "squeeze/force" ... An input that is not
+    // By the part of a binding path after /input/: "trigger/value", "thumbstick/x", "a/click", "squeeze/force" ... An input that is not
     // here rests at 0. Booleans are 0 or 1; a trigger or squeeze clicks from 0.9 on and counts as touched above 0.
     std::map<std::string, double, std::less<>> inputs;
 
     [[nodiscard]] double input(std::string_view identifier_and_component) const;
 };
 
-// Whatever has buttons; the hands by Side.
+// Anything with inputs; the hands by Side.
 enum InputDevice : std::size_t { kLeftHand = 0, kRightHand = 1, kHead = 2, kGamepad = 3, kGaze = 4 };
 inline constexpr std::size_t kDevices = 5;
 
@@ -68,7 +68,7 @@ struct State {
     // The head's and a gamepad's buttons: at rest, unless a program's own test moves them (XR_EXT_conformance_automation).
     // The gaze is the aim pose of the last one.
     std::array<ControllerState, 3> others;
-    bool gaze_is_good = true;  // else what is known of it is not to be relied on
+    bool gaze_is_good = true;  // else it is not to be relied on
     // By InputDevice.
     [[nodiscard]] ControllerState& device(std::size_t index) { return index < 2 ? controllers[index] : others[index - 2]; }
     [[nodiscard]] const ControllerState& device(std::size_t index) const { return index < 2 ? controllers[index] : others[index - 2]; }
@@ -97,7 +97,7 @@ struct ScriptEvent {
 };
 [[nodiscard]] const char* nameOf(ScriptEvent::Kind kind);  // the script's word for it
 
-// How long the graphics device draws at a frame.
+// How long the GPU takes for a frame.
 struct GpuLoad {
     enum class Unit { kShareOfPeriod, kMs, kMsPerMegapixel } unit = Unit::kMs;
     double amount = 0.0;
@@ -107,7 +107,7 @@ struct GpuLoad {
     }
 };
 
-// Which frames' composed pictures are written; frames count from 0 at the first xrEndFrame.
+// The frames whose composed pictures are written; frames count from 0 at the first xrEndFrame.
 struct FrameChoice {
     std::uint64_t first = 0;
     std::uint64_t last = std::numeric_limits<std::uint64_t>::max();
@@ -116,7 +116,7 @@ struct FrameChoice {
     [[nodiscard]] bool contains(std::uint64_t frame) const { return frame >= first && frame <= last && (frame - first) % every == 0; }
 };
 
-// A foveated inset (XR_VARJO_quad_views): a small picture about the gaze, over a coarser one of all that the eye sees, the context.
+// A foveated inset (XR_VARJO_quad_views): a small picture around the gaze, over a coarser one of the eye's whole view, the context.
 struct InsetScript {
     double half_angle_rad = 20.0 * std::numbers::pi / 180.0;
     std::optional<glm::uvec2> size_px, context_px;  // recommended; none: as many pixels a degree as `size`, and half of `size`
@@ -131,7 +131,7 @@ struct Script {
     static Script parse(std::string_view text, const std::string& name);
     static Script load(const std::filesystem::path& path);
 
-    // Times are seconds of display time since the first frame; any finite time is allowed, also before 0.
+    // Times are seconds of display time since the first frame; any finite time is allowed, even before 0.
     [[nodiscard]] State at(double time_s) const;
     // Events with from_s < time <= to_s, in order; pass -infinity as `from_s` for the first frame.
     [[nodiscard]] std::vector<ScriptEvent> eventsIn(double from_s, double to_s) const;
@@ -140,7 +140,7 @@ struct Script {
     [[nodiscard]] Pose stageFromLocal(double time_s = 0.0) const;
     // LOCAL's, brought down to the floor.
     [[nodiscard]] Pose stageFromLocalFloor(double time_s = 0.0) const;
-    // The angles of an eye's inset: about the gaze, or about the lens's middle while the gaze is not known well.
+    // The angles of an eye's inset: about the gaze, or about the lens's middle while the gaze is not known reliably.
     [[nodiscard]] Fov findInset(const State& state, Side side) const;
     [[nodiscard]] glm::uvec2 contextSizePx() const;
     [[nodiscard]] glm::uvec2 insetSizePx() const;
@@ -148,9 +148,9 @@ struct Script {
     [[nodiscard]] bool allowsExtension(std::string_view name) const { return !extensions_off.contains(name); }
 
     double rate_hz = 90.0;
-    bool rate_is_fixed = false;     // what programs ask for is refused
-    double irregularity = 0.0;      // of periods, as a share of them
-    bool stretches_period = false;  // a frame that missed displays is followed by a stated period of as many as it took
+    bool rate_is_fixed = false;     // requests of programs are refused
+    double irregularity = 0.0;      // of display times, as a share of the period
+    bool stretches_period = false;  // after a frame that missed displays, the stated period is as long as that took
     std::uint32_t images = 3;       // of a swapchain
     enum class ImageOrder { kInTurn, kReversed, kShuffled } image_order = ImageOrder::kInTurn;
     bool changes_state_at_begin = false;  // session states change while a frame is open, not after its end
@@ -161,17 +161,17 @@ struct Script {
     InsetScript inset;
     std::string system_name = "Simulated headset";  // or the headset file's name
     bool visibility_mask = false;                   // whether XR_KHR_visibility_mask gives triangles
-    bool visibility_mask_is_broken = false;         // the function is there and ends the program
+    bool visibility_mask_is_broken = false;         // the function exists but aborts the program
     bool adds_vulkan_features = false;              // the runtime adds a feature of its own to the application's device
     bool has_stage = true;                          // whether there is a reference space STAGE
     enum class Depth { kTaken, kNoImages, kNoLayers } depth = Depth::kTaken;
-    std::uint32_t calls_without_headset = 0;  // so many calls of xrGetSystem find none
-    std::uint32_t calls_after_loss = 0;       // the same, each time after a session was lost
+    std::uint32_t calls_without_headset = 0;  // number of xrGetSystem calls that find none
+    std::uint32_t calls_after_loss = 0;       // the same, after each loss of a session
     std::optional<Pose> stage_from_local;
     std::vector<double> recentres_s;
     enum class BlendMode { kOpaque, kAdditive, kAlphaBlend };  // in the order of OpenXR's numbers, which begin with 1
-    std::vector<BlendMode> blend_modes{BlendMode::kOpaque};    // the one that it likes best first
-    glm::dvec3 room_colour{0.5};                               // what shows behind pictures that do not cover it; as sRGB encodes it
+    std::vector<BlendMode> blend_modes{BlendMode::kOpaque};    // in order of preference
+    glm::dvec3 room_colour{0.5};                               // shows where pictures do not cover it; sRGB-encoded
     bool plugged = true;                                       // else there is a runtime, but no headset
     bool writes_pictures = true;
     FrameChoice frames;
@@ -183,7 +183,7 @@ struct Script {
         Track<Pose> stage_from_grip;
         Pose grip_from_aim;
         Steps<bool> tracked{true};
-        std::map<std::string, Track<glm::dvec2>, std::less<>> axes;  // trigger and squeeze use x alone
+        std::map<std::string, Track<glm::dvec2>, std::less<>> axes;  // trigger and squeeze use only x
         struct Press {
             std::string input;
             double from_s, to_s;  // from <= time < to

@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// A file's own error as the script's.
+// Rethrows a file's own error as the script's.
 auto readWith(const auto& parse, const auto& text, const std::string& name) {
     try {
         return parse(text, name);
@@ -51,7 +51,7 @@ Track<Pose> readHeadTrack(std::string_view text, const std::string& name, Motion
     for (const files::MotionSample& sample : readWith(files::parseMotion, text, name)) {
         const auto& [x, y, z] = sample.position_m;
         const auto& [qx, qy, qz, qw] = sample.orientation_xyzw;
-        // Unity's axes: a reflection in z turns the axis and reverses the sense.
+        // Unity's axes: a reflection in z mirrors the axis and reverses the rotation.
         const Pose pose =
             axes == MotionAxes::kOpenXr ? Pose{glm::dquat(qw, qx, qy, qz), {x, y, z}} : Pose{glm::dquat(qw, -qx, -qy, qz), {x, y, -z}};
         track.add(sample.time_s, pose);

@@ -6,10 +6,10 @@
 
 namespace simulated {
 
-// Files that people write, and files that programs record.
+// Limits for files that people write, and for those that programs record.
 inline constexpr std::size_t kMostTextBytes = std::size_t{4} << 20, kMostRecordingBytes = std::size_t{16} << 20;
 
-// The text of a regular file of at most `most_bytes`. `place` is who names it, for messages ("walk.script:3: ", or nothing). Throws
+// The text of a regular file of at most `most_bytes`. `place` is where it is named, for messages ("walk.script:3: ", or nothing). Throws
 // ScriptError.
 [[nodiscard]] std::string readText(const std::filesystem::path& path, const std::string& place, const char* expected,
                                    std::size_t most_bytes = kMostTextBytes);
@@ -22,7 +22,7 @@ enum class MotionAxes {
     kOpenXr,  // right-handed, the wearer looks along -z
     kUnity,   // left-handed, the wearer looks along +z
 };
-// Head poses by time from the first one on, of a text as motion_file.h describes it. Throws ScriptError with the file's own line.
+// Head poses by time since the first one, from a text as motion_file.h describes it. Throws ScriptError with the file's own line.
 [[nodiscard]] Track<Pose> readHeadTrack(std::string_view text, const std::string& name, MotionAxes axes);
 
 }  // namespace simulated

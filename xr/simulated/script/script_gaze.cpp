@@ -1,4 +1,4 @@
-// The commands about the wearer's gaze.
+// Commands for the wearer's gaze.
 #include "xr/simulated/script/script_gaze.h"
 
 #include "xr/simulated/script/script_parser.h"

@@ -7,7 +7,7 @@
 
 namespace simulated {
 
-// Eye tracking. Refused: the headset has it, but the wearer does not allow it to this program.
+// Eye tracking. Refused: the headset has it, but the wearer denies it to this program.
 enum class EyeTracking { kOn, kOff, kRefused };
 // The quality of the gaze. Degraded: a direction, but not a good one.
 enum class GazeTracking { kOn, kOff, kDegraded };

@@ -1,4 +1,4 @@
-// The commands about what the headset is: its display, its eyes and the room that it is in.
+// Commands for the headset: its display, its eyes and the room around it.
 #include "xr/simulated/script/script_files.h"
 #include "xr/simulated/script/script_parser.h"
 

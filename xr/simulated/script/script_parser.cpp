@@ -66,7 +66,7 @@ void Parser::parseLine(Words& words) {
         for (const auto& [word, named] : kCommands) { known += (known.empty() ? "" : ", ") + word; }
         words.fail("{} is not a command, must be one of: {}", shown(command), known);
     }
-    // Settings stand once: which of two should win, nobody could see.
+    // Settings may occur only once: nobody could see which of two wins.
     const auto& [parse, stands_once] = found->second;
     if (stands_once) { requireFirst(words, command); }
     (this->*parse)(words);

@@ -1,4 +1,4 @@
-// A script on its way from text to Script: one function per command, in files by what the commands are about.
+// A script on its way from text to Script: one function per command, in files by topic.
 #pragma once
 
 #include "xr/simulated/script/script.h"

@@ -1,4 +1,4 @@
-// The commands about where the head and the hands are.
+// Commands for the poses of the head and the hands.
 #include "xr/simulated/script/script_files.h"
 #include "xr/simulated/script/script_parser.h"
 
@@ -37,7 +37,7 @@ Pose Parser::parsePose(Words& words, Pose pose) {
     } else if (words.takeIf("look")) {
         const glm::dvec3 way = words.takePosition() - pose.position;
         if (glm::length(way) < 1e-6) { words.fail("the point to look at is where it looks from, must be another"); }
-        // Straight up and down have no heading: as if ahead.
+        // Straight up and down have no heading: straight ahead is taken.
         const double level = std::hypot(way.x, way.z);
         const double yaw = level < 1e-9 ? 0.0 : std::atan2(-way.x, -way.z);
         pose.orientation = makeTurn(yaw, std::atan2(way.y, level));

@@ -1,4 +1,4 @@
-// The commands about what the hands press, touch and push.
+// Commands for what the hands press, touch and push.
 #include "xr/simulated/script/script_inputs.h"
 #include "xr/simulated/script/script_parser.h"
 

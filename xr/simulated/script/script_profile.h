@@ -6,8 +6,8 @@
 
 namespace simulated {
 
-// Throws ScriptError for the first input that the script moves and that these controllers do not have on that hand, nor any that the
-// script has in their place later on.
+// Throws ScriptError for the first input that the script moves but that these controllers lack on that hand, as do all those that the
+// script replaces them with later.
 void checkInputs(const Script& script, const Profile& profile);
 
 }  // namespace simulated

@@ -1,4 +1,4 @@
-// The commands about what the runtime offers, how it behaves and what it writes.
+// Commands for what the runtime offers, how it behaves and what it writes.
 #include "xr/simulated/api/profiles.h"
 #include "xr/simulated/extensions.h"
 #include "xr/simulated/script/script_parser.h"

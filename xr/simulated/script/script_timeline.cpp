@@ -1,4 +1,4 @@
-// The command about what happens at a time: `at T ...`.
+// The command for timed changes and events: `at T ...`.
 #include "xr/simulated/script/script_parser.h"
 
 #include <algorithm>
@@ -22,7 +22,7 @@ GpuLoad parseLoad(Words& words) {
 
 void addRecentring(Script& script, double time_s) {
     script.recentres_s.push_back(time_s);
-    // The program is told before.
+    // The program is told in advance.
     const double told_s = time_s - ScriptEvent::kNoticeSeconds;
     script.events.insert(std::ranges::upper_bound(script.events, told_s, {}, &ScriptEvent::time_s),
                          {told_s, ScriptEvent::Kind::kRecentre, 1});

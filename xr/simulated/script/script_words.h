@@ -24,14 +24,14 @@ using files::listWords;
 using files::parseNumber;
 using files::shown;
 
-// Blanks divide words, # begins a comment, "double quotes" hold a word with blanks.
+// Blanks separate words, # begins a comment, "double quotes" hold a word with blanks.
 class Words {
 public:
     Words(std::string_view line, std::string place);
 
     [[nodiscard]] const std::string& place() const { return place_; }
     [[nodiscard]] bool isAtEnd() const { return next_ == words_.size(); }
-    // The next word if it is `word`; it is taken then.
+    // Takes the next word if it is `word`.
     bool takeIf(std::string_view word);
 
     // `meaning` is what a message calls the word.
