@@ -5,6 +5,8 @@
 
 #include <openxr/openxr.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <stdexcept>
 #include <string>
@@ -51,7 +53,7 @@ template <typename Value>
     call(0u, &count, nullptr);
     std::vector<Value> values(count);
     call(count, &count, values.data());
-    values.resize(count);
+    values.resize(std::min<std::size_t>(count, values.size()));
     return values;
 }
 

@@ -87,8 +87,10 @@ template <typename Value>
 OptionValue toValue(const Value& value) {
     if constexpr (std::is_same_v<Value, bool> || std::is_same_v<Value, glm::dvec3>) {
         return value;
-    } else if constexpr (std::is_integral_v<Value> || std::is_enum_v<Value>) {
-        return static_cast<std::uint64_t>(value);  // for an enum, named() replaces this by a word
+    } else if constexpr (std::is_enum_v<Value>) {
+        return {};  // named() has a word for it
+    } else if constexpr (std::is_integral_v<Value>) {
+        return static_cast<std::uint64_t>(value);
     } else if constexpr (std::is_floating_point_v<Value>) {
         return static_cast<double>(value);
     } else if constexpr (std::is_same_v<Value, glm::uvec2>) {

@@ -13,6 +13,7 @@
 #include <array>
 #include <functional>
 #include <optional>
+#include <span>
 
 namespace binosplat {
 
@@ -68,8 +69,9 @@ private:
     [[nodiscard]] glm::uvec2 insetPx(const ConnectedHeadset& headset, double scale) const;
     // Sets up the insets' eyes, after the eyes that they are part of.
     void aimInsets(const ConnectedHeadset& headset, const Similarity& scene_from_room, const FrameViews& views);
-    [[nodiscard]] std::vector<int> drawnEyes() const {
-        return frame_.mode == Mode::kMono ? std::vector<int>{frame_.dominant} : std::vector<int>{kLeft, kRight};
+    [[nodiscard]] std::span<const int> drawnEyes() const {
+        static constexpr std::array<int, 2> kEyes{kLeft, kRight};
+        return frame_.mode == Mode::kMono ? std::span(kEyes).subspan(static_cast<std::size_t>(frame_.dominant), 1) : std::span(kEyes);
     }
     [[nodiscard]] FrameSettings settingsOfFrame(ConnectedHeadset& headset, const ViewSettings& settings, double scale,
                                                 const FrameViews& views, Order usual_order);

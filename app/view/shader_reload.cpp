@@ -36,7 +36,7 @@ std::vector<std::uint32_t> readWords(const fs::path& file) {
     std::ifstream stream(file, std::ios::binary);
     const std::string bytes(std::istreambuf_iterator<char>(stream), {});
     std::vector<std::uint32_t> words(bytes.size() / sizeof(std::uint32_t));
-    std::memcpy(words.data(), bytes.data(), words.size() * sizeof(std::uint32_t));
+    if (!words.empty()) { std::memcpy(words.data(), bytes.data(), words.size() * sizeof(std::uint32_t)); }
     return words;
 }
 

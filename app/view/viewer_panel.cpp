@@ -15,17 +15,22 @@ constexpr std::chrono::milliseconds kWindowAlone(16);
 void Viewer::openWindow() {
     try {
         window_ = std::make_unique<MirrorWindow>(context_, panel_.canvas());
-    } catch (const std::runtime_error& error) { log_.print(fmt::format("no window: {}", error.what())); }  // Error, or vk::SystemError
+    } catch (const Error& error) { log_.print(fmt::format("no window: {}", error.what())); } catch (const vk::SystemError& error) {
+        log_.print(fmt::format("no window: {}", error.what()));
+    }
 }
 
 void Viewer::onWindow(void (MirrorWindow::*act)()) {
-    try {
-        if (window_) { (*window_.*act)(); }
-    } catch (const vk::DeviceLostError&) { throw; } catch (const std::runtime_error& error) {
-        say(fmt::format("the window is gone: {}", error.what()));
+    const auto goOnWithout = [&](const char* why) {
+        say(fmt::format("the window is gone: {}", why));
         window_.reset();
         window_input_ = {};
-    }
+    };
+    try {
+        if (window_) { (*window_.*act)(); }
+    } catch (const vk::DeviceLostError&) { throw; } catch (const vk::SystemError& error) {
+        goOnWithout(error.what());
+    } catch (const Error& error) { goOnWithout(error.what()); }
 }
 
 void Viewer::drawWindowAlone(const std::string& why) {

@@ -104,9 +104,9 @@ void Viewer::keepPictureOfScene() {
                          keepSeenScene(name, makeScenePicture(view), about);
                          return {};
                      });
-    } catch (const vk::DeviceLostError&) { throw; } catch (const std::runtime_error&) {
+    } catch (const vk::DeviceLostError&) { throw; } catch (const vk::SystemError&) {
         // A missing picture is not worth a message.
-    }
+    } catch (const Error&) {}
 }
 
 }  // namespace binosplat

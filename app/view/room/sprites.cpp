@@ -74,6 +74,7 @@ SpritePlace placeOf(Sprite sprite) {
                                                            {{264, 136}, {64, 64}},
                                                            {{264, 0}, {128, 128}},
                                                            {{0, 0}, {256, 256}}}};
+    static_assert(kBySprite.size() == static_cast<std::size_t>(Sprite::kVignette) + 1);
     return kBySprite[static_cast<std::size_t>(sprite)];
 }
 

@@ -191,6 +191,8 @@ void checkNotLost(const Session& session) {
 
 void checkRunning(const Session& session) { require(session.is_running, XR_ERROR_SESSION_NOT_RUNNING, "the session does not run"); }
 
-XrResult successOf(const Session& session, XrResult success) { return session.loss_announced ? XR_SESSION_LOSS_PENDING : success; }
+XrResult successOf(const Session& session, XrResult success) {
+    return session.loss_announced && XR_SUCCEEDED(success) ? XR_SESSION_LOSS_PENDING : success;
+}
 
 }  // namespace simulated

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace simulated {
 
@@ -71,6 +72,7 @@ double ControllerState::input(std::string_view identifier_and_component) const {
 
 const char* nameOf(ScriptEvent::Kind kind) {
     constexpr const char* kNames[] = {"rate", "slow-images", "recentre", "lose-session", "lose-instance", "exit"};
+    static_assert(std::size(kNames) == static_cast<std::size_t>(ScriptEvent::Kind::kExit) + 1);
     return kNames[static_cast<std::size_t>(kind)];
 }
 
