@@ -119,7 +119,8 @@ std::span<const OptionRow<RunOptions>> runRows() {
         {{"newcomer-error", "stereo", kTried, "E", "predicted mode: error of a pixel covered by splats that the dominant eye does not see"},
          field::number<kStereo, kWarp, &StereoSettings::newcomer_error>(0.0, kMaxExpectedError)},
         {{"foveation", "stereo", kTried, "DEG",
-          "predicted mode: angle around the gaze within which all errors count; beyond it, only those the eye can see; 0: off"},
+          "angle around the gaze within which all errors count; beyond it, only those the eye can see (predicted, temporal; mono and "
+          "alternate with --periphery half); 0: off"},
          field::number<kStereo, &StereoOptions::foveation_deg>(0.0, 90.0)},
         {{"periphery", "stereo", kTried, "KIND",
           "mono, predicted, alternate and temporal modes, with --foveation: full resolution, or half of it where the eye would not see "
@@ -198,7 +199,7 @@ std::span<const OptionRow<BenchOptions>> benchRows() {
         {{"orders", "", kBench, "",
           "compare both orders of splats with the exact order of each pixel, on the CPU, and count pixels that pop"},
          field::flag<&BenchOptions::orders>()},
-        {{"every", "", kBench, "N", "only every Nth frame of --motion or camera of --photos"},
+        {{"every", "", kBench, "N", "score only every Nth frame of --motion (methods with a past render all), or camera of --photos"},
          field::count<&BenchOptions::every>(1, kMaxStep)},
         {{"repeats", "", kBench, "N", "measured frames per method", "5, or the config's"},
          noneIfZero(field::count<&BenchOptions::repeats>(1, kMaxStep))},
