@@ -299,7 +299,7 @@ TEST_CASE("the README's commands about files do what they say") {
         CHECK_MESSAGE(outcome.exit_code == 0, arguments << ": " << outcome.errors);
         ++done;
     }
-    CHECK(done == 3);
+    CHECK(done == 4);
     CHECK(fs::exists(work.path / "OUT.ply"));
     CHECK(fs::exists(work.path / "FILE.ply"));
 }
