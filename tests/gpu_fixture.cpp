@@ -13,7 +13,8 @@ namespace {
 
 gpu::DispatchSize dispatchOver(std::uint64_t count, std::uint64_t group_items) {
     const auto groups = static_cast<std::uint32_t>((count + group_items - 1) / group_items);
-    return {std::min(groups, gpu::kMaxGroupsX), (groups + gpu::kMaxGroupsX - 1) / gpu::kMaxGroupsX, 1};
+    const std::uint32_t rows = (groups + gpu::kMaxGroupsX - 1) / gpu::kMaxGroupsX;
+    return {rows == 0 ? 0 : (groups + rows - 1) / rows, rows, 1};
 }
 
 }  // namespace

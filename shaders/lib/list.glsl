@@ -3,8 +3,9 @@
 uint groupsOver(uint count, uint group_items) { return count / group_items + (count % group_items != 0 ? 1 : 0); }
 
 DispatchSize dispatchOver(uint count, uint group_items) {
-    const uint groups = groupsOver(count, group_items);
-    return DispatchSize(min(groups, kMaxGroupsX), groupsOver(groups, kMaxGroupsX), 1);
+    // In rows of equal length: what is left over in the last one is less than a group for each row.
+    const uint groups = groupsOver(count, group_items), rows = groupsOver(groups, kMaxGroupsX);
+    return DispatchSize(groupsOver(groups, max(rows, 1)), rows, 1);
 }
 
 // The keys of a list of `count` that one workgroup of a sort takes: a longer list has no more than kMaxSortBlocks blocks.
