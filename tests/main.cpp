@@ -4,6 +4,7 @@
 #include "tests/shared_data.h"
 
 #include <cstdio>
+#include <cstdlib>
 
 namespace {
 
@@ -30,6 +31,7 @@ DOCTEST_REGISTER_LISTENER("counter", 1, Counter);
 
 int main(int count, char** arguments) {
     doctest::Context context(count, arguments);
+    if (std::getenv("BINOSPLAT_NIGHTLY") != nullptr) { context.setOption("no-skip", true); }  // tests/nightly.h
     const int failed = context.run();
     if (context.shouldExit() || failed != 0) { return failed; }
     if (Counter::cases == 0) {

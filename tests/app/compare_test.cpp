@@ -1,0 +1,119 @@
+// `binosplat compare`, run as a program. Pictures are PFM and PPM, which every build reads.
+#include "engine/picture/netpbm.h"
+#include "tests/engine/picture/lpips_weights.h"
+#include "tests/engine/picture/pictures.h"
+#include "tests/run_program.h"
+
+#include <doctest/doctest.h>
+
+#include <limits>
+#include <sstream>
+
+TEST_SUITE_BEGIN("compare");
+
+namespace compare_test {
+
+using namespace binosplat;
+using namespace binosplat::test;
+
+namespace {
+
+// Two pictures of waves, one of another size, one of one channel, and weights for LPIPS.
+struct Pictures : Workplace {
+    Pictures() {
+        writePfm(path / "a.pfm", makeWaves({40, 30}, 0.0));
+        writePfm(path / "b.pfm", makeWaves({40, 30}, 0.7));
+        writePfm(path / "wide.pfm", makeWaves({41, 30}, 0.0));
+        writePfm(path / "small.pfm", makeWaves({40, 16}, 0.0));
+        writePfm(path / "grey.pfm", {{40, 30}, 1, std::vector<float>(40 * 30, 0.5f)});
+        writeFloats(path / "w.bin", makeLpipsWeights(7));
+    }
+
+    // In the order of the output.
+    [[nodiscard]] std::vector<std::pair<std::string, double>> scores(const std::string& arguments) const {
+        const Outcome outcome = run("compare " + arguments);
+        INFO("stderr: " << outcome.errors);
+        REQUIRE(outcome.exit_code == 0);
+        CHECK(outcome.errors.empty());
+        std::vector<std::pair<std::string, double>> lines;
+        std::istringstream stream(outcome.output);
+        for (std::string line; std::getline(stream, line);) {
+            const std::size_t space = line.find(' ');
+            lines.emplace_back(line.substr(0, space), std::stod(line.substr(space)));
+        }
+        return lines;
+    }
+
+    void checkRefused(const std::string& arguments, int exit_code, const std::string& part) const {
+        const Outcome outcome = run("compare " + arguments);
+        INFO("stderr: " << outcome.errors);
+        CHECK(outcome.exit_code == exit_code);
+        CHECK(outcome.output.empty());
+        CHECK(outcome.errors.find(part) != std::string::npos);
+        CHECK(std::count(outcome.errors.begin(), outcome.errors.end(), '\n') == 1);
+    }
+};
+
+}  // namespace
+
+TEST_CASE("each score is a line with its name, and LPIPS comes with its weights") {
+    const Pictures pictures;
+    const auto three = pictures.scores("a.pfm b.pfm"), four = pictures.scores("a.pfm b.pfm --lpips w.bin");
+    REQUIRE(three.size() == 3);
+    REQUIRE(four.size() == 4);
+    CHECK(std::equal(three.begin(), three.end(), four.begin()));
+    CHECK(four[0].first == "psnr");
+    CHECK(four[0].second > 10.0);
+    CHECK(four[0].second < 40.0);
+    CHECK(four[1].first == "ssim");
+    CHECK(four[1].second < 0.99);
+    CHECK(four[2].first == "flip");
+    CHECK(four[2].second > 0.01);
+    CHECK(four[3].first == "lpips");
+    CHECK(four[3].second > 0.01);
+}
+
+TEST_CASE("equal pictures have infinite PSNR, whatever their format") {
+    const Pictures pictures;
+    CHECK(pictures.run("compare a.pfm a.pfm --lpips w.bin").output == "psnr inf\nssim 1.000000\nflip 0.000000\nlpips 0.000000\n");
+    writePnm(pictures.path / "a.ppm", makeFlat({20, 20}, glm::vec3(0.2f, 0.4f, 0.6f)));
+    writePfm(pictures.path / "c.pfm", readPnm(pictures.path / "a.ppm"));
+    CHECK(pictures.run("compare a.ppm c.pfm").output == "psnr inf\nssim 1.000000\nflip 0.000000\n");
+}
+
+TEST_CASE("a value that is not finite is as far off as can be") {
+    const Pictures pictures;
+    Image broken = makeWaves({40, 30}, 0.0);
+    broken.values[5] = std::numeric_limits<float>::quiet_NaN();
+    writePfm(pictures.path / "nan.pfm", broken);
+    const auto scores = pictures.scores("a.pfm nan.pfm --lpips w.bin");
+    REQUIRE(scores.size() == 4);
+    CHECK(scores[0].second == -std::numeric_limits<double>::infinity());
+    CHECK(scores[3].second == std::numeric_limits<double>::infinity());
+}
+
+TEST_CASE("FLIP sees less from afar") {
+    const Pictures pictures;
+    const auto flipAt = [&](const std::string& option) { return pictures.scores("a.pfm b.pfm" + option).at(2).second; };
+    CHECK(flipAt(" --pixels-per-degree 67.0206") == flipAt(""));
+    CHECK(flipAt(" --pixels-per-degree 500") < 0.8 * flipAt(""));
+}
+
+TEST_CASE("what cannot be compared is refused in one line") {
+    const Pictures pictures;
+    pictures.checkRefused("a.pfm wide.pfm", 1, "wide.pfm: has 41x30 pixels, must have 40x30 like a.pfm");
+    pictures.checkRefused("a.pfm grey.pfm", 1, "grey.pfm: number of channels is 1, must be 3 or more");
+    pictures.checkRefused("none.pfm a.pfm", 1, "none.pfm: cannot be read");
+    pictures.checkRefused("a.pfm w.bin", 1, "w.bin: cannot be read");
+    pictures.checkRefused("small.pfm small.pfm --lpips w.bin", 1, "LPIPS: pictures have 40x16 pixels, must have at least 17 a side");
+    pictures.checkRefused("a.pfm b.pfm --lpips none.bin", 1, "none.bin: cannot be read");
+    pictures.checkRefused("a.pfm b.pfm --lpips a.pfm", 1, "a.pfm: has 14414 bytes, must have the 2898944");
+    pictures.checkRefused("a.pfm b.pfm --lpips ''", 1, "--lpips is empty, must be one text that is not empty");
+    pictures.checkRefused("a.pfm b.pfm --pixels-per-degree 0.5", 1, "--pixels-per-degree is 0.5, must be a number from 1 to 1000");
+    pictures.checkRefused("a.pfm", 2, "B is required");
+    pictures.checkRefused("", 2, "A is required");
+    pictures.checkRefused("a.pfm b.pfm c.pfm", 2, "c.pfm");
+    pictures.checkRefused("a.pfm b.pfm --lpips", 2, "--lpips");
+}
+
+}  // namespace compare_test

@@ -1,0 +1,263 @@
+// Facts about the panel's letters: names in any script can be read.
+#include "app/view/panel/shown_text.h"
+#include "engine/platform.h"
+#include "tests/app/view/panel/panel_sketch.h"
+#include "tests/run_program.h"
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+
+TEST_SUITE_BEGIN("letters");
+
+namespace letters_test {
+
+namespace fs = std::filesystem;
+using namespace binosplat;
+using namespace binosplat::test;
+
+namespace {
+
+// Where the vector font is, if this machine has it.
+std::string vectorFont() {
+    for (const fs::path& file : fontFiles()) {
+        if (fs::exists(file)) {
+            std::ifstream stream(file, std::ios::binary);
+            return {std::istreambuf_iterator<char>(stream), {}};
+        }
+    }
+    return {};
+}
+
+bool isFont(const std::string& bytes) { return looksLikeFont({reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()}); }
+
+void write(const fs::path& path, const std::string& text = "x") { std::ofstream(path, std::ios::binary) << text; }
+
+bool isThere(int letter) { return ImGui::GetIO().Fonts->Fonts[0]->FindGlyphNoFallback(static_cast<ImWchar>(letter)) != nullptr; }
+
+// The private letters that a word is shown as, once its letters were brought; each is three bytes long.
+std::vector<std::string> signsOf(PanelSketch& sketch, const std::string& word) {
+    sketch.bringLetters(word);
+    const std::string shown = asShown(word);
+    std::vector<std::string> signs;
+    for (std::size_t i = 0; i + 2 < shown.size(); i += 3) {
+        signs.push_back(shown.substr(i, 3));
+        const auto byte = [&](std::size_t at) { return static_cast<unsigned>(static_cast<unsigned char>(shown[i + at])) & 0x3fu; };
+        const unsigned letter = (byte(0) & 0xfu) << 12 | byte(1) << 6 | byte(2);
+        CAPTURE(word);
+        CHECK(letter >= kFirstPrivate);
+        CHECK(letter <= kLastPrivate);
+        CHECK(isThere(static_cast<int>(letter)));
+    }
+    return signs;
+}
+
+}  // namespace
+
+TEST_CASE("letters are half a degree high where the panel hangs, and Latin, Greek and Cyrillic are there") {
+    REQUIRE_FALSE(vectorFont().empty());
+    PanelSketch sketch;
+    CHECK(sketch.font->complaint().empty());
+    sketch.draw();
+    ImFont& font = *ImGui::GetIO().Fonts->Fonts[0];
+    const ImFontGlyph* capital = font.FindGlyphNoFallback('H');
+    REQUIRE(capital != nullptr);
+    const double distance_m = std::sqrt(0.45 * 0.45 + 0.1 * 0.1 + 0.9 * 0.9);
+    const double height_m = (capital->Y1 - capital->Y0) * kPanelWidthMetres / kPanelPx.x;
+    CHECK(glm::degrees(2.0 * std::atan(0.5 * kPanelWidthMetres / distance_m)) == doctest::Approx(26.0).epsilon(0.005));
+    CHECK(glm::degrees(std::atan(height_m / distance_m)) >= 0.5);
+    for (const int letter : {0x41, 0xe4, 0x159, 0x3a9, 0x436, 0x451, 0x1ea1, 0x301, 0x2013, 0x20ac}) {
+        CAPTURE(letter);
+        CHECK(font.FindGlyphNoFallback(static_cast<ImWchar>(letter)) != nullptr);
+    }
+    // What is not there yet is a box: Chinese, bytes that are no UTF-8, and what lies beyond 16 bits.
+    const ImFontGlyph* box = font.FindGlyphNoFallback(0x25a1);
+    REQUIRE(box != nullptr);
+    CHECK(font.FindGlyph(0x4e2d) == box);
+    CHECK(font.FindGlyph(0xfffd) == box);
+}
+
+TEST_CASE("names bring their letters along, those that no font has stay boxes, and what is on the panel stays where it is") {
+    const Workplace work;
+    PanelSketch sketch;
+    const WidgetPlaces before = sketch.draw().places;
+    CHECK_FALSE(isThere(0x5d0));
+    sketch.status.message = "\xd7\x90 \xe1\x83\x90 \xef\xb7\xbf\xef\xa3\xbf";  // Hebrew, Georgian, private letters
+    CHECK(sketch.draw().places == before);
+    CHECK(isThere(0x5d0));
+    CHECK(isThere(0x10d0));
+    CHECK_FALSE(isThere(0xf8ff));
+    CHECK(isThere('A'));
+    CHECK_FALSE(sketch.bringLetters(sketch.status.message));  // once
+    CHECK_FALSE(sketch.bringLetters("\xff\xef\xbf\xbd plain"));
+    // They stay, whatever is shown next; Chinese comes from the first font of the system that has it.
+    const std::string chinese = "\xe6\xa3\xae\xe6\x9e\x97.ply";
+    write(work.path / chinese);
+    sketch.settings.page = PanelPage::kScenes;
+    sketch.chooser.showFolder(work.path.string());
+    CHECK(sketch.draw().places.contains(chinese));
+    CHECK(isThere(0x5d0));
+    const std::vector<fs::path> further = furtherSystemFonts();
+    if (std::ranges::any_of(further, [](const fs::path& file) { return fs::exists(file) && file.filename() != "DejaVuSans.ttf"; })) {
+        CHECK(isThere(0x68ee));
+        CHECK(isThere(0x6797));
+    } else {
+        MESSAGE("skipped: no font of Chinese, Japanese and Korean is installed");
+    }
+    // However many there are, the atlas is one that a device can sample.
+    for (int page = 0; page < 8; ++page) {
+        std::string text;
+        for (int letter = 0x4e00 + 2000 * page; letter < 0x4e00 + 2000 * (page + 1); ++letter) {
+            text += static_cast<char>(0xe0 + (letter >> 12));
+            text += static_cast<char>(0x80 + ((letter >> 6) & 0x3f));
+            text += static_cast<char>(0x80 + (letter & 0x3f));
+        }
+        CHECK(sketch.bringLetters(text));
+        unsigned char* pixels = nullptr;
+        int width = 0, height = 0;
+        ImGui::GetIO().Fonts->GetTexDataAsAlpha8(&pixels, &width, &height);
+        CHECK(std::max(width, height) <= 4096);
+        CHECK(isThere('A'));
+    }
+}
+
+TEST_CASE("the system says which fonts have a letter, and for no letter it says none") {
+    CHECK(fontsWith({}).empty());
+    CHECK(fontsWith({0xe000}).size() <= 1);  // a private letter
+    const std::vector<SystemFont> fonts = fontsWith({0x5d0, 'A'});
+    REQUIRE_FALSE(fonts.empty());
+    for (const SystemFont& font : fonts) { CHECK(fs::exists(font.file)); }
+}
+
+TEST_CASE("Hebrew and Arabic are read from right to left, and Arabic letters are joined, before a font has formed them, too") {
+    CHECK(asShown("plain \xc3\xa9 \xd0\x96.ply") == "plain \xc3\xa9 \xd0\x96.ply");
+    // Alef, bet, gimel within a path: gimel stands first, the path keeps its order.
+    CHECK(asShown("/a/\xd7\x90\xd7\x91\xd7\x92/b.ply") == "/a/\xd7\x92\xd7\x91\xd7\x90/b.ply");
+    // Beh, alef: alef's final form, then beh's initial one.
+    CHECK(asShown("\xd8\xa8\xd8\xa7") == "\xef\xba\x8e\xef\xba\x91");
+    // Lam and alef are one sign.
+    CHECK(asShown("\xd9\x84\xd8\xa7") == "\xef\xbb\xbb");
+    // Bytes that are no UTF-8 do no harm.
+    CHECK(asShown("\xd7\xff\xf0\x9f").find("\xef\xbf\xbd") != std::string::npos);
+}
+
+TEST_CASE("letters that change with those beside them are formed and ordered by the font, from right to left where they are read so") {
+    PanelSketch sketch;
+    const std::string beh = "\xd8\xa8", alef = "\xd8\xa7";
+    // All at once, so that each sign has one number.
+    const std::string ha = "\xe0\xa4\xb9", hi = ha + "\xe0\xa4\xbf", ksha = "\xe0\xa4\x95\xe0\xa5\x8d\xe0\xa4\xb7";
+    sketch.bringLetters(fmt::format("{0} {0}{0} {1} {1}{0} \xd8\xb3\xd9\x84\xd8\xa7\xd9\x85 {2} {3} {4}", beh, alef, ha, hi, ksha));
+    const auto of = [&](const std::string& word) { return signsOf(sketch, word); };
+    const auto alone = of(beh), twice = of(beh + beh);
+    REQUIRE(alone.size() == 1);
+    REQUIRE(twice.size() == 2);
+    CHECK(twice[0] != twice[1]);  // the one joins to the right, the other to the left
+    CHECK(std::ranges::find(twice, alone[0]) == twice.end());
+    // Alef joins nothing after it, which stands at its left.
+    CHECK(of(alef + beh) == std::vector{alone[0], of(alef).at(0)});
+    // Salam, with one sign for lam and alef.
+    CHECK(of("\xd8\xb3\xd9\x84\xd8\xa7\xd9\x85").size() == 3);
+    if (fontsWith({0x939}).empty()) {
+        MESSAGE("skipped: no font of Devanagari is installed");
+        return;
+    }
+    // The sign of i stands before the letter that it is read after, and three letters are one sign.
+    REQUIRE(of(hi).size() == 2);
+    CHECK(of(hi)[1] == of(ha).at(0));
+    CHECK(of(ksha).size() == 1);
+}
+
+TEST_CASE("a word's signs are drawn, keep their order among other letters, and are nobody's private letters") {
+    PanelSketch sketch;
+    const std::string shalom = "\xd7\xa9\xd7\x9c\xd7\x95\xd7\x9d";
+    const auto signs = signsOf(sketch, shalom);
+    REQUIRE(signs.size() == 4);
+    CHECK(asShown("/a/" + shalom + "/b.ply") == "/a/" + signs[0] + signs[1] + signs[2] + signs[3] + "/b.ply");
+    const ImFont& font = *ImGui::GetIO().Fonts->Fonts[0];
+    const ImFontGlyph& drawn = *font.FindGlyphNoFallback(kFirstPrivate);
+    CHECK(drawn.X1 > drawn.X0 + 3.0f);
+    CHECK(drawn.Y1 > drawn.Y0 + 3.0f);
+    CHECK(drawn.Y1 < font.FontSize);
+    CHECK(drawn.AdvanceX > 3.0f);
+    unsigned char* pixels = nullptr;
+    int width = 0, height = 0;
+    ImGui::GetIO().Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
+    int most = 0;
+    for (int y = static_cast<int>(drawn.V0 * static_cast<float>(height)); y < static_cast<int>(drawn.V1 * static_cast<float>(height));
+         ++y) {
+        for (int x = static_cast<int>(drawn.U0 * static_cast<float>(width)); x < static_cast<int>(drawn.U1 * static_cast<float>(width));
+             ++x) {
+            most = std::max(most, static_cast<int>(pixels[4 * (y * width + x) + 3]));
+        }
+    }
+    CHECK(most > 200);
+    CHECK(asShown("\xee\x80\x80") == "\xef\xbf\xbd");
+    // Beyond 16 bits: a letter of Old Italic, and bytes that begin like one.
+    CHECK(signsOf(sketch, "\xf0\x90\x8c\x80").size() == 1);
+    CHECK(wordsToForm("\xf0\x90\x8c/\xf4\xbf\xbf\xbf\xf0").empty());
+    // However many words there are, their signs fit among the private letters.
+    std::string many;
+    for (int word = 0; word < 390; ++word) {
+        for (int i = 0; i < 40; ++i) { many += fmt::format("\xd7{}", static_cast<char>(0x90 + (word * 7 + i * i) % 27)); }
+        many += ' ';
+    }
+    CHECK(sketch.bringLetters(many));
+    CHECK_FALSE(sketch.bringLetters(many));
+    CHECK(isThere('A'));
+}
+
+TEST_CASE("without a font that can be used the small built-in one is, and one line says why") {
+    const Workplace work;
+    const std::string whole = vectorFont();
+    write(work.path / "text.ttf", "no font at all");
+    write(work.path / "short.ttf", whole.substr(0, whole.size() / 2));
+    fs::create_directory(work.path / "folder.ttf");
+    for (const char* name : {"nowhere.ttf", "text.ttf", "short.ttf", "folder.ttf"}) {
+        CAPTURE(name);
+        setenv("BINOSPLAT_FONT", (work.path / name).c_str(), 1);
+        PanelSketch sketch;
+        CHECK(sketch.font->complaint().starts_with("the panel is written in a small built-in font: "));
+        CHECK(sketch.font->complaint().find(name) != std::string::npos);
+        CHECK(sketch.font->complaint().find('\n') == std::string::npos);
+        sketch.settings.page = PanelPage::kMethod;
+        CHECK(sketch.click("shared").places.contains("Quit"));
+        CHECK(sketch.settings.stereo.mode == Mode::kShared);
+    }
+    unsetenv("BINOSPLAT_FONT");
+}
+
+TEST_CASE("a font is taken only if the tables it has lie within it") {
+    const std::string whole = vectorFont();
+    REQUIRE(isFont(whole));
+    for (const std::size_t bytes : {std::size_t{0}, std::size_t{4}, std::size_t{11}, std::size_t{12}, std::size_t{40}, whole.size() - 1}) {
+        CAPTURE(bytes);
+        CHECK_FALSE(isFont(whole.substr(0, bytes)));
+    }
+    std::string nameless = whole;
+    nameless.replace(nameless.find("cmap"), 4, "xxxx");
+    CHECK_FALSE(isFont(nameless));
+    CHECK_FALSE(isFont("ttcf" + whole.substr(4)));
+    // A collection: the same tables, each 16 bytes farther from the file's beginning.
+    const auto number = [](std::uint32_t value) {
+        std::string bytes;
+        for (const int shift : {24, 16, 8, 0}) { bytes += static_cast<char>(value >> shift); }
+        return bytes;
+    };
+    std::string moved = whole;
+    const auto byteAt = [&](std::size_t at) { return static_cast<unsigned char>(moved[at]); };
+    for (std::size_t record = 12; record < 12 + 16 * (256u * byteAt(4) + byteAt(5)); record += 16) {
+        std::uint32_t offset = 0;
+        for (std::size_t i = 8; i < 12; ++i) { offset = offset << 8 | byteAt(record + i); }
+        moved.replace(record + 8, 4, number(offset + 16));
+    }
+    CHECK(isFont("ttcf" + number(0x00010000) + number(1) + number(16) + moved));
+    CHECK_FALSE(isFont("ttcf" + number(0x00030000) + number(1) + number(16) + moved));
+    CHECK_FALSE(isFont("ttcf" + number(0x00010000) + number(0) + number(16) + moved));
+    CHECK_FALSE(isFont("ttcf" + number(0x00010000) + number(1) + number(0x7fffffff) + moved));
+}
+
+}  // namespace letters_test

@@ -1,0 +1,363 @@
+// Facts about one scene after another: what is dropped or chosen replaces what is shown, or a line says why not; remembered places too.
+#include "app/view/scenes/shown_scene.h"
+#include "app/options/modes.h"
+#include "app/view/panel/canvas.h"
+#include "app/view/panel/panel_content.h"
+#include "app/view/panel/panel_style.h"
+#include "app/view/settings/view_files.h"
+#include "engine/error.h"
+#include "engine/scene/procedural.h"
+#include "engine/scene/scene.h"
+#include "tests/engine/gpu/gpu_fixture.h"
+#include "tests/run_program.h"
+
+#ifdef BINOSPLAT_SOG
+#include "tests/engine/scene/sog_scenes.h"
+#endif
+
+#include <doctest/doctest.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <set>
+#include <thread>
+
+TEST_SUITE_BEGIN("shown_scene");
+
+namespace shown_scene_test {
+
+namespace fs = std::filesystem;
+using namespace binosplat;
+using namespace binosplat::test;
+
+namespace {
+
+struct Shown : Gpu, Workplace {
+    using Workplace::run;
+
+    Shown() {
+        setenv("XDG_CONFIG_HOME", (base / "config").c_str(), 1);
+        options.scene = "builtin:step-edge";
+    }
+    ~Shown() { unsetenv("XDG_CONFIG_HOME"); }
+
+    // One line, and the scene stays as it was.
+    void checkRefused(ShownScene& scenes, const fs::path& place, const std::string& part) {
+        CAPTURE(place);
+        const LoadedScene* before = scenes.get();
+        scenes.begin(place.string());
+        const std::string complaint = scenes.take(state);
+        INFO(complaint);
+        CHECK(complaint.starts_with(place.string() + ": "));
+        CHECK(complaint.find(part) != std::string::npos);
+        CHECK(complaint.find('\n') == std::string::npos);
+        CHECK(scenes.get() == before);
+    }
+
+    ViewOptions options;
+    ViewState state;
+    FrameLog log;
+};
+
+bool same(const Similarity& a, const Similarity& b) {
+    return glm::length(a.position - b.position) < 1e-6 && std::abs(a.scale - b.scale) < 1e-6 &&
+           std::abs(std::abs(glm::dot(a.orientation, b.orientation)) - 1.0) < 1e-6;
+}
+
+}  // namespace
+
+TEST_CASE_FIXTURE(Shown, "a file that is no scene gives one line, and what was shown stays") {
+    ShownScene scenes(context(), options, log);
+    REQUIRE(scenes.take(state).empty());
+    CHECK(scenes.name() == "builtin:step-edge");
+    std::ofstream(path / "notes.txt") << "no scene";
+    fs::create_directory(path / "pictures");
+    REQUIRE(mkfifo((path / "pipe.ply").c_str(), 0600) == 0);
+    checkRefused(scenes, path / "notes.txt", "not a scene file of a known format");
+    checkRefused(scenes, path / "pictures", "is a directory, expected one with");
+    checkRefused(scenes, path / "pipe.ply", "is not a regular file");
+    checkRefused(scenes, path / "gone.ply", "no such file");
+    CHECK_FALSE(scenes.loading().has_value());
+}
+
+#ifdef BINOSPLAT_SOG
+TEST_CASE_FIXTURE(Shown, "a folder of a SOG scene is shown like a file, with or without a slash at its end") {
+    fs::create_directory(path / "statue");
+    for (const auto& [name, bytes] : makeSog()) { std::ofstream(path / "statue" / name, std::ios::binary) << bytes; }
+    ShownScene scenes(context(), options, log);
+    REQUIRE(scenes.take(state).empty());
+    for (const std::string& place :
+         {(path / "statue").string(), (path / "statue").string() + "/", (path / "statue" / "meta.json").string()}) {
+        CAPTURE(place);
+        scenes.begin(place);
+        CHECK(scenes.take(state).empty());
+        CHECK(scenes.name() == place);
+        CHECK(scenes.get()->facts.splats == 8);
+        CHECK(scenes.get()->facts.file_bytes > 0);
+    }
+}
+#endif
+
+TEST_CASE_FIXTURE(Shown,
+                  "one that was asked for while another one came takes its place, and if it cannot be read the first comes after all") {
+    ShownScene scenes(context(), options, log);
+    scenes.begin("builtin:fence");
+    scenes.begin("builtin:slanted-wall");
+    CHECK(scenes.take(state).empty());
+    CHECK(scenes.name() == "builtin:slanted-wall");
+    CHECK_FALSE(scenes.loading().has_value());
+    ShownScene others(context(), options, log);
+    others.begin((path / "gone.ply").string());
+    CHECK(others.take(state).find("gone.ply: no such file") != std::string::npos);
+    CHECK(others.get() == nullptr);
+    CHECK(others.take(state).empty());
+    CHECK(others.name() == "builtin:step-edge");
+    // That of the command line has nothing to fall back to.
+    options.scene = (path / "gone.ply").string();
+    ShownScene none(context(), options, log);
+    CHECK_THROWS_AS(static_cast<void>(none.take(state)), Error);
+}
+
+TEST_CASE_FIXTURE(
+    Shown, "a remembered place that cannot be used is one line, the scene is shown at its start, and saving replaces a broken file") {
+    const fs::path file = viewSettingsFile(options.scene);
+    const auto showAgain = [&](std::string& complaint) {
+        ShownScene scenes(context(), options, log);
+        complaint = scenes.take(state);
+        return same(state.sceneFromRoom(), scenes.get()->start);
+    };
+    std::string complaint;
+    CHECK(showAgain(complaint));
+    CHECK(complaint.empty());
+    ViewSettings moved = state.withPlacement();
+    moved.scene_from_room->position += glm::dvec3(1.0, 2.0, 3.0);
+    const auto spoil = [&](const std::string& text) {
+        fs::remove_all(file);
+        fs::create_directories(file.parent_path());
+        std::ofstream(file, std::ios::binary) << text;
+    };
+    const auto checkSaid = [&] {
+        CHECK(showAgain(complaint));
+        INFO(complaint);
+        CHECK(complaint.find(file.string()) != std::string::npos);
+        CHECK(complaint.find('\n') == std::string::npos);
+    };
+    for (const std::string& text :
+         {std::string("[view\n"), std::string("[view]\nnonsense = 1\n"), std::string("[view]\nscene-position = [1, 2]\n"),
+          std::string("[view]\nunits-per-metre = 2\n"), std::string("\xff\xfe\0\0", 4), std::string("[view]\nunits-per-metre = nan\n")}) {
+        CAPTURE(text);
+        spoil(text);
+        checkSaid();
+        // The next save makes it whole.
+        CHECK(saveViewSettings(options.scene, moved) == "saved as " + file.string());
+        CHECK_FALSE(showAgain(complaint));
+        CHECK(complaint.empty());
+    }
+    // What is no file stays, also when it is saved, and nothing waits for a pipe.
+    fs::remove(file);
+    fs::create_directory(file);
+    checkSaid();
+    CHECK(saveViewSettings(options.scene, moved).find("is a directory") != std::string::npos);
+    CHECK(fs::is_directory(file));
+    fs::remove(file);
+    REQUIRE(mkfifo(file.c_str(), 0600) == 0);
+    checkSaid();
+    CHECK(fs::is_fifo(file));
+    // Nothing half-written lies about.
+    CHECK(std::distance(fs::directory_iterator(file.parent_path()), fs::directory_iterator()) == 1);
+}
+
+TEST_CASE_FIXTURE(Shown, "loading gives up where it is told to, before the file's end, and so does the way to the device") {
+    struct Enough {};
+    REQUIRE(run("scene atelier --splats 200000 --out many.ply").exit_code == 0);
+    REQUIRE(run("convert many.ply many.spz").exit_code == 0);
+    for (const char* name : {"many.ply", "many.spz"}) {
+        CAPTURE(name);
+        double furthest = 0.0;
+        const auto stop = [&](double share) {
+            furthest = std::max(furthest, share);
+            if (share > 0.0) { throw Enough(); }
+        };
+        CHECK_THROWS_AS(static_cast<void>(loadScene((path / name).string(), 0, nullptr, stop)), Enough);
+        CHECK(furthest < 0.6);
+    }
+    const Scene scene = loadScene((path / "many.ply").string());
+    double furthest = 0.0;
+    const auto stop = [&](double share) {
+        furthest = std::max(furthest, share);
+        throw Enough();
+    };
+    CHECK_THROWS_AS(GpuScene(context(), scene, stop), Enough);
+    CHECK(furthest < 0.6);
+}
+
+TEST_CASE_FIXTURE(Shown,
+                  "a loader that was told to give up is done in the end, and keeps nothing in memory, whether it was in time or not") {
+    const std::uint64_t before = context().memoryUse().current_bytes;
+    SceneLoader early(context(), "builtin:fence", options.run), late(context(), "builtin:fence", options.run);
+    early.cancel();
+    while (!late.isDone()) { std::this_thread::yield(); }
+    while (!early.isDone()) { std::this_thread::yield(); }
+    CHECK(context().memoryUse().current_bytes > before);
+    late.cancel();
+    CHECK(context().memoryUse().current_bytes == before);
+    CHECK(early.take() == nullptr);
+    CHECK(late.take() == nullptr);
+    // Nor does one that was loaded whole when another one was asked for.
+    ShownScene scenes(context(), options, log);
+    while (!scenes.isNextReady()) { std::this_thread::yield(); }
+    const std::uint64_t one = context().memoryUse().current_bytes;
+    scenes.begin((path / "gone.ply").string());
+    while (!scenes.isNextReady()) { std::this_thread::yield(); }
+    CHECK(one > before);
+    CHECK(context().memoryUse().current_bytes == before);
+}
+
+TEST_CASE_FIXTURE(Gpu, "the panel has the same colours where the runtime has no sRGB images, as light") {
+    const auto drawn = [&](vk::Format format) {
+        using Usage = vk::ImageUsageFlagBits;
+        Canvas canvas(context(), kPanelPx, format);
+        ViewSettings settings;
+        SceneChooser chooser;
+        PanelStatus status;
+        status.has_scene = true;
+        canvas.begin({}, 0.01);
+        static_cast<void>(drawPanel(kPanelPx, settings, chooser, status));
+        canvas.end();
+        const vk::raii::Image image(
+            context().device(),
+            vk::ImageCreateInfo({}, vk::ImageType::e2D, format, {kPanelPx.x, kPanelPx.y, 1}, 1, 1, vk::SampleCountFlagBits::e1,
+                                vk::ImageTiling::eOptimal, Usage::eTransferDst | Usage::eTransferSrc | Usage::eColorAttachment));
+        const auto needs = image.getMemoryRequirements();
+        const vk::raii::DeviceMemory memory(context().device(),
+                                            vk::MemoryAllocateInfo(needs.size, context().memoryType(needs.memoryTypeBits, {}, {})));
+        image.bindMemory(*memory, 0);
+        const Buffer bytes = allocate<std::uint32_t>("panel", std::size_t{kPanelPx.x} * kPanelPx.y);
+        run([&](Commands& commands) {
+            canvas.record(commands);
+            canvas.copyTo(commands, *image);
+            const vk::ImageMemoryBarrier barrier(vk::AccessFlagBits::eMemoryWrite, vk::AccessFlagBits::eTransferRead,
+                                                 vk::ImageLayout::eColorAttachmentOptimal, vk::ImageLayout::eTransferSrcOptimal,
+                                                 VK_QUEUE_FAMILY_IGNORED, VK_QUEUE_FAMILY_IGNORED, *image,
+                                                 {vk::ImageAspectFlagBits::eColor, 0, 1, 0, 1});
+            commands.buffer().pipelineBarrier(vk::PipelineStageFlagBits::eAllCommands, vk::PipelineStageFlagBits::eTransfer, {}, {}, {},
+                                              barrier);
+            commands.buffer().copyImageToBuffer(
+                *image, vk::ImageLayout::eTransferSrcOptimal, bytes.handle(),
+                vk::BufferImageCopy(0, 0, 0, {vk::ImageAspectFlagBits::eColor, 0, 0, 1}, {}, {kPanelPx.x, kPanelPx.y, 1}));
+        });
+        return readBack<std::uint32_t>(bytes, std::size_t{kPanelPx.x} * kPanelPx.y);
+    };
+    using Format = vk::Format;
+    for (const auto& [encoded, linear] :
+         {std::pair(Format::eR8G8B8A8Srgb, Format::eR8G8B8A8Unorm), std::pair(Format::eB8G8R8A8Srgb, Format::eB8G8R8A8Unorm)}) {
+        const std::vector<std::uint32_t> seen = drawn(encoded), light = drawn(linear);
+        std::set<std::uint32_t> colours;
+        double farthest = 0.0;
+        for (std::size_t i = 0; i < seen.size(); ++i) {
+            colours.insert(seen[i]);
+            for (const int shift : {0, 8, 16}) {
+                const double value = (seen[i] >> shift & 255) / 255.0;
+                const double expected = value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
+                farthest = std::max(farthest, std::abs((light[i] >> shift & 255) - 255.0 * expected));
+            }
+        }
+        CHECK(colours.size() > 20);
+        CHECK(farthest < 1.0);
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu, "the depth of one pixel is that of the whole picture there, in full and in half floats, and none where nothing is") {
+    const Scene splat = loadScene("builtin:one-splat");
+    const GpuScene scene(context(), splat);
+    StereoFrame frame(context(), scene);
+    Eye middle{};
+    middle.size_px = {64, 48};
+    middle.intrinsics = intrinsicsFromFovX(1.0, middle.size_px);
+    middle.world_from_camera.position = glm::dvec3(splat.positions[0]) - glm::dvec3(0.0, 0.0, 2.0);
+    for (const bool half_floats : {false, true}) {
+        FrameSettings settings;
+        settings.mode = Mode::kMono;
+        settings.half_floats = half_floats;
+        static_cast<void>(frame.render(std::span(&middle, 1), settings));
+        const Image picture = frame.readPicture(0), depth = frame.readDepth(0);
+        std::size_t covered = 0;
+        for (const glm::uvec2 pixel : {glm::uvec2(32, 24), glm::uvec2(33, 23), glm::uvec2(0, 0), glm::uvec2(63, 47)}) {
+            const std::size_t at = std::size_t{pixel.y} * 64 + pixel.x;
+            const float alpha = picture.values[4 * at + 3];
+            const std::optional<double> one = frame.depthAt(0, pixel);
+            CHECK(one.has_value() == (alpha >= 0.5f));
+            if (!one) { continue; }
+            CHECK(*one == doctest::Approx(depth.values[at] / alpha));
+            CHECK(*one == doctest::Approx(2.0).epsilon(0.1));
+            ++covered;
+        }
+        CHECK(covered == 2);
+    }
+    FrameSettings without;
+    without.mode = Mode::kMono;
+    without.keep_depth = false;
+    static_cast<void>(frame.render(std::span(&middle, 1), without));
+    CHECK_FALSE(frame.depthAt(0, {32, 24}).has_value());
+}
+
+TEST_CASE_FIXTURE(Shown, "another method is drawn once its kernels are there, made beside the frames, and the next scene comes with them") {
+    ViewSettings settings;
+    options.run.stereo.mode = settings.stereo.mode = Mode::kMono;
+    const glm::uvec2 size_px(64, 64);
+    ShownScene scenes(context(), options, log, FramesAhead{settings.stereo, size_px, false, false, {}});
+    // Chosen while the first one loads.
+    settings.stereo.mode = Mode::kShared;
+    scenes.expect(settings.stereo, size_px, false);
+    REQUIRE(scenes.take(state).empty());
+    CHECK(scenes.drawable(settings) == settings);
+    const auto drawsWithoutCompiling = [&] {
+        Eye middle{};
+        middle.size_px = size_px;
+        middle.intrinsics = intrinsicsFromFovX(1.5, size_px);
+        FrameSettings frame = frameSettings(options.run.camera, settings.stereo);
+        frame.half_floats = true;
+        frame.keep_depth = frame.keep_both_depths = false;
+        frame.square_boxes = false;
+        const std::size_t before = scenes.frame().kernelCount();
+        scenes.frame().renderAhead(stereoPair(middle, 0.063), frame);
+        scenes.frame().finish();
+        return scenes.frame().kernelCount() == before;
+    };
+    CHECK(drawsWithoutCompiling());
+    // Chosen while it is shown: until then frames go on as they were. Numbers of sliders are there at once.
+    const ViewSettings shared = settings;
+    settings.stereo.mode = Mode::kTwoPass;
+    scenes.expect(settings.stereo, size_px, false);
+    CHECK(scenes.isMakingKernels());
+    CHECK(scenes.drawable(settings).stereo == shared.stereo);
+    const auto waitUntilReady = [&] {
+        while (scenes.isMakingKernels()) {
+            std::this_thread::yield();
+            scenes.expect(settings.stereo, size_px, false);
+        }
+    };
+    waitUntilReady();
+    CHECK(scenes.drawable(settings) == settings);
+    CHECK(drawsWithoutCompiling());
+    settings.stereo.warp.budget = 0.9;
+    scenes.expect(settings.stereo, size_px, false);
+    CHECK_FALSE(scenes.isMakingKernels());
+    CHECK(scenes.drawable(settings) == settings);
+    // Chosen and left again.
+    const ViewSettings two_pass = settings;
+    settings.stereo.mode = Mode::kPaper;
+    scenes.expect(settings.stereo, size_px, false);
+    settings = two_pass;
+    scenes.expect(settings.stereo, size_px, false);
+    waitUntilReady();
+    CHECK(scenes.drawable(settings) == settings);
+    // Splats of another kind have other kernels.
+    scenes.begin("builtin:atelier");
+    REQUIRE(scenes.take(state).empty());
+    CHECK(drawsWithoutCompiling());
+}
+
+}  // namespace shown_scene_test

@@ -1,0 +1,308 @@
+// The viewer beside its window, on a display without a screen (Xvfb) and with a mouse and keys without hands (xdotool).
+#pragma once
+
+#include "engine/geometry.h"
+#include "tests/app/view/panel/panel_sketch.h"
+#include "tests/app/view/view_runs.h"
+#include "tests/xr/simulated/installed.h"
+
+#include <dlfcn.h>
+#include <doctest/doctest.h>
+#include <poll.h>
+#include <pty.h>
+#include <signal.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <sstream>
+
+namespace binosplat::test {
+
+inline constexpr int kPatienceMs = 60'000;  // until a program that is silent counts as hung
+inline constexpr glm::ivec2 kScreenPx(1400, 800);
+// The dominant eye is shown on the left, the panel beside it.
+inline constexpr int kEyePx = 720;
+inline const glm::dvec2 kPanelInWindowPx(kEyePx* static_cast<double>(kPanelPx.x) / kPanelPx.y, kEyePx);
+
+inline bool haveScreen() { return isInstalled("Xvfb", "xvfb") && isInstalled("xdotool", "xdotool"); }
+
+// A program on a terminal of its own, since there it does not keep what it prints.
+class Program {
+public:
+    Program(const std::filesystem::path& folder, const std::vector<std::string>& command, const std::string& display) {
+        process_ = forkpty(&terminal_, nullptr, nullptr, nullptr);
+        if (process_ == 0) {
+            std::vector<char*> arguments;
+            for (const std::string& word : command) { arguments.push_back(const_cast<char*>(word.c_str())); }
+            arguments.push_back(nullptr);
+            const bool placed = chdir(folder.c_str()) == 0 && setenv("DISPLAY", display.c_str(), 1) == 0;
+            setenv("BINOSPLAT_VALIDATION", "1", 1);
+            setenv("SIMULATED_OPENXR_CLOCK", "real", 1);  // in lock-step it would draw as much as it can while hands are on their way
+            setenv("XDG_CONFIG_HOME", (folder.parent_path() / "config").c_str(), 1);
+            unsetenv("WAYLAND_DISPLAY");
+            if (placed) { execvp(arguments[0], arguments.data()); }
+            _exit(127);
+        }
+    }
+    Program(const Program&) = delete;
+    Program& operator=(const Program&) = delete;
+    ~Program() {
+        kill(process_, SIGKILL);
+        if (!ended_) { static_cast<void>(exitCode()); }
+        close(terminal_);
+    }
+
+    // What it printed from the last line waited for to the end of the next that has `words` in it; empty if none comes.
+    std::string waitFor(const std::string& words) {
+        std::size_t found = said_.find(words, read_), end = std::string::npos;
+        while (found == std::string::npos || (end = said_.find('\n', found)) == std::string::npos) {
+            if (!readMore()) { return {}; }
+            found = said_.find(words, read_);
+        }
+        const std::string lines = said_.substr(read_, end - read_);
+        read_ = end;
+        return lines;
+    }
+    [[nodiscard]] int exitCode() {
+        while (readMore()) {}
+        int status = 0;
+        waitpid(process_, &status, 0);
+        ended_ = true;
+        return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    }
+    [[nodiscard]] const std::string& said() const { return said_; }
+
+private:
+    bool readMore() {
+        pollfd waits{terminal_, POLLIN, 0};
+        std::array<char, 4096> part{};
+        const ssize_t bytes = poll(&waits, 1, kPatienceMs) == 1 ? read(terminal_, part.data(), part.size()) : -1;
+        if (bytes > 0) { said_.append(part.data(), static_cast<std::size_t>(bytes)); }
+        return bytes > 0;
+    }
+
+    int terminal_ = -1;
+    pid_t process_ = -1;
+    std::string said_;
+    std::size_t read_ = 0;
+    bool ended_ = false;
+};
+
+// Xvfb keeps its picture in a file.
+class Screen {
+public:
+    explicit Screen(const std::filesystem::path& folder)
+        : folder_(folder),
+          server_(folder,
+                  // Of numbers that are taken it complains first.
+                  {"/bin/sh", "-c",
+                   fmt::format("exec Xvfb -displayfd 1 -screen 0 {}x{}x24 -fbdir '{}' 2> /dev/null", kScreenPx.x, kScreenPx.y,
+                               folder.string())},
+                  "") {
+        std::string line = server_.waitFor("\n");
+        line.erase(std::remove_if(line.begin(), line.end(), [](char c) { return c < '0' || c > '9'; }), line.end());
+        name = ":" + line;
+    }
+
+    [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
+    // An X window dump of 32 bits a pixel: header, colour table, rows; the header's numbers have their highest byte first.
+    [[nodiscard]] Image picture() const {
+        std::ifstream file(folder_ / "Xvfb_screen0", std::ios::binary);
+        const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+        const auto byte = [&](std::size_t at) { return static_cast<std::uint8_t>(bytes.at(at)); };
+        const auto number = [&](std::size_t index) {
+            std::size_t value = 0;
+            for (std::size_t i = 0; i < 4; ++i) { value = value * 256 + byte(4 * index + i); }
+            return value;
+        };
+        constexpr std::size_t kBytesPerColour = 12;
+        const std::size_t start = number(0) + kBytesPerColour * number(19), row_bytes = number(12);
+        Image image{{number(4), number(5)}, 3, {}};
+        image.values.resize(3 * image.pixelCount());
+        REQUIRE(bytes.size() >= start + row_bytes * image.size_px.y);
+        float* value = image.values.data();
+        for (std::size_t y = 0; y < image.size_px.y; ++y) {
+            const char* pixel = bytes.data() + start + y * row_bytes;
+            for (std::size_t x = 0; x < image.size_px.x; ++x, pixel += 4, value += 3) {
+                for (int i = 0; i < 3; ++i) { value[i] = static_cast<float>(static_cast<std::uint8_t>(pixel[2 - i])) / 255.0f; }
+            }
+        }
+        return image;
+    }
+
+    std::string name;
+
+private:
+    std::filesystem::path folder_;
+    Program server_;
+};
+
+// On a screen, with a mouse and keys.
+inline void handsOn(const Screen& screen, const std::string& does) {
+    const std::string command = "DISPLAY=" + screen.name + " timeout 60 xdotool " + does + " >/dev/null";
+    INFO(command);
+    REQUIRE(std::system(command.c_str()) == 0);
+}
+
+// Of a window by its name, as xdotool says it: "WINDOW=2097154", "WIDTH=648" and so on, one of them.
+inline unsigned long numberOfWindow(const Screen& screen, const std::string& name, const std::string& what) {
+    const std::string file = (screen.folder() / "number").string();
+    handsOn(screen, fmt::format("search --sync --onlyvisible --name '{}' getwindowgeometry --shell %1 | sed -n 's/^{}=//p' | tee '{}'",
+                                name, what, file));
+    unsigned long number = 0;
+    std::ifstream(file) >> number;
+    REQUIRE(number != 0);
+    return number;
+}
+
+// What xdotool of Debian 12 cannot do, by Xlib, which GLFW takes along itself.
+class XConnection {
+public:
+    explicit XConnection(const Screen& screen) {
+        REQUIRE(library_ != nullptr);
+        display_ = find<void* (*)(const char*)>("XOpenDisplay")(screen.name.c_str());
+        REQUIRE(display_ != nullptr);
+    }
+    XConnection(const XConnection&) = delete;
+    XConnection& operator=(const XConnection&) = delete;
+    ~XConnection() {
+        find<int (*)(void*)>("XCloseDisplay")(display_);
+        dlclose(library_);
+    }
+
+    // As desktops tell programs how large people want things; for as long as somebody is connected.
+    void setDpi(int dpi) const {
+        const std::string resources = fmt::format("Xft.dpi:\t{}\n", dpi);
+        const unsigned long root = find<unsigned long (*)(void*)>("XDefaultRootWindow")(display_);
+        constexpr unsigned long kResourceManager = 23, kString = 31;
+        find<int (*)(void*, unsigned long, unsigned long, unsigned long, int, int, const char*, int)>("XChangeProperty")(
+            display_, root, kResourceManager, kString, 8, 0, resources.c_str(), static_cast<int>(resources.size()));
+        find<int (*)(void*, int)>("XSync")(display_, 0);
+    }
+    // What a window manager does when somebody clicks on the cross: a message that the window may obey.
+    void clickCross(unsigned long window) const {
+        const auto atomOf = [&](const char* name) {
+            return find<unsigned long (*)(void*, const char*, int)>("XInternAtom")(display_, name, 0);
+        };
+        // Xlib's XClientMessageEvent in an XEvent of 24 longs: a message that is sent, to which window, its kind, bits of a number, a
+        // number.
+        constexpr unsigned long kClientMessage = 33;
+        std::array<unsigned long, 24> event{kClientMessage,
+                                            0,
+                                            1,
+                                            reinterpret_cast<unsigned long>(display_),
+                                            window,
+                                            atomOf("WM_PROTOCOLS"),
+                                            32,
+                                            atomOf("WM_DELETE_WINDOW")};
+        CHECK(find<int (*)(void*, unsigned long, int, long, void*)>("XSendEvent")(display_, window, 0, 0, event.data()) != 0);
+        find<int (*)(void*, int)>("XSync")(display_, 0);
+    }
+    // What the window tells a window manager: whether its size may change, and whether its shape stays.
+    [[nodiscard]] std::pair<bool, bool> resizesInShape(unsigned long window) const {
+        // Xlib's XSizeHints.
+        struct {
+            long flags = 0;
+            std::array<int, 17> rest{};
+        } hints;
+        long supplied = 0;
+        REQUIRE(find<int (*)(void*, unsigned long, void*, long*)>("XGetWMNormalHints")(display_, window, &hints, &supplied) != 0);
+        constexpr long kMostSize = 1 << 5, kShape = 1 << 7;
+        return {(hints.flags & kMostSize) == 0, (hints.flags & kShape) != 0};
+    }
+
+private:
+    template <typename Function>
+    Function find(const char* name) const {
+        const auto function = reinterpret_cast<Function>(dlsym(library_, name));
+        const bool is_there = function != nullptr;
+        REQUIRE(is_there);
+        return function;
+    }
+
+    void* library_ = dlopen("libX11.so.6", RTLD_NOW);
+    void* display_ = nullptr;
+};
+
+inline void clickCross(const Screen& screen, const std::string& window_name) {
+    XConnection(screen).clickCross(numberOfWindow(screen, window_name, "WINDOW"));
+}
+
+// The viewer beside its window, with a mouse and keys.
+class Viewer {
+public:
+    Viewer(const Workplace& work, const std::string& options, int dpi = 96)
+        : screen_((std::filesystem::create_directory(work.base / "screen"), work.base / "screen")),
+          connection_(screen_),
+          program_((connection_.setDpi(dpi), work.path),
+                   {"/bin/sh", "-c",
+                    "export PATH=\"$PWD/tools:$PATH\"; exec '" BINOSPLAT_PROGRAM "' view builtin:slanted-wall --load-first --mode mono " +
+                        options},
+                   screen_.name) {
+        // While it loads, the panel has another layout.
+        REQUIRE(program_.waitFor("shows builtin:slanted-wall") != "");
+        // The keys go to the window that the mouse is in.
+        hands("search --sync --onlyvisible --name '^binosplat$' mousemove --window %1 20 20");
+    }
+
+    void hands(const std::string& does) const { handsOn(screen_, does); }
+    static std::string moveTo(const glm::dvec2& place) { return fmt::format("mousemove {:.0f} {:.0f} ", place.x, place.y); }
+    static std::string panel(const glm::dvec2& share) { return moveTo(glm::dvec2(kEyePx, 0.0) + share * kPanelInWindowPx); }
+
+    // The panel goes or comes: by then everything before has reached the viewer.
+    std::string tab() {
+        hands("key Tab");
+        const std::string lines = program_.waitFor("panel = ");
+        CHECK(lines != "");
+        return lines;
+    }
+    void click(const glm::dvec2& share) {
+        hands(panel(share));
+        tab();
+        hands("mousedown 1");
+        tab();
+        hands("mouseup 1");
+    }
+    // Where the wearer's room lies now, as the viewer saves it.
+    Pose placement(const Workplace& work, double* units_per_metre = nullptr) {
+        click(placeOf("Save", true));
+        REQUIRE(program_.waitFor("slanted-wall.view.toml") != "");
+        std::ifstream file(work.base / "config" / "binosplat" / "scenes" / "slanted-wall.view.toml");
+        const std::string text{std::istreambuf_iterator<char>(file), {}};
+        const auto numbers = [&](const std::string& key) {
+            const std::size_t at = text.find(key + " = [");
+            REQUIRE(at != std::string::npos);
+            std::string list = text.substr(at + key.size() + 4);
+            list = list.substr(0, list.find(']'));
+            std::ranges::replace(list, ',', ' ');
+            std::istringstream words(list);
+            return std::vector<double>(std::istream_iterator<double>(words), {});
+        };
+        if (units_per_metre != nullptr) {
+            const std::string key = "units-per-metre = ";
+            const std::size_t at = text.find(key);
+            REQUIRE(at != std::string::npos);
+            *units_per_metre = std::stod(text.substr(at + key.size()));
+        }
+        const std::vector<double> p = numbers("scene-position"), q = numbers("scene-orientation");
+        return {{q.at(0), q.at(1), q.at(2), q.at(3)}, {p.at(0), p.at(1), p.at(2)}};
+    }
+
+    [[nodiscard]] Program& program() { return program_; }
+    [[nodiscard]] const Screen& screen() const { return screen_; }
+    [[nodiscard]] const XConnection& connection() const { return connection_; }
+
+private:
+    Screen screen_;
+    XConnection connection_;
+    Program program_;
+};
+
+inline std::array<float, 3> colourAt(const Image& image, glm::uvec2 at) {
+    const float* value = &image.values.at((std::size_t{at.y} * image.size_px.x + at.x) * static_cast<std::size_t>(image.channels));
+    return {value[0], value[1], value[2]};
+}
+
+}  // namespace binosplat::test

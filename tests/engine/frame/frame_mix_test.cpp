@@ -1,0 +1,218 @@
+// Facts about frames of any kind after frames of any other: modes, sizes, angles and whatever is kept change from frame to frame, as no
+// program does it, and each picture is what a frame that knows nothing of the ones before comes to, or near the full render.
+#include "engine/picture/metrics.h"
+#include "tests/engine/frame/frame_runs.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <random>
+#include <utility>
+
+TEST_SUITE_BEGIN("frame_mix");
+
+namespace frame_mix_test {
+
+using namespace binosplat;
+using test::Gpu;
+using test::ViewedScene;
+
+namespace {
+
+constexpr std::array kModes{Mode::kMono,  Mode::kTwoPass,   Mode::kShared,    Mode::kReproject,
+                            Mode::kPaper, Mode::kPredicted, Mode::kAlternate, Mode::kTemporal};
+constexpr int kFrames = 12;
+// Of a picture that is made from one of another size, with other angles, from up to 5 cm away: what was written over or never made has
+// less.
+constexpr double kLeastDb = 17.0;
+
+class Dice {
+public:
+    explicit Dice(unsigned seed) : random_(seed) {}
+    double share() { return static_cast<double>(random_() >> 8) / 16777216.0; }
+    double between(double low, double high) { return low + (high - low) * share(); }
+    bool falls(double odds) { return share() < odds; }
+    std::size_t below(std::size_t count) { return random_() % count; }
+    glm::dvec3 vector(double reach) { return {between(-reach, reach), between(-reach, reach), between(-reach, reach)}; }
+
+private:
+    std::mt19937 random_;
+};
+
+// What a frame is asked for; the tiles that it hides are held here.
+class Walk {
+public:
+    Walk(unsigned seed, const Eye& start) : dice_(seed), middle_(start) {
+        change();
+        changeEyes();
+    }
+
+    // On to the next frame.
+    void go() {
+        if (dice_.falls(0.5)) { change(); }
+        if (dice_.falls(0.3)) { changeEyes(); }
+        const double reach = dice_.falls(0.2) ? dice_.between(0.02, 0.4) : 0.004;  // a jump, now and then
+        middle_.world_from_camera.position += dice_.vector(reach);
+        middle_.world_from_camera.orientation =
+            glm::normalize(middle_.world_from_camera.orientation * glm::angleAxis(0.005, glm::normalize(dice_.vector(1) + 1e-3)));
+    }
+
+    [[nodiscard]] std::vector<Eye> eyes() const {
+        const std::array pair = stereoPair(middle_, 0.063);
+        std::vector<Eye> eyes(pair.begin(), pair.begin() + (settings_.mode == Mode::kMono ? 1 : 2));
+        for (std::size_t e = 0; e < eyes.size(); ++e) {
+            eyes[e].size_px = sizes_[reprojects(settings_.mode) || !settings_.keep_past ? 0 : e];
+            eyes[e].intrinsics = intrinsicsFromAngles(angles_[e], eyes[e].size_px);
+            eyes[e].world_from_camera.orientation =
+                eyes[e].world_from_camera.orientation * glm::angleAxis(e == 0 ? -cant_ : cant_, glm::dvec3(0, 1, 0));
+        }
+        return eyes;
+    }
+
+    [[nodiscard]] FrameSettings settings() {
+        FrameSettings settings = settings_;
+        // Moments are for files: there is no kernel for them in pictures that are only shown, nor in pasts.
+        settings.keep_moments = settings.keep_moments && !settings.half_floats && !(settings.keep_past && hasPast(settings.mode));
+        const std::vector<Eye> all = eyes();
+        for (std::size_t e = 0; e < all.size() && hides_; ++e) {
+            const glm::uvec2 tiles = (all[e].size_px + 15u) / 16u;
+            hidden_[e].assign(std::size_t{tiles.x} * tiles.y, 0);
+            for (std::size_t t = 0; t < tiles.x; ++t) { hidden_[e][t] = 1; }  // the topmost row
+            settings.hidden_tiles[e] = hidden_[e];
+        }
+        return settings;
+    }
+
+    [[nodiscard]] bool goesAhead() { return dice_.falls(0.5); }
+
+private:
+    // All of it at first, then a few things at a time, so that pasts live on.
+    void change() {
+        FrameSettings& s = settings_;
+        const auto maybe = [&](auto&& set) {
+            if (dice_.falls(0.12)) { set(); }
+        };
+        const auto always = [&](auto&& set) { set(); };
+        const auto set = [&](auto&& when) {
+            when([&] { s.mode = dice_.falls(0.5) ? Mode::kTemporal : kModes[dice_.below(kModes.size())]; });
+            when([&] { s.dominant = dice_.falls(0.5) ? kLeft : kRight; });
+            when([&] { s.near = dice_.falls(0.5) ? 0.2 : dice_.between(0.01, 0.4); });
+            when([&] { s.background = dice_.falls(0.5) ? glm::dvec3(0) : glm::abs(dice_.vector(1)); });
+            when([&] { s.order = dice_.falls(0.3) ? Order::kDistance : Order::kDepth; });
+            when([&] { s.per_eye = dice_.falls(0.3); });
+            when([&] { s.half_floats = dice_.falls(0.5); });
+            when([&] { s.keep_depth = dice_.falls(0.5); });
+            when([&] { s.keep_both_depths = dice_.falls(0.3); });
+            when([&] { s.keep_moments = dice_.falls(0.1); });
+            when([&] { s.keep_classes = dice_.falls(0.3); });
+            when([&] { s.square_boxes = dice_.falls(0.5); });
+            when([&] { s.half_periphery = dice_.falls(0.5); });
+            when([&] { s.keep_past = dice_.falls(0.9); });
+            when([&] {
+                const bool both = dice_.falls(0.6);
+                for (auto& gaze : s.gazes) {
+                    gaze.reset();
+                    if (both || dice_.falls(0.3)) {
+                        gaze = Gaze{{dice_.between(-0.3, 0.3), dice_.between(-0.3, 0.3), 1}, dice_.between(0.05, 0.4)};
+                    }
+                }
+            });
+            when([&] { s.stereo.budget = dice_.falls(0.2) ? 1.0 : dice_.between(0.1, 0.5); });
+            when([&] { s.stereo.forward = dice_.falls(0.3); });
+            when([&] {
+                s.stereo.depth_choice = dice_.falls(0.7) ? gpu::kDepthInverse : dice_.falls(0.5) ? gpu::kDepthMean : gpu::kDepthSum;
+            });
+            when([&] { s.stereo.tight_edges = dice_.falls(0.5); });
+            when([&] { s.stereo.center_rois = dice_.falls(0.3); });
+            when([&] { s.stereo.move_cost = dice_.falls(0.5) ? 0 : 32; });
+            when([&] { hides_ = dice_.falls(0.3); });
+        };
+        if (std::exchange(is_new_, false)) {
+            set(always);
+        } else {
+            set(maybe);
+        }
+    }
+
+    void changeEyes() {
+        constexpr std::array<glm::uvec2, 4> kSizes{{{96, 80}, {131, 77}, {64, 112}, {160, 144}}};
+        for (std::size_t e = 0; e < 2; ++e) {
+            sizes_[e] = e == 1 && dice_.falls(0.7) ? sizes_[0] : kSizes[dice_.below(kSizes.size())];
+            angles_[e] = {-dice_.between(0.4, 0.8), dice_.between(0.4, 0.8), dice_.between(0.4, 0.8), -dice_.between(0.4, 0.8)};
+        }
+        if (dice_.falls(0.5)) { angles_[1] = angles_[0]; }
+        cant_ = dice_.falls(0.5) ? 0.0 : dice_.between(0.0, 0.15);
+    }
+
+    Dice dice_;
+    Eye middle_;
+    FrameSettings settings_;
+    std::array<glm::uvec2, 2> sizes_{};
+    std::array<ViewAngles, 2> angles_{};
+    double cant_ = 0.0;
+    bool hides_ = false, is_new_ = true;
+    std::array<std::vector<std::uint8_t>, 2> hidden_;
+};
+
+// Whether the frames before leave it nothing but whether moving pays.
+bool standsAlone(const FrameSettings& settings) { return !hasPast(settings.mode) || !settings.keep_past; }
+
+std::vector<Image> picturesOf(const Context& context, const GpuScene& scene, const std::vector<Eye>& eyes, const FrameSettings& settings) {
+    StereoFrame frame(context, scene);
+    const test::KeptKernels kept(context, frame);
+    frame.render(eyes, settings);
+    std::vector<Image> pictures;
+    for (std::size_t e = 0; e < eyes.size(); ++e) { pictures.push_back(frame.readPicture(static_cast<int>(e))); }
+    return pictures;
+}
+
+}  // namespace
+
+TEST_CASE_FIXTURE(Gpu, "any frame may follow any other") {
+    const char* const more = std::getenv("BINOSPLAT_MIX_WALKS");  // by hand: so many
+    const unsigned walks = more != nullptr ? static_cast<unsigned>(std::atoi(more)) : 4;
+    const ViewedScene room = test::viewBuiltin("builtin:atelier", {96, 80}, 8000);
+    const GpuScene scene(context(), room.scene);
+    for (unsigned seed = 1; seed <= walks; ++seed) {
+        Walk walk(seed, room.eye);
+        StereoFrame mixed(context(), scene);
+        const test::KeptKernels kept(context(), mixed);
+        for (int i = 0; i < kFrames; ++i) {
+            const std::vector<Eye> eyes = walk.eyes();
+            const FrameSettings settings = walk.settings();
+            CAPTURE(seed);
+            CAPTURE(i);
+            CAPTURE(static_cast<int>(settings.mode));
+            if (walk.goesAhead()) {
+                mixed.renderAhead(eyes, settings);
+            } else {
+                mixed.render(eyes, settings);
+            }
+            FrameSettings full = settings;
+            full.mode = eyes.size() == 1 ? Mode::kMono : Mode::kTwoPass;
+            full.half_periphery = false;
+            const std::vector<Image> in_full = picturesOf(context(), scene, eyes, full);
+            const std::vector<Image> alone = standsAlone(settings) ? picturesOf(context(), scene, eyes, settings) : in_full;
+            for (std::size_t e = 0; e < eyes.size(); ++e) {
+                CAPTURE(e);
+                const Image picture = mixed.readPicture(static_cast<int>(e));
+                REQUIRE(picture.size_px == eyes[e].size_px);
+                // `predicted` renders in full where moving did not pay the last time.
+                const bool same = picture.values == alone[e].values ||
+                                  (choiceOf(settings.mode) == TileChoice::kPredicted && picture.values == in_full[e].values);
+                if (standsAlone(settings)) {
+                    CHECK(same);
+                } else if (!same) {
+                    CHECK(std::ranges::all_of(picture.values, [](float value) { return std::isfinite(value); }));
+                    CHECK(compare(in_full[e], picture).psnrDb() > kLeastDb);
+                }
+            }
+            walk.go();
+        }
+        mixed.finish();
+    }
+}
+
+}  // namespace frame_mix_test

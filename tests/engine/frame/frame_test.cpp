@@ -1,0 +1,279 @@
+// Facts about whole frames against the twin: pictures, depth and moments of real, built-in and analytic scenes.
+#include "engine/frame/stereo_frame.h"
+#include "engine/picture/metrics.h"
+#include "engine/srgb.h"
+#include "tests/engine/frame/frame_runs.h"
+#include "tests/engine/passes/near_thresholds.h"
+#include "tests/shared_data.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+TEST_SUITE_BEGIN("frame");
+
+namespace frame_test {
+
+using namespace binosplat;
+using test::Gpu;
+using test::renderMono;
+using test::ViewedScene;
+
+namespace {
+
+FrameSettings makeSettings(const glm::dvec3& background = glm::dvec3(0.0), bool moments = false) {
+    FrameSettings settings;
+    settings.mode = Mode::kMono;
+    settings.background = background;
+    settings.keep_moments = moments;
+    return settings;
+}
+
+reference::Settings twinSettings(const FrameSettings& settings) {
+    reference::Settings twin;
+    twin.near = settings.near;
+    twin.background = settings.background;
+    twin.inverse_depth_moments = settings.keep_moments;
+    return twin;
+}
+
+reference::Picture renderTwin(const ViewedScene& view, const FrameSettings& settings) {
+    return reference::render(view.scene, view.eye, twinSettings(settings));
+}
+
+// How far the depths of opaque pixels are from the twin's: which are off by more than 1e-3 of themselves, and of these the farthest
+// from any threshold.
+struct DepthErrors {
+    std::uint64_t opaque = 0, off = 0;
+    double greatest = 0.0, farthest_from_threshold = 0.0;
+};
+DepthErrors compareDepths(const Image& image, const reference::Picture& truth, const test::TwinStages& twin, const Eye& eye,
+                          const reference::Settings& settings) {
+    DepthErrors errors;
+    for (std::size_t i = 0; i < truth.depth.size(); ++i) {
+        if (truth.rgba[i].a <= 0.5) { continue; }
+        const double difference = std::abs(static_cast<double>(image.values[i]) - truth.depth[i]);
+        ++errors.opaque;
+        errors.greatest = std::max(errors.greatest, std::isnan(difference) ? HUGE_VAL : difference);
+        if (difference <= 1e-3 * truth.depth[i]) { continue; }
+        ++errors.off;
+        errors.farthest_from_threshold = std::max(errors.farthest_from_threshold, test::nearestThreshold(twin, eye, settings, i).distance);
+    }
+    return errors;
+}
+
+double farthestDepth(const ViewedScene& view) {
+    double farthest = 0.0;
+    const Pose camera_from_world = inverse(view.eye.world_from_camera);
+    for (const glm::vec3& position : view.scene.positions) {
+        farthest = std::max(farthest, transform(camera_from_world, glm::dvec3(position)).z);
+    }
+    return farthest;
+}
+
+// A frame must be the twin's but for rounding, and depths within 1e-3 wherever no threshold lies within 1e-5 of a value of the
+// twin: which is so for all but 1e-4 of the pixels. Measured: 1 of the atelier's 589,824 pixels is off, none of the others'; with Mesa 25
+// also 11 of 133,045, where two of playbot's 3D Gaussians change places.
+void checkAgainstTwin(Gpu& gpu, const ViewedScene& view, const FrameSettings& settings, double least_db, double most_off = 1e-5) {
+    CAPTURE(view.name);
+    const auto frame = renderMono(gpu.context(), view.scene, view.eye, settings);
+    const reference::Settings twin_settings = twinSettings(settings);
+    const test::TwinStages stages(view, twin_settings);
+    const reference::Picture twin = reference::rasterize(stages.splats, stages.sorted_pairs, stages.ranges, view.eye, twin_settings);
+    const Difference difference = compare(frame.picture, test::toImage(twin), 4);
+    const DepthErrors depth = compareDepths(frame.depth, twin, stages, view.eye, twin_settings);
+    CHECK(difference.not_finite == 0);
+    CHECK(difference.psnrDb() >= least_db);
+    CHECK(difference.shareOff() <= 0.0002);
+    CHECK(compare(frame.depth, frame.depth, 1).not_finite == 0);
+    CHECK(static_cast<double>(depth.off) <= 1.0 + most_off * static_cast<double>(depth.opaque));
+    CHECK(depth.farthest_from_threshold <= 1e-5);
+    CHECK(depth.greatest <= 0.0101 * farthestDepth(view));
+    MESSAGE(view.name << ": " << difference.psnrDb() << " dB, largest " << difference.largest
+                      << ", off by more than 2/255: " << difference.off << " of " << difference.values << "; depth: " << depth.off << " of "
+                      << depth.opaque << " off, greatest " << depth.greatest);
+}
+
+View viewAlong(const glm::dvec3& eye, const glm::dvec3& look, double fov_x_deg) { return {eye, look, {0.0, -1.0, 0.0}, fov_x_deg}; }
+
+}  // namespace
+
+TEST_CASE_FIXTURE(Gpu, "real scenes are rendered as the twin renders them" * test::needsSharedData()) {
+    const auto data = test::sharedData();
+    if (!data) { return; }
+    const struct {
+        const char* file;
+        View view;
+        double least_db;
+    } cases[] = {
+        // Measured: 90.9, 90.0, 90.9, 90.1 and 99.5 dB.
+        {"playbot/playbot_lod2_2dgs_sh2.ply", viewAlong({0.0, -0.6, -1.6}, {0.0, -0.4, 0.0}, 60.0), 87.0},
+        {"playbot/playbot_lod2_2dgs_sh2.ply", viewAlong({0.3, -0.7, -0.8}, {0.0, -0.6, 0.0}, 90.0), 87.0},
+        {"playbot/playbot_lod3_2dgs_sh2.ply", viewAlong({0.0, -0.6, -1.6}, {0.0, -0.4, 0.0}, 60.0), 87.0},
+        {"playbot/playbot_lod3_2dgs_sh2.ply", viewAlong({0.3, -0.7, -0.8}, {0.0, -0.6, 0.0}, 90.0), 87.0},
+        {"statues/angel_2dgs_sh0.ply", viewAlong({0.0, -2.0, -5.0}, {0.0, -2.0, 0.0}, 60.0), 96.0},
+    };
+    for (const auto& [file, view, least_db] : cases) {
+        checkAgainstTwin(*this, {file, loadScene((*data / file).string()), test::eyeOf(view, {768, 768})}, makeSettings(), least_db);
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu, "the atelier is rendered as the twin renders it") {
+    checkAgainstTwin(*this, test::viewBuiltin("builtin:atelier", {768, 768}, 200000), makeSettings({0.1, 0.2, 0.3}),
+                     80.0);  // measured: 86.5
+}
+
+TEST_CASE_FIXTURE(Gpu, "a cloud about the eye is rendered as the twin renders it") {
+    checkAgainstTwin(*this, test::viewCloud({320, 240}), makeSettings(), 80.0);  // measured: 84.0
+}
+
+TEST_CASE_FIXTURE(Gpu, "a cloud of 3D Gaussians is rendered as the twin renders it, dimmed or not") {
+    for (const bool antialiased : {false, true}) {
+        checkAgainstTwin(*this, test::viewGaussians({320, 240}, antialiased), makeSettings({0.1, 0.2, 0.3}), 78.0);  // measured: 81.7
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu, "colours of light are blended as light, over the light of the background, and then encoded") {
+    ViewedScene view = test::viewGaussians({320, 240}, false);
+    const glm::dvec3 background(0.1, 0.4, 0.8);
+    reference::Picture blended = renderTwin(view, makeSettings(lightOf(background)));
+    const Image as_stored = test::toImage(blended);
+    for (glm::dvec4& pixel : blended.rgba) { pixel = glm::dvec4(encodedOf(glm::dvec3(pixel)), pixel.a); }
+    view.scene.is_linear = true;
+    const FrameSettings settings = makeSettings(background);
+    const Image picture = renderMono(context(), view.scene, view.eye, settings).picture;
+    const double to_sum_db = compare(picture, test::toImage(blended), 4).psnrDb(),
+                 to_twin_db = compare(picture, test::toImage(renderTwin(view, settings)), 4).psnrDb();
+    MESSAGE(to_sum_db << " dB, to the twin " << to_twin_db);
+    CHECK(to_sum_db >= 75.0);
+    CHECK(to_twin_db >= 75.0);
+    CHECK(compare(picture, as_stored, 4).psnrDb() < 30.0);  // so that it matters
+    // Nothing but background is the background, and both eyes are encoded, moved or not.
+    const Scene nothing = [&] {
+        Scene empty;
+        empty.is_linear = true;
+        return empty;
+    }();
+    const Image bare = renderMono(context(), nothing, view.eye, settings).picture;
+    for (int channel = 0; channel < 3; ++channel) {
+        CHECK(bare.values[static_cast<std::size_t>(channel)] == doctest::Approx(background[channel]).epsilon(1e-5));
+    }
+    const std::array<Eye, 2> eyes = stereoPair(view.eye, 0.02);
+    FrameSettings stereo = settings;
+    stereo.mode = Mode::kTwoPass;
+    const Image full = test::renderPair(context(), view.scene, eyes, stereo).pictures[kRight];
+    for (const Mode mode : {Mode::kShared, Mode::kPredicted}) {
+        stereo.mode = mode;
+        const double db = compare(test::renderPair(context(), view.scene, eyes, stereo).pictures[kRight], full, 3).psnrDb();
+        MESSAGE(nameOf(mode) << ": " << db << " dB");
+        CHECK(db > (mode == Mode::kShared ? 80.0 : 25.0));
+    }
+}
+
+#ifdef BINOSPLAT_SOG  // which reads SOG
+TEST_CASE_FIXTURE(Gpu, "a real scene of 3D Gaussians is rendered as the twin renders it, dimmed or not" * test::needsSharedData()) {
+    const auto data = test::sharedData();
+    if (!data) { return; }
+    Scene scene = loadScene((*data / "playbot/playbot_lod3_sog").string());
+    REQUIRE(scene.isGaussian3d());
+    const View from_afar = viewAlong({0.0, -0.6, -1.6}, {0.0, -0.4, 0.0}, 60.0);
+    const View from_near = viewAlong({0.3, -0.7, -0.8}, {0.0, -0.6, 0.0}, 90.0);
+    checkAgainstTwin(*this, {"3D playbot", scene, test::eyeOf(from_afar, {512, 512})}, makeSettings(), 86.0);              // measured: 91.1
+    checkAgainstTwin(*this, {"3D playbot, near", scene, test::eyeOf(from_near, {512, 512})}, makeSettings(), 86.0, 1e-4);  // measured: 90.6
+    scene.antialiased = true;
+    checkAgainstTwin(*this, {"3D playbot, dimmed", scene, test::eyeOf(from_afar, {512, 512})}, makeSettings(), 86.0);  // measured: 91.9
+}
+#endif
+
+TEST_CASE_FIXTURE(Gpu, "moments of inverse depth are the twin's, on a background that shows") {
+    const ViewedScene view = test::viewBuiltin("builtin:atelier", {320, 200}, 20000);
+    for (const glm::dvec3& background : {glm::dvec3(0.0), glm::dvec3(1.0, 0.5, 0.25)}) {
+        const FrameSettings settings = makeSettings(background, true);
+        checkAgainstTwin(*this, view, settings, 83.0);  // measured: 87.0
+        const auto frame = renderMono(context(), view.scene, view.eye, settings);
+        const reference::Picture twin = renderTwin(view, settings);
+        const Image truth = test::toImage(twin.size_px, twin.inverse_depth, twin.inverse_depth_squared);
+        const Difference difference = compare(frame.moments, truth, 2);
+        CHECK(difference.not_finite == 0);
+        CHECK(difference.psnrDb() >= 80.0);
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu, "one splat is the Gaussian that its parameters say, at every pixel") {
+    // Disc at z = 2 facing the eye, scales 0.2 and 0.1, opacity 0.8: with f in pixels u = 2 dx / (0.2 f), v = 2 dy / (0.1 f). It is far
+    // wider than the low-pass.
+    const ViewedScene view = test::viewBuiltin("builtin:one-splat", {255, 255});
+    const glm::dvec3 background(0.25, 0.5, 0.75), colour(0.9, 0.6, 0.3);
+    const auto frame = renderMono(context(), view.scene, view.eye, makeSettings(background));
+    double worst_colour = 0.0, worst_depth = 0.0;
+    for (int i = 0; i < 255 * 255; ++i) {
+        const glm::dvec2 d(i % 255 - 127, i / 255 - 127);
+        const glm::dvec2 uv = 2.0 * d / (glm::dvec2(0.2, 0.1) * view.eye.intrinsics.fx);
+        double alpha = 0.8 * std::exp(-0.5 * glm::dot(uv, uv));
+        if (std::abs(alpha * 255.0 - 1.0) < 1e-3) { continue; }  // too near the cut to call
+        if (alpha < 1.0 / 255.0) { alpha = 0.0; }
+        const float* rgba = &frame.picture.values[static_cast<std::size_t>(4 * i)];
+        for (int channel = 0; channel < 3; ++channel) {
+            worst_colour = std::max(
+                worst_colour, std::abs(static_cast<double>(rgba[channel]) - alpha * colour[channel] - (1.0 - alpha) * background[channel]));
+        }
+        worst_colour = std::max(worst_colour, std::abs(static_cast<double>(rgba[3]) - alpha));
+        worst_depth = std::max(worst_depth, std::abs(static_cast<double>(frame.depth.values[static_cast<std::size_t>(i)]) - 2.0 * alpha));
+    }
+    CHECK(worst_colour <= 3e-4);  // colours are half floats
+    CHECK(worst_depth <= 5e-6);
+}
+
+TEST_CASE_FIXTURE(Gpu, "two layers blend front to back, in colour, depth and its inverse moments") {
+    // Opacities 0.5 at z = 2 and 0.9 at z = 4, with the same u and v at every pixel.
+    const ViewedScene view = test::viewBuiltin("builtin:two-layers", {255, 255});
+    const auto frame = renderMono(context(), view.scene, view.eye, makeSettings(glm::dvec3(0.0), true));
+    for (const glm::ivec2 d : {glm::ivec2(0, 0), glm::ivec2(20, 0), glm::ivec2(-30, 41), glm::ivec2(7, -60)}) {
+        const double f = view.eye.intrinsics.fx, rho = glm::dot(glm::dvec2(d), glm::dvec2(d)) * 16.0 / (f * f);
+        const double near = 0.5 * std::exp(-0.5 * rho), far = (1.0 - near) * 0.9 * std::exp(-0.5 * rho);
+        const auto pixel = static_cast<std::size_t>((127 + d.y) * 255 + 127 + d.x);
+        const glm::dvec3 colour = near * glm::dvec3(0.8) + far * glm::dvec3(0.1, 0.2, 0.6);
+        for (std::size_t channel = 0; channel < 3; ++channel) {
+            CHECK(static_cast<double>(frame.picture.values[4 * pixel + channel]) ==
+                  doctest::Approx(colour[static_cast<int>(channel)]).epsilon(5e-4));
+        }
+        CHECK(static_cast<double>(frame.depth.values[pixel]) == doctest::Approx(2.0 * near + 4.0 * far).epsilon(5e-5));
+        CHECK(static_cast<double>(frame.moments.values[2 * pixel]) == doctest::Approx(near / 2.0 + far / 4.0).epsilon(5e-5));
+        CHECK(static_cast<double>(frame.moments.values[2 * pixel + 1]) == doctest::Approx(near / 4.0 + far / 16.0).epsilon(5e-5));
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu, "D/A is the depth of a plane that all splats lie in, slanted too") {
+    // z = 4 + x meets the ray (x, y, 1) z at z = 4 / (1 - x). Each splat is hit there and not at its centre's depth.
+    const ViewedScene view = test::viewBuiltin("builtin:slanted-wall", {256, 256});
+    const auto frame = renderMono(context(), view.scene, view.eye, makeSettings());
+    double worst = 0.0;
+    int opaque = 0;
+    for (std::size_t i = 0; i < frame.depth.values.size(); ++i) {
+        const double alpha = static_cast<double>(frame.picture.values[4 * i + 3]);
+        if (alpha < 0.5) { continue; }
+        const double x = (static_cast<double>(i % 256) + 0.5 - view.eye.intrinsics.cx) / view.eye.intrinsics.fx;
+        worst = std::max(worst, std::abs(static_cast<double>(frame.depth.values[i]) / alpha * (1.0 - x) / 4.0 - 1.0));
+        ++opaque;
+    }
+    CHECK(opaque > 20000);
+    CHECK(worst <= 1e-5);
+}
+
+TEST_CASE_FIXTURE(Gpu, "walls stand at their depths behind bars and edges") {
+    for (const auto& [name, place] :
+         {std::pair("builtin:fence", std::pair(0.1, 3.0)), std::pair("builtin:step-edge", std::pair(0.4, 4.0))}) {
+        CAPTURE(name);
+        const ViewedScene view = test::viewBuiltin(name, {256, 256});
+        const auto frame = renderMono(context(), view.scene, view.eye, makeSettings());
+        // A column between two bars, and one right of the edge, by x on the plane z = 1, and the wall that it meets.
+        const auto column = static_cast<std::size_t>(view.eye.intrinsics.cx + view.eye.intrinsics.fx * place.first);
+        for (std::size_t row = 32; row < 224; ++row) {
+            const std::size_t pixel = row * 256 + column;
+            CHECK(static_cast<double>(frame.depth.values[pixel] / frame.picture.values[4 * pixel + 3]) ==
+                  doctest::Approx(place.second).epsilon(1e-5));
+        }
+    }
+}
+
+}  // namespace frame_test

@@ -1,0 +1,94 @@
+// Scenes and eyes that GPU tests render, and the twin's pictures as images.
+#pragma once
+
+#include "engine/picture/image.h"
+#include "engine/reference/reference.h"
+#include "engine/scene/procedural.h"
+#include "shaders/shared/constants.h"
+#include "tests/engine/reference/reference_scenes.h"
+
+#include <map>
+#include <string>
+#include <utility>
+
+namespace binosplat::test {
+
+struct ViewedScene {
+    std::string name;
+    Scene scene;
+    Eye eye;
+};
+
+inline Eye eyeOf(const View& view, glm::uvec2 size_px) {
+    return {lookAt(view.eye, view.look, view.up), intrinsicsFromFovX(glm::radians(view.fov_x_deg), size_px), size_px};
+}
+
+// Each is made once: the atelier's light takes longer to bake than many a test.
+inline ViewedScene viewBuiltin(const std::string& name, glm::uvec2 size_px, std::uint64_t splats = 0) {
+    static std::map<std::pair<std::string, std::uint64_t>, Scene> made;
+    auto found = made.find({name, splats});
+    if (found == made.end()) { found = made.emplace(std::pair(name, splats), makeBuiltin(name, splats)).first; }
+    return {name, found->second, eyeOf(*builtinView(name), size_px)};
+}
+
+// A cloud that holds the eye: near and far, through the near plane, thin and long, huge, tiny, and edge-on to 1e-7 rad.
+inline ViewedScene viewCloud(glm::uvec2 size_px) {
+    const Eye eye = makeOddEye(size_px);
+    Scene scene = makeCloud(1500, 3);
+    std::mt19937 random(4);
+    const auto draw = [&] { return static_cast<double>(random() >> 8) / 16777216.0; };
+    for (std::size_t i = 0; i < 300; ++i) {
+        // t_u along the line of sight but for a small angle: the plane all but holds the eye.
+        const glm::dvec3 sight = glm::normalize(glm::dvec3(scene.positions[i]) - eye.world_from_camera.position);
+        const glm::dvec3 across = glm::normalize(glm::cross(sight, glm::dvec3(draw(), draw(), -draw())));
+        const glm::dvec3 normal = glm::normalize(across + std::pow(10.0, -1.0 - 6.0 * draw()) * sight);
+        const glm::dvec3 u = glm::normalize(sight - glm::dot(sight, normal) * normal);
+        scene.rotations[i] = glm::quat(glm::quat_cast(glm::dmat3(u, glm::cross(normal, u), normal)));
+    }
+    for (std::size_t i = 300; i < 340; ++i) { scene.scales[i] *= 100.0f; }
+    for (std::size_t i = 340; i < 380; ++i) { scene.scales[i] *= 0.001f; }
+    return {"cloud", std::move(scene), eye};
+}
+
+// For the constant kSplatKind of passes that dimming does not matter to.
+inline std::uint32_t shapeOf(const Scene& scene) { return scene.isGaussian3d() ? gpu::kGaussians : gpu::kDiscs; }
+
+// The same as 3D Gaussians from as thick as their second axis to flat; needles of 1e6; some within the near plane's reach and beside the
+// eye, where the linear projection breaks down; opacities that dimming takes under 1/255.
+inline ViewedScene viewGaussians(glm::uvec2 size_px, bool antialiased) {
+    ViewedScene view = viewCloud(size_px);
+    view.name = antialiased ? "antialiased Gaussians" : "Gaussians";
+    view.scene.antialiased = antialiased;
+    std::mt19937 random(5);
+    const auto draw = [&] { return static_cast<float>(random() >> 8) / 16777216.0f; };
+    for (std::size_t i = 380; i < 400; ++i) { view.scene.scales[i] = {1e-6f, 1.0f}; }
+    for (const glm::vec2& scale : view.scene.scales) {
+        const float share = draw();
+        view.scene.thicknesses.push_back(std::min(scale.x, scale.y) * (share < 0.1f ? 0.0f : share));
+    }
+    return view;
+}
+
+inline Image toImage(const reference::Picture& picture) {
+    Image image{picture.size_px, 4, {}};
+    for (const glm::dvec4& value : picture.rgba) {
+        for (int channel = 0; channel < 4; ++channel) { image.values.push_back(static_cast<float>(value[channel])); }
+    }
+    return image;
+}
+inline Image toImage(glm::uvec2 size_px, const std::vector<glm::dvec4>& colours) {
+    reference::Picture picture;
+    picture.size_px = size_px;
+    picture.rgba = colours;
+    return toImage(picture);
+}
+
+// One channel each of the given values.
+template <typename... Values>
+Image toImage(glm::uvec2 size_px, const Values&... channels) {
+    Image image{size_px, static_cast<int>(sizeof...(channels)), {}};
+    for (std::size_t i = 0; i < image.pixelCount(); ++i) { (image.values.push_back(static_cast<float>(channels[i])), ...); }
+    return image;
+}
+
+}  // namespace binosplat::test

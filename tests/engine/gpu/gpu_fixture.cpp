@@ -1,0 +1,70 @@
+// Arrays to the device and back, and the verdict of the validation layers.
+#include "tests/engine/gpu/gpu_fixture.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <map>
+#include <utility>
+
+namespace binosplat::test {
+namespace {
+
+gpu::DispatchSize dispatchOver(std::uint64_t count, std::uint64_t group_items) {
+    const auto groups = static_cast<std::uint32_t>((count + group_items - 1) / group_items);
+    const std::uint32_t rows = (groups + gpu::kMaxGroupsX - 1) / gpu::kMaxGroupsX;
+    return {rows == 0 ? 0 : (groups + rows - 1) / rows, rows, 1};
+}
+
+}  // namespace
+
+const Context& Gpu::shared() {
+    static const Context context({.device = {}, .validation = kValidation, .max_allocation_bytes = 0});
+    return context;
+}
+
+Gpu::Gpu() : context_(shared()), commands_(context_), messages_before_(context_.validationMessages().size()) {}
+
+Gpu::~Gpu() {
+    CHECK(context_.validates() == kValidation);
+    const std::vector<std::string> messages = context_.validationMessages();
+    for (std::size_t i = messages_before_; i < messages.size(); ++i) { FAIL_CHECK("validation: " << messages[i]); }
+}
+
+const Kernel& Gpu::kernel(const std::string& shader, std::uint32_t push_bytes, const std::vector<std::uint32_t>& constants) {
+    static std::map<std::pair<std::string, std::vector<std::uint32_t>>, Kernel> made;  // after the device, and gone before it
+    const auto found = made.find({shader, constants});
+    if (found != made.end()) { return found->second; }
+    return made.emplace(std::pair(shader, constants), Kernel(context_, shader, push_bytes, constants)).first->second;
+}
+
+void Gpu::write(const Buffer& buffer, std::span<const std::byte> bytes) {
+    if (bytes.empty()) { return; }
+    REQUIRE(bytes.size() <= buffer.bytes());
+    const Buffer staging(context_, "upload", bytes.size(), MemoryKind::kUpload);
+    std::memcpy(staging.mapped<std::byte>().data(), bytes.data(), bytes.size());
+    run([&](Commands& commands) { commands.copy(staging, buffer, bytes.size()); });
+}
+
+void Gpu::read(const Buffer& buffer, std::span<std::byte> bytes, std::uint64_t offset_bytes) {
+    if (bytes.empty()) { return; }
+    REQUIRE(offset_bytes + bytes.size() <= buffer.bytes());
+    const Buffer staging(context_, "read-back", bytes.size(), MemoryKind::kReadback);
+    run([&](Commands& commands) { commands.copy(buffer, staging, bytes.size(), offset_bytes); });
+    std::memcpy(bytes.data(), staging.mapped<std::byte>().data(), bytes.size());
+}
+
+gpu::ListState makeList(std::uint32_t needed, std::uint32_t capacity) {
+    constexpr std::uint64_t kMostAtOnce = std::uint64_t{gpu::kSortBlock} * gpu::kMaxSortBlocks;
+    const std::uint32_t count = needed <= capacity ? needed : 0;
+    return {needed,
+            count,
+            0,
+            {},
+            dispatchOver(count, gpu::kGroupSize),
+            dispatchOver(count, gpu::kListBlock),
+            dispatchOver(count, gpu::kSortBlock * std::max(1u, static_cast<std::uint32_t>((count + kMostAtOnce - 1) / kMostAtOnce)))};
+}
+
+}  // namespace binosplat::test

@@ -1,0 +1,134 @@
+// A scene as every stage of the twin leaves it, and what the device needs to take over at any of them.
+#pragma once
+
+#include "engine/gpu/gpu_scene.h"
+#include "engine/passes/eye_view.h"
+#include "shaders/shared/passes.h"
+#include "tests/engine/frame/gpu_scenes.h"
+#include "tests/engine/gpu/gpu_fixture.h"
+
+#include <bit>
+#include <cstddef>
+#include <glm/gtc/packing.hpp>
+
+namespace binosplat::test {
+
+// Outputs of the twin's passes, in frame order.
+struct TwinStages {
+    TwinStages(const ViewedScene& view, const reference::Settings& settings)
+        : visible(reference::cull(view.scene, {&view.eye, 1}, settings)),
+          compacted(reference::compact(view.scene, visible, view.eye, settings)),
+          order(reference::sortDepth(compacted, settings)),
+          splats(reference::project(view.scene, order, view.eye, settings)),
+          pairs(reference::bin(splats, view.eye.size_px, settings)),
+          sorted_pairs(pairs) {
+        reference::sortTiles(sorted_pairs, settings);
+        ranges = reference::tileRanges(sorted_pairs, view.eye.size_px);
+    }
+
+    std::vector<std::uint8_t> visible;
+    reference::Visible compacted;
+    std::vector<std::uint32_t> order;
+    std::vector<reference::ProjectedSplat> splats;
+    std::vector<reference::TilePair> pairs, sorted_pairs;
+    std::vector<reference::TileRange> ranges;
+};
+
+// A scene and its eyes on the device.
+struct SceneOnDevice {
+    SceneOnDevice(Gpu& gpu, const Scene& host_scene, const std::vector<Eye>& host_eyes, double near)
+        : scene(gpu.context(), host_scene), eyes(gpu.upload("eyes", [&] {
+              std::vector<gpu::EyeView> views;
+              for (const Eye& eye : host_eyes) { views.push_back(viewOf(eye, near)); }
+              return views;
+          }())) {}
+
+    [[nodiscard]] gpu::DeviceAddress<gpu::EyeView> eyeViews() const { return eyes.address<gpu::EyeView>(); }
+
+    GpuScene scene;
+    Buffer eyes;
+};
+
+// The depth's key and back (shaders/sort/compact.comp): integers in the order of the floats.
+inline std::uint32_t sortableBits(float value) {
+    const auto bits = std::bit_cast<std::uint32_t>(value);
+    return (bits >> 31) != 0 ? ~bits : bits | 0x80000000u;
+}
+inline float floatOfKey(std::uint32_t key) { return std::bit_cast<float>((key >> 31) != 0 ? key & 0x7fffffffu : ~key); }
+
+// ProjectedSplat::opacity (-log2, negative where there is no reference) and ::colour (three half floats).
+struct OpacityColour {
+    double opacity;
+    bool has_reference;
+    glm::dvec3 colour;
+};
+inline OpacityColour unpack(const gpu::ProjectedSplat& splat) {
+    const glm::vec2 red_green = glm::unpackHalf2x16(splat.colour.x);
+    return {std::exp2(-std::abs(static_cast<double>(splat.opacity))), !std::signbit(splat.opacity),
+            glm::dvec3(glm::vec3(red_green, glm::unpackHalf2x16(splat.colour.y).x))};
+}
+
+// ProjectedSplat::reference_px with what its two floats lack: eight bits each, in units of half their last place.
+inline glm::dvec2 referenceOf(const gpu::ProjectedSplat& splat) {
+    const glm::vec4 rest = glm::unpackSnorm4x8(splat.colour.y);
+    glm::dvec2 reference(splat.reference_px);
+    for (int axis = 0; axis < 2; ++axis) {
+        reference[axis] += static_cast<double>(rest[2 + axis]) * std::ldexp(1.0, std::ilogb(reference[axis]) - 24);
+    }
+    return reference;
+}
+
+// The twin's splat as the device holds one.
+inline gpu::ProjectedSplat toDevice(const reference::ProjectedSplat& splat) {
+    gpu::ProjectedSplat result{};
+    result.reference_px = splat.low_pass ? splat.reference_px : splat.plane_offset;
+    result.plane_from_pixel = splat.disc ? glm::vec3(splat.plane_from_pixel) : glm::vec3(gpu::kMaxPlaneSlope, 0.0f, gpu::kMaxPlaneSlope);
+    result.perspective = splat.perspective;
+    result.inverse_depth = static_cast<float>(splat.disc ? splat.inverse_depth : 1.0 / splat.depth);
+    result.opacity = std::copysign(static_cast<float>(std::log2(splat.opacity)), splat.low_pass ? 1.0f : -1.0f);
+    const glm::vec3 colour(splat.colour);
+    result.colour = {glm::packHalf2x16(glm::vec2(colour)), glm::packHalf2x16(glm::vec2(colour.z, 0.0f))};
+    return result;
+}
+
+// What project leaves for a list of splats, on the device.
+struct ProjectedOnDevice {
+    std::uint32_t count;
+    Buffer list, order, splats, tile_sets, tile_counts, group_sums, pairs, counters;
+};
+
+// `tile_mask`, if it is not null, has the bits of the tiles that count (shaders/lib/tile_mask.glsl).
+inline ProjectedOnDevice projectOnDevice(Gpu& gpu, const SceneOnDevice& device, const std::vector<std::uint32_t>& order,
+                                         std::uint32_t pair_capacity = UINT32_MAX, gpu::DeviceAddress<gpu::uint> tile_mask = {}) {
+    const Kernel& kernel = gpu.kernel(ProjectKernel{.sh_degree = static_cast<std::uint32_t>(device.scene.shDegree()),
+                                                    .masked = tile_mask.value != 0,
+                                                    .splat_kind = device.scene.splatKind()});
+    const std::size_t count = order.size();
+    ProjectedOnDevice result{static_cast<std::uint32_t>(count),
+                             gpu.upload("list", std::vector{makeList(count)}),
+                             gpu.upload("order", order),
+                             gpu.allocate<gpu::ProjectedSplat>("splats", count),
+                             gpu.allocate<glm::uvec2>("tile sets", count),
+                             gpu.allocate<std::uint32_t>("tile counts", count),
+                             gpu.allocate<std::uint32_t>("group sums", (count + gpu::kListBlock - 1) / gpu::kListBlock),
+                             gpu.upload("pairs", std::vector{gpu::ListState{}}),
+                             gpu.upload("counters", std::vector{gpu::EyeCounters{}})};
+    gpu::ProjectPass pass{};
+    pass.chunks = device.scene.chunks();
+    pass.eyes = device.eyeViews();
+    pass.order = result.order.address<gpu::uint>();
+    pass.visible = result.list.address<gpu::ListState>();
+    pass.splats = result.splats.address<gpu::ProjectedSplat>();
+    pass.tile_sets = result.tile_sets.address<gpu::uvec2>();
+    pass.tile_counts = result.tile_counts.address<gpu::uint>();
+    pass.group_sums = result.group_sums.address<gpu::uint>();
+    pass.pairs = result.pairs.address<gpu::ListState>();
+    pass.capacity = pair_capacity;
+    pass.counters = result.counters.address<gpu::EyeCounters>();
+    pass.tile_mask = tile_mask;
+    pass.chunk_bits = device.scene.chunkBits();
+    gpu.run([&](Commands& commands) { commands.dispatchIndirect(kernel, pass, result.list, offsetof(gpu::ListState, per_block)); });
+    return result;
+}
+
+}  // namespace binosplat::test

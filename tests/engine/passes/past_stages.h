@@ -1,0 +1,123 @@
+// Frames that are made from the ones before, and what the device knows of them, as the twin goes on from it.
+#pragma once
+
+#include "engine/passes/past_passes.h"
+#include "engine/reference/past.h"
+#include "tests/engine/frame/frame_runs.h"
+#include "tests/engine/passes/stereo_cases.h"
+
+#include <array>
+#include <utility>
+#include <vector>
+
+namespace binosplat::test {
+
+inline constexpr double kErrorSteps = 0x1p20;
+
+inline reference::PastTile tileOf(const gpu::PastTile& tile) {
+    reference::PastTile twin{tile.cost, tile.age, static_cast<double>(tile.growth), {}, {}};
+    for (int q = 0; q < 4; ++q) {
+        twin.errors[static_cast<std::size_t>(q)] = static_cast<double>(tile.errors[q]);
+        twin.grown[static_cast<std::size_t>(q)] = tile.grown[q] / kErrorSteps;
+    }
+    return twin;
+}
+
+// An eye's picture, and what the choice among its tiles left.
+struct EyeOnDevice {
+    reference::Past past;
+    std::vector<gpu::uint> kinds, errors, costs;
+};
+
+inline EyeOnDevice readEye(Gpu& gpu, StereoFrame& frame, int index, const Eye& eye) {
+    const Picture& picture = frame.picture(index);
+    EyeOnDevice read{{eye, {}, {}, {}}, {}, {}, {}};
+    const std::size_t pixels = std::size_t{eye.size_px.x} * eye.size_px.y;
+    if (picture.half_floats) {
+        for (const gpu::uvec2& c : gpu.readBack<gpu::uvec2>(picture.colours, pixels)) {
+            read.past.rgba.emplace_back(glm::unpackHalf2x16(c.x), glm::unpackHalf2x16(c.y));
+        }
+    } else {
+        for (const gpu::vec4& colour : gpu.readBack<gpu::vec4>(picture.colours, pixels)) { read.past.rgba.emplace_back(colour); }
+    }
+    for (const gpu::uint word : gpu.readBack<gpu::uint>(picture.words, pixels)) {
+        const reference::Arrival held = unpackArrival(word);
+        read.past.pixels.push_back(word == 0 ? std::nullopt : std::optional(reference::MovingPixel{held.inverse_depth, held.spread}));
+    }
+    const glm::uvec2 tiles = tilesOf(eye.size_px);
+    const std::size_t count = std::size_t{tiles.x} * tiles.y;
+    for (const gpu::PastTile& tile : gpu.readBack<gpu::PastTile>(picture.tiles, count)) { read.past.tiles.push_back(tileOf(tile)); }
+    if (const WarpBuffers* chosen = frame.chosenTiles(index)) {
+        const auto array = [&](gpu::DeviceAddress<gpu::uint> at) {
+            return gpu.readBack<gpu::uint>(chosen->tiles(), count, at.value - chosen->tileKinds().value + WarpBuffers::tileKindsOffset());
+        };
+        read.kinds = array(chosen->tileKinds());
+        read.errors = array(chosen->tileErrors());
+        read.costs = array(chosen->tileCosts());
+    }
+    return read;
+}
+
+// How a PastWalk's pictures are kept.
+struct WalkSettings {
+    std::array<std::vector<std::uint8_t>, 2> hidden = {};  // tiles of each eye, as of FrameSettings
+    glm::dvec3 background{0.1, 0.2, 0.3};
+    bool half_floats = false;
+    double cant = 0.0;  // of the right eye, about its upward axis
+};
+
+// Frames of a head that walks and turns a little, as `temporal` makes them.
+class PastWalk {
+public:
+    PastWalk(Gpu& gpu, const ViewedScene& view, WalkSettings settings = {})
+        : gpu_(gpu),
+          view_(view),
+          settings_(std::move(settings)),
+          scene_(gpu.context(), view.scene),
+          frame_(gpu.context(), scene_),
+          kept_(gpu.context(), frame_) {}
+
+    void go(double step, double budget) {
+        Eye eye = view_.eye;
+        eye.world_from_camera.position += step * glm::dvec3(0.003, 0.001, 0.001);
+        eye.world_from_camera.orientation =
+            eye.world_from_camera.orientation * glm::angleAxis(0.002 * step, glm::normalize(glm::dvec3(0.2, 1, 0)));
+        eyes_ = stereoPair(eye, 0.063);
+        glm::dquat& right = eyes_[kRight].world_from_camera.orientation;
+        right = right * glm::angleAxis(settings_.cant, glm::dvec3(0, 1, 0));
+        frame_.render(eyes_, settingsOf(Mode::kTemporal, budget));
+    }
+    // What `predicted` makes of the last frame's eyes.
+    std::array<Image, 2> predicted(double budget) {
+        StereoFrame frame(gpu_.context(), scene_);
+        const KeptKernels kept(gpu_.context(), frame);
+        frame.render(eyes_, settingsOf(Mode::kPredicted, budget));
+        return {frame.readPicture(kLeft), frame.readPicture(kRight)};
+    }
+    EyeOnDevice read(int eye) { return readEye(gpu_, frame_, eye, eyes_[static_cast<std::size_t>(eye)]); }
+    // Of the left eye.
+    Image readDepth() { return frame_.readDominantDepth(); }
+    [[nodiscard]] const std::array<Eye, 2>& eyes() const { return eyes_; }
+
+private:
+    [[nodiscard]] FrameSettings settingsOf(Mode mode, double budget) const {
+        FrameSettings settings;
+        settings.mode = mode;
+        settings.keep_past = mode == Mode::kTemporal;
+        settings.stereo.budget = budget;
+        settings.hidden_tiles = {settings_.hidden[0], settings_.hidden[1]};
+        settings.background = settings_.background;
+        settings.half_floats = settings_.half_floats;
+        return settings;
+    }
+
+    Gpu& gpu_;
+    const ViewedScene& view_;
+    WalkSettings settings_;
+    GpuScene scene_;
+    StereoFrame frame_;
+    KeptKernels kept_;
+    std::array<Eye, 2> eyes_;
+};
+
+}  // namespace binosplat::test

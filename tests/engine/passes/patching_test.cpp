@@ -1,0 +1,293 @@
+// Facts about which tiles are rendered again, on scenes made so that the cause is known: holes at depth steps, pixels of two
+// depths, and splats that only the affiliated eye sees.
+#include "engine/picture/metrics.h"
+#include "tests/engine/frame/affiliated_frames.h"
+#include "tests/engine/frame/frame_runs.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+
+TEST_SUITE_BEGIN("patching");
+
+namespace patching_test {
+
+using namespace binosplat;
+using test::AffiliatedFrame;
+using test::Gpu;
+using test::makeAffiliated;
+using test::Splat;
+
+namespace {
+
+constexpr glm::uvec2 kSizePx{256, 256};
+
+FrameSettings makeSettings(Mode mode, Side dominant = kLeft) {
+    FrameSettings settings;
+    settings.mode = mode;
+    settings.dominant = dominant;
+    return settings;
+}
+
+struct Outcome {
+    AffiliatedFrame made;
+    double psnr_db;  // of the affiliated eye against its full render
+};
+
+// A pair of eyes before a scene, and the affiliated one in full.
+class Scenery {
+public:
+    Scenery(Gpu& gpu, const Scene& scene, const std::array<Eye, 2>& eyes, Side dominant = kLeft)
+        : scene_(gpu.context(), scene), frame_(gpu.context(), scene_), eyes_(eyes), dominant_(dominant) {
+        full_ = makeAffiliated(frame_, eyes, makeSettings(Mode::kShared, dominant)).pictures[1 - dominant];
+    }
+
+    Outcome render(FrameSettings settings) {
+        settings.dominant = dominant_;
+        AffiliatedFrame made = makeAffiliated(frame_, eyes_, settings);
+        const double psnr_db = compare(made.pictures[1 - dominant_], full_).psnrDb();
+        return {std::move(made), psnr_db};
+    }
+    Outcome render(Mode mode) { return render(makeSettings(mode)); }
+
+private:
+    GpuScene scene_;
+    StereoFrame frame_;
+    std::array<Eye, 2> eyes_;
+    Side dominant_;
+    Image full_;
+};
+
+// A wall of discs at depth z that a 256 px eye of 222 px focal length sees as a chequered pattern.
+void addWall(std::vector<Splat>& splats, float z, float half_width, float pitch) {
+    const int reach = static_cast<int>(half_width / pitch);
+    for (int j = -reach; j <= reach; ++j) {
+        for (int i = -reach; i <= reach; ++i) {
+            const float shade = ((i / 3 + j / 3) & 1) != 0 ? 0.2f : 0.35f;
+            splats.push_back({{pitch * static_cast<float>(i), pitch * static_cast<float>(j), z},
+                              {1, 0, 0, 0},
+                              glm::vec2(0.8f * pitch),
+                              0.95f,
+                              glm::vec3(shade)});
+        }
+    }
+}
+
+// Bright translucent discs of 3 px at depth z whose centres an eye at `eye_x`, axis along z, sees in the columns [first, end).
+void addVeil(std::vector<Splat>& splats, float z, float eye_x, int first_px, int end_px) {
+    const float px = z / 222.0f;
+    for (int y = 40; y < 216; y += 6) {
+        for (int x = first_px; x < end_px; x += 6) {
+            const glm::vec2 offset = px * (glm::vec2(x, y) - 128.0f);
+            splats.push_back({{eye_x + offset.x, offset.y, z}, {1, 0, 0, 0}, glm::vec2(3.0f * px), 0.35f, {0.9f, 0.8f, 0.3f}});
+        }
+    }
+}
+
+std::array<Eye, 2> parallelEyes(double eye_distance) { return stereoPair({Pose{}, {222.0, 222.0, 128.0, 128.0}, kSizePx}, eye_distance); }
+
+std::size_t countKind(const AffiliatedFrame& frame, gpu::uint kind) {
+    return static_cast<std::size_t>(std::count(frame.tile_kinds.begin(), frame.tile_kinds.end(), kind));
+}
+
+// Pixels of a class that lie in no tile that is rendered again.
+std::size_t countLeft(const AffiliatedFrame& frame, gpu::uint pixel_class, glm::uvec2 size_px) {
+    std::size_t left = 0;
+    for (std::size_t i = 0; i < frame.pixel_classes.size(); ++i) {
+        const std::size_t tile = i / size_px.x / 16 * ((size_px.x + 15) / 16) + i % size_px.x / 16;
+        left += frame.pixel_classes[i] == pixel_class && frame.tile_kinds[tile] == 0 ? 1 : 0;
+    }
+    return left;
+}
+
+// How much the third source of error gains at one and the same budget.
+void checkNewcomers(Scenery& scenery, double budget) {
+    FrameSettings settings = makeSettings(Mode::kPredicted);
+    settings.stereo.budget = budget;
+    const Outcome with = scenery.render(settings);
+    settings.stereo.newcomer_error = 0.0;
+    const Outcome without = scenery.render(settings);
+    MESSAGE("newcomers " << with.made.result.counters.named().at("splats_newcomers") << ", tiles "
+                         << with.made.result.counters.named().at("tiles_patched") << " and "
+                         << without.made.result.counters.named().at("tiles_patched") << ": " << without.psnr_db << " dB without, "
+                         << with.psnr_db << " dB with");
+    CHECK(with.made.result.counters.named().at("splats_newcomers") > 0);
+    CHECK(with.psnr_db >= without.psnr_db + 3.0);
+}
+
+}  // namespace
+
+TEST_CASE_FIXTURE(Gpu, "near splats beyond the dominant eye's border are found without a hole to show them") {
+    // 0.25 before eyes 0.064 apart, 57 px of disparity: what one eye sees in its columns 210 to 238, the other has beyond 256.
+    for (const Side dominant : {kLeft, kRight}) {
+        CAPTURE(static_cast<int>(dominant));
+        std::vector<Splat> splats;
+        addWall(splats, 8.0f, 5.6f, 0.07f);
+        if (dominant == kLeft) {
+            addVeil(splats, 0.25f, 0.032f, 214, 239);
+        } else {
+            addVeil(splats, 0.25f, -0.032f, 18, 43);
+        }
+        Scenery scenery(*this, test::makeScene(splats), parallelEyes(0.064), dominant);
+        checkNewcomers(scenery, 0.15);
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu, "splats that the dominant eye's near plane cuts off are found") {
+    // The axes are turned outwards, so that what is to the right of the middle is nearer for the left eye. A sixth of the right
+    // eye's picture is beyond the left one's border, too, and is rendered again first.
+    std::array<Eye, 2> eyes = parallelEyes(0.064);
+    for (int e = 0; e < 2; ++e) {
+        eyes[e].world_from_camera.orientation = glm::angleAxis(glm::radians(e == kLeft ? -4.0 : 4.0), glm::dvec3(0, 1, 0));
+    }
+    const auto depthFor = [&](int e, const Splat& splat) {
+        return transform(inverse(eyes[e].world_from_camera), glm::dvec3(splat.position)).z;
+    };
+    std::vector<Splat> splats;
+    addVeil(splats, 0.2015f, 0.0f, 168, 201);
+    std::erase_if(splats, [&](const Splat& splat) { return depthFor(kLeft, splat) > 0.199 || depthFor(kRight, splat) < 0.201; });
+    REQUIRE(splats.size() > 50);
+    addWall(splats, 8.0f, 8.4f, 0.07f);
+    Scenery scenery(*this, test::makeScene(splats), eyes);
+    checkNewcomers(scenery, 0.4);
+}
+
+TEST_CASE_FIXTURE(Gpu, "what both eyes see is no newcomer") {
+    std::vector<Splat> splats;
+    addWall(splats, 8.0f, 3.5f, 0.07f);
+    addVeil(splats, 0.4f, 0.032f, 60, 200);
+    Scenery scenery(*this, test::makeScene(splats), parallelEyes(0.064));
+    CHECK(scenery.render(Mode::kPredicted).made.result.counters.named().at("splats_newcomers") == 0);
+}
+
+TEST_CASE_FIXTURE(Gpu, "a near edge uncovers holes beside it; centre ROIs render all of them again") {
+    // A screen 1 from eyes 0.12 apart ends at x = -0.05, 4 before a wall: 26.6 px of disparity against 6.7.
+    std::vector<Splat> splats;
+    addWall(splats, 4.0f, 3.5f, 0.05f);
+    for (float y = -0.8f; y < 0.8f; y += 0.012f) {
+        for (float x = -0.45f; x < -0.05f; x += 0.012f) {
+            splats.push_back({{x, y, 1.0f}, {1, 0, 0, 0}, glm::vec2(0.008f), 0.97f, glm::vec3(0.7f)});
+        }
+    }
+    for (const Side dominant : {kLeft, kRight}) {
+        CAPTURE(static_cast<int>(dominant));
+        Scenery scenery(*this, test::makeScene(splats), parallelEyes(0.12), dominant);
+        const Outcome filled = scenery.render(Mode::kReproject);
+        // Where the affiliated eye sees the edge that the far wall comes out from: the right one to the right eye, the left to the left.
+        const double edge_px = dominant == kLeft ? 128.0 + 222.0 * (-0.05 - 0.06) : 128.0 + 222.0 * (-0.45 + 0.06);
+        std::size_t beside = 0, elsewhere = 0;
+        for (std::size_t i = 0; i < filled.made.pixel_classes.size(); ++i) {
+            const double x = static_cast<double>(i % 256) + 0.5;
+            if (filled.made.pixel_classes[i] == gpu::kHole && x > 16.0 && x < 240.0) {
+                (std::abs(x - edge_px) < 28.0 ? beside : elsewhere) += 1;
+            }
+        }
+        CHECK(beside >= 256 * 10);
+        CHECK(beside <= 256 * 20);
+        CHECK(elsewhere == 0);
+
+        FrameSettings settings = makeSettings(Mode::kPaper);
+        settings.stereo.margin_px = 0;
+        const Outcome edges = scenery.render(settings);
+        CHECK(countKind(edges.made, gpu::kTileCenter) == 0);
+        settings.stereo.center_rois = true;
+        const Outcome centers = scenery.render(settings);
+        CHECK(countKind(centers.made, gpu::kTileCenter) > 0);
+        CHECK(countKind(centers.made, gpu::kTileEdge) == countKind(edges.made, gpu::kTileEdge));
+        CHECK(countLeft(centers.made, gpu::kHole, kSizePx) == 0);
+        CHECK(centers.psnr_db >= edges.psnr_db + 3.0);
+        settings.mode = Mode::kPredicted;
+        settings.stereo.budget = 0.25;
+        const Outcome predicted = scenery.render(settings);
+        CHECK(countLeft(predicted.made, gpu::kHole, kSizePx) == 0);
+        CHECK(predicted.psnr_db >= filled.psnr_db + 3.0);
+        MESSAGE("screen, dominant " << static_cast<int>(dominant) << ": " << beside << " hole pixels; reproject " << filled.psnr_db
+                                    << ", edges " << edges.psnr_db << ", centres " << centers.psnr_db << " dB with "
+                                    << centers.made.result.counters.named().at("tiles_patched") << " tiles; predicted " << predicted.psnr_db
+                                    << " dB with " << predicted.made.result.counters.named().at("tiles_patched") << " tiles");
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu, "bars of a fence: centre ROIs leave no hole, and every patch brings the picture nearer to the full render") {
+    const auto view = test::viewBuiltin("builtin:fence", kSizePx);
+    for (const Side dominant : {kLeft, kRight}) {
+        CAPTURE(static_cast<int>(dominant));
+        Scenery scenery(*this, view.scene, stereoPair(view.eye, 0.12), dominant);
+        FrameSettings settings = makeSettings(Mode::kPaper);
+        settings.stereo.margin_px = 0;
+        const double filled_db = scenery.render(Mode::kReproject).psnr_db, edges_db = scenery.render(settings).psnr_db;
+        settings.stereo.center_rois = true;
+        const Outcome centers = scenery.render(settings), predicted = scenery.render(Mode::kPredicted);
+        CHECK(countLeft(centers.made, gpu::kHole, kSizePx) == 0);
+        CHECK(edges_db > filled_db);
+        CHECK(centers.psnr_db > edges_db);
+        CHECK(predicted.psnr_db > filled_db);
+        MESSAGE("fence, dominant " << static_cast<int>(dominant) << ": reproject " << filled_db << ", edges " << edges_db << ", centres "
+                                   << centers.psnr_db << " dB with " << centers.made.result.counters.named().at("tiles_patched")
+                                   << " tiles; predicted " << predicted.psnr_db << " dB with "
+                                   << predicted.made.result.counters.named().at("tiles_patched") << " tiles");
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu, "pixels that blend two depths are rendered again first") {
+    const auto view = test::viewBuiltin("builtin:two-layers", kSizePx);
+    Scenery scenery(*this, view.scene, stereoPair(view.eye, 0.12));
+    FrameSettings sparse = makeSettings(Mode::kPredicted);
+    sparse.stereo.budget = 0.1;  // with more, moving would not pay in so thin a scene
+    const Outcome moved = scenery.render(Mode::kReproject), predicted = scenery.render(sparse);
+    CHECK(countKind(predicted.made, gpu::kTilePredicted) > 0);
+    MESSAGE("two layers: " << moved.psnr_db << " dB, predicted " << predicted.psnr_db << " dB with "
+                           << countKind(predicted.made, gpu::kTilePredicted) << " tiles");
+    CHECK(predicted.psnr_db >= moved.psnr_db + 1.0);
+    // Whether the pixel's depth is the mean disparity decides how far off the picture is.
+    FrameSettings settings = makeSettings(Mode::kReproject);
+    settings.stereo.depth_choice = gpu::kDepthSum;
+    const double sum_db = scenery.render(settings).psnr_db;
+    settings.stereo.depth_choice = gpu::kDepthMean;
+    const double mean_db = scenery.render(settings).psnr_db;
+    MESSAGE("depth as sum " << sum_db << ", mean " << mean_db << ", inverse " << moved.psnr_db << " dB");
+    CHECK(moved.psnr_db >= mean_db);
+    CHECK(moved.psnr_db >= sum_db);
+}
+
+TEST_CASE_FIXTURE(Gpu, "where moving did not pay the next frame leaves it out and loses nothing, until it would pay again") {
+    const auto view = test::viewBuiltin("builtin:atelier", kSizePx, 20000);
+    const std::array<Eye, 2> eyes = stereoPair(view.eye, 0.064);
+    std::array<Eye, 2> outside = eyes;
+    for (Eye& eye : outside) { eye.world_from_camera.position += eye.world_from_camera.orientation * glm::dvec3(0, 0, 1000); }
+    const GpuScene scene(context(), view.scene);
+    StereoFrame frame(context(), scene), plain(context(), scene);
+    const auto render = [&](const std::array<Eye, 2>& of, double budget = 0.22) {
+        FrameSettings settings = makeSettings(Mode::kPredicted);
+        settings.stereo.budget = budget;
+        return makeAffiliated(frame, of, settings);
+    };
+    const auto reprojects = [](const AffiliatedFrame& made) {
+        return std::ranges::any_of(made.result.gpu_ms, [](const auto& pass) { return pass.label.text() == "affiliated resample"; });
+    };
+    const auto isWhole = [&](const AffiliatedFrame& made, const std::array<Eye, 2>& of) {
+        const AffiliatedFrame shared = makeAffiliated(plain, of, makeSettings(Mode::kShared));
+        CHECK(countKind(made, gpu::kTileCheap) == made.tile_kinds.size());
+        CHECK(made.result.counters.named().at("tiles_patched") == made.tile_kinds.size());
+        CHECK(made.result.tiles_rendered == 1.0);
+        CHECK(made.result.work_rendered == 1.0);
+        return made.pictures[kLeft].values == shared.pictures[kLeft].values &&
+               made.pictures[kRight].values == shared.pictures[kRight].values;
+    };
+    // Before the eyes there is nothing: what moves is asked once.
+    CHECK(reprojects(render(outside)));
+    const AffiliatedFrame left_out = render(outside);
+    CHECK_FALSE(reprojects(left_out));
+    CHECK(isWhole(left_out, outside));
+    const AffiliatedFrame first = render(eyes), second = render(eyes);
+    CHECK_FALSE(reprojects(first));
+    CHECK(isWhole(first, eyes));
+    CHECK(reprojects(second));
+    CHECK(second.result.counters.named().at("tiles_weighed_as_moved") > 0);
+    CHECK(second.result.work_rendered < 0.5);
+    // Whoever asks for something else is answered at once.
+    CHECK_FALSE((render(outside), reprojects(render(outside))));
+    CHECK(reprojects(render(eyes, 0.1)));
+}
+
+}  // namespace patching_test

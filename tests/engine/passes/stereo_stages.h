@@ -1,0 +1,390 @@
+// The stereo passes on the device, one at a time, over arrays that come from the host and go back to it.
+#pragma once
+
+#include "engine/passes/warp_passes.h"
+#include "tests/engine/gpu/gpu_fixture.h"
+#include "tests/engine/passes/pass_stages.h"
+#include "tests/engine/passes/stereo_cases.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <numeric>
+#include <optional>
+#include <vector>
+
+namespace binosplat::test {
+
+// Where moving pixels and arrivals lie: by themselves, or row by row where the affiliated eye's colours come to lie; these are floats or
+// half floats.
+enum class Rows { kOwn, kShared, kOwnHalves, kSharedHalves };
+inline bool isShared(Rows rows) { return rows == Rows::kShared || rows == Rows::kSharedHalves; }
+inline bool areHalves(Rows rows) { return rows == Rows::kOwnHalves || rows == Rows::kSharedHalves; }
+
+// The longest row that resample keeps in shared memory.
+inline std::uint32_t longestSharedRow(const Context& context) { return mostRowSteps(context) * gpu::kArrivalsStep; }
+
+// What passes of warp and choose work on. Each call runs one of them; between calls every array may be read or replaced. What a pass is to
+// write begins as kUnwritten.
+class StereoOnDevice {
+public:
+    static constexpr gpu::uint kUnwritten = 0xcdcdcdcdu;
+
+    StereoOnDevice(Gpu& gpu, const gpu::WarpView& view, const std::vector<gpu::vec4>& colours, const std::vector<gpu::uint>& moving,
+                   Rows rows = Rows::kOwn, std::uint32_t boxes = 64)
+        : gpu_(gpu),
+          rows_(rows),
+          view_(withRows(view, rows)),
+          view_buffer_(gpu.upload("stereo view", std::vector{view_})),
+          counters_(gpu.upload("stereo counters", std::vector{movingAll()})),
+          colours_(areHalves(rows) ? gpu.upload("dominant colours", halvesOf(colours)) : gpu.upload("dominant colours", colours)),
+          affiliated_(gpu.upload("affiliated colours", std::vector<gpu::uint>(wordsPerPixel() * pixelCount(), kUnwritten))),
+          depths_(gpu.upload("affiliated depths", std::vector<gpu::uint>(pixelCount(), kUnwritten))),
+          classes_(gpu.upload("classes", std::vector<gpu::uint>(std::size_t{view.size_tiles.x} * view.size_px.y, kUnwritten))),
+          tile_kinds_(gpu.upload("tile kinds", std::vector<gpu::uint>(tileCount(), 0))),
+          tile_costs_(gpu.upload("tile costs", std::vector<gpu::uint>(tileCount(), kUnwritten))),
+          tile_errors_(gpu.upload("tile errors", std::vector<gpu::uint>(tileCount(), 0))),
+          tile_depths_(gpu.upload("tile depths", std::vector<gpu::uint>(tileCount(), kUnwritten))),
+          tile_prices_(gpu.upload("tile prices", std::vector<gpu::uint>(tileCount(), kUnwritten))),
+          tile_list_(gpu.upload("tile list", std::vector<gpu::uint>(tileCount(), kUnwritten))),
+          tile_mask_(gpu.upload("tile mask", std::vector<gpu::uint>(maskWords(), 0))),
+          shown_mask_(gpu.upload("shown mask", std::vector<gpu::uint>(maskWords(), ~0u))),
+          bins_(gpu.upload("bins", std::vector<gpu::uint>(std::max(gpu::kDepthBins, gpu::kPriceBins), 0))),
+          boxes_(gpu.allocate<gpu::PixelBox>("boxes", boxes)),
+          box_capacity_(boxes) {
+        if (!isShared(rows)) {
+            moving_ = gpu.upload("moving", moving);
+            arrivals_ = gpu.upload("arrivals", std::vector<gpu::uint>(pixelCount(), 0));
+        } else {
+            writeRows(1, moving);
+            writeRows(0, std::vector<gpu::uint>(pixelCount(), 0));
+        }
+    }
+
+    // `ranges`: of the dominant eye's pairs. Arrays that the pass is to clear are not clear before.
+    // `may_move`: the dominant eye left what moving needs.
+    void weigh(const std::vector<glm::uvec2>& ranges, bool hidden_tiles, std::size_t visible_count = 0, bool may_move = true) {
+        const Buffer range_buffer = gpu_.upload("ranges", ranges),
+                     lists = gpu_.upload("lists", std::vector{makeList(visible_count), gpu::ListState{}});
+        gpu_.upload(counters_, std::vector{gpu::WarpCounters{}});
+        fill(tile_errors_, tileCount(), kUnwritten);
+        fill(tile_depths_, tileCount(), kUnwritten);
+        fill(tile_mask_, maskWords(), kUnwritten);
+        fill(bins_, gpu::kPriceBins, kUnwritten);
+        dispatch(WeighKernel{.rectified = rectified(), .hidden_tiles = hidden_tiles, .kinds_given = 1, .may_move = may_move},
+                 gpu::WeighPass{.warp = view(),
+                                .ranges = range_buffer.address<gpu::uvec2>(),
+                                .moving = moving(),
+                                .tile_kinds = words(tile_kinds_),
+                                .tile_costs = words(tile_costs_),
+                                .tile_errors = words(tile_errors_),
+                                .tile_depths = words(tile_depths_),
+                                .tile_mask = words(tile_mask_),
+                                .price_bins = words(bins_),
+                                .shown_mask = words(shown_mask_),
+                                .visible = lists.address<gpu::ListState>(),
+                                .masked_tiles = lists.address<gpu::ListState>(sizeof(gpu::ListState)),
+                                .counters = counters()},
+                 tileGroups());
+    }
+    void boundDepths() {
+        dispatch(DepthBoundsKernel{.half_colours = areHalves(rows_)},
+                 gpu::DepthBoundsPass{.warp = view(),
+                                      .colours = colours_.address<gpu::vec4>(),
+                                      .half_colours = colours_.address<gpu::uvec2>(),
+                                      .moving = moving(),
+                                      .bins = words(bins_)},
+                 {groupsOver(view_.size_tiles.x, gpu::kBoundsTiles), view_.size_tiles.y});
+    }
+    void findEdgeRois(bool hidden_tiles = false) {
+        dispatch(EdgeRoisKernel{.rectified = rectified(), .hidden_tiles = hidden_tiles},
+                 gpu::EdgeRoisPass{.warp = view(),
+                                   .bins = words(bins_),
+                                   .tile_kinds = words(tile_kinds_),
+                                   .shown_mask = words(shown_mask_),
+                                   .counters = counters()},
+                 tileGroups());
+    }
+    void reproject(bool hidden_tiles = false, bool forward = false) {
+        dispatch(ReprojectKernel{.rectified = rectified(), .hidden_tiles = hidden_tiles, .forward = forward},
+                 gpu::ReprojectPass{.warp = view(), .moving = moving(), .arrivals = arrivals(), .shown_mask = words(shown_mask_)},
+                 pixelGroups());
+    }
+    // Splats in `order` as `scene` holds them, with what the dominant eye's project counted of each; eye 1 is the affiliated one.
+    void addNewcomers(const SceneOnDevice& scene, const std::vector<std::uint32_t>& order, const std::vector<gpu::uint>& dominant_tiles) {
+        const Buffer order_buffer = gpu_.upload("order", order), count_buffer = gpu_.upload("dominant counts", dominant_tiles);
+        const Buffer lists = gpu_.upload("lists", std::vector{makeList(order.size())});
+        dispatch(NewcomersKernel{.splat_kind = scene.scene.splatKind()},
+                 gpu::NewcomersPass{.chunks = scene.scene.chunks(),
+                                    .eyes = scene.eyeViews(),
+                                    .warp = view(),
+                                    .tile_depths = words(tile_depths_),
+                                    .order = order_buffer.address<gpu::uint>(),
+                                    .visible = lists.address<gpu::ListState>(),
+                                    .source_counts = count_buffer.address<gpu::uint>(),
+                                    .tile_kinds = words(tile_kinds_),
+                                    .tile_errors = words(tile_errors_),
+                                    .counters = counters(),
+                                    .chunk_bits = scene.scene.chunkBits(),
+                                    .eye = 1},
+                 {groupsOver(order.size(), gpu::kNewcomersBlock), 1});
+    }
+    struct ResampleParts {
+        bool errors = false, depths = false, classes = false, components = false, forward = false;
+        bool moves_row = false, hidden_tiles = false;  // of the dominant eye; its pixels are moved, instead of what reproject left
+        glm::vec3 background{0.0f};
+        bool odd = false;  // rows alone, of two dispatches: see takeRowsApart
+    };
+    // From here on resample takes half of the rows at a time.
+    void takeRowsApart() {
+        view_.rows_apart = 2;
+        gpu_.upload(view_buffer_, std::vector{view_});
+    }
+    void resample(const ResampleParts& parts) {
+        const bool whole = parts.errors && !parts.classes && !parts.hidden_tiles;
+        const gpu::uint moved = whole ? gpu::kWholeRowMoved : gpu::kRowMoved;
+        const gpu::uint row_source = parts.odd && rectified() != 0 ? gpu::kPlacesGiven : parts.moves_row ? moved : gpu::kArrivalsGiven;
+        const std::uint32_t width = view_.size_px.x;
+        const bool shares = row_source != gpu::kPlacesGiven && width <= longestSharedRow(gpu_.context());
+        const std::uint32_t row_steps = shares ? (width + gpu::kArrivalsStep - 1) / gpu::kArrivalsStep : 0;
+        dispatch(ResampleKernel{.rectified = rectified(),
+                                .predict_errors = parts.errors,
+                                .depth = parts.depths,
+                                .classes = parts.classes,
+                                .components = parts.components,
+                                .row_steps = row_steps,
+                                .half_colours = areHalves(rows_),
+                                .forward = parts.forward,
+                                .row_source = row_source},
+                 gpu::ResamplePass{.warp = view(),
+                                   .source = colours_.address<gpu::vec4>(),
+                                   .half_source = colours_.address<gpu::uvec2>(),
+                                   .moving = parts.moves_row ? moving() : arrivals(),
+                                   .target = affiliated_.address<gpu::vec4>(),
+                                   .half_target = affiliated_.address<gpu::uvec2>(),
+                                   .depths = depths_.address<float>(),
+                                   .tile_kinds = words(tile_kinds_),
+                                   .tile_errors = words(tile_errors_),
+                                   .pixel_classes = words(classes_),
+                                   .component_pixels = affiliated_.address<gpu::ComponentPixel>(),
+                                   .counters = counters(),
+                                   .shown_mask = parts.hidden_tiles ? words(shown_mask_) : gpu::DeviceAddress<gpu::uint>{},
+                                   .words = {},
+                                   .background = parts.background,
+                                   .first_row = parts.odd ? 1u : 0u},
+                 {(view_.size_px.y + view_.rows_apart - 1) / view_.rows_apart, 1});
+    }
+    // All steps of the pass, whatever the counters say of holes.
+    void findComponents() {
+        const gpu::ComponentsPass pass{.warp = view(),
+                                       .pixels = affiliated_.address<gpu::ComponentPixel>(),
+                                       .pixel_classes = words(classes_),
+                                       .boxes = boxes_.address<gpu::PixelBox>(),
+                                       .tile_kinds = words(tile_kinds_),
+                                       .counters = counters(),
+                                       .box_capacity = box_capacity_};
+        for (std::uint32_t step = 0; step < 3; ++step) {
+            dispatch(ComponentsKernel{.step = step, .half_colours = areHalves(rows_)}, pass, pixelGroups());
+        }
+        dispatch(ComponentsKernel{.step = 3, .half_colours = areHalves(rows_)}, pass, {3, 1});
+    }
+    void price(const Eye& eye = {}, const std::optional<Gaze>& gaze = {}) {
+        const Buffer lists = gpu_.upload("lists", std::vector{gpu::ListState{}});
+        const gpu::PricePass pass{.warp = view(),
+                                  .tile_kinds = words(tile_kinds_),
+                                  .tile_costs = words(tile_costs_),
+                                  .tile_errors = words(tile_errors_),
+                                  .tile_prices = words(tile_prices_),
+                                  .price_bins = words(bins_),
+                                  .masked_tiles = lists.address<gpu::ListState>(),
+                                  .counters = counters(),
+                                  .budget = counters(),
+                                  .past_tiles = {},
+                                  .is_last = 1,
+                                  .area = 1.0f,
+                                  .gaze = gaze ? eyeGazeOf(*gaze, eye.intrinsics) : gpu::EyeGaze{}};
+        dispatch(PriceKernel{.foveated = gaze.has_value()}, pass, tileGroups());
+    }
+    // `visible_count` splats are in the list that patching would go over; returns the lists it will go over instead, the tiles sorted.
+    struct Selected {
+        gpu::ListState masked_tiles, masked_visible;
+        std::vector<gpu::uint> tile_list, tile_mask;
+    };
+    Selected select(bool predicted, std::size_t visible_count) {
+        const Buffer lists = gpu_.upload("lists", std::vector{makeList(visible_count), gpu::ListState{}, gpu::ListState{}});
+        const auto list = [&](std::uint64_t i) { return lists.address<gpu::ListState>(i * sizeof(gpu::ListState)); };
+        dispatch(SelectKernel{.predicted = predicted},
+                 gpu::SelectPass{.warp = view(),
+                                 .tile_kinds = words(tile_kinds_),
+                                 .tile_prices = words(tile_prices_),
+                                 .tile_list = words(tile_list_),
+                                 .tile_mask = words(tile_mask_),
+                                 .tile_costs = words(tile_costs_),
+                                 .visible = list(0),
+                                 .masked_tiles = list(1),
+                                 .masked_visible = list(2),
+                                 .counters = counters(),
+                                 .budget = counters()},
+                 tileGroups());
+        const auto states = gpu_.readBack<gpu::ListState>(lists, 3);
+        auto tile_list = gpu_.readBack<gpu::uint>(tile_list_, std::min<std::size_t>(states[1].count, tileCount()));
+        std::ranges::sort(tile_list);
+        return {states[1], states[2], std::move(tile_list), readTileMask()};
+    }
+
+    [[nodiscard]] std::vector<gpu::uint> readArrivals() {
+        return !isShared(rows_) ? gpu_.readBack<gpu::uint>(arrivals_, pixelCount()) : readRows(0);
+    }
+    [[nodiscard]] std::vector<gpu::uint> readMoving() {
+        return !isShared(rows_) ? gpu_.readBack<gpu::uint>(moving_, pixelCount()) : readRows(1);
+    }
+    [[nodiscard]] std::vector<gpu::vec4> readAffiliated() {
+        if (!areHalves(rows_)) { return gpu_.readBack<gpu::vec4>(affiliated_, pixelCount()); }
+        std::vector<gpu::vec4> colours;
+        for (const gpu::uvec2& packed : gpu_.readBack<gpu::uvec2>(affiliated_, pixelCount())) { colours.push_back(colourOf(packed)); }
+        return colours;
+    }
+    [[nodiscard]] std::vector<gpu::uint> readAffiliatedWords() {
+        return gpu_.readBack<gpu::uint>(affiliated_, wordsPerPixel() * pixelCount());
+    }
+    // Of a pixel's colour.
+    [[nodiscard]] std::size_t wordsPerPixel() const { return areHalves(rows_) ? 2 : 4; }
+    [[nodiscard]] std::vector<float> readDepths() { return gpu_.readBack<float>(depths_, pixelCount()); }
+    [[nodiscard]] gpu::WarpCounters readCounters() { return gpu_.readBack<gpu::WarpCounters>(counters_, 1)[0]; }
+    [[nodiscard]] std::vector<gpu::uint> readTileErrors() { return gpu_.readBack<gpu::uint>(tile_errors_, tileCount()); }
+    [[nodiscard]] std::vector<gpu::uint> readTileDepths() { return gpu_.readBack<gpu::uint>(tile_depths_, tileCount()); }
+    [[nodiscard]] std::vector<gpu::uint> readTileKinds() { return gpu_.readBack<gpu::uint>(tile_kinds_, tileCount()); }
+    [[nodiscard]] std::vector<gpu::uint> readTileCosts() { return gpu_.readBack<gpu::uint>(tile_costs_, tileCount()); }
+    [[nodiscard]] std::vector<gpu::uint> readTilePrices() { return gpu_.readBack<gpu::uint>(tile_prices_, tileCount()); }
+    [[nodiscard]] std::vector<gpu::uint> readTileMask() { return gpu_.readBack<gpu::uint>(tile_mask_, maskWords()); }
+    // Of depths or of prices.
+    [[nodiscard]] std::vector<gpu::uint> readBins() { return gpu_.readBack<gpu::uint>(bins_, gpu::kDepthBins); }
+    [[nodiscard]] std::vector<std::uint8_t> readClasses() {
+        const std::size_t row_words = view_.size_tiles.x;
+        const auto packed = gpu_.readBack<gpu::uint>(classes_, row_words * view_.size_px.y);
+        std::vector<std::uint8_t> classes;
+        for (std::size_t y = 0; y < view_.size_px.y; ++y) {
+            for (std::size_t x = 0; x < view_.size_px.x; ++x) {
+                classes.push_back(static_cast<std::uint8_t>((packed[y * row_words + x / 16] >> (2 * (x % 16))) & 3));
+            }
+        }
+        return classes;
+    }
+
+    void writeView(const gpu::WarpView& view) { gpu_.upload(view_buffer_, std::vector{withRows(view, rows_)}); }
+    void writeArrivals(const std::vector<gpu::uint>& arrivals) {
+        if (!isShared(rows_)) {
+            gpu_.upload(arrivals_, arrivals);
+        } else {
+            writeRows(0, arrivals);
+        }
+    }
+    void writeClasses(const std::vector<std::uint8_t>& classes) {
+        const std::size_t row_words = view_.size_tiles.x;
+        std::vector<gpu::uint> packed(row_words * view_.size_px.y, 0);
+        for (std::size_t i = 0; i < classes.size(); ++i) {
+            const std::size_t x = i % view_.size_px.x, y = i / view_.size_px.x;
+            packed[y * row_words + x / 16] |= gpu::uint{classes[i]} << (2 * (x % 16));
+        }
+        gpu_.upload(classes_, packed);
+    }
+    void writeAffiliatedWords(const std::vector<gpu::uint>& values) { gpu_.upload(affiliated_, values); }
+    void writeCounters(const gpu::WarpCounters& counters) { gpu_.upload(counters_, std::vector{counters}); }
+    void writeTileKinds(const std::vector<gpu::uint>& kinds) { gpu_.upload(tile_kinds_, kinds); }
+    void writeTileCosts(const std::vector<gpu::uint>& costs) { gpu_.upload(tile_costs_, costs); }
+    void writeTileErrors(const std::vector<gpu::uint>& errors) { gpu_.upload(tile_errors_, errors); }
+    void writeTileDepths(const std::vector<gpu::uint>& depths) { gpu_.upload(tile_depths_, depths); }
+    void writeBins(const std::vector<gpu::uint>& bins) { gpu_.upload(bins_, bins); }
+    // A byte a tile, 1 for those that the dominant eye's lens hides.
+    void writeHidden(const std::vector<std::uint8_t>& hidden) {
+        std::vector<std::uint8_t> shown;
+        for (const std::uint8_t h : hidden) { shown.push_back(h != 0 ? 0 : 1); }
+        gpu_.upload(shown_mask_, maskOf(shown, view_.size_tiles));
+    }
+
+    // Whether pixels move along their row.
+    [[nodiscard]] std::uint32_t rectified() const {
+        const glm::vec3 zero(0.0f);
+        const auto alongRows = [&](const gpu::PixelMap& map) {
+            return map.excess_y == zero && map.excess_z == zero && map.shift.y == 0.0f && map.shift.z == 0.0f;
+        };
+        return alongRows(view_.target_from_source) && alongRows(view_.source_from_target) ? 1 : 0;
+    }
+    [[nodiscard]] std::size_t pixelCount() const { return std::size_t{view_.size_px.x} * view_.size_px.y; }
+    [[nodiscard]] std::size_t tileCount() const { return std::size_t{view_.size_tiles.x} * view_.size_tiles.y; }
+
+private:
+    static gpu::vec4 colourOf(const gpu::uvec2& packed) { return gpu::vec4(glm::unpackHalf2x16(packed.x), glm::unpackHalf2x16(packed.y)); }
+    static std::vector<gpu::uvec2> halvesOf(const std::vector<gpu::vec4>& colours) {
+        std::vector<gpu::uvec2> halves;
+        for (const gpu::vec4& c : colours) { halves.emplace_back(glm::packHalf2x16({c.x, c.y}), glm::packHalf2x16({c.z, c.w})); }
+        return halves;
+    }
+    static gpu::WarpView withRows(gpu::WarpView view, Rows rows) {
+        view.row_words = (!isShared(rows) ? 1 : areHalves(rows) ? 2 : 4) * view.size_px.x;
+        return view;
+    }
+    static gpu::WarpCounters movingAll() {
+        gpu::WarpCounters counters{};
+        counters.moves = 1;
+        return counters;
+    }
+    [[nodiscard]] std::size_t maskWords() const { return std::size_t{(view_.size_tiles.x + 31) / 32} * view_.size_tiles.y; }
+    static std::uint32_t groupsOver(std::size_t items, std::uint32_t group_items = gpu::kWarpGroup) {
+        return static_cast<std::uint32_t>((items + group_items - 1) / group_items);
+    }
+    [[nodiscard]] glm::uvec2 tileGroups() const { return {groupsOver(tileCount()), 1}; }
+    [[nodiscard]] glm::uvec2 pixelGroups() const { return {view_.size_tiles.x, 2 * view_.size_tiles.y}; }
+
+    [[nodiscard]] static gpu::DeviceAddress<gpu::uint> words(const Buffer& buffer) { return buffer.address<gpu::uint>(); }
+    [[nodiscard]] gpu::DeviceAddress<gpu::WarpView> view() const { return view_buffer_.address<gpu::WarpView>(); }
+    [[nodiscard]] gpu::DeviceAddress<gpu::WarpCounters> counters() const { return counters_.address<gpu::WarpCounters>(); }
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> arrivals() const { return !isShared(rows_) ? words(arrivals_) : words(affiliated_); }
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> moving() const {
+        return !isShared(rows_) ? words(moving_) : words(affiliated_).at(view_.size_px.x);
+    }
+
+    template <typename K>
+    void dispatch(const K& variant, const typename K::Pass& pass, glm::uvec2 groups) {
+        const Kernel& kernel = gpu_.kernel(variant);
+        gpu_.run([&](Commands& commands) { commands.dispatch(kernel, pass, groups.x, groups.y); });
+    }
+    void fill(const Buffer& buffer, std::size_t count, gpu::uint value) { gpu_.upload(buffer, std::vector<gpu::uint>(count, value)); }
+    // The first or the second part of each row of colours, a word a pixel.
+    [[nodiscard]] std::vector<gpu::uint> readRows(std::size_t part) {
+        const std::size_t width = view_.size_px.x;
+        const auto all = readAffiliatedWords();
+        std::vector<gpu::uint> values;
+        for (std::size_t y = 0; y < view_.size_px.y; ++y) {
+            const auto row = all.begin() + static_cast<std::ptrdiff_t>((wordsPerPixel() * y + part) * width);
+            values.insert(values.end(), row, row + static_cast<std::ptrdiff_t>(width));
+        }
+        return values;
+    }
+    void writeRows(std::size_t part, const std::vector<gpu::uint>& values) {
+        const std::size_t width = view_.size_px.x;
+        auto all = readAffiliatedWords();
+        for (std::size_t i = 0; i < values.size(); ++i) { all[(wordsPerPixel() * (i / width) + part) * width + i % width] = values[i]; }
+        gpu_.upload(affiliated_, all);
+    }
+
+    Gpu& gpu_;
+    Rows rows_;
+    gpu::WarpView view_;
+    Buffer view_buffer_, counters_, colours_, affiliated_, depths_, classes_;
+    Buffer tile_kinds_, tile_costs_, tile_errors_, tile_depths_, tile_prices_, tile_list_, tile_mask_, shown_mask_, bins_, boxes_;
+    Buffer moving_, arrivals_;  // where rows are their own
+    std::uint32_t box_capacity_;
+};
+
+inline gpu::WarpView viewOfCase(const StereoCase& c) {
+    gpu::WarpView view = warpViewOf(relate(c.eyes.source, c.eyes.target), c.sizePx(), c.sizePx().x, settingsOf(c.settings));
+    view.rows_apart = 1;  // until takeRowsApart
+    return view;
+}
+inline StereoOnDevice toDevice(Gpu& gpu, const StereoCase& c, Rows rows = Rows::kOwn) {
+    StereoOnDevice device(gpu, viewOfCase(c), coloursOf(c.dominant), movingOf(c.dominant, c.settings), rows);
+    if (!c.settings.source_hidden.empty()) { device.writeHidden(c.settings.source_hidden); }
+    return device;
+}
+
+}  // namespace binosplat::test

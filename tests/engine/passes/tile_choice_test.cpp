@@ -1,0 +1,307 @@
+// Facts about the paper's choice of tiles to render, depth_bounds, edge_rois and components: against the twin, against examples worked out
+// by hand, and against plainer algorithms.
+#include "tests/engine/passes/stereo_cases.h"
+#include "tests/engine/passes/stereo_stages.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <random>
+
+TEST_SUITE_BEGIN("tile_choice");
+
+namespace tile_choice_test {
+
+using namespace binosplat;
+using reference::Borders;
+using reference::DepthChoice;
+using reference::InverseDepthBounds;
+using reference::PixelClass;
+using reference::Resolved;
+using reference::TileKind;
+using test::Gpu;
+using test::StereoCase;
+using test::StereoOnDevice;
+using test::toDevice;
+
+namespace {
+
+// Parallel eyes 0.1 apart, of 100 px focal length: 10 px of disparity for a unit of inverse depth.
+StereoCase makePlainCase(glm::uvec2 size_px, Side dominant = kLeft) {
+    const auto eyes = stereoPair({Pose{}, {100.0, 100.0, 0.5 * size_px.x, 0.5 * size_px.y}, size_px}, 0.1);
+    StereoCase c{"plain", {}, {eyes[dominant], eyes[1 - dominant]}, {}, {}};
+    c.dominant = {size_px, std::vector<glm::dvec4>(std::size_t{size_px.x} * size_px.y), {}, {}, {}};
+    for (auto* plane : {&c.dominant.depth, &c.dominant.inverse_depth, &c.dominant.inverse_depth_squared}) {
+        plane->resize(c.dominant.rgba.size());
+    }
+    c.settings.choice = TileChoice::kPaper;
+    return c;
+}
+
+using Mask = std::vector<std::uint8_t>;
+
+Mask drawMask(glm::uvec2 size_px, const auto& isHole) {
+    Mask mask;
+    for (std::uint32_t y = 0; y < size_px.y; ++y) {
+        for (std::uint32_t x = 0; x < size_px.x; ++x) { mask.push_back(isHole(x, y) ? 1 : 0); }
+    }
+    return mask;
+}
+
+// A path one pixel wide that winds inwards, two pixels apart from itself: the longest way a component can take.
+Mask drawSpiral(glm::uvec2 size_px) {
+    Mask mask(std::size_t{size_px.x} * size_px.y, 0);
+    glm::ivec2 at(0), step(1, 0);
+    const auto filled = [&](const glm::ivec2& p) {
+        return p.x < 0 || p.y < 0 || p.x >= static_cast<int>(size_px.x) || p.y >= static_cast<int>(size_px.y) ||
+               mask[static_cast<std::size_t>(p.y) * size_px.x + static_cast<std::size_t>(p.x)] != 0;
+    };
+    mask[0] = 1;
+    for (int turns = 0; turns < 2;) {
+        const glm::ivec2 next = at + step, after = at + 2 * step;
+        const bool border = next.x < 0 || next.y < 0 || next.x >= static_cast<int>(size_px.x) || next.y >= static_cast<int>(size_px.y);
+        const bool near_own =
+            after.x >= 0 && after.y >= 0 && after.x < static_cast<int>(size_px.x) && after.y < static_cast<int>(size_px.y) && filled(after);
+        if (border || near_own) {
+            step = {-step.y, step.x};
+            ++turns;
+            continue;
+        }
+        at = next;
+        mask[static_cast<std::size_t>(at.y) * size_px.x + static_cast<std::size_t>(at.x)] = 1;
+        turns = 0;
+    }
+    return mask;
+}
+
+// components on a mask of holes, none of them in the tiles that are marked before; against the twin's flood fill.
+void checkComponents(Gpu& gpu, glm::uvec2 size_px, const Mask& mask, int margin_px, std::uint32_t boxes, bool edges) {
+    // Of half floats and of floats in turn.
+    const test::Rows rows = margin_px % 2 == 0 ? test::Rows::kSharedHalves : test::Rows::kShared;
+    const std::size_t words_per_pixel = areHalves(rows) ? 2 : 4;
+    StereoCase c = makePlainCase(size_px);
+    c.settings.margin_px = margin_px;
+    std::vector<TileKind> kinds = reference::markEdges(edges ? Borders{17, 0, 1, 20} : Borders{}, size_px);
+    std::vector<Resolved> resolved;
+    std::vector<std::uint8_t> classes;
+    // As resample leaves them: holes are their own parents, and the rest are colours.
+    std::vector<gpu::uint> words(words_per_pixel * mask.size(), 0x3f000000u);
+    for (std::size_t i = 0; i < mask.size(); ++i) {
+        const PixelClass pixel_class = mask[i] != 0 ? PixelClass::kHole : i % 5 == 0 ? PixelClass::kGap : PixelClass::kCovered;
+        resolved.push_back({pixel_class, static_cast<std::uint32_t>(i % size_px.x), 0.5, 0});
+        const bool moved = kinds[test::tileOf(i, size_px)] == TileKind::kNone;
+        classes.push_back(moved ? static_cast<std::uint8_t>(pixel_class) : 0);
+        if (moved && mask[i] != 0) { words[words_per_pixel * i] = static_cast<gpu::uint>(i); }
+    }
+    StereoOnDevice device(gpu, test::viewOfCase(c), {}, {}, rows, boxes);
+    device.writeTileKinds(test::kindsOf(kinds));
+    device.writeClasses(classes);
+    device.writeAffiliatedWords(words);
+    device.findComponents();
+    const std::size_t components = reference::markComponents(resolved, kinds, size_px, margin_px, boxes);
+    const gpu::WarpCounters counters = device.readCounters();
+    CHECK(counters.components == components);
+    CHECK(device.readTileKinds() == test::kindsOf(kinds));
+    CHECK(counters.center_tiles == std::count(kinds.begin(), kinds.end(), TileKind::kCenter));
+    CHECK(device.readClasses() == classes);
+    const auto after = device.readAffiliatedWords();
+    std::size_t changed = 0;
+    for (std::size_t i = 0; i < mask.size(); ++i) {
+        if (classes[i] != static_cast<std::uint8_t>(PixelClass::kHole)) {
+            const std::size_t at = words_per_pixel * i;
+            changed += std::equal(&after[at], &after[at] + words_per_pixel, &words[at]) ? 0 : 1;
+        }
+    }
+    CHECK(changed == 0);
+}
+
+}  // namespace
+
+TEST_CASE_FIXTURE(Gpu, "depth_bounds counts the twin's depths") {
+    std::uint32_t all_flips = 0;
+    for (StereoCase c : test::makeStereoCases()) {
+        for (const test::Rows rows : {test::Rows::kOwn, test::Rows::kShared, test::Rows::kSharedHalves}) {
+            CAPTURE(c.name);
+            if (areHalves(rows)) { test::roundToHalves(c.dominant); }
+            StereoOnDevice device = toDevice(*this, c, rows);
+            device.boundDepths();
+            const auto bins = device.readBins(), expected = reference::boundDepths(c.dominant, c.settings.depth_choice);
+            std::uint32_t flips = 0;
+            for (std::size_t b = 0; b < bins.size(); ++b) {
+                flips += static_cast<std::uint32_t>(std::abs(static_cast<int>(bins[b]) - static_cast<int>(expected[b])));
+            }
+            CHECK(std::accumulate(bins.begin(), bins.end(), 0u) == std::accumulate(expected.begin(), expected.end(), 0u));
+            CHECK(flips <= 2);
+            all_flips += flips;
+        }
+    }
+    MESSAGE(all_flips << " flips");
+    CHECK(all_flips <= 4);  // measured: none
+}
+
+TEST_CASE_FIXTURE(Gpu, "depth_bounds counts depths beyond its range as the last, and pixels of little weight or no depth not at all") {
+    StereoCase c = makePlainCase({20, 10});
+    for (std::size_t i = 0; i < c.dominant.rgba.size(); ++i) { c.dominant.rgba[i].w = i % 2 == 0 ? 1.0 : 0.5; }
+    const std::array<double, 5> inverse_depths{1.0, 1e-9, 1e9, 0.25, -1.0};
+    for (std::size_t i = 0; i < c.dominant.rgba.size(); ++i) {
+        c.dominant.inverse_depth[i] = c.dominant.rgba[i].w * inverse_depths[i / 2 % 5];
+    }
+    StereoOnDevice device = toDevice(*this, c);
+    device.boundDepths();
+    std::vector<gpu::uint> expected(gpu::kDepthBins, 0);
+    expected[16 * 32] = expected[gpu::kDepthBins - 1] = expected[0] = expected[18 * 32] = 10;  // of five rows
+    CHECK(device.readBins() == expected);
+    CHECK(reference::boundDepths(c.dominant, DepthChoice::kInverse) == expected);
+}
+
+TEST_CASE("depth bounds leave out one pixel in 200 at either end, and widen to whole bins") {
+    std::vector<std::uint32_t> bins(gpu::kDepthBins, 0);
+    CHECK(reference::findInverseDepthBounds(bins).near == 0.0);
+    // 1000 pixels: five nearest and five farthest count as specks; depths 2^0 to 2^4.
+    bins[100] = 5;
+    bins[512] = 495;
+    bins[512 + 4 * 32 - 1] = 495;
+    bins[900] = 5;
+    const InverseDepthBounds bounds = reference::findInverseDepthBounds(bins);
+    CHECK(bounds.near == 1.0);
+    CHECK(bounds.far == 1.0 / 16.0);
+    bins[100] = 6;
+    CHECK(reference::findInverseDepthBounds(bins).near == std::exp2(16.0 - 100.0 / 32.0));
+}
+
+TEST_CASE("edge ROIs of parallel eyes, by hand") {
+    // Depths 1 and 4: pixels move to the left by 10 and by 2.5 px. The right edge's last pixel, 127 in the paper's count, is at 117 and
+    // 124.5, so u_max = 124.5: right_w = 127 - 124 + 32. Left, top and bottom: u_min = -10, v_min = 0, v_max = H - 1: nothing.
+    StereoCase c = makePlainCase({128, 96});
+    const InverseDepthBounds bounds{0.25, 1.0};
+    CHECK(reference::findBorders(bounds, c.eyes, c.settings) == Borders{0, 0, 35, 0});
+    // What near content uncovers: from 117 on.
+    c.settings.tight_edges = true;
+    c.settings.margin_px = 0;
+    CHECK(reference::findBorders(bounds, c.eyes, c.settings) == Borders{0, 0, 10, 0});
+    // The other way round u_min = 2.5 and at most 10: left_w = 3, or 10, and the margin; never more than half of the width.
+    c = makePlainCase({128, 96}, kRight);
+    CHECK(reference::findBorders(bounds, c.eyes, c.settings) == Borders{35, 0, 0, 0});
+    c.settings.margin_px = 62;
+    CHECK(reference::findBorders(bounds, c.eyes, c.settings) == Borders{64, 0, 0, 0});
+    c.settings.margin_px = 0;
+    CHECK(reference::findBorders(bounds, c.eyes, c.settings) == Borders{3, 0, 0, 0});
+    c.settings.tight_edges = true;
+    CHECK(reference::findBorders(bounds, c.eyes, c.settings) == Borders{10, 0, 0, 0});
+    // 35 px are three tiles of eight; a border of one pixel is a column of tiles; 100 px wide, the last tile has four columns.
+    const auto columns = [](const Borders& borders, glm::uvec2 size_px) {
+        std::string row;
+        for (const TileKind kind : reference::markEdges(borders, size_px)) { row += kind == TileKind::kEdge ? 'e' : '.'; }
+        return row;
+    };
+    CHECK(columns({35, 0, 1, 0}, {128, 16}) == "eee....e");
+    CHECK(columns({16, 0, 4, 0}, {100, 16}) == "e.....e");
+    CHECK(columns({17, 0, 5, 0}, {100, 16}) == "ee...ee");
+    CHECK(columns({0, 1, 0, 16}, {16, 64}) == "e..e");
+}
+
+TEST_CASE_FIXTURE(Gpu, "edge_rois finds the twin's borders and tiles") {
+    for (StereoCase c : test::makeStereoCases()) {
+        const auto bins = reference::boundDepths(c.dominant, c.settings.depth_choice);
+        for (const int margin_px : {0, 32}) {
+            for (const int samples : {1, 64, 300}) {
+                for (const bool tight : {false, true}) {
+                    c.settings.margin_px = margin_px;
+                    c.settings.edge_samples = samples;
+                    c.settings.tight_edges = tight;
+                    CAPTURE(c.name);
+                    CAPTURE(margin_px);
+                    CAPTURE(samples);
+                    CAPTURE(tight);
+                    StereoOnDevice device = toDevice(*this, c);
+                    device.writeBins(bins);
+                    device.findEdgeRois();
+                    const Borders expected = reference::findBorders(reference::findInverseDepthBounds(bins), c.eyes, c.settings);
+                    const auto kinds = test::kindsOf(reference::markEdges(expected, c.sizePx()));
+                    const gpu::WarpCounters counters = device.readCounters();
+                    CHECK(counters.borders_px == glm::uvec4(expected.left, expected.top, expected.right, expected.bottom));
+                    CHECK(device.readTileKinds() == kinds);
+                    CHECK(counters.edge_tiles == std::count(kinds.begin(), kinds.end(), gpu::kTileEdge));
+                }
+            }
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu, "edge_rois marks what the dominant lens hides and leaves hidden tiles as they are, over many workgroups of tiles") {
+    for (const glm::uvec2 size_tiles : {glm::uvec2(8, 6), glm::uvec2(43, 3), glm::uvec2(33, 31)}) {
+        for (const Side dominant : {kLeft, kRight}) {
+            StereoCase c = makePlainCase(16u * size_tiles - 3u, dominant);
+            c.settings.margin_px = 5;
+            std::mt19937 random(3);
+            for (std::uint32_t t = 0; t < size_tiles.x * size_tiles.y; ++t) {
+                c.settings.source_hidden.push_back(random() % 10 == 0 ? 1 : 0);
+                c.settings.target_hidden.push_back(random() % 10 == 0 ? 1 : 0);
+            }
+            std::vector<gpu::uint> bins(gpu::kDepthBins, 0);
+            bins[500] = bins[600] = 1000;
+            StereoOnDevice device = toDevice(*this, c);
+            std::vector<TileKind> before(device.tileCount(), TileKind::kNone);
+            reference::markHidden(before, c.settings);
+            device.writeTileKinds(test::kindsOf(before));
+            device.writeBins(bins);
+            device.findEdgeRois(/*hidden_tiles=*/true);
+            const Borders borders = reference::findBorders(reference::findInverseDepthBounds(bins), c.eyes, c.settings);
+            auto expected = reference::markEdges(borders, c.sizePx());
+            const auto without_lens = std::ranges::count(expected, TileKind::kEdge);
+            reference::markHidden(expected, c.settings);
+            reference::markBehindHidden(expected, c.eyes, c.settings);
+            CHECK(device.readTileKinds() == test::kindsOf(expected));
+            CHECK(device.readCounters().edge_tiles == std::ranges::count(expected, TileKind::kEdge));
+            CHECK(std::ranges::count(expected, TileKind::kEdge) > without_lens);
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu, "components groups holes as a flood fill does, whatever their shape") {
+    std::mt19937 random(1);
+    for (const glm::uvec2 size_px : {glm::uvec2(1, 1), glm::uvec2(17, 33), glm::uvec2(128, 96)}) {
+        CAPTURE(size_px.x);
+        std::vector<Mask> masks{drawMask(size_px, [](auto, auto) { return false; }),
+                                drawMask(size_px, [](auto, auto) { return true; }),
+                                drawMask(size_px, [](auto x, auto y) { return (x + y) % 2 == 0; }),
+                                drawMask(size_px, [&](auto x, auto y) { return x == size_px.x - 1 && y == size_px.y - 1; }),
+                                drawMask(size_px, [](auto x, auto) { return x % 2 == 0; }),
+                                drawMask(size_px, [](auto x, auto y) { return x % 3 == 0 && y % 3 == 0; }),
+                                drawSpiral(size_px)};
+        for (const unsigned share : {2u, 20u, 45u, 70u}) {
+            masks.push_back(drawMask(size_px, [&](auto, auto) { return random() % 100 < share; }));
+        }
+        for (std::size_t m = 0; m < masks.size(); ++m) {
+            CAPTURE(m);
+            for (const int margin_px : {0, 5, 32}) {
+                CAPTURE(margin_px);
+                checkComponents(*this, size_px, masks[m], margin_px, 4096, m % 2 == 1);
+            }
+        }
+        // A spiral is one component.
+        std::vector<Resolved> resolved;
+        for (const std::uint8_t hole : masks[6]) { resolved.push_back({hole != 0 ? PixelClass::kHole : PixelClass::kCovered, 0, 0.0, 0}); }
+        std::vector<TileKind> kinds = reference::markEdges({}, size_px);
+        CHECK(reference::markComponents(resolved, kinds, size_px, 0) == 1);
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu, "components with more groups than boxes marks the tiles of each pixel, the same ones in every run") {
+    std::mt19937 random(2);
+    const glm::uvec2 size_px(128, 96);
+    const Mask scattered = drawMask(size_px, [&](auto, auto) { return random() % 1000 < 4; });
+    // An L, whose box holds tiles that its pixels do not meet, and two specks.
+    const Mask corner = drawMask(
+        size_px, [](auto x, auto y) { return (x == 2 && y < 90) || (y == 90 && x > 1 && x < 120) || (y == 10 && (x == 60 || x == 100)); });
+    for (const Mask& mask : {scattered, corner}) {
+        for (const std::uint32_t boxes : {1u, 2u, 3u, 8u}) {
+            CAPTURE(boxes);
+            for (int run = 0; run < 3; ++run) { checkComponents(*this, size_px, mask, 4, boxes, false); }
+        }
+    }
+}
+
+}  // namespace tile_choice_test

@@ -1,0 +1,102 @@
+// Facts about scene files that change while they are read. They change where reading reports its progress, so no test waits for a time.
+#include "engine/error.h"
+#include "engine/scene/ply.h"
+#include "engine/scene/procedural.h"
+#include "engine/scene/spz.h"
+#include "tests/engine/scene/hostile_scenes.h"
+#ifdef BINOSPLAT_SOG
+#include "tests/engine/scene/sog_scenes.h"
+#endif
+
+#include <doctest/doctest.h>
+
+#include <chrono>
+
+TEST_SUITE_BEGIN("changing_file");
+
+namespace changing_file_test {
+
+namespace fs = std::filesystem;
+using namespace binosplat;
+using namespace binosplat::test;
+
+namespace {
+
+// Loads while `change` happens once; the message, or "read".
+std::string load(const std::string& path, const std::function<void()>& change, Scene* scene = nullptr) {
+    // Time stamps are coarse: what is written from now on is newer.
+    if (fs::is_regular_file(path)) { fs::last_write_time(path, fs::file_time_type::clock::now() - std::chrono::hours(1)); }
+    bool changed = false;
+    try {
+        Scene loaded = loadScene(path, 0, nullptr, [&](double) {
+            if (!std::exchange(changed, true)) { change(); }
+        });
+        if (scene != nullptr) { *scene = std::move(loaded); }
+    } catch (const Error& error) {
+        CHECK(error.code() == ExitCode::kBadInput);
+        CHECK(std::string(error.what()).find('\n') == std::string::npos);
+        return error.what();
+    }
+    CHECK(changed);
+    return "read";
+}
+
+// Small files of every format that is one file, and a PLY of several of the reader's blocks.
+std::vector<std::string> writeFiles(const Folder& folder) {
+    std::vector<std::string> paths{folder.write("ascii.ply", makePly(9, true).bytes()), folder.write("packed.ply", makeCompressedPly()),
+                                   folder.write("a.splat", makeSplatFile()), folder.write("a.spz", gzip(makeSpz(3).bytes())),
+                                   folder.file("large.ply")};
+    writePly(makeBuiltin("builtin:atelier", 5000), paths.back());
+#ifdef BINOSPLAT_SOG
+    paths.push_back(folder.write("a.sog", makeZip(makeSog())));
+#endif
+    return paths;
+}
+
+}  // namespace
+
+TEST_CASE("a file that is cut off, grows or is written to while it is read is refused in one line") {
+    const Folder folder;
+    for (const char* change : {"cut", "grow", "write"}) {
+        for (const std::string& path : writeFiles(folder)) {
+            CAPTURE(change);
+            CAPTURE(path);
+            const std::string message = load(path, [&] {
+                const std::uintmax_t bytes = fs::file_size(path);
+                if (change[0] != 'w') { fs::resize_file(path, change[0] == 'c' ? bytes / 2 : bytes + 1); }
+                std::fstream(path, std::ios::binary | std::ios::in | std::ios::out).put('p');
+            });
+            CHECK(message == path + ": was changed while it was read, must stay as it is until then");
+        }
+    }
+}
+
+#ifndef _WIN32  // where a file that is open stays where it is
+TEST_CASE("a file that is removed or replaced while it is read is read as it was") {
+    const Folder folder;
+    for (const char* change : {"remove", "replace"}) {
+        for (const std::string& path : writeFiles(folder)) {
+            CAPTURE(change);
+            CAPTURE(path);
+            const std::size_t splats = loadScene(path).size();
+            const std::string other = folder.write("other", "not a scene");
+            Scene scene;
+            CHECK(load(
+                      path, [&] { change[2] == 'm' ? (void)fs::remove(path) : fs::rename(other, path); }, &scene) == "read");
+            CHECK(scene.size() == splats);
+        }
+    }
+}
+#endif
+
+#ifdef BINOSPLAT_SOG
+TEST_CASE("a SOG folder that loses a picture while it is read is refused in one line") {
+    const Folder folder;
+    const std::string path = writeSogFolder(folder, "sog", makeSog());
+    CHECK(withSlashes(load(path, [&] { fs::remove(path + "/q.webp"); })) == withSlashes(path + "/q.webp: no such file"));
+    (void)writeSogFolder(folder, "sog", makeSog());
+    CHECK(contains(load(path, [&] { fs::resize_file(path + "/s.webp", 20); }), path + "/s.webp: "));
+}
+#endif
+
+}  // namespace changing_file_test

@@ -1,0 +1,336 @@
+// glTF with KHR_gaussian_splatting: values, nodes, buffers, what is left out and what is refused.
+#include "engine/scene/ply.h"
+#include "engine/scene/sh_basis.h"
+#include "engine/scene/spz.h"
+#include "tests/engine/scene/gltf_files.h"
+#include "tests/shared_data.h"
+
+#include <nlohmann/json.hpp>
+
+#include <numbers>
+
+TEST_SUITE_BEGIN("gltf_format");
+
+namespace gltf_format_test {
+
+using namespace binosplat;
+using namespace binosplat::test;
+
+namespace {
+
+// Rotation, scales and thickness as one matrix, which does not depend on how axes are named.
+glm::dmat3 covarianceOf(const Scene& scene, std::size_t i) {
+    glm::dmat3 axes(glm::mat3_cast(glm::dquat(scene.rotations[i])));
+    const glm::dvec3 scales(scene.scales[i].x, scene.scales[i].y, scene.thicknesses[i]);
+    for (int axis = 0; axis < 3; ++axis) { axes[axis] *= scales[axis]; }
+    return axes * glm::transpose(axes);
+}
+
+double largest(const glm::dmat3& matrix) {
+    double most = 0.0;
+    for (int i = 0; i < 9; ++i) { most = std::max(most, std::abs(matrix[i / 3][i % 3])); }
+    return most;
+}
+
+glm::dvec3 colourOf(const Scene& scene, std::size_t i, const glm::dvec3& direction) {
+    const std::array<double, 16> basis = shBasis(glm::normalize(direction));
+    const auto width = static_cast<std::size_t>(shCoefficientCount(scene.sh_degree));
+    glm::dvec3 colour(0.0);
+    for (std::size_t k = 0; k < width; ++k) {
+        for (std::size_t channel = 0; channel < 3; ++channel) {
+            colour[static_cast<int>(channel)] += basis[k] * scene.sh[3 * (i * width + k) + channel];
+        }
+    }
+    return colour;
+}
+
+void checkAlike(const Scene& a, const Scene& b) {
+    REQUIRE(a.size() == b.size());
+    CHECK(a.sh_degree == b.sh_degree);
+    CHECK(a.positions == b.positions);
+    for (std::size_t i = 0; i < a.sh.size(); ++i) { CHECK(a.sh[i] == doctest::Approx(b.sh[i]).epsilon(1e-5)); }
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        CHECK(largest(covarianceOf(a, i) - covarianceOf(b, i)) < 1e-6 * largest(covarianceOf(b, i)));
+        CHECK(a.opacities[i] == doctest::Approx(b.opacities[i]).epsilon(1e-6));
+    }
+}
+
+std::string quoted(const glm::dmat4& matrix) {
+    std::string text;
+    for (int i = 0; i < 16; ++i) { text += fmt::format("{}{:.17g}", i == 0 ? "[" : ",", matrix[i / 4][i % 4]); }
+    return text + "]";
+}
+
+}  // namespace
+
+TEST_CASE("a glTF holds what a PLY of the same splats holds, whatever its buffers are") {
+    const Folder folder;
+    for (const int rest_count : {0, 9, 24, 45}) {
+        const Scene expected = loadScene(folder.write("same.ply", makePly(rest_count, true).bytes()));
+        const GltfText gltf = makeGltf(rest_count);
+        LoadNotes notes;
+        const Scene scene = loadScene(folder.write("a.glb", gltf.glb()), 0, &notes);
+        checkAlike(scene, expected);
+        CHECK(scene.by_distance);
+        CHECK(scene.y_up);
+        CHECK(notes.lines.empty());
+        CHECK(notes.three_scales);
+        checkAlike(loadScene(folder.write("in_its_text", gltf.embedded())), expected);
+        (void)folder.write("its splats.bin", gltf.binary());
+        checkAlike(loadScene(folder.write("beside.gltf", gltf.json(R"(,"uri":"its%20splats.bin")"))), expected);
+    }
+}
+
+TEST_CASE("a file with its values in turn, and one with other things in it, is read as well") {
+    const Folder folder;
+    const Scene expected = loadScene(folder.write("same.ply", makePly(0, true).bytes()));
+    // One row of 56 bytes a splat: position, rotation, scale, opacity, colour.
+    const GltfText gltf = makeGltf(0);
+    std::string rows, views, accessors;
+    const std::size_t widths[] = {12, 16, 12, 4, 12}, starts[] = {0, 36, 84, 120, 132};
+    for (std::size_t splat = 0; splat < 3; ++splat) {
+        for (std::size_t i = 0; i < 5; ++i) { rows += gltf.binary().substr(starts[i] + splat * widths[i], widths[i]); }
+    }
+    const char* types[] = {"VEC3", "VEC4", "VEC3", "SCALAR", "VEC3"};
+    for (std::size_t i = 0, offset = 0; i < 5; offset += widths[i], ++i) {
+        accessors += fmt::format(R"({}{{"bufferView":0,"byteOffset":{},"componentType":5126,"count":3,"type":"{}"}})", i == 0 ? "" : ",",
+                                 offset, types[i]);
+    }
+    std::string json = gltf.json("");
+    const auto cut = [&](const std::string& from, const std::string& to) {
+        const std::size_t begin = json.find(from);
+        json.replace(begin, json.find(']', begin) - begin + 1, to);
+    };
+    cut("\"bufferViews\":[", R"("bufferViews":[{"buffer":0,"byteLength":168,"byteStride":56}])");
+    cut("\"accessors\":[", "\"accessors\":[" + accessors + "]");
+    checkAlike(loadScene(folder.write("rows.glb", GltfText::makeGlb(json, rows))), expected);
+
+    GltfText more = makeGltf(0);
+    more.other_primitives = R"(,{"attributes":{"POSITION":0}},{"mode":0,"attributes":{"POSITION":0}})";
+    more.other_keys =
+        R"(,"materials":[{"name":"x"}],"images":[{"uri":"nowhere.png"}],"textures":[{"source":0}],"animations":"broken","extras":{"a":[[[]]]})";
+    LoadNotes notes;
+    checkAlike(loadScene(folder.write("more.glb", more.glb()), 0, &notes), expected);
+    REQUIRE(notes.lines.size() == 1);
+    CHECK(contains(notes.lines[0], "2 primitives without KHR_gaussian_splatting (meshes, points) were left out"));
+}
+
+TEST_CASE("nodes place their splats: positions, shapes and colours go along, mirrored or not") {
+    const Folder folder;
+    const Scene plain = loadScene(folder.write("plain.glb", makeGltf(45).glb()));
+    const glm::dmat4 turned = glm::mat4_cast(glm::angleAxis(0.9, glm::normalize(glm::dvec3(1.0, -2.0, 0.5))));
+    const glm::dmat4 moved(glm::dvec4(1, 0, 0, 0), glm::dvec4(0, 1, 0, 0), glm::dvec4(0, 0, 1, 0), glm::dvec4(3, -4, 5, 1));
+    const auto scaled = [](double x, double y, double z) { return glm::dmat4(glm::dmat3(x, 0, 0, 0, y, 0, 0, 0, z)); };
+    for (const glm::dmat4& placed : {moved, turned, moved * scaled(2.5, 2.5, 2.5), turned * scaled(-1, 1, 1), scaled(-3, -3, -3) * turned,
+                                     moved * turned * scaled(0.5, -0.5, 0.5)}) {
+        GltfText gltf = makeGltf(45);
+        gltf.nodes = R"([{"mesh":0,"matrix":)" + quoted(placed) + "}]";
+        LoadNotes notes;
+        const Scene scene = loadScene(folder.write("placed.glb", gltf.glb()), 0, &notes);
+        CHECK(notes.lines.empty());
+        REQUIRE(scene.size() == 3);
+        const glm::dmat3 linear(placed);
+        for (std::size_t i = 0; i < 3; ++i) {
+            const glm::dvec3 position(placed * glm::dvec4(glm::dvec3(plain.positions[i]), 1.0));
+            CHECK(glm::length(position - glm::dvec3(scene.positions[i])) < 1e-5);
+            const glm::dmat3 covariance = linear * covarianceOf(plain, i) * glm::transpose(linear);
+            CHECK(largest(covariance - covarianceOf(scene, i)) < 1e-5 * largest(covariance));
+            for (const glm::dvec3 direction :
+                 {glm::dvec3(1, 0, 0), glm::dvec3(0.2, -0.7, 0.4), glm::dvec3(-1, 2, 3), glm::dvec3(0, 0, -1)}) {
+                const glm::dvec3 colour = colourOf(plain, i, direction);
+                CHECK(glm::length(colour - colourOf(scene, i, linear * direction)) < 1e-5 * glm::length(colour));
+            }
+        }
+    }
+    // Stretched unevenly: the ellipsoids are stretched exactly.
+    GltfText gltf = makeGltf(0);
+    gltf.nodes = R"([{"children":[1],"scale":[2,1,-0.25]},{"mesh":0,"rotation":[0.5,0.5,0.5,0.5],"translation":[1,2,3]}])";
+    LoadNotes notes;
+    const Scene scene = loadScene(folder.write("stretched.glb", gltf.glb()), 0, &notes);
+    REQUIRE(notes.lines.size() == 1);
+    CHECK(contains(notes.lines[0], "unevenly"));
+    const glm::dmat3 linear = glm::dmat3(2, 0, 0, 0, 1, 0, 0, 0, -0.25) * glm::mat3_cast(glm::dquat(0.5, 0.5, 0.5, 0.5));
+    for (std::size_t i = 0; i < 3; ++i) {
+        const glm::dvec3 position = linear * glm::dvec3(plain.positions[i]) + glm::dvec3(2.0, 2.0, -0.75);
+        CHECK(glm::length(position - glm::dvec3(scene.positions[i])) < 1e-5);
+        const glm::dmat3 covariance = linear * covarianceOf(plain, i) * glm::transpose(linear);
+        CHECK(largest(covariance - covarianceOf(scene, i)) < 1e-5 * largest(covariance));
+    }
+}
+
+TEST_CASE("several primitives and nodes are one scene, of the highest degree among them") {
+    const Folder folder;
+    GltfText gltf = makeGltf(9);
+    const std::string attributes = R"("POSITION":0,"KHR_gaussian_splatting:ROTATION":1,"KHR_gaussian_splatting:SCALE":2,)"
+                                   R"("KHR_gaussian_splatting:OPACITY":3,"KHR_gaussian_splatting:SH_DEGREE_0_COEF_0":4)";
+    gltf.other_primitives =
+        R"(,{"mode":0,"attributes":{)" + attributes + R"(},"extensions":{"KHR_gaussian_splatting":)" + gltf.extension + "}}";
+    gltf.nodes = R"([{"mesh":0},{"children":[2]},{"mesh":0,"translation":[10,0,0]},{"mesh":0}])";
+    gltf.roots = "[1,0]";  // the last node is in no scene
+    const Scene scene = loadScene(folder.write("several.glb", gltf.glb()));
+    REQUIRE(scene.size() == 12);
+    CHECK(scene.sh_degree == 1);
+    CHECK(scene.positions[0].x == 11.0f);
+    CHECK(scene.positions[6].x == 1.0f);
+    CHECK(scene.sh[3] != 0.0f);           // of the first primitive
+    CHECK(scene.sh[3 * 12 + 3] == 0.0f);  // of the second, which has the constant band alone
+    CHECK(scene.sh[3 * 12 + 1] == scene.sh[1]);
+}
+
+TEST_CASE("what the extension's keys say is kept, and what they say that is not known is told") {
+    const Folder folder;
+    const auto loadWith = [&](const std::string& extension, LoadNotes& notes) {
+        GltfText gltf = makeGltf(0);
+        gltf.extension = extension;
+        return loadScene(folder.write("keys.glb", gltf.glb()), 0, &notes);
+    };
+    LoadNotes notes;
+    const Scene light = loadWith(R"({"kernel":"ellipse","colorSpace":"lin_rec709_display"})", notes);
+    CHECK(light.is_linear);
+    REQUIRE(notes.lines.size() == 1);
+    CHECK(contains(notes.lines[0], "linear light"));
+    for (const bool as_ply : {true, false}) {
+        CHECK_THROWS_WITH_AS(as_ply ? writePly(light, folder.file("out.ply")) : writeSpz(light, folder.file("out.spz")),
+                             doctest::Contains("cannot hold colours of linear light"), Error);
+    }
+    CHECK(folder.fileCount() == 1);
+    CHECK(loadWith(R"({"kernel":"ellipse","colorSpace":"srgb_rec709_display","sortingMethod":"cameraDistance","projection":"perspective"})",
+                   notes)
+              .by_distance);
+    CHECK(notes.lines.empty());
+    CHECK_FALSE(loadWith(R"({"kernel":"ellipse","colorSpace":"srgb_rec709_display","sortingMethod":"zDepth"})", notes).by_distance);
+    CHECK(notes.lines.empty());
+    CHECK(loadWith(R"({"kernel":"cube","colorSpace":"p3","sortingMethod":"none","projection":"fisheye"})", notes).by_distance);
+    CHECK(notes.lines.size() == 4);
+    CHECK(loadWith("{}", notes).size() == 3);
+    CHECK(notes.lines.empty());
+    GltfText compressed = makeGltf(0);
+    compressed.extension =
+        R"({"kernel":"ellipse","colorSpace":"srgb_rec709_display","extensions":{"KHR_gaussian_splatting_compression_spz_2":{"bufferView":0}}})";
+    CHECK(contains(loadError(folder.write("spz.glb", compressed.glb())), "compressed by KHR_gaussian_splatting_compression_spz_2"));
+}
+
+TEST_CASE("the fifteen cases of the conformance matrix give the values that they hold" * needsSharedData()) {
+    const auto data = sharedData();
+    if (!data) { return; }
+    const Folder folder;
+    const std::string path = (*data / "formats/khr_conformance_matrix.glb").string();
+    CHECK(contains(loadError(path), "lin_rec709_display and others of srgb_rec709_display"));
+    std::ifstream stream(path, std::ios::binary);
+    const std::string glb{std::istreambuf_iterator<char>(stream), {}};
+    std::uint32_t text_bytes = 0;
+    std::memcpy(&text_bytes, glb.data() + 12, 4);
+    nlohmann::json document = nlohmann::json::parse(glb.substr(20, text_bytes));
+    int cases = 0;
+    for (std::size_t node = 0; node < document["nodes"].size(); ++node) {
+        if (!document["nodes"][node].contains("mesh")) { continue; }
+        const std::string name = document["nodes"][node]["name"];
+        CAPTURE(name);
+        ++cases;
+        document["scenes"][0]["nodes"] = {node};
+        LoadNotes notes;
+        const Scene scene = loadScene(folder.write("one.glb", GltfText::makeGlb(document.dump(), glb.substr(28 + text_bytes))), 0, &notes);
+        REQUIRE(scene.size() == 1);
+        CHECK(scene.is_linear == (name != "scale_f32"));
+        CHECK(scene.positions[0] == glm::vec3(1.0f, 2.0f, 3.0f));
+        // Half a turn about x, which changes no covariance along the axes; all scales are logarithms of the draft.
+        const std::map<std::string, glm::dvec3> scales{{"scale_f32", {0.2, -0.1, 0.7}},
+                                                       {"scale_i8", {1, -2, 3}},
+                                                       {"scale_i8_norm", {1, 0, -1}},
+                                                       {"scale_i16", {2, -3, 4}},
+                                                       {"scale_i16_norm", {1, 0, -1}}};
+        const glm::dvec3 logs = scales.contains(name) ? scales.at(name) : glm::dvec3(0.0, 0.5, -0.5);
+        const glm::dmat3 covariance = covarianceOf(scene, 0);
+        for (int i = 0; i < 9; ++i) {
+            const double expected = i % 4 == 0 ? std::exp(2.0 * logs[i / 3]) : 0.0;
+            CHECK(covariance[i / 3][i % 3] == doctest::Approx(expected).epsilon(1e-5));
+        }
+        const std::map<std::string, double> opacities{
+            {"opacity_f32", 0.75}, {"opacity_u8_norm", 64.0 / 255.0}, {"opacity_u16_norm", 16384.0 / 65535.0}};
+        CHECK(scene.opacities[0] == doctest::Approx(opacities.contains(name) ? opacities.at(name) : 0.25).epsilon(1e-6));
+        CHECK(scene.sh_degree == (name.starts_with("sh_degree") ? name.back() - '0' : 0));
+        for (std::size_t k = 0; k < scene.sh.size() / 3; ++k) {
+            for (std::size_t channel = 0; channel < 3; ++channel) {
+                CHECK(scene.sh[3 * k + channel] == doctest::Approx(static_cast<double>(k) + 0.1 * static_cast<double>(channel + 1)));
+            }
+        }
+        CHECK(std::ranges::count_if(notes.lines, [](const std::string& line) { return contains(line, "logarithms"); }) == 1);
+    }
+    CHECK(cases == 15);
+}
+
+TEST_CASE("an unknown kernel and colour space are drawn as what is known, and COLOR_0 stands in for harmonics" * needsSharedData()) {
+    const auto data = sharedData();
+    if (!data) { return; }
+    LoadNotes notes;
+    const Scene scene = loadScene((*data / "formats/khr_extensible_fallback.gltf").string(), 0, &notes);
+    REQUIRE(scene.size() == 1);
+    CHECK(scene.opacities[0] == 0.5f);
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+        CHECK(scene.sh[channel] == doctest::Approx(1.0 + static_cast<double>(channel)).epsilon(1e-5));
+    }
+    REQUIRE(notes.lines.size() == 2);
+    CHECK(contains(notes.lines[0] + notes.lines[1], "customShape"));
+    CHECK(contains(notes.lines[0] + notes.lines[1], "custom_space_display"));
+}
+
+TEST_CASE("a glTF that does not fit is named with its place") {
+    const Folder folder;
+    const auto errorOf = [&](const std::string& bytes) { return loadError(folder.write("broken.glb", bytes)); };
+    const auto errorWith = [&](auto&& change) {
+        GltfText gltf = makeGltf(9);
+        change(gltf);
+        return errorOf(gltf.glb());
+    };
+    CHECK(contains(errorWith([](GltfText& g) { g.mode = 4; }), "meshes[0].primitives[0]: its mode is another, expected 0"));
+    CHECK(contains(errorWith([](GltfText& g) { g.remove("KHR_gaussian_splatting:SCALE"); }),
+                   "has no attribute KHR_gaussian_splatting:SCALE"));
+    CHECK(contains(errorWith([](GltfText& g) { g.remove("KHR_gaussian_splatting:SH_DEGREE_1_COEF_1"); }), "expected all of its degree"));
+    CHECK(
+        contains(errorWith([](GltfText& g) { g.remove("KHR_gaussian_splatting:SH_DEGREE_0_COEF_0"); }), "degree 1, but none of degree 0"));
+    CHECK(contains(errorWith([](GltfText& g) {
+                       g.add("OPACITY", "SCALAR", {1, 2, 3}, kGltfUint8);
+                   }),
+                   "holds integers, expected floats or normalized"));
+    CHECK(contains(errorWith([](GltfText& g) { g.add("OPACITY", "VEC3", {1, 2, 3}); }), "has 3 components a splat, expected 1"));
+    CHECK(contains(errorWith([](GltfText& g) { g.add("OPACITY", "SCALAR", {1, 2}); }), "has 3 positions and 2 values"));
+    CHECK(contains(errorWith([](GltfText& g) { g.extension = "[]"; }), "a glTF without splats"));
+    CHECK(contains(errorWith([](GltfText& g) { g.nodes = R"([{"children":[1]},{"children":[0]}])"; }), "is a child twice"));
+    CHECK(contains(errorWith([](GltfText& g) { g.nodes = R"([{"mesh":1}])"; }), "nodes[0]: names mesh 1 of 1"));
+    CHECK(contains(errorWith([](GltfText& g) { g.nodes = R"([{"mesh":0,"scale":[1,1,0]}])"; }), "has no inverse"));
+    CHECK(contains(errorWith([](GltfText& g) { g.nodes = R"([{"mesh":0,"matrix":[1,2]}])"; }), "matrix has 2 numbers, expected 16"));
+    CHECK(contains(errorWith([](GltfText& g) { g.nodes = "[{}]"; }), "a glTF without splats"));
+    CHECK(contains(errorWith([](GltfText& g) { g.other_keys = R"(,"extensionsRequired":["EXT_meshopt_compression"])"; }),
+                   "requires the extension EXT_meshopt_compression"));
+
+    const GltfText gltf = makeGltf(9);
+    const std::string json = gltf.json("");
+    const auto errorOfText = [&](const std::string& from, const std::string& to) {
+        return errorOf(GltfText::makeGlb(replaced(json, from, to), gltf.binary()));
+    };
+    CHECK(contains(errorOfText("\"byteOffset\":0", "\"byteOffset\":-4"), "bufferViews[0].byteOffset: is -4, expected a whole number"));
+    CHECK(contains(errorOfText("\"byteOffset\":36", "\"byteOffset\":99999"), "ends beyond its buffer"));
+    CHECK(contains(errorOfText("\"count\":3", "\"count\":4"), "do not fit"));
+    CHECK(contains(errorOfText("\"count\":3", "\"count\":18446744073709551615"), "do not fit"));
+    CHECK(contains(errorOfText("\"bufferView\":0,", ""), "has no bufferView"));
+    CHECK(contains(errorOfText("\"buffers\":[{\"byteLength\":", "\"buffers\":[{\"byteLength\":9"), "bytes are there"));
+    CHECK(contains(errorOfText("\"version\":\"2.0\"", "\"version\":2"), "not a whole glTF"));
+    CHECK(contains(errorOf(gltf.glb().substr(0, 15)), "expected a GLB's header of 20"));
+    CHECK(contains(errorOf(replaced(gltf.glb(), std::string("glTF\2", 5), std::string("glTF\1", 5))), "version 1, expected 2"));
+    for (const char* uri : {"../x.bin", "/etc/passwd", "a%2", "http://a/b", ""}) {
+        CHECK(contains(loadError(folder.write("out.gltf", gltf.json(fmt::format(",\"uri\":\"{}\"", uri)))),
+                       "expected a path within the folder"));
+    }
+    CHECK(contains(loadError(folder.write("out.gltf", gltf.json(R"(,"uri":"gone.bin")"))), "gone.bin: no such file"));
+    CHECK(contains(loadError(folder.write("out.gltf", gltf.json(R"(,"uri":"data:x,y")"))), "buffers[0]: uri begins with 'data:x,y'"));
+    CHECK(contains(loadError(folder.write("out.gltf", gltf.json(""))), "buffers[0]: has no uri"));
+    // A thousand nodes that show a million splats each would fill the memory.
+    GltfText many = makeGltf(0);
+    many.nodes = "[";
+    many.roots = "[";
+    for (int i = 0; i < 2000; ++i) { many.nodes += R"({"mesh":0},)", many.roots += fmt::format("{},", i); }
+    many.nodes.back() = ']', many.roots.back() = ']';
+    CHECK(loadScene(folder.write("many.glb", many.glb())).size() == 6000);
+}
+
+}  // namespace gltf_format_test

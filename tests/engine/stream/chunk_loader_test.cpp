@@ -1,0 +1,204 @@
+// Parts of streamed scenes beside whoever wants them: what is wished for and nothing else, in that order, whatever files and servers do.
+#include "engine/stream/chunk_loader.h"
+
+#include "engine/scene/procedural.h"
+#include "tests/engine/scene/streamed_scenes.h"
+#include "tests/engine/stream/split_scene.h"
+#ifdef BINOSPLAT_WEB_TESTS
+#include "tests/engine/web/web_runs.h"
+#endif
+
+#include <map>
+#include <numeric>
+#include <set>
+
+TEST_SUITE_BEGIN("chunk_loader");
+
+namespace chunk_loader_test {
+
+using namespace binosplat;
+using namespace binosplat::test;
+
+namespace {
+
+constexpr std::chrono::milliseconds kPatience(60'000);
+
+// 20,000 splats in 32 leaves of four levels, several leaves to a file.
+std::string writeSplit(const Folder& folder) {
+    splitScene(makeBuiltin("builtin:atelier", 20'000), folder.file("split"), {.leaf_splats = 1000, .levels = 4, .chunk_splats = 4000});
+    return folder.file("split");
+}
+
+std::unique_ptr<ChunkSource> open(const std::string& source) { return std::make_unique<ChunkSource>(source, WebSettings()); }
+
+[[maybe_unused]] std::string bytesOf(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+// One level of every leaf.
+std::vector<LeafLevel> everyLeaf(const ChunkSource& source, std::uint32_t level) {
+    std::vector<LeafLevel> all;
+    for (std::uint32_t leaf = 0; leaf < source.leaves().size(); ++leaf) { all.push_back({leaf, level}); }
+    return all;
+}
+
+// Takes until nothing more comes.
+std::vector<LoadedPart> takeAll(ChunkLoader& loader) {
+    std::vector<LoadedPart> all;
+    while (!loader.isDone()) {
+        REQUIRE(loader.waitForNews(kPatience));
+        for (LoadedPart& part : loader.take()) { all.push_back(std::move(part)); }
+    }
+    return all;
+}
+
+std::vector<LeafLevel> placesOf(const std::vector<LoadedPart>& parts) {
+    std::vector<LeafLevel> places;
+    for (const LoadedPart& part : parts) { places.push_back(part.at); }
+    return places;
+}
+
+}  // namespace
+
+TEST_CASE("what is wished for comes whole, the coarsest level before any finer one") {
+    const Folder folder;
+    ChunkLoader loader(open(writeSplit(folder)), {});
+    const ChunkSource& source = loader.source();
+    loader.want(everyLeaf(source, 3), everyLeaf(source, 0));
+    const std::vector<LoadedPart> parts = takeAll(loader);
+    REQUIRE(parts.size() == 64);
+    std::map<std::size_t, Scene> files;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        const LeafLevel at = parts[i].at;
+        CHECK(at.level == (i < 32 ? 3 : 0));
+        const LodRange& range = source.leaves()[at.leaf].levels[at.level];
+        if (!files.contains(range.file)) { files[range.file] = loadScene(folder.file("split/" + source.meta().files[range.file])); }
+        const Scene& file = files[range.file];
+        REQUIRE(parts[i].splats == range.splats.count);
+        REQUIRE(parts[i].scene.size() == range.splats.count);
+        const auto begin = file.positions.begin() + static_cast<std::ptrdiff_t>(range.splats.first);
+        CHECK(std::equal(parts[i].scene.positions.begin(), parts[i].scene.positions.end(), begin));
+        CHECK(parts[i].scene.isGaussian3d());
+    }
+    CHECK(loader.takeLines().empty());
+    CHECK(files.size() > 4);
+    const std::optional<LoaderWork> work = loader.tryWork();
+    REQUIRE(work.has_value());
+    CHECK(work->splats == std::accumulate(parts.begin(), parts.end(), std::uint64_t{0},
+                                          [](std::uint64_t sum, const LoadedPart& part) { return sum + part.splats; }));
+    CHECK(work->seconds > 0.0);
+}
+
+TEST_CASE("the same wishes give the same parts in the same order, on any number of threads") {
+    const Folder folder;
+    const std::string source = writeSplit(folder);
+    std::vector<std::vector<LeafLevel>> orders;
+    for (const int threads : {1, 3}) {
+        LoaderSettings settings;
+        settings.threads = threads;
+        settings.kept_files = static_cast<std::size_t>(threads) - 1;
+        ChunkLoader loader(open(source), settings);
+        loader.want(everyLeaf(loader.source(), 3), {{5, 1}, {31, 0}, {7, 1}, {6, 2}});
+        orders.push_back(placesOf(takeAll(loader)));
+    }
+    CHECK(orders[0] == orders[1]);
+    CHECK(orders[0].size() == 36);
+}
+
+TEST_CASE("wishes that are given up are not loaded, and what waits is bounded") {
+    const Folder folder;
+    LoaderSettings settings;
+    settings.waiting_splats = 1;  // no second batch before the first is taken
+    ChunkLoader loader(open(writeSplit(folder)), settings);
+    const ChunkSource& source = loader.source();
+    loader.want({}, everyLeaf(source, 0));
+    REQUIRE(loader.waitForNews(kPatience));
+    loader.want({}, {{31, 2}});
+    const std::vector<LoadedPart> parts = takeAll(loader);
+    CHECK(parts.size() <= 9);  // the batch that was there already
+    CHECK(placesOf(parts).back() == LeafLevel{31, 2});
+    // What waits to be taken is not loaded once more.
+    loader.want({}, {{30, 2}});
+    REQUIRE(loader.waitForNews(kPatience));
+    loader.want({}, {{30, 2}, {29, 2}});
+    CHECK(placesOf(takeAll(loader)) == std::vector<LeafLevel>{{30, 2}, {29, 2}});
+    // Nor is anybody kept waiting who leaves with wishes open.
+    loader.want({}, everyLeaf(source, 0));
+}
+
+TEST_CASE("of a file that is broken or missing one line says so, and the others come") {
+    const Folder folder;
+    const std::string source = writeStreamed(folder, "scene", makeLodMeta());
+    std::filesystem::remove(source + "/b/q.webp");
+    ChunkLoader loader(open(source), {});
+    REQUIRE(loader.source().leaves().size() == 4);  // with the environment
+    loader.want({{3, 0}, {0, 1}, {1, 1}, {2, 0}}, {{0, 0}, {1, 0}});
+    CHECK(placesOf(takeAll(loader)) == std::vector<LeafLevel>{{3, 0}, {0, 1}, {1, 1}, {0, 0}, {1, 0}});
+    const std::vector<std::string> lines = loader.takeLines();
+    REQUIRE(lines.size() == 1);
+    CHECK(contains(lines[0], "b/q.webp: no such file"));
+    CHECK(loader.takeLines().empty());
+    CHECK(loader.brokenFiles() == std::vector<bool>{false, true, false, false});
+    CHECK(loader.isDone());
+}
+
+TEST_CASE("ranges beyond a chunk break that chunk alone") {
+    const Folder folder;
+    const std::string source =
+        writeStreamed(folder, "scene", replaced(makeLodMeta(), R"("file":1,"offset":0,"count":8)", R"("file":1,"offset":0,"count":9)"));
+    ChunkLoader loader(open(source), {});
+    loader.want({{2, 0}, {0, 1}}, {});
+    CHECK(placesOf(takeAll(loader)) == std::vector<LeafLevel>{{0, 1}});
+    const std::vector<std::string> lines = loader.takeLines();
+    REQUIRE(lines.size() == 1);
+    CHECK(contains(lines[0], "a leaf names splat 8 of filenames[1] (b/meta.json), which has 8"));
+}
+
+#ifdef BINOSPLAT_WEB_TESTS
+TEST_CASE("a server that goes away in the middle is waited for: one line, and the rest when it is back") {
+    const Folder folder;
+    const std::string path = writeSplit(folder);
+    std::map<std::string, std::string> files;
+    for (const auto& entry : std::filesystem::directory_iterator(path)) {
+        files["/" + entry.path().filename().string()] = bytesOf(entry.path());
+    }
+    std::atomic<bool> is_down = false;
+    const WebServer server([&](const WebRequest& request) {
+        if (is_down) { return answer("503 Service Unavailable"); }
+        const auto found = files.find(request.path);
+        return found != files.end() ? answer("200 OK", "", found->second) : answer("404 Not Found");
+    });
+    WebSettings web = webSettings(folder);
+    web.fetch.attempts = 1;
+    LoaderSettings settings;
+    settings.first_pause = settings.most_pause = std::chrono::milliseconds(1);
+    ChunkLoader loader(std::make_unique<ChunkSource>(server.at("/lod-meta.json"), web), settings);
+    const ChunkSource& source = loader.source();
+    loader.want(everyLeaf(source, 3), {});
+    CHECK(takeAll(loader).size() == 32);
+    is_down = true;
+    const std::vector<LeafLevel> finest = everyLeaf(source, 0);
+    loader.want({}, finest);
+    std::vector<std::string> lines;
+    while (lines.empty()) {
+        REQUIRE(loader.waitForNews(kPatience));
+        lines = loader.takeLines();
+    }
+    CHECK(contains(lines[0], "503"));
+    is_down = false;
+    std::set<std::uint32_t> leaves;
+    while (leaves.size() < finest.size()) {
+        (void)loader.waitForNews(kPatience);
+        for (const LoadedPart& part : loader.take()) { leaves.insert(part.at.leaf); }
+        for (const std::string& line : loader.takeLines()) { lines.push_back(line); }
+    }
+    CHECK(lines.size() == 1);
+    CHECK(loader.isDone());
+    // Each file once, apart from what failed.
+    const std::vector<std::string> asked = server.asked();
+    CHECK(std::ranges::count(asked, "/3_0.sog") == 1);
+}
+#endif
+
+}  // namespace chunk_loader_test

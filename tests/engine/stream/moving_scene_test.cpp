@@ -1,0 +1,282 @@
+// Scenes that move, on the device: the frame of the time, what lies between two, and what is late or broken.
+#include "engine/stream/moving_scene.h"
+
+#include "engine/error.h"
+#include "engine/frame/stereo_frame.h"
+#include "engine/picture/metrics.h"
+#include "tests/engine/frame/frame_runs.h"
+#include "tests/engine/gpu/gpu_fixture.h"
+#include "tests/engine/scene/ply_files.h"
+#include "tests/engine/stream/moving_frames.h"
+
+#include <atomic>
+
+TEST_SUITE_BEGIN("moving_scene");
+
+namespace moving_scene_test {
+
+using namespace binosplat;
+using namespace binosplat::test;
+
+namespace {
+
+constexpr int kFrames = 6;
+constexpr double kRate = 10.0;
+
+std::array<Eye, 2> atelierEyes() {
+    const View view = *builtinView("atelier");
+    return stereoPair({lookAt(view.eye, view.look, view.up), intrinsicsFromFovX(glm::radians(view.fov_x_deg), {160, 160}), {160, 160}},
+                      0.063);
+}
+
+Image pictureOf(StereoFrame& frame, Mode mode = Mode::kShared, bool keep_past = false) {
+    FrameSettings settings;
+    settings.mode = mode;
+    settings.keep_past = keep_past;
+    (void)frame.render(atelierEyes(), settings);
+    return frame.readPicture(kLeft);
+}
+
+Image pictureOf(const Context& context, const Scene& scene) {
+    const GpuScene whole(context, scene);
+    StereoFrame frame(context, whole);
+    const KeptKernels kept(context, frame);
+    return pictureOf(frame);
+}
+
+// At the middle of a scene frame.
+double timeOf(double frame) { return (frame + 0.5) / kRate; }
+
+// Until the scene of the time is shown, or what there is of it.
+template <typename Is>
+void updateUntil(MovingScene& scene, const Is& is) {
+    do {
+        scene.update({}, 0.0);
+        std::this_thread::yield();
+    } while (!is());
+}
+
+struct Sliding : Gpu {
+    Sliding() { writeSliding(folder.file("slide"), kFrames); }
+    [[nodiscard]] std::unique_ptr<MovingScene> open(MovingSettings settings = {}) const {
+        settings.rate_hz = kRate;
+        return std::make_unique<MovingScene>(context(), SceneSeries(folder.file("slide")), std::move(settings));
+    }
+    [[nodiscard]] std::string fileOf(int frame) const { return folder.file(fmt::format("slide/frame_{:04}.ply", frame + 1)); }
+
+    Folder folder;
+};
+
+}  // namespace
+
+TEST_CASE_FIXTURE(Sliding,
+                  "each frame of a moving scene is, to the bit, what its file is; before the first and after the last it begins again") {
+    const auto moving = open();
+    CHECK(moving->seconds() == doctest::Approx(kFrames / kRate));
+    StereoFrame frame(context(), moving->scene());
+    const KeptKernels kept(context(), frame);
+    for (const int at : {0, 3, 2, 5, 6, 13, -1}) {
+        CAPTURE(at);
+        moving->setTime(timeOf(at));
+        CHECK(moving->frameAt(timeOf(at)) == static_cast<std::size_t>((at + kFrames) % kFrames));
+        moving->settle({});
+        CHECK(pictureOf(frame).values == pictureOf(context(), loadScene(fileOf((at + kFrames) % kFrames))).values);
+    }
+    CHECK(moving->isSettled());
+    CHECK(moving->counters().scene_frames_late == 0);
+    CHECK(moving->counters().splats_read == 8000);
+    CHECK(moving->takeLines().empty());
+}
+
+TEST_CASE_FIXTURE(Sliding, "between two frames there is what lies between their splats, if asked for") {
+    const auto moving = open({.blend = true});
+    StereoFrame frame(context(), moving->scene());
+    const KeptKernels kept(context(), frame);
+    moving->setTime(2.25 / kRate);
+    moving->settle({});
+    const Image between = pictureOf(frame), wanted = pictureOf(context(), slidingAtelier(2.25));
+    CHECK(compare(between, wanted).psnrDb() > 60.0);
+    CHECK(compare(between, pictureOf(context(), slidingAtelier(2.0))).psnrDb() < 50.0);
+    // Files need not end as they begin.
+    moving->setTime((kFrames - 0.5) / kRate);
+    moving->settle({});
+    CHECK(pictureOf(frame).values == pictureOf(context(), loadScene(fileOf(kFrames - 1))).values);
+}
+
+TEST_CASE_FIXTURE(Sliding, "frames go on while the next is read, which is late at most once") {
+    for (const bool blend : {false, true}) {
+        CAPTURE(blend);
+        const auto moving = open({.blend = blend});
+        StereoFrame frame(context(), moving->scene());
+        const KeptKernels kept(context(), frame);
+        for (const double at : {0.5, 1.5, 2.5, 4.5, 7.5}) {
+            moving->setTime(at / kRate);
+            updateUntil(*moving, [&] {
+                return moving->frameAt(at / kRate) == static_cast<std::size_t>(at) % kFrames && (pictureOf(frame), moving->isSettled());
+            });
+            const int shown = static_cast<int>(at) % kFrames;
+            CHECK(compare(pictureOf(frame), pictureOf(context(), slidingAtelier(blend ? shown + 0.5 : shown))).psnrDb() > 60.0);
+        }
+        CHECK(moving->counters().frames_waited_for_loading == 0);
+        CHECK(moving->counters().scene_frames_late <= 4);
+    }
+}
+
+TEST_CASE_FIXTURE(Sliding, "a frame that is not there in time is late, counted once, and shown when it comes") {
+    std::atomic<bool> holds = false;
+    MovingSettings settings;
+    settings.memory_bytes = 1;  // the next ones alone
+    settings.draw_as = [&](Scene&, LoadNotes&) { holds.wait(true); };
+    const auto moving = open(std::move(settings));
+    StereoFrame frame(context(), moving->scene());
+    const KeptKernels kept(context(), frame);
+    moving->setTime(timeOf(0));
+    updateUntil(*moving, [&] { return moving->isSettled() || (pictureOf(frame), moving->isSettled()); });
+    const Image first = pictureOf(frame);
+    holds = true;
+    for (int i = 0; i < 5; ++i) {
+        moving->setTime(timeOf(5));
+        moving->update({}, 0.0);
+        CHECK(pictureOf(frame).values == first.values);
+    }
+    CHECK(moving->counters().scene_frames_late == 1);
+    holds = false;
+    holds.notify_all();
+    updateUntil(*moving, [&] { return pictureOf(frame).values != first.values; });
+    CHECK(pictureOf(frame).values == pictureOf(context(), loadScene(fileOf(5))).values);
+    CHECK(moving->counters().scene_frames_late == 1);
+}
+
+TEST_CASE_FIXTURE(Sliding, "in place of a broken frame the one before stays, and one line says so; pictures are not made of it") {
+    std::ofstream(fileOf(2), std::ios::binary | std::ios::trunc) << "ply\nbroken";
+    const auto moving = open();
+    StereoFrame frame(context(), moving->scene());
+    const KeptKernels kept(context(), frame);
+    for (int at = 0; at < 4; ++at) {
+        moving->setTime(timeOf(at));
+        const auto broken = [&] { return at == 2 && !moving->isSettled(); };
+        std::vector<std::string> lines;
+        updateUntil(*moving, [&] {
+            pictureOf(frame);
+            for (std::string& line : moving->tryTakeLines()) { lines.push_back(std::move(line)); }
+            return broken() ? true : moving->isSettled();
+        });
+        CHECK(pictureOf(frame).values == pictureOf(context(), loadScene(fileOf(at == 2 ? 1 : at))).values);
+    }
+    moving->setTime(timeOf(2));
+    CHECK_THROWS_AS(moving->settle({}), Error);
+    moving->setTime(timeOf(4));
+    moving->settle({});
+    CHECK(pictureOf(frame).values == pictureOf(context(), loadScene(fileOf(4))).values);
+}
+
+TEST_CASE_FIXTURE(Sliding, "frames may have more splats or fewer, as far as the sizes of files let expect") {
+    writePly(slidingAtelier(2, 12'000), fileOf(2));
+    writePly(slidingAtelier(3, 1'000), fileOf(3));
+    const auto moving = open({.memory_bytes = 1});
+    StereoFrame frame(context(), moving->scene());
+    const KeptKernels kept(context(), frame);
+    for (const int at : {0, 2, 3, 0, 3, 2, 0}) {
+        CAPTURE(at);
+        moving->setTime(timeOf(at));
+        moving->settle({});
+        const Scene whole = loadScene(fileOf(at));
+        CHECK(moving->counters().splats_resident == whole.size());
+        CHECK(pictureOf(frame).values == pictureOf(context(), whole).values);
+    }
+    // One that has grown since its size was looked at.
+    writePly(slidingAtelier(4, 60'000), fileOf(4));
+    moving->setTime(timeOf(4));
+    CHECK_THROWS_WITH_AS(moving->settle({}), doctest::Contains("there is room for"), Error);
+}
+
+TEST_CASE_FIXTURE(Sliding, "pictures that are made from their pasts show what moves, and what stays equal costs them nothing") {
+    const auto moving = open();
+    StereoFrame temporal(context(), moving->scene()), full(context(), moving->scene());
+    // From where it is a part of the picture, and from where it is most of it.
+    for (const double back_m : {1.2, 0.0}) {
+        std::array<Eye, 2> eyes = atelierEyes();
+        for (Eye& eye : eyes) { eye.world_from_camera.position.z -= back_m; }
+        double worst_db = 1000.0;
+        for (int step = 0; step < 30; ++step) {
+            moving->setTime(static_cast<double>(step) / 40.0);  // four frames of display for each of the scene
+            moving->settle({});
+            FrameSettings settings;
+            settings.mode = Mode::kTemporal;
+            settings.keep_past = true;
+            (void)temporal.render(eyes, settings);
+            settings.mode = Mode::kShared;
+            (void)full.render(eyes, settings);
+            for (const int eye : {kLeft, kRight}) {
+                const double psnr_db = compare(temporal.readPicture(eye), full.readPicture(eye)).psnrDb();
+                if (step >= 8) { worst_db = std::min(worst_db, psnr_db); }
+            }
+        }
+        MESSAGE("worst frame " << worst_db << " dB");
+        CHECK(worst_db > 27.0);
+    }
+    // Equal files.
+    for (int at = 1; at < kFrames; ++at) { writePly(slidingAtelier(0), fileOf(at)); }
+    const auto still = open();
+    StereoFrame frame(context(), still->scene());
+    (void)pictureOf(frame);
+    const std::uint64_t before = still->scene().changesRecorded();
+    for (int at = 1; at < kFrames; ++at) {
+        still->setTime(timeOf(at));
+        still->settle({});
+        CHECK(still->isSettled());
+        (void)pictureOf(frame);
+    }
+    CHECK(still->scene().changesRecorded() == before);
+}
+
+TEST_CASE_FIXTURE(Gpu, "where nearly half of the picture changes, both eyes are predicted's, and the frames after it have pasts again") {
+    MovingScene moving(context(), SceneSeries("builtin:clockwork"), {.rate_hz = kRate, .memory_bytes = 1});
+    StereoFrame temporal(context(), moving.scene()), other(context(), moving.scene());
+    const KeptKernels kept(context(), temporal);
+    const Eye middle = eyeOf(*builtinView("clockwork"), {192, 144});
+    for (const double at : {0.0, 0.2, 1.0, 1.2, 1.4}) {
+        CAPTURE(at);
+        moving.setTime(timeOf(at));
+        moving.settle({});
+        Eye eye = middle;
+        eye.world_from_camera.position.x += 0.01 * at;
+        FrameSettings settings;
+        settings.mode = Mode::kTemporal;
+        settings.keep_past = true;
+        const FrameResult result = temporal.render(stereoPair(eye, 0.063), settings);
+        settings.mode = Mode::kPredicted;
+        const FrameResult predicted = other.render(stereoPair(eye, 0.063), settings);
+        const bool has_past = at != 0.0 && at != 1.0;
+        for (const int e : {kLeft, kRight}) { CHECK((temporal.readPicture(e).values == other.readPicture(e).values) == !has_past); }
+        // Of both eyes, or of the one that is not rendered in full.
+        CHECK((result.counters.targets[kLeft].tile_pairs == predicted.counters.targets[kLeft].tile_pairs) == !has_past);
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu, "frames under way have room for what changes, whether it is less or more than a past is kept for") {
+    MovingScene moving(context(), SceneSeries("builtin:clockwork"), {.rate_hz = kRate, .memory_bytes = 1});
+    StereoFrame ahead(context(), moving.scene()), waited(context(), moving.scene());
+    const KeptKernels kept(context(), ahead);
+    const Eye middle = eyeOf(*builtinView("clockwork"), {192, 144});
+    FrameSettings settings;
+    settings.mode = Mode::kTemporal;
+    settings.keep_past = true;
+    for (int step = 0; step < 16; ++step) {
+        // Another frame of the scene in every second, and in three one after the other.
+        const int at = step < 8 ? step / 2 : step - 4;
+        moving.setTime(timeOf(std::min(at, 8)));
+        moving.settle({});
+        Eye eye = middle;
+        eye.world_from_camera.position.x += 0.004 * step;
+        (void)ahead.renderAhead(stereoPair(eye, 0.063), settings);
+        (void)waited.render(stereoPair(eye, 0.063), settings);
+    }
+    const std::optional<FrameResult> last = ahead.finish();
+    REQUIRE(last.has_value());
+    REQUIRE(last->counters.ahead.has_value());
+    CHECK(last->counters.ahead->frames_cut_short == 0);
+    for (const int e : {kLeft, kRight}) { CHECK(ahead.readPicture(e).values == waited.readPicture(e).values); }
+}
+
+}  // namespace moving_scene_test

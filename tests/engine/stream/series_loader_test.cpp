@@ -1,0 +1,115 @@
+// Frames of a moving scene read ahead: in the order in which they will be needed, within a limit of memory, and broken ones once.
+#include "engine/stream/series_loader.h"
+
+#include "engine/error.h"
+#include "tests/engine/stream/moving_frames.h"
+
+#include <doctest/doctest.h>
+
+#include <atomic>
+#include <set>
+
+TEST_SUITE_BEGIN("series_loader");
+
+namespace series_loader_test {
+
+using namespace binosplat;
+using namespace binosplat::test;
+
+namespace {
+
+constexpr std::size_t kScenes = 12;
+
+Scene shifted(std::size_t scene) {
+    Scene made = makeBuiltin("builtin:slanted-wall");
+    for (glm::vec3& p : made.positions) { p.x += 0.1f * static_cast<float>(scene); }
+    return made;
+}
+
+std::vector<std::size_t> from(std::size_t first) {
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < kScenes; ++i) { order.push_back((first + i) % kScenes); }
+    return order;
+}
+
+template <typename Is>
+void waitUntil(const Is& is) {
+    while (!is()) { std::this_thread::yield(); }
+}
+
+void want(SeriesLoader& loader, const std::vector<std::size_t>& scenes) {
+    waitUntil([&] { return loader.tryWant(scenes); });
+}
+
+}  // namespace
+
+TEST_CASE("with room for all every frame is read once, in order, and stays") {
+    std::mutex mutex;
+    std::vector<std::size_t> read;
+    const SceneTraits traits = traitsOf(shifted(0));
+    SeriesLoader loader(
+        [&](std::size_t scene) {
+            const std::lock_guard lock(mutex);
+            read.push_back(scene);
+            return shifted(scene);
+        },
+        kScenes, traits, {});
+    want(loader, from(4));
+    for (std::size_t scene = 0; scene < kScenes; ++scene) {
+        waitUntil([&] { return loader.tryGet(scene) != nullptr; });
+        CHECK(loader.get(scene)->front()->bytes == makeSceneFrame(shifted(scene), traits).front()->bytes);
+    }
+    want(loader, from(7));
+    CHECK(loader.get(6) == loader.tryGet(6));
+    const std::lock_guard lock(mutex);
+    CHECK(read == from(4));
+    CHECK(loader.takeLines().empty());
+}
+
+TEST_CASE("within a limit the next ones are there, and what is needed last makes room") {
+    const SceneTraits traits = traitsOf(shifted(0));
+    const std::uint64_t bytes = bytesIn(makeSceneFrame(shifted(0), traits));
+    std::atomic<int> reads = 0;
+    SeriesLoader loader(
+        [&](std::size_t scene) {
+            ++reads;
+            return shifted(scene);
+        },
+        kScenes, traits, {.most_bytes = 5 * bytes, .threads = 2});
+    for (const std::size_t first : {std::size_t{0}, std::size_t{1}, std::size_t{2}, std::size_t{9}, std::size_t{3}}) {
+        want(loader, from(first));
+        for (std::size_t i = 0; i < 4; ++i) {
+            waitUntil([&] { return loader.tryGet((first + i) % kScenes) != nullptr; });
+        }
+        CHECK(loader.bytesKept() <= 5 * bytes);
+    }
+    CHECK(reads < 24);
+    // A limit that nothing fits into: the next ones all the same.
+    SeriesLoader small([](std::size_t scene) { return shifted(scene); }, kScenes, traits, {.most_bytes = 1, .threads = 1});
+    want(small, from(0));
+    for (std::size_t scene = 0; scene < kScenes; ++scene) {
+        want(small, from(scene));
+        waitUntil([&] { return small.tryGet(scene) != nullptr; });
+        CHECK(small.bytesKept() <= SeriesLoader::kLeastKept * bytes);
+    }
+}
+
+TEST_CASE("a frame that is broken is said once, and the others come") {
+    const SceneTraits traits = traitsOf(shifted(0));
+    SeriesLoader loader(
+        [](std::size_t scene) {
+            check(scene != 3 && scene != 5, "frame {} is broken", scene);
+            return shifted(scene);
+        },
+        kScenes, traits, {});
+    want(loader, from(2));
+    CHECK(loader.get(6) != nullptr);
+    CHECK(loader.get(1) != nullptr);
+    waitUntil([&] { return loader.isSurelyBroken(3) && loader.isSurelyBroken(5); });
+    CHECK(loader.takeLines() == std::vector<std::string>{"frame 3 is broken", "frame 5 is broken"});
+    CHECK(loader.takeLines().empty());
+    CHECK_THROWS_WITH_AS((void)loader.get(3), "frame 3 is broken", Error);
+    CHECK_FALSE(loader.isSurelyBroken(4));
+}
+
+}  // namespace series_loader_test

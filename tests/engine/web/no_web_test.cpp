@@ -1,0 +1,19 @@
+// A build without network says so.
+#include "engine/web/web_files.h"
+#include "tests/engine/scene/ply_files.h"
+
+TEST_SUITE_BEGIN("no_web");
+
+namespace no_web_test {
+
+using namespace binosplat;
+using namespace binosplat::test;
+
+TEST_CASE("a scene at an address names the build that reads it") {
+    const Folder folder;
+    LoadNotes notes;
+    CHECK_THROWS_WITH_AS((void)loadSceneFromAnywhere("http://127.0.0.1/a.ply", 0, notes, {}, {}, {folder.file("cache"), 0, {}}),
+                         doctest::Contains("this build has no network"), Error);
+}
+
+}  // namespace no_web_test

@@ -1,0 +1,286 @@
+// Servers that are busy, cut off, lie, lead elsewhere or vanish: the scene all the same, or one plain line and nothing left behind.
+#include "engine/scene/ply.h"
+#include "engine/scene/procedural.h"
+#include "tests/engine/scene/spz_files.h"
+#include "tests/engine/web/web_runs.h"
+
+TEST_SUITE_BEGIN("web_fetch");
+
+namespace web_fetch_test {
+
+using namespace binosplat;
+using namespace binosplat::test;
+
+namespace {
+
+const std::string kPly = makePly(45).bytes();
+
+struct Enough {};
+
+// Answers the first requests with these, and all others with the scene.
+WebServer::Handler afterThese(std::vector<WebAnswer> first) {
+    return [first = std::move(first)](const WebRequest& request) {
+        return request.number < first.size() ? first[request.number] : answer("200 OK", "", kPly);
+    };
+}
+
+WebAnswer cutAfter(std::size_t bytes, WebAnswer::Then then = WebAnswer::Then::kClose) {
+    WebAnswer whole = answer("200 OK", "", kPly);
+    whole.bytes.resize(whole.bytes.size() - kPly.size() + bytes);
+    whole.then = then;
+    return whole;
+}
+
+// As a server that does not know how long it is, or says something else.
+WebAnswer withLength(const std::string& header, const std::string& body) {
+    return {fmt::format("HTTP/1.1 200 OK\r\n{}\r\n{}", header, body), WebAnswer::Then::kClose};
+}
+
+// The error, of a server that gives every request this answer; nothing is left in the cache then.
+std::string errorOf(const WebAnswer& given, WebSettings (*settings)(const Folder&) = webSettings, std::size_t attempts = 1) {
+    const Folder folder;
+    const WebServer server([given](const WebRequest&) { return given; });
+    std::string message = webError(server.at("/a.ply"), settings(folder));
+    CHECK(server.asked().size() == attempts);
+    CHECK(filesIn(folder.file("cache")).empty());
+    return message.substr(std::min(message.size(), server.at("/a.ply: ").size()));
+}
+
+}  // namespace
+
+TEST_CASE("a server that is busy or cuts off is asked again") {
+    const Folder folder;
+    const Scene scene = loadScene(folder.write("a.ply", kPly));
+    for (const WebAnswer& first :
+         {answer("429 Too Many Requests", "Retry-After: 0\r\n"), answer("500 Internal Server Error", "", "sorry"),
+          answer("503 Service Unavailable"), cutAfter(0), cutAfter(kPly.size() / 2), cutAfter(kPly.size() - 1),
+          WebAnswer{"", WebAnswer::Then::kClose}, WebAnswer{"HTTP/1.1 200 OK\r\nContent-", WebAnswer::Then::kClose}}) {
+        CAPTURE(first.bytes.substr(0, 40));
+        const WebServer server(afterThese({first, first}));
+        checkSameScene(scene, loadFromWeb(server.at("/a.ply"), webSettings(folder)));
+        CHECK(server.asked().size() == 3);
+        std::filesystem::remove_all(folder.file("cache"));
+    }
+}
+
+TEST_CASE("a file that broke off goes on where it ended, if it is still the same") {
+    const Folder folder;
+    const Scene scene = loadScene(folder.write("a.ply", kPly));
+    const std::size_t half = kPly.size() / 2;
+    const auto rest = [&](std::size_t from, const std::string& etag, std::size_t until = kPly.size()) {
+        return answer("206 Partial Content",
+                      fmt::format("ETag: {}\r\nContent-Range: bytes {}-{}/{}\r\n", etag, from, kPly.size() - 1, kPly.size()),
+                      kPly.substr(from, until - from));
+    };
+    // After the first half came with the ETag `etag`: what was asked for then, with the answers `second` and, from then on, the whole file.
+    const auto rangesAfter = [&](const std::string& etag, const WebAnswer& second) {
+        std::vector<std::string> asked;
+        WebAnswer first = cutAfter(half);
+        first.bytes.insert(first.bytes.find("\r\n") + 2, fmt::format("ETag: {}\r\n", etag));
+        {
+            const WebServer server([&](const WebRequest& request) {
+                const auto header = [&](const char* name) {
+                    const auto found = request.headers.find(name);
+                    return found != request.headers.end() ? found->second : "";
+                };
+                asked.push_back(header("range") + " " + header("if-range"));
+                return request.number == 0 ? first : request.number == 1 ? second : answer("200 OK", "ETag: \"3\"\r\n", kPly);
+            });
+            checkSameScene(scene, loadFromWeb(server.at("/a.ply"), webSettings(folder)));
+        }
+        CHECK(filesIn(folder.file("cache")).size() == 2);
+        std::filesystem::remove_all(folder.file("cache"));
+        return asked;
+    };
+    using Asked = std::vector<std::string>;
+    const std::string asks = fmt::format("bytes={}- \"1\"", half);
+    CHECK(rangesAfter("\"1\"", rest(half, "\"1\"")) == Asked{" ", asks});
+    // A server that sends the whole, of this version or another.
+    CHECK(rangesAfter("\"1\"", answer("200 OK", "ETag: \"1\"\r\n", kPly)) == Asked{" ", asks});
+    CHECK(rangesAfter("\"1\"", answer("200 OK", "ETag: \"2\"\r\n", kPly)) == Asked{" ", asks});
+    // A rest that is none, or of another version: the whole is asked for.
+    for (const WebAnswer& second :
+         {rest(half, "\"2\""), rest(half + 1, "\"1\""), rest(0, "\"1\""),
+          answer("206 Partial Content", "ETag: \"1\"\r\n", kPly.substr(half)),
+          answer("206 Partial Content", "ETag: \"1\"\r\nContent-Range: bytes */9\r\n", "x"), answer("416 Range Not Satisfiable")}) {
+        CAPTURE(second.bytes.substr(0, 120));
+        CHECK(rangesAfter("\"1\"", second) == Asked{" ", asks, " "});
+    }
+    // A rest that is too short is one more break; nothing goes on from a busy server's answer.
+    CHECK(rangesAfter("\"1\"", rest(half, "\"1\"", kPly.size() - 1)) == Asked{" ", asks, fmt::format("bytes={}- \"1\"", kPly.size() - 1)});
+    CHECK(rangesAfter("\"1\"", answer("503 Service Unavailable", "", "busy")) == Asked{" ", asks, asks});
+    CHECK(rangesAfter("\"1\"", WebAnswer{"HTTP/1.1 200 OK\r\nContent-", WebAnswer::Then::kClose}) == Asked{" ", asks, asks});
+    // Without a version that says that every byte is the same, nothing is put together.
+    CHECK(rangesAfter("W/\"1\"", answer("200 OK", "", kPly)) == Asked{" ", " "});
+}
+
+TEST_CASE("a file of unknown length goes on only to the length that the rest tells") {
+    const std::string chunk = fmt::format("{:x}\r\n{}", kPly.size(), kPly.substr(0, 300));
+    const WebAnswer cut{"HTTP/1.1 200 OK\r\nETag: \"1\"\r\nTransfer-Encoding: chunked\r\n\r\n" + chunk, WebAnswer::Then::kClose};
+    const auto part = [](std::size_t from, std::size_t end, const std::string& total) {
+        return answer("206 Partial Content", fmt::format("ETag: \"1\"\r\nContent-Range: bytes {}-{}/{}\r\n", from, end - 1, total),
+                      kPly.substr(from, end - from));
+    };
+    const std::string total = std::to_string(kPly.size());
+    for (const auto& [second, requests] :
+         {std::pair(part(300, kPly.size(), total), 2u), std::pair(part(300, 500, total), 3u), std::pair(part(300, 500, "*"), 3u)}) {
+        const Folder folder;
+        const Scene scene = loadScene(folder.write("a.ply", kPly));
+        const WebServer server([&](const WebRequest& request) {
+            if (request.number < 2) { return request.number == 0 ? cut : second; }
+            return request.headers.contains("range") ? part(500, kPly.size(), total) : answer("200 OK", "ETag: \"1\"\r\n", kPly);
+        });
+        checkSameScene(scene, loadFromWeb(server.at("/a.ply"), webSettings(folder)));
+        CHECK(server.asked().size() == requests);
+    }
+}
+
+TEST_CASE("a large file may break off more often than attempts are made") {
+    constexpr std::size_t kPiece = 1 << 20;
+    const Folder folder;
+    writePly(makeBuiltin("builtin:atelier", 100000), folder.file("a.ply"));
+    const Scene scene = loadScene(folder.file("a.ply"));
+    const std::string large = textOf(folder.file("a.ply"));
+    REQUIRE(large.size() > 6 * kPiece);
+    const WebServer server([&](const WebRequest& request) {
+        const auto range = request.headers.find("range");
+        const std::size_t from = range != request.headers.end() ? std::stoul(range->second.substr(6)) : 0;
+        WebAnswer given{fmt::format("HTTP/1.1 {}\r\nContent-Length: {}\r\nETag: \"1\"\r\nContent-Range: bytes {}-{}/{}\r\n\r\n{}",
+                                    from > 0 ? "206 Partial Content" : "200 OK", large.size() - from, from, large.size() - 1, large.size(),
+                                    large.substr(from, kPiece)),
+                        WebAnswer::Then::kClose};
+        return given;
+    });
+    WebSettings settings = webSettings(folder);
+    settings.fetch.attempts = 2;
+    checkSameScene(scene, loadFromWeb(server.at("/a.ply"), settings));
+    CHECK(server.asked().size() == (large.size() + kPiece - 1) / kPiece);
+}
+
+TEST_CASE("a few attempts are enough") {
+    CHECK(errorOf(answer("503 Service Unavailable"), webSettings, 4) ==
+          "the server cannot serve it (it answers 503), after 4 attempts; try again later");
+    CHECK(errorOf(cutAfter(100), webSettings, 4) ==
+          fmt::format("was cut off after 100 of {} bytes, after 4 attempts; try again later", kPly.size()));
+    CHECK(errorOf(WebAnswer{"", WebAnswer::Then::kClose}, webSettings, 4).starts_with("the server hangs up ("));
+    // One that asks for an hour gets no second request.
+    CHECK(errorOf(answer("429 Too Many Requests", "Retry-After: 3600\r\n")) == "the server asks to wait 3600 s; try again then");
+}
+
+TEST_CASE("a file that is not there, or not for everybody, is refused at once") {
+    CHECK(errorOf(answer("404 Not Found", "", "<html>")) == "is not there (the server answers 404), expected the address of a scene file");
+    CHECK(errorOf(answer("403 Forbidden")) == "may not be read (the server answers 403), expected an address that anybody may read");
+    CHECK(errorOf(answer("204 No Content")).starts_with("cannot be had (the server answers 204)"));
+    CHECK(errorOf(answer("304 Not Modified")).starts_with("cannot be had (the server answers 304)"));
+    // Whatever comes with it, and however much.
+    CHECK(errorOf(answer("404 Not Found", "", std::string(1 << 20, 'x'))).starts_with("is not there"));
+    CHECK(errorOf({"hello\r\n\r\n", WebAnswer::Then::kClose}).starts_with("cannot be had ("));
+}
+
+TEST_CASE("what a server says of a file's length is not believed") {
+    // Longer than it is: cut off.
+    CHECK(errorOf(withLength(fmt::format("Content-Length: {}\r\n", kPly.size() + 1), kPly), webSettings, 4)
+              .starts_with(fmt::format("was cut off after {} of {} bytes", kPly.size(), kPly.size() + 1)));
+    // Longer than any disk: not even begun.
+    CHECK(errorOf(withLength("Content-Length: 9000000000000000000\r\n", kPly))
+              .starts_with("is 9000000000000000000 bytes long, expected at most"));
+    // More than may be taken.
+    const auto little = [](const Folder& folder) {
+        WebSettings settings = webSettings(folder);
+        settings.fetch.most_bytes = kPly.size() - 1;
+        return settings;
+    };
+    const std::string most = fmt::format("{} bytes, which is the most that is taken", kPly.size() - 1);
+    CHECK(errorOf(withLength("", kPly), little) == "is longer than " + most);
+    CHECK(errorOf(withLength("Transfer-Encoding: chunked\r\n", fmt::format("{:x}\r\n{}\r\n0\r\n\r\n", kPly.size(), kPly)), little) ==
+          "is longer than " + most);
+
+    // Shorter: the scene ends early, whoever is to blame.
+    const Folder folder;
+    const WebServer server([](const WebRequest&) { return withLength(fmt::format("Content-Length: {}\r\n", kPly.size() - 9), kPly); });
+    CHECK(contains(webError(server.at("/a.ply"), webSettings(folder)), "a.ply: "));
+
+    // Of unknown length, all the same the scene.
+    const Scene scene = loadScene(folder.write("a.ply", kPly));
+    for (const WebAnswer& given :
+         {withLength("", kPly), withLength("Content-Length: 99999999999999999999999\r\n", kPly),
+          withLength("Transfer-Encoding: chunked\r\n", fmt::format("{:x}\r\n{}\r\n0\r\n\r\n", kPly.size(), kPly))}) {
+        const WebServer other([given](const WebRequest&) { return given; });
+        checkSameScene(scene, loadFromWeb(other.at("/a.ply"), webSettings(folder)));
+    }
+}
+
+TEST_CASE("chunks that break off are no end of the file") {
+    CHECK(errorOf(withLength("Transfer-Encoding: chunked\r\n", fmt::format("{:x}\r\n{}", kPly.size(), kPly.substr(0, 300))), webSettings, 4)
+              .starts_with("was cut off after 300 bytes"));
+}
+
+TEST_CASE("an empty file, and one that is no scene, are named by their address") {
+    const Folder folder;
+    const WebServer server({{"/empty", ""}, {"/page", "<!DOCTYPE html><html><body>A scene!</body></html>"}});
+    CHECK(contains(webError(server.at("/empty"), webSettings(folder)), "is empty, expected a scene file"));
+    CHECK(contains(webError(server.at("/page"), webSettings(folder)), "not a scene file of a known format"));
+}
+
+TEST_CASE("redirects are followed on the web, and never to a file") {
+    const auto leadTo = [](const std::string& place) { return answer("302 Found", "Location: " + place + "\r\n"); };
+    {
+        const Folder folder;
+        const Scene scene = loadScene(folder.write("a.ply", kPly));
+        const WebServer end({{"/in/a.ply", kPly}});
+        const WebServer server([&](const WebRequest& request) { return leadTo(request.path == "/1" ? "/2" : end.at("/in/a.ply")); });
+        checkSameScene(scene, loadFromWeb(server.at("/1"), webSettings(folder)));
+        CHECK(server.asked() == std::vector<std::string>{"/1", "/2"});
+    }
+    for (const std::string& place : {std::string("file://" BINOSPLAT_SOURCE_DIR "/README.md"), std::string("file:///etc/passwd"),
+                                     std::string("ftp://127.0.0.1/a"), std::string("gopher://127.0.0.1/")}) {
+        CAPTURE(place);
+        CHECK(errorOf(leadTo(place)) ==
+              "redirects to an address that may not be followed, expected one of http or https, and of https after https");
+    }
+    CHECK(errorOf(leadTo("/a.ply"), webSettings, 6) == "redirects more than 5 times, expected a file");
+}
+
+TEST_CASE("a server that falls silent is given up") {
+    const auto impatient = [](const Folder& folder) {
+        WebSettings settings = webSettings(folder);
+        settings.fetch.patience = std::chrono::milliseconds(100);
+        settings.fetch.attempts = 2;
+        return settings;
+    };
+    for (const std::size_t bytes : {std::size_t{0}, std::size_t{200}}) {
+        CHECK(errorOf(cutAfter(bytes, WebAnswer::Then::kHang), impatient, 2) ==
+              fmt::format("the server has fallen silent after {} bytes, after 2 attempts; try again later", bytes));
+    }
+    CHECK(errorOf({"", WebAnswer::Then::kHang}, impatient, 2).starts_with("the server has fallen silent after 0 bytes"));
+}
+
+TEST_CASE("a server that vanishes in the middle of a file, or was never there, is named") {
+    const Folder folder;
+    std::function<void()> vanish;
+    WebServer server([&](const WebRequest&) {
+        vanish();
+        return cutAfter(100);
+    });
+    vanish = [&] { server.refuse(); };
+    CHECK(contains(webError(server.at("/a.ply"), webSettings(folder)), "cannot be reached ("));
+    CHECK(contains(webError(server.at("/a.ply"), webSettings(folder)), "look at the network and at the address"));
+    CHECK(server.asked().size() == 1);
+    CHECK(filesIn(folder.file("cache")).empty());
+}
+
+TEST_CASE("who waits for a file may give up at any time") {
+    const Folder folder;
+    const WebServer server([](const WebRequest&) { return cutAfter(100, WebAnswer::Then::kHang); });
+    int told = 0;
+    CHECK_THROWS_AS((void)loadFromWeb(server.at("/a.ply"), webSettings(folder), nullptr, {},
+                                      [&](double share) {
+                                          CHECK(share >= 0.0);
+                                          CHECK(share <= 0.7);
+                                          if (++told == 3) { throw Enough(); }
+                                      }),
+                    Enough);
+    CHECK(filesIn(folder.file("cache")).empty());
+}
+
+}  // namespace web_fetch_test

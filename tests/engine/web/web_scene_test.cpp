@@ -1,0 +1,169 @@
+// Scenes of every format at addresses: the same as on the disk, and no more is asked for than they need.
+#include "tests/engine/scene/gltf_files.h"
+#include "tests/engine/scene/hostile_scenes.h"
+#include "tests/engine/scene/ksplat_files.h"
+#ifdef BINOSPLAT_SOG
+#include "tests/engine/scene/streamed_scenes.h"
+#endif
+#include "engine/scene/address.h"
+#include "tests/engine/web/web_runs.h"
+
+TEST_SUITE_BEGIN("web_scene");
+
+namespace web_scene_test {
+
+using namespace binosplat;
+using namespace binosplat::test;
+
+namespace {
+
+std::string messageOf(const std::string& address) {
+    try {
+        (void)parseAddress(address);
+    } catch (const Error& error) { return error.what(); }
+    return {};
+}
+
+std::vector<std::string> sorted(std::vector<std::string> names) {
+    std::ranges::sort(names);
+    return names;
+}
+
+// All that lies in a folder, by its path behind `prefix`.
+std::map<std::string, std::string> filesOf(const std::filesystem::path& folder, const std::string& prefix) {
+    std::map<std::string, std::string> files;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+        if (!entry.is_regular_file()) { continue; }
+        files[prefix + std::filesystem::relative(entry.path(), folder).generic_string()] = textOf(entry.path().string());
+    }
+    return files;
+}
+
+}  // namespace
+
+TEST_CASE("an address begins with http or https; a name in its folder cannot lead out of it") {
+    CHECK(isAddress("http://a/b.ply"));
+    CHECK(isAddress("HTTPS://a"));
+    for (const char* other : {"file:///etc/passwd", "ftp://a/b", "http:/a", "a/http://b", "builtin:fence", "https"}) {
+        CHECK_FALSE(isAddress(other));
+    }
+    const Address address = parseAddress("https://server:81/a b/c/meta.json?key=1&x#top");
+    CHECK(address.text == "https://server:81/a%20b/c/meta.json?key=1&x");
+    CHECK(address.folder == "https://server:81/a%20b/c/");
+    CHECK(address.server == "https://server:81");
+    CHECK(addressOf(address, "") == address.text);
+    CHECK(addressOf(address, "0/50% ä?#.webp") == "https://server:81/a%20b/c/0/50%25%20%C3%A4%3F%23.webp");
+    CHECK(parseAddress("http://server").folder == "http://server/");
+    CHECK(parseAddress("http://server?a/b").text == "http://server/?a/b");
+    for (const char* name : {"../a", "a/../b", "/a", "a//b", ".", "a/"}) {
+        CAPTURE(name);
+        CHECK_THROWS_AS((void)addressOf(address, name), Error);
+    }
+    CHECK(messageOf("http:///a.ply") == "http:///a.ply: names no server, expected https://SERVER/FILE");
+    CHECK(messageOf("https://me:secret@server/a.ply").find("names a user") != std::string::npos);
+    CHECK(messageOf("https://server/" + std::string(5000, 'a')).find("at most 4096 bytes") != std::string::npos);
+}
+
+TEST_CASE("a scene at an address is the same as on the disk, whatever its format") {
+    const Folder folder;
+    std::map<std::string, std::string> files{{"/a.ply", makePly(9, true).bytes()},
+                                             {"/packed.ply", makeCompressedPly()},
+                                             {"/a.splat", makeSplatFile()},
+                                             {"/a.ksplat", KsplatText().bytes()},
+                                             {"/a.spz", gzip(makeSpz(3).bytes())}};
+#ifdef BINOSPLAT_GLTF
+    files["/a.glb"] = makeGltf().glb();
+#endif
+#ifdef BINOSPLAT_SOG
+    files["/a.sog"] = makeZip(makeSog());
+#endif
+    const WebServer server(files);
+    for (const auto& file : files) {
+        const std::string& path = file.first;
+        CAPTURE(path);
+        const Scene local = loadScene(folder.write("scene", file.second)), far = loadFromWeb(server.at(path), webSettings(folder));
+        checkSameScene(local, far);
+        CHECK(far.name == server.at(path));
+        CHECK(local.size() > 0);
+    }
+    CHECK(server.asked().size() == files.size());
+}
+
+#ifdef BINOSPLAT_GLTF
+TEST_CASE("the buffers of a glTF scene are fetched from beside it") {
+    const Folder folder;
+    const std::string gltf = makeGltf().json(R"(,"uri":"parts/a%20b.bin")"), binary = makeGltf().binary();
+    std::filesystem::create_directory(folder.file("parts"));
+    (void)folder.write("parts/a b.bin", binary);
+    const WebServer server({{"/in/a.gltf", gltf}, {"/in/parts/a%20b.bin", binary}});
+    checkSameScene(loadScene(folder.write("a.gltf", gltf)), loadFromWeb(server.at("/in/a.gltf"), webSettings(folder)));
+    CHECK(server.asked() == std::vector<std::string>{"/in/a.gltf", "/in/parts/a%20b.bin"});
+}
+#endif
+
+#ifdef BINOSPLAT_SOG
+TEST_CASE("the pictures of a SOG scene are fetched from beside its meta.json, each once") {
+    const Folder folder;
+    for (const int version : {1, 2}) {
+        const std::string path = writeSogFolder(folder, "sog", makeSog(version));
+        std::map<std::string, std::string> files = filesOf(path, "/of/");
+        files["/of/meta.json?key=1"] = files["/of/meta.json"];
+        files.erase("/of/meta.json");
+        const WebServer server(files);
+        checkSameScene(loadScene(path), loadFromWeb(server.at("/of/meta.json?key=1"), webSettings(folder)));
+        std::vector<std::string> all;
+        for (const auto& [name, bytes] : files) { all.push_back(name); }
+        CHECK(sorted(server.asked()) == all);
+        CHECK(server.connectionCount() <= webSettings(folder).fetch.at_once);
+    }
+}
+
+TEST_CASE("a meta.json that names files elsewhere is refused before they are asked for") {
+    const Folder folder;
+    for (const char* name : {"../l.webp", "http://127.0.0.1/l.webp", "/etc/passwd", "a/l.webp"}) {
+        CAPTURE(name);
+        const WebServer server({{"/meta.json", replaced(makeSog()["meta.json"], "\"l.webp\"", fmt::format("\"{}\"", name))}});
+        CHECK(contains(webError(server.at("/meta.json"), webSettings(folder)), "names a file that is not beside it"));
+        CHECK(server.asked().size() == 1);
+    }
+}
+
+TEST_CASE("of a streamed scene the files of the level that is read are fetched, and no others") {
+    const Folder folder;
+    const std::string path = writeStreamed(folder, "scene", makeLodMeta());
+    for (const std::uint32_t level : {0u, 1u}) {
+        const WebServer server(filesOf(path, "/s/"));
+        LoadNotes local, far;
+        const Scene scene = loadFromWeb(server.at("/s/lod-meta.json"), webSettings(folder), &far, {level, {}});
+        checkSameScene(loadScene(path, 0, &local, {}, {level, {}}), scene);
+        CHECK(local.level_splats == far.level_splats);
+        std::vector<std::string> asked = sorted(server.asked());
+        CHECK(std::ranges::adjacent_find(asked) == asked.end());
+        for (const std::string& name : asked) {
+            CAPTURE(name);
+            const bool expected = level == 0 ? name.starts_with("/s/a/") || name.starts_with("/s/b/") : name.starts_with("/s/c/");
+            CHECK((expected || name.starts_with("/s/env/") || name == "/s/lod-meta.json"));
+        }
+        std::filesystem::remove_all(folder.file("cache"));
+    }
+    // Of a level that cannot fit nothing is fetched.
+    const WebServer server(filesOf(path, "/s/"));
+    const auto fits = [](std::uint64_t splats, int) { return splats < 16; };
+    CHECK(loadFromWeb(server.at("/s/lod-meta.json"), webSettings(folder), nullptr, {std::nullopt, fits}).size() == 16);
+    for (const std::string& name : server.asked()) { CHECK_FALSE(name.starts_with("/s/a/")); }
+}
+
+TEST_CASE("the chunks of a streamed scene may be bundles there") {
+    const Folder folder;
+    const std::string path = writeStreamed(folder, "scene", makeLodMeta());
+    std::map<std::string, std::string> files = filesOf(path, "/");
+    (void)folder.write("scene/a.sog", files["/a.sog"] = makeZip(makeChunk(2)));
+    (void)folder.write("scene/lod-meta.json", files["/lod-meta.json"] = replaced(makeLodMeta(), "a/meta.json", "a.sog"));
+    const WebServer server(files);
+    checkSameScene(loadScene(path), loadFromWeb(server.at("/lod-meta.json"), webSettings(folder)));
+    const std::vector<std::string> asked = server.asked();
+    CHECK(std::ranges::count(asked, "/a.sog") == 1);
+}
+#endif
+
+}  // namespace web_scene_test

@@ -1,0 +1,181 @@
+// The simulated runtime called from many threads at once: every function may be, except for the handles that one of them destroys.
+#include "tests/xr/simulated/api/simulated_fixture.h"
+
+#include <atomic>
+#include <barrier>
+#include <condition_variable>
+#include <cstdlib>
+#include <functional>
+#include <mutex>
+#include <queue>
+#include <thread>
+
+TEST_SUITE_BEGIN("simulated_threads");
+
+namespace simulated_threads_test {
+
+using namespace binosplat::test;
+
+namespace {
+
+constexpr int kThreads = 8, kRounds = 25;
+
+// What goes wrong in the threads is counted, as doctest's own assertions would print from all of them.
+struct Failures {
+    std::atomic<int> count{0};
+    void expect(bool holds) {
+        if (!holds) ++count;
+    }
+};
+
+// All start together; the number says which one it is.
+void inThreads(int threads, const std::function<void(int)>& work) {
+    std::barrier start(threads);
+    std::vector<std::jthread> running;
+    for (int i = 0; i < threads; ++i) {
+        running.emplace_back([&, i] {
+            start.arrive_and_wait();
+            work(i);
+        });
+    }
+}
+
+XrSessionCreateInfo sessionInfo(const XrGraphicsBindingVulkan2KHR& graphics, XrSystemId system) {
+    return {XR_TYPE_SESSION_CREATE_INFO, &graphics, 0, system};
+}
+
+}  // namespace
+
+TEST_CASE_FIXTURE(VulkanFixture, "of many threads that make a session one gets it, and the others are told that there is one") {
+    const XrGraphicsBindingVulkan2KHR graphics = binding();
+    const XrSessionCreateInfo info = sessionInfo(graphics, system);
+    for (int round = 0; round < 5; ++round) {
+        std::atomic<int> made{0}, refused{0};
+        std::atomic<XrSession> session{XR_NULL_HANDLE};
+        inThreads(kThreads, [&](int) {
+            XrSession mine = XR_NULL_HANDLE;
+            const XrResult result = xrCreateSession(instance, &info, &mine);
+            made += result == XR_SUCCESS ? 1 : 0;
+            refused += result == XR_ERROR_LIMIT_REACHED ? 1 : 0;
+            if (result == XR_SUCCESS) session = mine;
+        });
+        CHECK(made == 1);
+        CHECK(refused == kThreads - 1);
+        CHECK(xrDestroySession(session) == XR_SUCCESS);
+    }
+}
+
+TEST_CASE_FIXTURE(InstanceFixture, "a path is one number for all threads") {
+    std::vector<std::vector<XrPath>> found(kThreads);
+    Failures failures;
+    inThreads(kThreads, [&](int thread) {
+        for (int i = 0; i < kRounds; ++i) {
+            const std::string text = "/place/number_" + std::to_string(i);
+            XrPath path = XR_NULL_PATH;
+            failures.expect(xrStringToPath(instance, text.c_str(), &path) == XR_SUCCESS);
+            char back[XR_MAX_PATH_LENGTH] = "";
+            std::uint32_t count = 0;
+            failures.expect(xrPathToString(instance, path, sizeof back, &count, back) == XR_SUCCESS && text == back);
+            found[static_cast<std::size_t>(thread)].push_back(path);
+        }
+    });
+    CHECK(failures.count == 0);
+    for (const auto& paths : found) CHECK(paths == found.front());
+}
+
+TEST_CASE_FIXTURE(SessionFixture, "each thread makes, uses and destroys its own, while another thread runs frames") {
+    const XrActionSet walking = makeActionSet("walking");
+    const XrPath left = path("/user/hand/left");
+    const XrAction jump = makeAction(walking, "jump", XR_ACTION_TYPE_BOOLEAN_INPUT, {left});
+    const XrAction grip = makeAction(walking, "grip", XR_ACTION_TYPE_POSE_INPUT, {left});
+    REQUIRE(suggest("/interaction_profiles/khr/simple_controller",
+                    {{jump, path("/user/hand/left/input/select/click")}, {grip, path("/user/hand/left/input/grip/pose")}}) == XR_SUCCESS);
+    attach({walking});
+    focus();
+    const XrSwapchainCreateInfo swapchain_info = swapchainInfo();
+    const XrSwapchainImageWaitInfo wait{XR_TYPE_SWAPCHAIN_IMAGE_WAIT_INFO, nullptr, XR_INFINITE_DURATION};
+    const XrReferenceSpaceCreateInfo space_info{XR_TYPE_REFERENCE_SPACE_CREATE_INFO, nullptr, XR_REFERENCE_SPACE_TYPE_VIEW, kIdentity};
+    const XrActionSpaceCreateInfo hand_info{XR_TYPE_ACTION_SPACE_CREATE_INFO, nullptr, grip, left, kIdentity};
+    const XrActionStateGetInfo get{XR_TYPE_ACTION_STATE_GET_INFO, nullptr, jump, left};
+    Failures failures;
+    std::atomic<int> at_work{kThreads};
+    inThreads(kThreads + 1, [&](int thread) {
+        if (thread == kThreads) {
+            while (at_work > 0) {
+                XrFrameState state{XR_TYPE_FRAME_STATE};
+                failures.expect(xrWaitFrame(session, nullptr, &state) == XR_SUCCESS);
+                failures.expect(xrBeginFrame(session, nullptr) == XR_SUCCESS);
+                failures.expect(endFrame(state.predictedDisplayTime) == XR_SUCCESS);
+            }
+            return;
+        }
+        for (int i = 0; i < kRounds; ++i) {
+            XrActionSetCreateInfo set_info{XR_TYPE_ACTION_SET_CREATE_INFO};
+            std::strcpy(set_info.actionSetName, ("set_" + std::to_string(thread)).c_str());
+            std::strcpy(set_info.localizedActionSetName, ("Set " + std::to_string(thread)).c_str());
+            XrActionSet set = XR_NULL_HANDLE;
+            failures.expect(xrCreateActionSet(instance, &set_info, &set) == XR_SUCCESS);
+            XrSpace space = XR_NULL_HANDLE, hand = XR_NULL_HANDLE;
+            failures.expect(xrCreateReferenceSpace(session, &space_info, &space) == XR_SUCCESS);
+            failures.expect(xrCreateActionSpace(session, &hand_info, &hand) == XR_SUCCESS);
+            XrSwapchain swapchain = XR_NULL_HANDLE;
+            failures.expect(xrCreateSwapchain(session, &swapchain_info, &swapchain) == XR_SUCCESS);
+            failures.expect(sync(walking) == XR_SUCCESS);
+            XrActionStateBoolean state{XR_TYPE_ACTION_STATE_BOOLEAN};
+            failures.expect(xrGetActionStateBoolean(session, &get, &state) == XR_SUCCESS && state.isActive == XR_TRUE);
+            XrSpaceLocation location{XR_TYPE_SPACE_LOCATION};
+            failures.expect(xrLocateSpace(hand, local, 1'000'000'000, &location) == XR_SUCCESS && location.locationFlags != 0);
+            failures.expect(xrLocateSpace(space, local, 1'000'000'000, &location) == XR_SUCCESS && location.locationFlags != 0);
+            XrEventDataBuffer event{XR_TYPE_EVENT_DATA_BUFFER};
+            failures.expect(XR_SUCCEEDED(xrPollEvent(instance, &event)));
+            std::uint32_t index = 0;
+            failures.expect(xrAcquireSwapchainImage(swapchain, nullptr, &index) == XR_SUCCESS);
+            failures.expect(xrWaitSwapchainImage(swapchain, &wait) == XR_SUCCESS);
+            failures.expect(xrReleaseSwapchainImage(swapchain, nullptr) == XR_SUCCESS);
+            failures.expect(xrDestroySwapchain(swapchain) == XR_SUCCESS);
+            failures.expect(xrDestroySpace(hand) == XR_SUCCESS);
+            failures.expect(xrDestroySpace(space) == XR_SUCCESS);
+            failures.expect(xrDestroyActionSet(set) == XR_SUCCESS);
+        }
+        --at_work;
+    });
+    CHECK(failures.count == 0);
+}
+
+TEST_CASE_FIXTURE(SessionFixture,
+                  "one thread waits for frames while another ends the ones before, and each is displayed a period after the other") {
+    begin();
+    constexpr int kFrames = 30;
+    std::mutex lock;
+    std::condition_variable changed;
+    std::queue<XrFrameState> waited;
+    std::vector<XrTime> displayed;
+    Failures failures;
+    std::jthread waiting([&] {
+        for (int i = 0; i < kFrames; ++i) {
+            XrFrameState state{XR_TYPE_FRAME_STATE};
+            failures.expect(XR_SUCCEEDED(xrWaitFrame(session, nullptr, &state)));
+            const std::lock_guard guard(lock);
+            waited.push(state);
+            changed.notify_one();
+        }
+    });
+    XrDuration period = 0;
+    for (int i = 0; i < kFrames; ++i) {
+        std::unique_lock guard(lock);
+        changed.wait(guard, [&] { return !waited.empty(); });
+        const XrFrameState state = waited.front();
+        waited.pop();
+        guard.unlock();
+        CHECK(xrBeginFrame(session, nullptr) == XR_SUCCESS);
+        // From here on the other thread may have the next one.
+        CHECK(endFrame(state.predictedDisplayTime) == XR_SUCCESS);
+        displayed.push_back(state.predictedDisplayTime);
+        period = state.predictedDisplayPeriod;
+    }
+    waiting.join();
+    CHECK(failures.count == 0);
+    for (std::size_t i = 1; i < displayed.size(); ++i) CHECK(std::abs(displayed[i] - displayed[i - 1] - period) <= 1);
+}
+
+}  // namespace simulated_threads_test

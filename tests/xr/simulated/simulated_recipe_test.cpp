@@ -1,0 +1,259 @@
+// docs/test_your_openxr_program.md as a stranger follows it: the folder of the simulated runtime built alone and installed, a program that
+// was not written for it run by the page's script, its frame log read and compared.
+#include <doctest/doctest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/xr/simulated/installed.h"
+#include "xr/simulated/compose/picture_file.h"
+
+TEST_SUITE_BEGIN("simulated_recipe");
+
+namespace simulated_recipe_test {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// The same place each time, so that a compiler cache knows it.
+const fs::path kWork = fs::path(BINOSPLAT_OUTPUT_DIR) / "simulated_alone";
+
+struct Run {
+    int exit_code = -1;
+    std::string output;
+};
+
+Run shell(const std::string& command) {
+    const fs::path log = kWork / "log";
+    const int status = std::system(("( " + command + " ) > " + log.string() + " 2>&1").c_str());
+    std::ifstream stream(log);
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, {std::istreambuf_iterator<char>(stream), {}}};
+}
+
+bool haveHelloXr() { return binosplat::test::isInstalled("hello_xr", "libopenxr-utils"); }
+bool havePython() { return binosplat::test::isInstalled("python3", "python3"); }
+
+std::string pageText() {
+    std::ifstream stream(std::string(BINOSPLAT_SOURCE_DIR) + "/docs/test_your_openxr_program.md");
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+// The block in which a line of the page stands.
+std::string blockWith(const std::string& line) {
+    const std::string page = pageText();
+    const std::size_t place = page.find(line);
+    REQUIRE(place != std::string::npos);
+    const std::size_t begin = page.find('\n', page.rfind("```", place)) + 1;
+    return page.substr(begin, page.find("```", place) - begin);
+}
+
+// A copy of the folder, built and installed once for all cases. The manifest's path, or nothing if something failed.
+const fs::path& installedManifest() {
+    static const fs::path manifest = [] {
+        fs::create_directories(kWork);
+        fs::remove_all(kWork / "source");
+        fs::remove_all(kWork / "installed");
+        fs::copy(std::string(BINOSPLAT_SOURCE_DIR) + "/xr/simulated", kWork / "source", fs::copy_options::recursive);
+        // Each target from one file, that reads the headers once: half the work of a build.
+        const std::string cache = std::system("command -v ccache > /dev/null") == 0 ? " -DCMAKE_CXX_COMPILER_LAUNCHER=ccache" : "";
+        const std::string work = kWork.string();
+        const Run run = shell(
+            "cmake -S " + work + "/source -B " + work +
+            "/build -G Ninja -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-g0 -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=0" +
+            cache + " && cmake --build " + work + "/build && cmake --install " + work + "/build --prefix " + work + "/installed");
+        CHECK_MESSAGE(run.exit_code == 0, run.output);
+        return kWork / "installed/share/openxr/1/simulated_openxr_runtime.json";
+    }();
+    return manifest;
+}
+
+// hello_xr ends at the first key: its input stays open and silent.
+Run runHello(const std::string& name, const std::string& script) {
+    std::ofstream(kWork / (name + ".script")) << script;
+    fs::remove_all(kWork / name);
+    const std::string keys = (kWork / "keys").string();
+    return shell("rm -f " + keys + " && mkfifo " + keys +
+                 " && env -u SIMULATED_OPENXR_SCRIPT -u SIMULATED_OPENXR_OUT XR_RUNTIME_JSON=" + installedManifest().string() +
+                 " SIMULATED_OPENXR_SCRIPT=" + (kWork / (name + ".script")).string() + " SIMULATED_OPENXR_OUT=" + (kWork / name).string() +
+                 " SIMULATED_OPENXR_EXPLAIN=1 timeout 60 hello_xr -g Vulkan2 0<>" + keys);
+}
+
+Run compareRuns(const std::string& expected, const std::string& actual, const std::string& options = "") {
+    return shell((kWork / "installed/bin/compare_frame_logs").string() + " " + (kWork / expected).string() + " " +
+                 (kWork / actual).string() + " " + options);
+}
+
+bool contains(const Run& run, const char* part) { return run.output.find(part) != std::string::npos; }
+
+}  // namespace
+
+TEST_CASE("the folder builds alone and installs a library that its manifest finds") {
+    REQUIRE(fs::exists(installedManifest()));
+    const auto manifest = nlohmann::json::parse(std::ifstream(installedManifest()));
+    CHECK(manifest["runtime"]["name"] == "Simulated OpenXR runtime");
+    const fs::path library = installedManifest().parent_path() / manifest["runtime"]["library_path"].get<std::string>();
+    CHECK(fs::exists(library));
+    CHECK(fs::exists(kWork / "installed/share/doc/simulated_openxr_runtime/LICENSE"));
+    // Of what is not in every Debian it needs libpng alone.
+    const Run needs = shell("ldd " + library.string());
+    CHECK(contains(needs, "libpng"));
+    for (const char* other : {"OpenImageIO", "fmt", "vulkan", "openxr", "not found"}) CHECK_MESSAGE(!contains(needs, other), needs.output);
+    std::size_t includes = 0;
+    for (const fs::directory_entry& file : fs::recursive_directory_iterator(kWork / "source")) {
+        std::ifstream stream(file.path());
+        for (std::string line; std::getline(stream, line);) {
+            if (!line.starts_with("#include \"")) continue;
+            CHECK_MESSAGE(line.starts_with("#include \"xr/simulated/"), file.path().string(), ": ", line);
+            ++includes;
+        }
+    }
+    CHECK(includes > 100);
+}
+
+TEST_CASE("a foreign program runs by the page's script, is seen, and runs the same again") {
+    if (!haveHelloXr() || !havePython()) return;
+    const std::string script = blockWith("press right trigger 0.5 0.7");
+    const Run first = runHello("first", script);
+    CHECK_MESSAGE(first.exit_code == 0, first.output);
+    CHECK(contains(first, "XR_SESSION_STATE_IDLE->XR_SESSION_STATE_EXITING"));
+    std::ifstream log(kWork / "first/frames.jsonl");
+    std::vector<nlohmann::json> frames;
+    for (std::string line; std::getline(log, line);) frames.push_back(nlohmann::json::parse(line));
+    REQUIRE(frames.size() > 100);
+    CHECK(frames.at(90)["session_state"] == "FOCUSED");
+    CHECK(frames.at(90)["layers"].at(0)["type"] == "projection");
+    CHECK(frames.at(90)["head"]["position"][0].get<double>() == doctest::Approx(0.5));
+    for (const nlohmann::json& frame : frames) {
+        if (frame.contains("picture")) CHECK_MESSAGE(fs::exists(kWork / "first" / frame["picture"]), frame["picture"]);
+    }
+    CHECK(frames.at(30)["picture"] == "frame_000030.png");
+    CHECK_FALSE(frames.at(31).contains("picture"));
+
+    REQUIRE(runHello("second", script).exit_code == 0);
+    const Run same = compareRuns("first", "second", "--tolerance 0 --pictures 0");
+    CHECK_MESSAGE(same.exit_code == 0, same.output);
+    CHECK(same.output.empty());
+    std::string elsewhere = script;
+    elsewhere.replace(elsewhere.find("position 0.5 1.6"), 16, "position 0.4 1.6");
+    REQUIRE(runHello("third", elsewhere).exit_code == 0);
+    const Run other = compareRuns("first", "third", "--pictures 8");
+    CHECK(other.exit_code == 1);
+    CHECK(contains(other, "head.position[0] is 0."));
+    CHECK(contains(other, "more"));
+}
+
+TEST_CASE("the page's recipes for CTest and pytest do as they stand there") {
+    if (!haveHelloXr() || !havePython()) return;
+    REQUIRE(fs::exists(installedManifest()));
+    // A home with the installed runtime, and hello_xr as the program to be tested.
+    fs::remove_all(kWork / "home");
+    fs::create_directories(kWork / "home/project/expected");
+    fs::create_directory_symlink(kWork / "installed", kWork / "home/simulated-openxr");
+    std::ofstream(kWork / "installed/bin/my_program") << "#!/bin/sh\nexec hello_xr -g Vulkan2 0<>" << (kWork / "keys").string() << "\n";
+    fs::permissions(kWork / "installed/bin/my_program", fs::perms::owner_all);
+    const std::string script = blockWith("press right trigger 0.5 0.7");
+    REQUIRE(runHello("expected", script).exit_code == 0);
+    fs::copy(kWork / "expected", kWork / "home/project/expected/walk", fs::copy_options::recursive);
+    std::ofstream(kWork / "home/project/walk.script") << script;
+    std::ofstream(kWork / "home/project/CMakeLists.txt") << "cmake_minimum_required(VERSION 3.25)\nproject(tested NONE)\nenable_testing()\n"
+                                                         << blockWith("add_test(NAME walk COMMAND my_program)");
+    std::ofstream(kWork / "home/test_it.py") << blockWith("def test_the_program_renders_when_it_is_in_focus")
+                                             << "\nimport tempfile\nwith tempfile.TemporaryDirectory() as folder:\n"
+                                                "    test_the_program_renders_when_it_is_in_focus(pathlib.Path(folder))\n";
+    const std::string home = (kWork / "home").string();
+    const std::string environment = "export HOME=" + home + " PATH=" + (kWork / "installed/bin").string() +
+                                    ":$PATH; unset SIMULATED_OPENXR_SCRIPT SIMULATED_OPENXR_OUT; cd " + home + "; ";
+    const Run tests = shell(environment + "cmake -S project -B build && ctest --test-dir build --output-on-failure --no-tests=error");
+    CHECK_MESSAGE(tests.exit_code == 0, tests.output);
+    CHECK(contains(tests, "100% tests passed, 0 tests failed out of 2"));
+    const Run python = shell(environment + "python3 test_it.py");
+    CHECK_MESSAGE(python.exit_code == 0, python.output);
+}
+
+TEST_CASE("the page's recipe for GitHub Actions installs and builds what \"Build it\" does") {
+    const auto restOf = [](const std::string& text, const std::string& mark) {
+        const std::size_t place = text.find(mark);
+        REQUIRE_MESSAGE(place != std::string::npos, mark);
+        return text.substr(place + mark.size(), text.find('\n', place) - place - mark.size());
+    };
+    const std::string recipe = blockWith("runs-on: ");
+    CHECK(pageText().find("\nsudo apt-get install " + restOf(recipe, "apt-get install -y ") + "\n") != std::string::npos);
+    CHECK(restOf(recipe, "cmake -S simulated ").starts_with("-B runtime "));
+    CHECK(restOf(recipe, "XR_RUNTIME_JSON: ").ends_with("share/openxr/1/simulated_openxr_runtime.json"));
+}
+
+TEST_CASE("the page says where things are installed") {
+    REQUIRE(fs::exists(installedManifest()));
+    for (const char* file :
+         {"lib/libsimulated_openxr_runtime.so", "share/openxr/1/simulated_openxr_runtime.json", "bin/compare_frame_logs"}) {
+        CHECK_MESSAGE(pageText().find(std::string(1, '`') + file + '`') != std::string::npos, file);
+        CHECK_MESSAGE(fs::exists(kWork / "installed" / file), file);
+    }
+}
+
+TEST_CASE("the tool that compares logs says what differs, within what it was told") {
+    if (!havePython()) return;
+    REQUIRE(fs::exists(installedManifest()));
+    const auto write = [](const std::string& name, const std::string& lines, std::uint8_t red) {
+        fs::remove_all(kWork / name);
+        fs::create_directories(kWork / name);
+        std::ofstream(kWork / name / "frames.jsonl") << lines;
+        std::vector<std::uint8_t> bytes(std::size_t{3} * 10 * 10, 100);
+        bytes[0] = red;
+        simulated::writePng(kWork / name / "frame_000000.png", {{10, 10}, bytes});
+    };
+    write("a", "{\"frame\": 0, \"x\": [1, 2.5], \"events\": [\"exit\"]}\n", 100);
+    write("b", "{\"frame\": 0, \"x\": [1, 2.6], \"events\": []}\n", 110);
+    const Run plain = compareRuns("a", "b");
+    CHECK(plain.exit_code == 1);
+    CHECK(plain.output == "frame 0: x[1] is 2.6, expected 2.5\nframe 0: events has 0 entries, expected 1\n");
+    CHECK(compareRuns("a", "b", "--tolerance 0.2 --ignore events").exit_code == 0);
+    CHECK(compareRuns("a", "b", "--ignore events --ignore x").exit_code == 0);
+    const std::string forgiving = "--ignore events --ignore x --pictures ";
+    CHECK(compareRuns("a", "b", forgiving + "10").exit_code == 0);
+    const Run off = compareRuns("a", "b", forgiving + "9");
+    CHECK(off.exit_code == 1);
+    CHECK(contains(off, "frame_000000.png is off by more than 9 in 1 of 100 pixels (PSNR 52.9 dB)"));
+    CHECK(compareRuns("a", "b", forgiving + "9 --share 0.01").exit_code == 0);
+    write("c", "{\"frame\": 0, \"x\": [1, 2.5], \"events\": [\"exit\"]}\n{\"frame\": 1}\n", 100);
+    CHECK(contains(compareRuns("a", "c"), "2 lines, expected 1"));
+    fs::remove(kWork / "c/frame_000000.png");
+    CHECK(contains(compareRuns("a", "c", "--pictures 1"), "frame_000000.png is missing"));
+    write("e", "{\"refused\": \"XR_ERROR_TIME_INVALID\"}\n", 100);
+    write("f", "{\"refused\": \"XR_ERROR_POSE_INVALID\"}\n", 100);
+    CHECK(compareRuns("e", "f").output == "line 1: refused is \"XR_ERROR_POSE_INVALID\", expected \"XR_ERROR_TIME_INVALID\"\n");
+    write("d", "nonsense\n", 100);
+    const Run broken = compareRuns("a", "d");
+    CHECK(broken.exit_code == 2);
+    CHECK(contains(broken, "d/frames.jsonl:1: not a line of JSON"));
+    CHECK(compareRuns("a", "nowhere").exit_code == 2);
+    for (const char* no_frame : {"7", "[{}]", "null", "\"x\""}) {
+        write("d", std::string("{}\n") + no_frame + "\n", 100);
+        const Run run = compareRuns("a", "d");
+        CHECK(run.exit_code == 2);
+        CHECK(contains(run, "d/frames.jsonl:2: not a frame, must be an object of JSON"));
+    }
+    // A picture that ends in its signature, in its header, before and within its pixels.
+    write("d", "{\"frame\": 0, \"x\": [1, 2.5], \"events\": [\"exit\"]}\n", 100);
+    CHECK(compareRuns("a", "d", "--pictures 0").exit_code == 0);
+    const fs::path picture = kWork / "d/frame_000000.png";
+    const std::uintmax_t behind_pixels = 16;
+    for (const std::uintmax_t size :
+         {std::uintmax_t{0}, std::uintmax_t{7}, std::uintmax_t{20}, std::uintmax_t{33}, fs::file_size(picture) - behind_pixels - 1}) {
+        write("d", "{}\n", 100);
+        fs::resize_file(picture, size);
+        const Run run = compareRuns("a", "d", "--pictures 0");
+        CAPTURE(size);
+        CHECK(run.exit_code == 2);
+        CHECK_MESSAGE(run.output.starts_with("compare_frame_logs: " + picture.string() + ": "), run.output);
+    }
+}
+
+}  // namespace simulated_recipe_test
