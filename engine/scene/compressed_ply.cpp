@@ -58,7 +58,7 @@ Fields findFields(const InputFile& file, const ply::Element& element, ply::Type 
 }
 
 // Its elements, checked against each other and against what is left of the file.
-struct Layout {
+struct ChunkLayout {
     std::uint64_t splats = 0, chunks = 0;
     Fields bounds, words, rest;
     int sh_degree = 0;
@@ -68,7 +68,7 @@ bool hasProperty(const ply::Element& element, std::string_view name) {
     return std::any_of(element.properties.begin(), element.properties.end(), [&](const ply::Property& p) { return p.name == name; });
 }
 
-Layout planElements(const InputFile& file, const ply::Header& header) {
+ChunkLayout planElements(const InputFile& file, const ply::Header& header) {
     check(header.encoding == ply::Encoding::kLittleEndian,
           "{}: header: a compressed PLY in another encoding, expected binary_little_endian", file.name());
     const std::vector<ply::Element>& elements = header.elements;
@@ -77,7 +77,7 @@ Layout planElements(const InputFile& file, const ply::Header& header) {
     check(known, "{}: header: other elements than those of a compressed PLY, expected chunk, vertex and perhaps sh, in this order",
           file.name());
 
-    Layout layout;
+    ChunkLayout layout;
     layout.chunks = elements[0].count;
     layout.splats = elements[1].count;
     const std::size_t bound_count = hasProperty(elements[0], "min_r") ? kBoundNames.size() : kBoundsWithoutColour;
@@ -113,7 +113,7 @@ std::span<const std::byte> readRow(InputFile& file, const Fields& fields, const 
     return bytes;
 }
 
-std::vector<Bounds> readBounds(InputFile& file, const Layout& layout) {
+std::vector<Bounds> readBounds(InputFile& file, const ChunkLayout& layout) {
     std::vector<Bounds> all(layout.chunks);
     for (std::uint64_t chunk = 0; chunk < layout.chunks; ++chunk) {
         const std::span<const std::byte> row = readRow(file, layout.bounds, "chunk", chunk);
@@ -173,7 +173,7 @@ bool isCompressedPly(InputFile& file) {
 
 Scene readCompressedPly(InputFile& file, LoadNotes& notes, const Progress& progress) {
     const ply::Header header = ply::readHeader(file);
-    const Layout layout = planElements(file, header);
+    const ChunkLayout layout = planElements(file, header);
     const std::vector<Bounds> bounds = readBounds(file, layout);
     // SH follow behind all words, so these wait in memory.
     std::vector<Words> all_words(layout.splats);

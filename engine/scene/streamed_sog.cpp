@@ -22,7 +22,7 @@ struct Chunk {
     std::vector<SplatRange> ranges;
 };
 
-struct Level {
+struct ReadLevel {
     std::size_t index = 0;
     std::vector<Chunk> chunks;  // the environment last
     std::uint64_t splats = 0;
@@ -30,9 +30,9 @@ struct Level {
     const char* reason = "";  // why not the finest, if nobody asked for it
 };
 
-Level openLevel(StreamedChunks& scene, std::size_t index) {
+ReadLevel openLevel(StreamedChunks& scene, std::size_t index) {
     const LodMeta& meta = scene.meta();
-    Level level;
+    ReadLevel level;
     level.index = index;
     const auto add = [&](SogSplats splats, std::vector<SplatRange> ranges) {
         level.sh_degree = std::max(level.sh_degree, splats.shDegree());
@@ -56,7 +56,7 @@ Level openLevel(StreamedChunks& scene, std::size_t index) {
     return level;
 }
 
-Level chooseLevel(StreamedChunks& scene, const LevelChoice& choice) {
+ReadLevel chooseLevel(StreamedChunks& scene, const LevelChoice& choice) {
     const std::size_t levels = scene.meta().levels.size();
     if (choice.level) {
         check(*choice.level < levels, "{}: lod is {}, expected one of the scene's levels of detail, 0 (the finest) to {}", scene.place(),
@@ -68,14 +68,14 @@ Level chooseLevel(StreamedChunks& scene, const LevelChoice& choice) {
         const bool is_hopeless =
             scene.areElsewhere() && index + 1 < levels && choice.fits && !choice.fits(scene.meta().levels[index].splats, 0);
         if (is_hopeless) { continue; }
-        Level level = openLevel(scene, index);
+        ReadLevel level = openLevel(scene, index);
         const bool fits = !choice.fits || choice.fits(level.splats, level.sh_degree);
         level.reason = !fits ? ", as none fits the memory limit" : index > 0 ? ", the finest that fits the memory limit" : "";
         if (fits || index + 1 == levels) { return level; }
     }
 }
 
-void noteLevel(const std::string& source, const StreamedChunks& scene, const Level& level, LoadNotes& notes) {
+void noteLevel(const std::string& source, const StreamedChunks& scene, const ReadLevel& level, LoadNotes& notes) {
     const LodMeta& meta = scene.meta();
     for (const LodLevel& each : meta.levels) { notes.level_splats.push_back(each.splats); }
     notes.level = static_cast<std::uint32_t>(level.index);
@@ -90,7 +90,7 @@ void noteLevel(const std::string& source, const StreamedChunks& scene, const Lev
 Scene readStreamedSog(const std::string& source, StreamedChunks scene, const LevelChoice& choice, LoadNotes& notes,
                       const Progress& progress) {
     if (progress) { progress(0.0); }
-    Level level = chooseLevel(scene, choice);
+    ReadLevel level = chooseLevel(scene, choice);
     if (scene.areElsewhere()) {
         for (const Chunk& chunk : level.chunks) { chunk.splats.expect(); }
         for (const Chunk& chunk : level.chunks) { chunk.splats.requirePlausibleCount(); }

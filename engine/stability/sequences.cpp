@@ -49,7 +49,7 @@ Eyes changeSize(const Stage& stage, int frame) {
     return eyes;
 }
 
-Stage makeRoom() { return makeDiscRoom().finish(); }
+Stage makeWholeRoom() { return makeDiscRoom().finish(); }
 // Specks of less than a pixel, light and dark.
 Stage makeSpecks() {
     StageBuilder stage({48, 32});
@@ -109,7 +109,7 @@ std::vector<Sequence> makeSequences() {
         sequences.back().psnr_db = *alternate_db;
     };
     add({.name = "a head that stops",
-         .make = makeRoom,
+         .make = makeWholeRoom,
          .eyes = walkAndStop,
          .frames = 42,
          .equal_from = 35,
@@ -164,7 +164,7 @@ std::vector<Sequence> makeSequences() {
          .reason = "it goes by at 0.7 pixels a frame, and all of it is as deep"},
         50.0, 54.0);
     add({.name = "a scene that is exchanged",
-         .make = makeRoom,
+         .make = makeWholeRoom,
          .eyes = walk,
          .frames = 21,
          .exchanged_at = 10,
@@ -172,13 +172,13 @@ std::vector<Sequence> makeSequences() {
          .reason = "nothing of the one is seen in the other"},
         37.0, 43.0);
     add({.name = "angles that change in each frame",
-         .make = makeRoom,
+         .make = makeWholeRoom,
          .eyes = changeAngles,
          .frames = 21,
          .reason = "a past of other angles is one of a smaller or a larger picture"},
         36.0, 41.0);
     add({.name = "size and angles that change in each frame",
-         .make = makeRoom,
+         .make = makeWholeRoom,
          .eyes = changeSize,
          .frames = 21,
          .reason = "a past of another size is warped like any other"},

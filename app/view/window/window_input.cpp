@@ -9,7 +9,7 @@ namespace binosplat {
 
 namespace {
 
-constexpr double kTurnRadiansPerSecond = 1.2, kWalkMetresPerSecond = 1.5;
+constexpr double kKeyTurnRadiansPerSecond = 1.2, kKeyWalkMetresPerSecond = 1.5;
 // Factor by which a step of the wheel enlarges the scene.
 constexpr double kGrowthPerStep = 1.1;
 
@@ -17,7 +17,7 @@ constexpr double kGrowthPerStep = 1.1;
 
 Similarity movedByWindow(const Similarity& scene_from_room, const WindowInput& input, const Pose& room_from_head, double step_seconds) {
     Similarity moved = scene_from_room;
-    const double turn_rad = input.turn_rad + step_seconds * input.turn_rate * kTurnRadiansPerSecond;
+    const double turn_rad = input.turn_rad + step_seconds * input.turn_rate * kKeyTurnRadiansPerSecond;
     if (turn_rad != 0.0) { moved = turnedBy(moved, turn_rad, room_from_head.position); }
     const glm::dvec3 forward = levelAhead(room_from_head), down(0.0, 1.0, 0.0);
     const glm::dvec3 right = glm::cross(down, forward);
@@ -27,7 +27,7 @@ Similarity movedByWindow(const Similarity& scene_from_room, const WindowInput& i
         moved = tiltedBy(moved, tilt, room_from_head.position);
     }
     const glm::dvec3 walk = input.walk.x * right + input.walk.y * down + input.walk.z * forward;
-    if (walk != glm::dvec3(0.0)) { moved = movedBy(moved, step_seconds * kWalkMetresPerSecond * walk); }
+    if (walk != glm::dvec3(0.0)) { moved = movedBy(moved, step_seconds * kKeyWalkMetresPerSecond * walk); }
     return moved;
 }
 
