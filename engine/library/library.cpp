@@ -73,6 +73,9 @@ FrameSettings frameSettingsOf(const Settings& settings, Order order) {
     frame.background = background;
     frame.order = order;
     frame.keep_past = hasPast(frame.mode);
+    // Of reports: nobody asks here.
+    frame.keep_depth = false;
+    frame.square_boxes = false;
     frame.stereo.budget = settings.budget;
     frame.stereo.move_cost = kDefaultMoveCost;
     return frame;
@@ -100,7 +103,7 @@ struct Renderer::State {
     explicit State(const std::string& device) : context({.device = device}) {}
 
     Context context;
-    std::optional<GpuScene> scene;
+    std::unique_ptr<GpuScene> scene;
     std::optional<StereoFrame> frame;  // after what it shows
     binosplat::View start{};
     double gpu_ms = 0.0;
@@ -117,14 +120,14 @@ void Renderer::load(const std::string& scene) {
     const Scene loaded = loadSceneFromAnywhere(scene, 0, notes, {}, {}, {webCacheFolder(), kCacheBytes, {}});
     const std::optional<binosplat::View> own = isBuiltin(scene) ? builtinView(scene) : std::nullopt;
     const binosplat::View start = own ? *own : judgeStandpoint(loaded).view;
-    GpuScene uploaded(state_->context, loaded);
-    if (state_->frame) { state_->frame->finish(); }
-    state_->scene = std::move(uploaded);
+    // The scene before stays until the frame has room for the new one, and for good if it has not.
+    auto uploaded = std::make_unique<GpuScene>(state_->context, loaded);
     if (state_->frame) {
-        state_->frame->show(*state_->scene);
+        state_->frame->show(*uploaded);
     } else {
-        state_->frame.emplace(state_->context, *state_->scene);
+        state_->frame.emplace(state_->context, *uploaded);
     }
+    state_->scene = std::move(uploaded);
     state_->start = start;
     state_->rendered = false;
 }
@@ -134,7 +137,7 @@ std::string Renderer::deviceName() const { return state_->context.deviceName(); 
 std::size_t Renderer::splatCount() const { return state_->scene ? state_->scene->splatCount() : 0; }
 
 Views Renderer::startViews(double eye_distance, double fov_x_rad, unsigned width, unsigned height) const {
-    check(state_->scene.has_value(), "startViews: no scene is loaded, must be loaded first");
+    check(state_->scene != nullptr, "startViews: no scene is loaded, must be loaded first");
     const auto array = [](const glm::dvec3& v) { return std::array{v.x, v.y, v.z}; };
     const binosplat::View& start = state_->start;
     return engine::lookAt(array(start.eye), array(start.look), array(start.up), eye_distance, fov_x_rad, width, height);
