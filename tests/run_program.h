@@ -3,6 +3,8 @@
 
 #include "engine/platform.h"
 
+#include <doctest/doctest.h>
+
 #ifndef _WIN32
 #include <sys/wait.h>
 #include <unistd.h>
@@ -13,6 +15,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <set>
 #include <string>
 
 namespace binosplat::test {
@@ -50,6 +53,25 @@ struct Workplace {
         return runCommand(environment + " '" BINOSPLAT_PROGRAM "' " + arguments);
     }
 
+    // A run that is expected to end well.
+    Outcome go(const std::string& arguments, const std::string& environment = "") const {
+        Outcome outcome = run(arguments, environment);
+        INFO(arguments << ": " << outcome.errors);
+        REQUIRE(outcome.exit_code == 0);
+        return outcome;
+    }
+
+    // A run that ends with this code and one line of error, which holds `part`.
+    void checkRefused(const std::string& arguments, int exit_code, const std::string& part, const std::string& environment = "") const {
+        CAPTURE(environment);
+        const Outcome outcome = run(arguments, environment);
+        INFO(arguments << ": " << outcome.errors);
+        CHECK(outcome.exit_code == exit_code);
+        CHECK(std::count(outcome.errors.begin(), outcome.errors.end(), '\n') == 1);
+        CHECK(outcome.errors.starts_with("binosplat: "));
+        CHECK(outcome.errors.find(part) != std::string::npos);
+    }
+
     // Any command of the shell.
     [[nodiscard]] Outcome runCommand(const std::string& command) const {
         const std::string out = (base / "output").string(), errors = (base / "errors").string();
@@ -58,6 +80,17 @@ struct Workplace {
 #endif
 
     [[nodiscard]] bool isEmpty() const { return std::filesystem::is_empty(path); }
+    [[nodiscard]] bool holds(const std::string& name) const { return std::filesystem::exists(path / name); }
+    void write(const std::string& name, const std::string& text) const { std::ofstream(path / name, std::ios::binary) << text; }
+    [[nodiscard]] std::string bytesOf(const std::string& name) const { return textOf(path / name); }
+    // All that lies in it, by the names from here.
+    [[nodiscard]] std::set<std::string> files() const {
+        std::set<std::string> names;
+        for (const auto& entry : std::filesystem::recursive_directory_iterator(path)) {
+            names.insert(entry.path().lexically_relative(path).string());
+        }
+        return names;
+    }
 
 private:
 #ifndef _WIN32

@@ -1,16 +1,15 @@
 // Facts about the documents: what they link to is there, the options and files that they name exist, and their commands are understood.
 #include "app/command_line/commands_table.h"
 #include "app/command_line/option_documents.h"
+#include "tests/app/options/parsed.h"
+#include "tests/nightly.h"
 #include "tests/run_program.h"
 
 #include <doctest/doctest.h>
 
 #include <algorithm>
 #include <cctype>
-#include <filesystem>
-#include <fstream>
 #include <regex>
-#include <set>
 #include <sstream>
 
 TEST_SUITE_BEGIN("docs");
@@ -123,100 +122,29 @@ std::vector<std::string> callOfProgram(const std::string& line) {
     return {program + 1, words.end()};
 }
 
-bool isPlaceholder(const std::string& word) { return std::isupper(static_cast<unsigned char>(word[0])) != 0; }
-
-// "" or what is wrong with a value of an option that is one of those that its range lists: "a, b, c".
-std::string wrongChoice(const OptionDescription& option, const std::string& value) {
-    if (option.range.find(", ") == std::string::npos || isPlaceholder(value)) { return ""; }
-    for (const std::string& choice : findAll(value, "([^|]+)")) {
-        if (fmt::format(", {}, ", option.range).find(fmt::format(", {}, ", choice)) == std::string::npos) {
-            return fmt::format("--{} is {}, must be one of {}", option.text.key, choice, option.range);
-        }
-    }
-    return "";
+// Words that stand for others: capitals, or one of a few names.
+bool isPlaceholder(const std::string& word) {
+    return std::isupper(static_cast<unsigned char>(word[0])) != 0 || word.find('|') != std::string::npos;
 }
 
-// "" or what `binosplat CALL` would refuse.
+// "" or what `binosplat CALL` would refuse; values only where all words are what they say.
 std::string wrongCall(std::vector<std::string> call) {
-    if (call[0] == "--help" || call[0] == "--version") { return ""; }
+    if (call.size() == 1 && std::ranges::find(commands(), call[0], &Command::name) != commands().end()) { return ""; }  // named, not shown
     // A file in the place of a command is viewed.
-    if (call[0] == "FILE" || call[0].ends_with(".ply") || call[0].starts_with("builtin:")) { call.insert(call.begin(), "view"); }
-    const auto command = std::ranges::find_if(commands(), [&](const Command& each) { return each.name == call[0]; });
-    if (command == commands().end()) { return fmt::format("there is no command {}", call[0]); }
-    const std::vector<OptionDescription> options = optionsOf(*command);
-    std::size_t words = 0, least_words = 0;
-    std::set<std::string> given;
-    for (std::size_t i = 1; i < call.size(); ++i) {
-        if (!call[i].starts_with("--")) {
-            words += call[i] == "OPTIONS" ? 0 : 1;
-            continue;
-        }
-        const auto option =
-            std::ranges::find_if(options, [&](const OptionDescription& each) { return call[i].substr(2) == each.text.key; });
-        if (option == options.end()) {
-            if (call[i] == "--help") { continue; }
-            return fmt::format("{} has no {}", call[0], call[i]);
-        }
-        given.insert(option->text.key);
-        const std::string_view value = option->text.value;
-        const bool follows = i + 1 < call.size() && !call[i + 1].starts_with("--");
-        if (value.empty() || (value.starts_with('[') && !follows)) { continue; }
-        if (!follows) { return fmt::format("{} {}: no value", call[0], call[i]); }
-        ++i;
-        if (const std::string wrong = wrongChoice(*option, call[i]); !wrong.empty()) { return wrong; }
-    }
-    if (call.size() == 1) { return ""; }  // named, not shown
-    for (const Word& word : command->words) { least_words += word.required ? 1 : 0; }
-    const bool many = std::ranges::any_of(command->words, [](const Word& word) { return word.many; });
-    if (words < least_words || (words > command->words.size() && !many)) {
-        return fmt::format("{} takes {} words, not {}", call[0], command->words.size(), words);
-    }
-    for (const OptionDescription& option : options) {
-        if (option.text.required && !given.contains(option.text.key)) { return fmt::format("{} needs --{}", call[0], option.text.key); }
+    if (call[0] == "FILE" || call[0].ends_with(".ply")) { call.insert(call.begin(), "view"); }
+    std::erase(call, "OPTIONS");
+    try {
+        test::parseWords(call);
+    } catch (const Error& error) {
+        const std::string message = error.what();
+        const bool needs_files = message.starts_with("--view is given without") || std::ranges::any_of(call, isPlaceholder);
+        const bool is_understood = error.code() != ExitCode::kUsage || message.starts_with("--view is given without");
+        return is_understood && needs_files ? "" : message;
     }
     return "";
 }
 
 }  // namespace
-
-TEST_CASE("links of the documents lead somewhere") {
-    int links = 0;
-    for (const fs::path& document : documents()) {
-        for (const std::string& link : findAll(textOf(document), R"(\]\(([^)\s]+)\))")) {
-            if (link.starts_with("http")) { continue; }
-            const std::size_t hash = link.find('#');
-            const std::string path = link.substr(0, hash);
-            const fs::path target = path.empty() ? document : document.parent_path() / path;
-            CHECK_MESSAGE(fs::exists(target), document.string() << ": " << link);
-            if (hash != std::string::npos) { CHECK_MESSAGE(hasAnchor(target, link.substr(hash + 1)), document.string() << ": " << link); }
-            ++links;
-        }
-    }
-    CHECK(links > 50);
-}
-
-TEST_CASE("options that the documents name exist") {
-    int options = 0;
-    for (const fs::path& document : documents()) {
-        for (const std::string& option : findAll(textOf(document), R"((?:^|[\s`('"\[])(--[a-z][a-z-]+))")) {
-            CHECK_MESSAGE(isOption(option), document.string() << ": " << option);
-            ++options;
-        }
-    }
-    CHECK(options > 100);
-}
-
-TEST_CASE("files of the source tree that the documents name exist") {
-    int files = 0;
-    for (const fs::path& document : documents()) {
-        for (const std::string& name :
-             findAll(textOf(document), R"(`((?:configs|docs|tests|engine|shaders|app|xr|third_party)/[a-zA-Z0-9_/.]+)`)")) {
-            CHECK_MESSAGE(fs::exists(kSource / name), document.string() << ": " << name);
-            ++files;
-        }
-    }
-    CHECK(files > 20);
-}
 
 TEST_CASE("the simulated runtime's folder has the same licence") {
     REQUIRE(!textOf(kSource / "LICENSE").empty());
@@ -240,44 +168,100 @@ TEST_CASE("every library that is built with has its row in the notices, and its 
     for (const std::string& library : libraries) { CHECK_MESSAGE(rows.find(library) != std::string::npos, "no row of " << library); }
 }
 
-TEST_CASE("calls of the program that are wrong are found") {
-    for (const std::string line :
-         {"binosplat rendr builtin:fence", "binosplat info builtin:fence --mode paper", "binosplat render a.ply --mode papr --out OUT",
-          "out/bin/binosplat render a.ply --out", "A=b binosplat convert a.ply", "binosplat info a.ply b.ply",
-          "binosplat render SCENE --motion-axes unity --out OUT", "binosplat render SCENE"}) {
-        REQUIRE_FALSE(callOfProgram(line).empty());
-        CHECK_MESSAGE(!wrongCall(callOfProgram(line)).empty(), line);
+TEST_CASE("variables of the environment that the program reads are documented") {
+    const std::string page = textOf(kSource / "docs" / "render.md"), man = documentOf("man");
+    std::set<std::string> names;
+    for (const char* room : {"engine", "app", "xr"}) {
+        for (const fs::directory_entry& entry : fs::recursive_directory_iterator(kSource / room)) {
+            if (!entry.is_regular_file()) { continue; }
+            const std::string text = textOf(entry.path());
+            if (text.find("environment(\"BINOSPLAT_") == std::string::npos) { continue; }
+            for (const std::string& name : findAll(text, R"re(environment\("(BINOSPLAT_[A-Z_]+)"\))re")) { names.insert(name); }
+        }
     }
-    for (const std::string line : {"binosplat bench", "binosplat bench SCENE... [--mode MODE] --every 5 --out DIR && echo",
-                                   "binosplat --version", "binosplat view a.ply --simulate --mode paper"}) {
-        CHECK_MESSAGE(wrongCall(callOfProgram(line)).empty(), line << ": " << wrongCall(callOfProgram(line)));
+    CHECK(names.size() >= 6);
+    for (const std::string& name : names) {
+        CHECK_MESSAGE(page.find(fmt::format("\n| `{}` |", name)) != std::string::npos, name);
+        CHECK_MESSAGE(man.find(fmt::format("\n.B {}\n", name)) != std::string::npos, name);
     }
-    CHECK(callOfProgram("cmake --build build --target binosplat").empty());
 }
 
-TEST_CASE("commands that the documents show are understood") {
+TEST_CASE("bash completes commands, options, the values of choices, and files where an option takes one") {
+    const test::Workplace work;
+    work.write("complete",
+               documentOf("bash") +
+                   "\ncomplete_words() { COMPREPLY=(); COMP_CWORD=$1; shift; COMP_WORDS=(\"$@\"); _binosplat; echo \"${COMPREPLY[*]}\"; }\n"
+                   "complete_words 1 binosplat re\n"
+                   "complete_words 3 binosplat render --mode pre\n"
+                   "complete_words 2 binosplat compare --lp\n"
+                   "complete_words 3 binosplat render --path pos\n"
+                   "complete_words 3 binosplat bench --motion pos\n"
+                   "complete_words 3 binosplat render --rate pos\n");
+    work.write("poses.csv", "x");
+    CHECK(work.runCommand("bash ./complete").output == "render\npredicted\n--lpips\nposes.csv\nposes.csv\n\n");
+}
+
+TEST_CASE("the man page has no line that groff complains about, and the program prints the documents") {
+    const test::Workplace work;
+    work.write("page", work.go("document man").output);
+    CHECK(work.bytesOf("page") == documentOf("man"));
+    const test::Outcome formatted = work.runCommand("! command -v groff >/dev/null || groff -man -Tascii -ww page");
+    CHECK(formatted.exit_code == 0);
+    CHECK(formatted.errors.empty());
+}
+
+TEST_CASE("links of the documents lead somewhere, and the options and files that they name exist" * test::nightly()) {
+    int links = 0, options = 0, files = 0;
+    for (const fs::path& document : documents()) {
+        CAPTURE(document);
+        const std::string text = textOf(document);
+        for (const std::string& link : findAll(text, R"(\]\(([^)\s]+)\))")) {
+            if (link.starts_with("http")) { continue; }
+            const std::size_t hash = link.find('#');
+            const std::string path = link.substr(0, hash);
+            const fs::path target = path.empty() ? document : document.parent_path() / path;
+            CHECK_MESSAGE(fs::exists(target), link);
+            if (hash != std::string::npos) { CHECK_MESSAGE(hasAnchor(target, link.substr(hash + 1)), link); }
+            ++links;
+        }
+        for (const std::string& option : findAll(text, R"((?:^|[\s`('"\[])(--[a-z][a-z-]+))")) {
+            CHECK_MESSAGE(isOption(option), option);
+            ++options;
+        }
+        for (const std::string& name : findAll(text, R"(`((?:configs|docs|tests|engine|shaders|app|xr|third_party)/[a-zA-Z0-9_/.]+)`)")) {
+            CHECK_MESSAGE(fs::exists(kSource / name), name);
+            ++files;
+        }
+    }
+    CHECK(links > 50);
+    CHECK(options > 100);
+    CHECK(files > 20);
+}
+
+TEST_CASE("commands that the documents show are understood" * test::nightly()) {
     int calls = 0, runs = 0;
     const std::vector<std::string> run_commands = findAll(textOf(kSource / "run"), R"(\n    ([a-z]+)\)\n)");
     REQUIRE(run_commands.size() == 4);
     const std::string presets = textOf(kSource / "CMakePresets.json");
+    fs::current_path(kSource);  // configs are named from there
     for (const fs::path& document : documents()) {
+        CAPTURE(document);
         for (const std::string& line : codeLines(textOf(document))) {
             if (const std::vector<std::string> call = callOfProgram(line); !call.empty()) {
-                CHECK_MESSAGE(wrongCall(call).empty(), document.string() << ": " << line << ": " << wrongCall(call));
+                CHECK_MESSAGE(wrongCall(call).empty(), line << ": " << wrongCall(call));
                 ++calls;
             }
             const std::vector<std::string> words = wordsOf(line);
             if (words.size() > 1 && words[0] == "./run") {
-                CHECK_MESSAGE(std::ranges::find(run_commands, words[1]) != run_commands.end(), document.string() << ": " << line);
+                CHECK_MESSAGE(std::ranges::find(run_commands, words[1]) != run_commands.end(), line);
                 ++runs;
             }
             for (const std::string& preset : findAll(line, "--preset ([a-z]+)")) {
-                CHECK_MESSAGE(presets.find(fmt::format("\"name\": \"{}\"", preset)) != std::string::npos, document.string()
-                                                                                                              << ": " << line);
+                CHECK_MESSAGE(presets.find(fmt::format("\"name\": \"{}\"", preset)) != std::string::npos, line);
             }
             for (const std::string& word : words) {
                 if (!std::regex_match(word, std::regex("(configs|tests|third_party|xr|docs)/[a-zA-Z0-9_./-]+"))) { continue; }
-                CHECK_MESSAGE(fs::exists(kSource / word), document.string() << ": " << line);
+                CHECK_MESSAGE(fs::exists(kSource / word), line);
             }
         }
     }
@@ -285,7 +269,7 @@ TEST_CASE("commands that the documents show are understood") {
     CHECK(runs > 4);
 }
 
-TEST_CASE("the README's commands about files do what they say") {
+TEST_CASE("the README's commands about files do what they say" * test::nightly()) {
     const test::Workplace work;
     int done = 0;
     for (const std::string& line : codeLines(textOf(kSource / "README.md"))) {
@@ -295,16 +279,15 @@ TEST_CASE("the README's commands about files do what they say") {
         for (const std::string& word : call) {
             arguments += fmt::format(" {}", word == "SCENE" ? "builtin:fence" : word == "N" ? "1000" : word);
         }
-        const test::Outcome outcome = work.run(arguments);
-        CHECK_MESSAGE(outcome.exit_code == 0, arguments << ": " << outcome.errors);
+        work.go(arguments);
         ++done;
     }
     CHECK(done == 4);
-    CHECK(fs::exists(work.path / "OUT.ply"));
-    CHECK(fs::exists(work.path / "FILE.ply"));
+    CHECK(work.holds("OUT.ply"));
+    CHECK(work.holds("FILE.ply"));
 }
 
-TEST_CASE("measured results name scenes by their files, not by where they lay") {
+TEST_CASE("measured results name scenes by their files, not by where they lay" * test::nightly()) {
     int files = 0;
     for (const fs::directory_entry& entry : fs::directory_iterator(kSource / "docs" / "results")) {
         const fs::path extension = entry.path().extension();
@@ -315,24 +298,6 @@ TEST_CASE("measured results name scenes by their files, not by where they lay") 
         ++files;
     }
     CHECK(files > 10);
-}
-
-TEST_CASE("variables of the environment that the program reads are documented") {
-    const std::string page = textOf(kSource / "docs" / "render.md"), man = documentOf("man");
-    std::set<std::string> names;
-    for (const char* room : {"engine", "app", "xr"}) {
-        for (const fs::directory_entry& entry : fs::recursive_directory_iterator(kSource / room)) {
-            if (!entry.is_regular_file()) { continue; }
-            for (const std::string& name : findAll(textOf(entry.path()), R"re(environment\("(BINOSPLAT_[A-Z_]+)"\))re")) {
-                names.insert(name);
-            }
-        }
-    }
-    CHECK(names.size() >= 6);
-    for (const std::string& name : names) {
-        CHECK_MESSAGE(page.find(fmt::format("\n| `{}` |", name)) != std::string::npos, name);
-        CHECK_MESSAGE(man.find(fmt::format("\n.B {}\n", name)) != std::string::npos, name);
-    }
 }
 
 }  // namespace docs_test

@@ -19,7 +19,6 @@
 #include <sys/stat.h>
 
 #include <cerrno>
-#include <functional>
 #include <regex>
 #include <thread>
 #include <utility>
@@ -34,21 +33,7 @@ using namespace binosplat::test;
 
 namespace {
 
-void write(const fs::path& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
-
-std::string textOf(const fs::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-}
-
 void makePipe(const fs::path& path) { REQUIRE(::mkfifo(path.c_str(), 0600) == 0); }
-
-std::string errorOf(const std::function<void()>& action) {
-    try {
-        action();
-    } catch (const Error& error) { return error.what(); }
-    return "";
-}
 
 // A pipe that nobody writes to would be waited for without end: the test then ends by SIGALRM.
 struct Patience {
@@ -70,10 +55,10 @@ TEST_CASE("a thread's work counts, and not that of others") {
     CHECK(of_another < threadSeconds());
 }
 
-TEST_CASE("a file is made only where nothing is, and no link is followed") {
+TEST_CASE("a file or a folder is made only where nothing is, and no link is followed") {
     const Workplace work;
     const fs::path victim = work.path / "victim", file = work.path / "file";
-    write(victim, "keep me");
+    work.write("victim", "keep me");
     fs::create_symlink(victim, work.path / "link");
     fs::create_symlink(work.path / "nowhere", work.path / "dangling");
     makePipe(work.path / "pipe");
@@ -82,17 +67,16 @@ TEST_CASE("a file is made only where nothing is, and no link is followed") {
         CHECK_MESSAGE(createFile(work.path / taken) == nullptr, taken);
         CHECK(errno == EEXIST);
     }
-    CHECK(textOf(victim) == "keep me");
+    CHECK(work.bytesOf("victim") == "keep me");
     CHECK_FALSE(fs::exists(work.path / "nowhere"));
-    REQUIRE(createFile(file) != nullptr);
+    const File made = createFile(file);
+    REQUIRE(made != nullptr);
     CHECK(fs::is_regular_file(file));
+    CHECK_FALSE(isTerminal(made.get()));
     errno = 0;
     CHECK(createFile(work.path / "no" / "folder") == nullptr);
     CHECK(errno == ENOENT);
-}
-
-TEST_CASE("a folder that is made is a new one, and nobody else may enter it") {
-    const Workplace work;
+    // Nobody else may enter a folder that is made.
     const fs::path one = createFolder(work.path, "mine-"), other = createFolder(work.path, "mine-");
     CHECK(one != other);
     for (const fs::path& folder : {one, other}) {
@@ -107,7 +91,7 @@ TEST_CASE("a folder that is made is a new one, and nobody else may enter it") {
 TEST_CASE("only a file on a disk is opened, and nothing else is waited for") {
     const Patience patience;
     const Workplace work;
-    write(work.path / "file", "abc");
+    work.write("file", "abc");
     fs::create_symlink(work.path / "file", work.path / "link");
     makePipe(work.path / "pipe");
     const auto reasonFor = [](const fs::path& path) {
@@ -125,7 +109,7 @@ TEST_CASE("only a file on a disk is opened, and nothing else is waited for") {
 
 TEST_CASE("a file is read from anywhere, and its stamp tells when it was written to") {
     const Workplace work;
-    write(work.path / "file", "0123456789");
+    work.write("file", "0123456789");
     std::string reason;
     const File file = openRegularFile(work.path / "file", reason);
     REQUIRE(file != nullptr);
@@ -146,26 +130,25 @@ TEST_CASE("a file is read from anywhere, and its stamp tells when it was written
 TEST_CASE("a scene that is written does not go through a link that waits where its unfinished file will be") {
     const Workplace work;
     const fs::path victim = work.path / "victim", target = work.path / "scene.ply";
-    write(victim, "keep me");
-    const auto planted = [&](int attempt) { return target.string() + fmt::format(".part{}-{}", processId(), attempt); };
-    const std::string old_name = target.string() + fmt::format(".part{}", processId());
-    fs::create_symlink(victim, old_name);
-    fs::create_symlink(victim, planted(0));
-    write(planted(1), "somebody's");
+    work.write("victim", "keep me");
+    const auto planted = [&](const std::string& attempt) { return fmt::format("scene.ply.part{}{}", processId(), attempt); };
+    fs::create_symlink(victim, work.path / planted(""));
+    fs::create_symlink(victim, work.path / planted("-0"));
+    work.write(planted("-1"), "somebody's");
     {
         PartFile file(target.string());
         file.write("new", 3);
         file.commit();
     }
-    CHECK(textOf(target) == "new");
-    CHECK(textOf(victim) == "keep me");
+    CHECK(work.bytesOf("scene.ply") == "new");
+    CHECK(work.bytesOf("victim") == "keep me");
     {
         PartFile given_up(target.string());
         given_up.write("half", 4);
     }
-    CHECK(textOf(target) == "new");
-    CHECK(textOf(victim) == "keep me");
-    CHECK(textOf(planted(1)) == "somebody's");
+    CHECK(work.bytesOf("scene.ply") == "new");
+    CHECK(work.bytesOf("victim") == "keep me");
+    CHECK(work.bytesOf(planted("-1")) == "somebody's");
     CHECK(std::distance(fs::directory_iterator(work.path), {}) == 5);
 }
 
@@ -175,17 +158,17 @@ TEST_CASE("files that appear together do not replace a pipe, a device or a folde
     OutputFiles files(work.path);
     writeText(files.staging() / "another", "1");
     writeText(files.staging() / "report", "1");
-    CHECK(errorOf([&] { files.publish(); }).find("report: cannot be written (not a regular file), must be a file or not there") !=
-          std::string::npos);
+    CHECK_THROWS_WITH_AS(files.publish(), doctest::Contains("report: cannot be written (not a regular file), must be a file or not there"),
+                         Error);
     CHECK(fs::is_fifo(work.path / "report"));
     CHECK_FALSE(fs::exists(work.path / "another"));
     fs::remove(work.path / "report");
     // A link makes way; what it leads to stays.
-    write(work.path / "victim", "keep me");
+    work.write("victim", "keep me");
     fs::create_symlink(work.path / "victim", work.path / "report");
     files.publish();
     CHECK_FALSE(fs::is_symlink(work.path / "report"));
-    CHECK(textOf(work.path / "victim") == "keep me");
+    CHECK(work.bytesOf("victim") == "keep me");
 }
 
 TEST_CASE("settings, headsets, cameras, head motion and pictures are files of a size that people write, or refused at once") {
@@ -193,87 +176,80 @@ TEST_CASE("settings, headsets, cameras, head motion and pictures are files of a 
     const Workplace work;
     makePipe(work.path / "pipe");
     fs::create_directory(work.path / "folder");
-    write(work.path / "long", "");
+    work.write("long", "");
     fs::resize_file(work.path / "long", std::uintmax_t{100} << 20);
-    const std::array<std::pair<std::function<void(const fs::path&)>, const char*>, 4> readers{
-        std::pair([](const fs::path& path) { (void)readSettingsFile(path); }, "longer than 4 MiB"),
-        std::pair([](const fs::path& path) { (void)readHeadset(path); }, "longer than 4 MiB"),
-        std::pair([](const fs::path& path) { (void)readCameraFile(path); }, "longer than 16 MiB"),
-        std::pair([](const fs::path& path) { (void)readHeadMotion(path, MotionAxes::kOpenXr); }, "longer than 16 MiB")};
-    for (const auto& [read, too_long] : readers) {
-        for (const auto& [name, reason] : {std::pair("pipe", "not a regular file"), std::pair("folder", "is a directory"),
-                                           std::pair("long", too_long), std::pair("none", "No such file or directory")}) {
+    using Reader = void (*)(const fs::path&);
+    for (const auto& [read, most] : {std::pair<Reader, int>([](const fs::path& path) { (void)readSettingsFile(path); }, 4),
+                                     {[](const fs::path& path) { (void)readHeadset(path); }, 4},
+                                     {[](const fs::path& path) { (void)readCameraFile(path); }, 16},
+                                     {[](const fs::path& path) { (void)readHeadMotion(path, MotionAxes::kOpenXr); }, 16}}) {
+        for (const auto& [name, reason] : {std::pair<const char*, std::string>("pipe", "not a regular file"),
+                                           {"folder", "is a directory"},
+                                           {"long", fmt::format("longer than {} MiB", most)},
+                                           {"none", "No such file or directory"}}) {
             const fs::path path = work.path / name;
-            const std::string error = errorOf([&, &read = read] { read(path); });
-            CHECK(error.starts_with(fmt::format("{}: cannot be read ({}), must be a", path.string(), reason)));
-            CHECK(error.find('\n') == std::string::npos);
+            std::string message;
+            try {
+                read(path);
+            } catch (const Error& error) { message = error.what(); }
+            CHECK(message.starts_with(fmt::format("{}: cannot be read ({}), must be a", path.string(), reason)));
+            CHECK(message.find('\n') == std::string::npos);
         }
     }
     CHECK(peakMebibytes() < 256);
-    for (const char* extension : {"png", "pfm", "ppm"}) {
-        const fs::path path = work.path / (std::string("pipe.") + extension);
+    for (const char* name : {"pipe.png", "pipe.pfm", "pipe.ppm"}) {
+        const fs::path path = work.path / name;
         makePipe(path);
-        CHECK(errorOf([&] { (void)readPicture(path); }) == path.string() + ": cannot be read (not a regular file), must be an image file");
+        const std::string message = path.string() + ": cannot be read (not a regular file), must be an image file";
+        CHECK_THROWS_WITH_AS((void)readPicture(path), message.c_str(), Error);
     }
-}
-
-TEST_CASE("a text file of the most bytes is read, one more is too many") {
-    const Workplace work;
+    // The most bytes are read, one more is too many.
     const fs::path path = work.path / "text";
-    write(path, std::string(kMostTextBytes, 'a'));
-    CHECK(readTextFile(path, "a text").size() == kMostTextBytes);
-    std::ofstream(path, std::ios::app) << 'b';
-    CHECK(errorOf([&] { (void)readTextFile(path, "a text"); }) == path.string() + ": cannot be read (longer than 4 MiB), must be a text");
-    CHECK(readTextFile(path, "a text", kMostRecordingBytes).size() == kMostTextBytes + 1);
-    write(path, "");
-    CHECK(readTextFile(path, "a text").empty());
+    for (const std::size_t size : {std::size_t{0}, kMostTextBytes, kMostTextBytes + 1}) {
+        work.write("text", std::string(size, 'a'));
+        CHECK(readTextFile(path, "a text", kMostRecordingBytes).size() == size);
+        if (size <= kMostTextBytes) { CHECK(readTextFile(path, "a text").size() == size); }
+    }
+    const std::string message = path.string() + ": cannot be read (longer than 4 MiB), must be a text";
+    CHECK_THROWS_WITH_AS((void)readTextFile(path, "a text"), message.c_str(), Error);
 }
 
 TEST_CASE("a program runs with what it prints in a new file") {
     const Workplace work;
     CHECK(runProgram({"sh", "-c", "echo out; echo error >&2; cat"}, work.path / "log"));
-    CHECK(textOf(work.path / "log") == "out\nerror\n");
+    CHECK(work.bytesOf("log") == "out\nerror\n");
     CHECK_FALSE(runProgram({"sh", "-c", "exit 3"}, work.path / "other"));
-    write(work.path / "victim", "keep me");
+    work.write("victim", "keep me");
     fs::create_symlink(work.path / "victim", work.path / "link");
-    CHECK(errorOf([&] { (void)runProgram({"sh", "-c", "echo no"}, work.path / "link"); }).starts_with("sh cannot be run ("));
-    CHECK(textOf(work.path / "victim") == "keep me");
-    CHECK(errorOf([&] { (void)runProgram({"no-such-program-anywhere"}, work.path / "third"); }) ==
-          "no-such-program-anywhere cannot be run (No such file or directory)");
+    CHECK_THROWS_WITH_AS(runProgram({"sh", "-c", "echo no"}, work.path / "link"), doctest::Contains("sh cannot be run ("), Error);
+    CHECK(work.bytesOf("victim") == "keep me");
+    CHECK_THROWS_WITH_AS(runProgram({"no-such-program-anywhere"}, work.path / "third"),
+                         "no-such-program-anywhere cannot be run (No such file or directory)", Error);
 }
 
-TEST_CASE("the environment is set and read; nothing and an empty text are one") {
-    CHECK(environment("BINOSPLAT_TEST_OF_ENVIRONMENT").empty());
-    setEnvironment("BINOSPLAT_TEST_OF_ENVIRONMENT", "\u00e4 b");
-    CHECK(environment("BINOSPLAT_TEST_OF_ENVIRONMENT") == "\u00e4 b");
-    setEnvironment("BINOSPLAT_TEST_OF_ENVIRONMENT", "");
-    CHECK(environment("BINOSPLAT_TEST_OF_ENVIRONMENT").empty());
+TEST_CASE("the environment is set and read, nothing and an empty text are one, and the program knows its own file") {
+    constexpr const char* kName = "BINOSPLAT_TEST_OF_ENVIRONMENT";
+    CHECK(environment(kName).empty());
+    setEnvironment(kName, "\u00e4 b");
+    CHECK(environment(kName) == "\u00e4 b");
+    setEnvironment(kName, "");
+    CHECK(environment(kName).empty());
+    CHECK(fs::equivalent(programFile(), "/proc/self/exe"));
 }
 
 TEST_CASE("the user's folders are where the environment says, and relative ones are nobody's") {
+    const auto foldersWith = [](const char* home, const char* cache, const char* config) {
+        for (const auto& [name, value] : {std::pair("HOME", home), {"XDG_CACHE_HOME", cache}, {"XDG_CONFIG_HOME", config}}) {
+            setEnvironment(name, value);
+        }
+        return std::pair(userCacheFolder(), userConfigFolder());
+    };
     const std::string home = environment("HOME"), cache = environment("XDG_CACHE_HOME"), config = environment("XDG_CONFIG_HOME");
-    setEnvironment("HOME", "/home/somebody");
-    setEnvironment("XDG_CACHE_HOME", "");
-    setEnvironment("XDG_CONFIG_HOME", "here");
-    CHECK(userCacheFolder() == "/home/somebody/.cache");
-    CHECK(userConfigFolder() == "/home/somebody/.config");
-    setEnvironment("XDG_CACHE_HOME", "/caches");
-    setEnvironment("XDG_CONFIG_HOME", "/settings");
-    CHECK(userCacheFolder() == "/caches");
-    CHECK(userConfigFolder() == "/settings");
-    setEnvironment("XDG_CONFIG_HOME", "");
-    setEnvironment("HOME", "");
-    CHECK(userConfigFolder().empty());
-    setEnvironment("HOME", home);
-    setEnvironment("XDG_CACHE_HOME", cache);
-    setEnvironment("XDG_CONFIG_HOME", config);
-}
-
-TEST_CASE("the program knows its own file, and that a file is no terminal") {
-    CHECK(fs::equivalent(programFile(), "/proc/self/exe"));
-    const Workplace work;
-    const File file = createFile(work.path / "file");
-    CHECK_FALSE(isTerminal(file.get()));
+    using Folders = std::pair<fs::path, fs::path>;
+    CHECK(foldersWith("/home/somebody", "", "here") == Folders("/home/somebody/.cache", "/home/somebody/.config"));
+    CHECK(foldersWith("/home/somebody", "/caches", "/settings") == Folders("/caches", "/settings"));
+    CHECK(foldersWith("", "", "") == Folders());
+    foldersWith(home.c_str(), cache.c_str(), config.c_str());
 }
 
 TEST_CASE("nothing but platform_*.cpp includes a header of a system") {

@@ -6,8 +6,10 @@
 // BINOSPLAT_FAULT_TRACE=FILE: a line for each submission and each wait, in their order, with the fence: "submit 55d0", "wait 55d0";
 // "wait all" where the queue or the device is waited for.
 // BINOSPLAT_FAULT_LIVE=FILE: what is alive, see live.h. BINOSPLAT_FAULT_LOAD=...: how long frames take, see load.h.
+// BINOSPLAT_FAULT_WAITS=FILE: what frames do that may wait, see waits.h.
 #include "tests/faults/live.h"
 #include "tests/faults/load.h"
+#include "tests/faults/waits.h"
 
 #include <vulkan/vk_layer.h>
 #include <vulkan/vulkan.h>
@@ -73,10 +75,7 @@ VkResult strike(const char* call) {
 }
 
 std::FILE* traceFile() {
-    static std::FILE* const file = [] {
-        const char* const name = std::getenv("BINOSPLAT_FAULT_TRACE");
-        return name != nullptr ? std::fopen(name, "w") : nullptr;
-    }();
+    static std::FILE* const file = faults::openNamedBy("BINOSPLAT_FAULT_TRACE");
     return file;
 }
 
@@ -89,6 +88,7 @@ void trace(const char* call, VkFence fence) {
 VKAPI_ATTR VkResult VKAPI_CALL submit(VkQueue queue, std::uint32_t count, const VkSubmitInfo* infos, VkFence fence) {
     trace("submit", fence);
     faults::noteSubmission();
+    faults::noteFenceSubmitted(fence);
     const VkResult result = strike("submit");
     return result != VK_SUCCESS ? result : g_submit(queue, count, infos, fence);
 }
@@ -100,7 +100,10 @@ VKAPI_ATTR VkResult VKAPI_CALL present(VkQueue queue, const VkPresentInfoKHR* in
 
 // A device is lost while it works: the wait itself is made, so that nothing is destroyed that is still in use.
 VKAPI_ATTR VkResult VKAPI_CALL wait(VkDevice device, std::uint32_t count, const VkFence* fences, VkBool32 all, std::uint64_t timeout) {
-    for (std::uint32_t i = 0; i < count; ++i) { trace("wait", fences[i]); }
+    for (std::uint32_t i = 0; i < count; ++i) {
+        trace("wait", fences[i]);
+        faults::noteFenceWait(fences[i], timeout);
+    }
     const VkResult waited = g_wait(device, count, fences, all, timeout);
     const VkResult result = strike("wait");
     return result != VK_SUCCESS ? result : waited;
@@ -167,6 +170,9 @@ VKAPI_ATTR VkResult VKAPI_CALL createInstance(const VkInstanceCreateInfo* info, 
     return result;
 }
 
+VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL getDeviceProcAddr(VkDevice device, const char* name);
+VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL getInstanceProcAddr(VkInstance instance, const char* name);
+
 VKAPI_ATTR VkResult VKAPI_CALL createDevice(VkPhysicalDevice physical_device, const VkDeviceCreateInfo* info,
                                             const VkAllocationCallbacks* callbacks, VkDevice* device) {
     auto* link = linkOf<VkLayerDeviceCreateInfo>(info->pNext, VK_STRUCTURE_TYPE_LOADER_DEVICE_CREATE_INFO);
@@ -189,11 +195,12 @@ VKAPI_ATTR VkResult VKAPI_CALL createDevice(VkPhysicalDevice physical_device, co
     reinterpret_cast<PFN_vkGetPhysicalDeviceProperties>(instance_next(g_instance, "vkGetPhysicalDeviceProperties"))(physical_device,
                                                                                                                     &properties);
     faults::beginLoad(g_device_next, *device, static_cast<double>(properties.limits.timestampPeriod));
+    for (const faults::WatchedCall& watched : faults::watchedCalls()) {
+        *watched.next = nullptr;
+        *watched.next = getDeviceProcAddr(*device, watched.name.data());
+    }
     return VK_SUCCESS;
 }
-
-VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL getDeviceProcAddr(VkDevice device, const char* name);
-VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL getInstanceProcAddr(VkInstance instance, const char* name);
 
 template <typename Function>
 PFN_vkVoidFunction asVoid(Function* function) {
@@ -201,6 +208,7 @@ PFN_vkVoidFunction asVoid(Function* function) {
 }
 
 PFN_vkVoidFunction ownFunction(const char* name) {
+    if (const PFN_vkVoidFunction watched = faults::watchedFunction(name); watched != nullptr) { return watched; }
     if (std::strcmp(name, "vkQueueSubmit") == 0) { return asVoid(submit); }
     if (std::strcmp(name, "vkQueuePresentKHR") == 0 && g_present != nullptr) { return asVoid(present); }
     if (std::strcmp(name, "vkWaitForFences") == 0) { return asVoid(wait); }

@@ -121,10 +121,7 @@ std::uint64_t residentBytes() {
 }
 
 std::FILE* output() {
-    static std::FILE* const file = [] {
-        const char* const name = std::getenv("BINOSPLAT_FAULT_LIVE");
-        return name != nullptr ? std::fopen(name, "w") : nullptr;
-    }();
+    static std::FILE* const file = openNamedBy("BINOSPLAT_FAULT_LIVE");
     return file;
 }
 

@@ -6,7 +6,16 @@
 
 #include <vulkan/vulkan.h>
 
+#include <cstdio>
+#include <cstdlib>
+
 namespace binosplat::faults {
+
+// The file that a variable of the environment names; null: it is not set.
+inline std::FILE* openNamedBy(const char* variable) {
+    const char* const name = std::getenv(variable);
+    return name != nullptr ? std::fopen(name, "w") : nullptr;
+}
 
 // Whether anybody wants to know.
 bool countsLive();

@@ -1,10 +1,13 @@
 // An OpenXR API layer in which calls fail as a test says: what runtimes do that the simulated one does not.
 // BINOSPLAT_XR_FAULT=CALL:RESULT[:N[:AFTER]] and more of these after commas: N calls of CALL, or all, return the number RESULT and are not
 // made, once AFTER others were. In the place of RESULT, "missing": the runtime does not have the function; "crash": it ends the program.
+// For BINOSPLAT_FAULT_WAITS (waits.h) it tells when a frame ends and what the runtime does itself.
 #include <vulkan/vulkan.h>
 #define XR_USE_GRAPHICS_API_VULKAN
 #include <openxr/openxr.h>
 #include <openxr/openxr_platform.h>
+
+#include "tests/faults/waits.h"
 
 #include <atomic>
 #include <climits>
@@ -54,11 +57,12 @@ struct Faulty;
 template <typename Tag, typename... Arguments>
 struct Faulty<Tag, XrResult(XRAPI_PTR*)(Arguments...)> {
     static XRAPI_ATTR XrResult XRAPI_CALL call(Arguments... arguments) {
-        Fault& fault = faults().at(Tag::kName);
-        if (fault.before > 0 || fault.left <= 0) {
-            --fault.before;
-            return next(arguments...);
+        const auto found = faults().find(Tag::kName);
+        if (found == faults().end() || found->second.before > 0 || found->second.left <= 0) {
+            if (found != faults().end()) { --found->second.before; }
+            return binosplat::faults::runInRuntime(Tag::kName, [&] { return next(arguments...); });
         }
+        Fault& fault = found->second;
         if (fault.is_crash) { std::abort(); }
         --fault.left;
         return fault.result;
@@ -66,11 +70,12 @@ struct Faulty<Tag, XrResult(XRAPI_PTR*)(Arguments...)> {
     static inline XrResult(XRAPI_PTR* next)(Arguments...) = nullptr;
 };
 
-#define BINOSPLAT_FAULTY(item)                                                                                                         \
-    item(xrApplyHapticFeedback) item(xrCreateHandTrackerEXT) item(xrLocateHandJointsEXT) item(xrEnumerateDisplayRefreshRatesFB)        \
-        item(xrGetDisplayRefreshRateFB) item(xrRequestDisplayRefreshRateFB) item(xrEnumerateReferenceSpaces) item(xrCreateActionSpace) \
-            item(xrSuggestInteractionProfileBindings) item(xrCreateSession) item(xrCreateSwapchain) item(xrEndFrame)                   \
-                item(xrGetSystemProperties)
+#define BINOSPLAT_FAULTY(item)                                                                                                           \
+    item(xrApplyHapticFeedback) item(xrCreateHandTrackerEXT) item(xrLocateHandJointsEXT) item(xrEnumerateDisplayRefreshRatesFB)          \
+        item(xrGetDisplayRefreshRateFB) item(xrRequestDisplayRefreshRateFB) item(xrEnumerateReferenceSpaces) item(xrCreateActionSpace)   \
+            item(xrSuggestInteractionProfileBindings) item(xrCreateSession) item(xrCreateSwapchain) item(xrWaitFrame) item(xrBeginFrame) \
+                item(xrAcquireSwapchainImage) item(xrWaitSwapchainImage) item(xrReleaseSwapchainImage) item(xrEndFrame)                  \
+                    item(xrGetSystemProperties)
 
 #define BINOSPLAT_TAG(name)                         \
     struct Tag_##name {                             \
@@ -85,7 +90,7 @@ XRAPI_ATTR XrResult XRAPI_CALL getInstanceProcAddr(XrInstance instance, const ch
         return XR_ERROR_FUNCTION_UNSUPPORTED;
     }
     const XrResult result = g_next(instance, name, function);
-    if (XR_FAILED(result) || found == faults().end()) { return result; }
+    if (XR_FAILED(result) || (found == faults().end() && binosplat::faults::waitsFile() == nullptr)) { return result; }
 #define BINOSPLAT_WRAP(wrapped)                                          \
     if (std::strcmp(name, #wrapped) == 0) {                              \
         using Wrapped = Faulty<Tag_##wrapped, PFN_##wrapped>;            \

@@ -2,8 +2,30 @@
 # Fuzzes every parser for SECONDS of processor time each (60), one after the other, with address and undefined-behaviour sanitizers; needs clang.
 # usage: tests/fuzz/run.sh [SECONDS] [TARGET...]
 # New inputs lie in build/fuzz/corpus/TARGET, findings in build/fuzz/findings; what libFuzzer prints, in build/fuzz/TARGET.log.
+# usage: tests/fuzz/run.sh --keep TARGET FILE...
+# Adds inputs to those of tests/fuzz/corpus/TARGET.tar.gz, which every run begins with and fuzz_corpus_test replays.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+
+kept=build/fuzz/kept
+unpack() { # TARGET: what is kept of it, into $kept/TARGET
+    rm -rf "${kept:?}/$1"
+    mkdir -p "$kept/$1"
+    [[ ! -e tests/fuzz/corpus/$1.tar.gz ]] || tar -xzf "tests/fuzz/corpus/$1.tar.gz" -C "$kept"
+}
+
+if [[ ${1:-} == --keep ]]; then
+    target=${2:?a target must follow}
+    shift 2
+    unpack "$target"
+    for input in "$@"; do
+        cp "$input" "$kept/$target/kept_$(sha1sum <"$input" | cut -c1-10)"
+    done
+    # The same inputs always give the same archive.
+    tar --sort=name --mtime=@0 --owner=0 --group=0 --numeric-owner --mode=u=rwX,go=rX --format=ustar -C "$kept" -cf - "$target" |
+        gzip -9n >"tests/fuzz/corpus/$target.tar.gz"
+    exit
+fi
 
 seconds=${1:-60}
 shift || true
@@ -18,12 +40,13 @@ mkdir -p build/fuzz/findings
 failed=0
 TIMEFORMAT='%U %S'
 for target in "${targets[@]}"; do
+    unpack "$target"
     mkdir -p "build/fuzz/corpus/$target"
     spent=0 # of processor time; libFuzzer itself stops by the wall's clock, so that a round on a busy machine is followed by another
     while ((spent < seconds)); do
         if ! { time ASAN_OPTIONS=allocator_may_return_null=1 build/fuzz/bin/fuzz_"$target" -max_total_time=$((seconds - spent)) -rss_limit_mb=2048 \
             -malloc_limit_mb=1024 -timeout=10 -max_len=8192 -print_final_stats=1 -artifact_prefix=build/fuzz/findings/"$target"- \
-            "build/fuzz/corpus/$target" "tests/fuzz/corpus/$target" 2>"build/fuzz/$target.log"; } 2>"build/fuzz/$target.time"; then
+            "build/fuzz/corpus/$target" "$kept/$target" 2>"build/fuzz/$target.log"; } 2>"build/fuzz/$target.time"; then
             echo "$target: a finding, see build/fuzz/$target.log"
             failed=1
             break

@@ -12,13 +12,13 @@
 #include "engine/setup/head_motion.h"
 #include "engine/setup/headset.h"
 #include "engine/setup/settings.h"
+#include "tests/engine/scene/packed_bytes.h"
 #ifdef BINOSPLAT_OPENXR
 #include "xr/simulated/script/script_files.h"
 #endif
 
 #include <sys/mman.h>
 #include <unistd.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <array>
@@ -54,38 +54,17 @@ private:
     int descriptor_;
 };
 
+std::string textOf(Bytes input) { return {input.begin(), input.end()}; }
+
 void readScene(Bytes input) { (void)loadScene(MemoryFile(input).path()); }
+void readScene(const std::string& input) { readScene({reinterpret_cast<const std::uint8_t*>(input.data()), input.size()}); }
 
-// With the first line that every PLY has, so that no time goes by finding it.
-void readPly(Bytes input) {
-    std::vector<std::uint8_t> file{'p', 'l', 'y', '\n'};
-    file.insert(file.end(), input.begin(), input.end());
-    readScene(file);
-}
-
+// Files begin as their format says, so that no time goes by finding it.
+void readPly(Bytes input) { readScene("ply\n" + textOf(input)); }
 // The stream before compression: a fuzzer does not find its way through gzip.
-void readSpz(Bytes input) {
-    std::vector<std::uint8_t> packed(compressBound(input.size() + 4) + 64);
-    z_stream stream{};
-    if (deflateInit2(&stream, 1, Z_DEFLATED, MAX_WBITS + 16, 8, Z_DEFAULT_STRATEGY) != Z_OK) { return; }
-    std::vector<std::uint8_t> plain{'N', 'G', 'S', 'P'};
-    plain.insert(plain.end(), input.begin(), input.end());
-    stream.next_in = plain.data();
-    stream.avail_in = static_cast<uInt>(plain.size());
-    stream.next_out = packed.data();
-    stream.avail_out = static_cast<uInt>(packed.size());
-    deflate(&stream, Z_FINISH);
-    packed.resize(stream.total_out);
-    deflateEnd(&stream);
-    readScene(packed);
-}
-
+void readSpz(Bytes input) { readScene(test::deflated("NGSP" + textOf(input), MAX_WBITS + 16, 1)); }
 // Without gzip: versions 2 and 3, and the container of version 4.
-void readBareSpz(Bytes input) {
-    std::vector<std::uint8_t> file{'N', 'G', 'S', 'P'};
-    file.insert(file.end(), input.begin(), input.end());
-    readScene(file);
-}
+void readBareSpz(Bytes input) { readScene("NGSP" + textOf(input)); }
 
 // A folder that goes away with its files.
 class WrittenFiles {
@@ -148,16 +127,12 @@ void readLodMeta(Bytes input) {
 void readSettings(Bytes input) { (void)readSettingsFile(MemoryFile(input).path()); }
 void readHeadsetText(Bytes input) { (void)readHeadset(MemoryFile(input).path()); }
 void readCameras(Bytes input) { (void)readCameraFile(MemoryFile(input).path()); }
-void readMotion(Bytes input) {
-    const std::string_view text(reinterpret_cast<const char*>(input.data()), input.size());
-    (void)parseHeadMotion(text, "motion.csv", MotionAxes::kUnity);
-}
+void readMotion(Bytes input) { (void)parseHeadMotion(textOf(input), "motion.csv", MotionAxes::kUnity); }
 
 #ifdef BINOSPLAT_OPENXR
 // A script that is read is asked, too: before, within and after its keys. What it names lies in a folder that is not there.
 void readScript(Bytes input) {
-    const std::string text(input.begin(), input.end());
-    const simulated::Script script = simulated::Script::parse(text, "/nowhere/a.script");
+    const simulated::Script script = simulated::Script::parse(textOf(input), "/nowhere/a.script");
     (void)script.stageFromLocal();
     for (const double time_s : {-1e7, -0.5, 0.0, 0.25, 1.0, 2.5, 1e7}) {
         const simulated::State state = script.at(time_s);

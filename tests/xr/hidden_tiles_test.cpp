@@ -63,8 +63,6 @@ float lastBeforeChange(float from, const Make& make) {
 
 }  // namespace
 
-TEST_CASE("without a mesh nothing is hidden") { CHECK(findHiddenTiles({}, kIntrinsics, kSizePx) == Tiles(9, 0)); }
-
 TEST_CASE("a tile is hidden if all of it is, and up is up") {
     // The upper left tile exactly: x from -1.5 to -0.5, y from 0.5 to 1.5.
     CHECK(findHiddenTiles(rectangle(-1.5f, -0.5f, 0.5f, 1.5f), kIntrinsics, kSizePx) == Tiles{1, 0, 0, 0, 0, 0, 0, 0, 0});
@@ -92,12 +90,10 @@ TEST_CASE("a margin about what shows keeps whole tiles, and none beyond it") {
         const Tiles tiles = findHiddenTiles(mesh, intrinsics, size, margin_px);
         return std::count(tiles.begin(), tiles.end(), 0);
     };
-    CHECK(shown(0) == 1);
-    CHECK(shown(7) == 1);  // 33 to 47
-    CHECK(shown(8) == 4);  // to 48, in the next tile
-    CHECK(shown(9) == 9);
-    CHECK(shown(24) == 16);
-    CHECK(shown(1000) == 25);
+    // 7: 33 to 47; 8: to 48, in the next tile.
+    for (const auto& [margin_px, tiles] : {std::pair(0u, 1), {7u, 1}, {8u, 4}, {9u, 9}, {24u, 16}, {1000u, 25}}) {
+        CHECK(shown(margin_px) == tiles);
+    }
     CHECK(xr::hiddenMarginPx({1000.0, 800.0, 0.0, 0.0}) == 18);
 }
 
@@ -110,14 +106,14 @@ TEST_CASE("triangles may turn either way and meet within a tile") {
     CHECK(findHiddenTiles(mesh, kIntrinsics, kSizePx) == Tiles(9, 0));
 }
 
-TEST_CASE("broken meshes hide nothing") {
-    HiddenMesh mesh = rectangle(-9.0f, 9.0f, -9.0f, 9.0f);
-    mesh.indices = {0, 1, 7, 2};
-    CHECK(findHiddenTiles(mesh, kIntrinsics, kSizePx) == Tiles(9, 0));
-    mesh = {{{std::numeric_limits<float>::quiet_NaN(), 0.0f}, {9.0f, -9.0f}, {9.0f, 9.0f}}, {0, 1, 2}};
-    CHECK(findHiddenTiles(mesh, kIntrinsics, kSizePx) == Tiles(9, 0));
-    mesh = {{{-9.0f, -9.0f}, {0.0f, 0.0f}, {9.0f, 9.0f}}, {0, 1, 2}};  // no area
-    CHECK(findHiddenTiles(mesh, kIntrinsics, kSizePx) == Tiles(9, 0));
+TEST_CASE("no mesh, and broken ones, hide nothing") {
+    HiddenMesh out_of_range = rectangle(-9.0f, 9.0f, -9.0f, 9.0f);
+    out_of_range.indices = {0, 1, 7, 2};
+    const HiddenMesh not_a_number{{{std::numeric_limits<float>::quiet_NaN(), 0.0f}, {9.0f, -9.0f}, {9.0f, 9.0f}}, {0, 1, 2}};
+    const HiddenMesh flat{{{-9.0f, -9.0f}, {0.0f, 0.0f}, {9.0f, 9.0f}}, {0, 1, 2}};
+    for (const HiddenMesh& mesh : {HiddenMesh{}, out_of_range, not_a_number, flat}) {
+        CHECK(findHiddenTiles(mesh, kIntrinsics, kSizePx) == Tiles(9, 0));
+    }
 }
 
 TEST_CASE("angles and meshes that shiver make no mask anew, others do") {

@@ -1,12 +1,14 @@
-// Where one stands at first: at a camera that lies with the scene, or where the options say.
+// Facts about the eyes of a picture: where one stands at first, at a camera that lies with the scene or where the options say.
 #include "app/options/start_view.h"
 #include "app/options/camera_options.h"
-#include "app/view/placement/placement.h"
 #include "engine/scene/scene_folder.h"
 #include "engine/setup/output_files.h"
+#include "tests/app/options/parsed.h"
 #include "tests/run_program.h"
 
 #include <doctest/doctest.h>
+
+#include <cmath>
 
 TEST_SUITE_BEGIN("start_view");
 
@@ -14,62 +16,129 @@ namespace start_view_test {
 
 namespace fs = std::filesystem;
 using namespace binosplat;
-using binosplat::test::Workplace;
+using namespace binosplat::test;
 
-namespace {
-
-template <typename Chosen>
-Chosen parse(std::vector<std::string> words) {
-    std::vector<const char*> arguments{"binosplat"};
-    for (const std::string& word : words) { arguments.push_back(word.c_str()); }
-    return std::get<Chosen>(parseOptions(static_cast<int>(arguments.size()), arguments.data()));
+TEST_CASE("eyes look at their lenses or where they are said to") {
+    Headset headset;
+    headset.size_px = {64, 64};
+    headset.angles = {ViewAngles{-0.8, 0.6, 0.7, -0.7}, ViewAngles{-0.6, 0.8, 0.7, -0.7}};
+    headset.canting_rad = 0.1;
+    headset.lens_centres = {glm::dvec3(-0.1, 0.0, 1.0), glm::dvec3(0.1, 0.0, 1.0)};
+    CameraFiles files;
+    files.headset = headset;
+    const auto gazes = [&](const std::string& words) {
+        const RunOptions options = renderOptions(words);
+        return gazesOf(makeCameras(options, files, Scene{}), options.stereo);
+    };
+    CHECK(!gazes("")[kLeft]);
+    CHECK(!gazes("--gaze 0,0,1")[kRight]);
+    const auto at_lenses = gazes("--foveation 15");
+    REQUIRE(at_lenses[kLeft]);
+    CHECK(at_lenses[kLeft]->clear_rad == doctest::Approx(glm::radians(15.0)));
+    CHECK(at_lenses[kLeft]->direction == headset.lens_centres[kLeft]);
+    CHECK(at_lenses[kRight]->direction == headset.lens_centres[kRight]);
+    // Ahead of the head is inwards for eyes that are turned outwards.
+    const auto ahead = gazes("--foveation 15 --gaze 0,0,1");
+    CHECK(ahead[kLeft]->direction.x == doctest::Approx(std::sin(0.1)));
+    CHECK(ahead[kRight]->direction.x == doctest::Approx(-std::sin(0.1)));
+    // The one eye of mono looks between where both look, or where it is told to.
+    const auto of_one = gazes("--mode mono --foveation 15");
+    REQUIRE(of_one[0]);
+    CHECK_FALSE(of_one[1]);
+    CHECK(std::abs(of_one[0]->direction.x) < 1e-12);
+    CHECK(of_one[0]->direction.z > 1.0);
+    CHECK(gazes("--mode mono --foveation 15 --gaze 1,0,2")[0]->direction == glm::dvec3(1, 0, 2));
+    CHECK(parse<BenchOptions>("bench a --out b --foveation 1 --gaze 1,0,1").run.stereo.gaze == glm::dvec3(1, 0, 1));
 }
 
-RunOptions render(std::vector<std::string> words) {
-    words.insert(words.begin(), {"render", "builtin:one-splat", "--out", "out"});
-    return parse<RenderOptions>(words).run;
+TEST_CASE("eyes stand half their distance from the middle") {
+    RunOptions options = renderOptions("--eye 1,2,3 --look 1,2,5 --ipd 0.08 --size 200x100 --fov-x 90");
+    options.metres_per_unit = 2.0;
+    const Cameras cameras = makeCameras(options, {}, makeBox("box.ply"));
+    CHECK(cameras.eye_distance == doctest::Approx(0.04));
+    // Up is -y by default, so camera x is world x here.
+    CHECK(glm::length(cameras.eyes[kLeft].world_from_camera.position - glm::dvec3(0.98, 2.0, 3.0)) < 1e-12);
+    CHECK(glm::length(cameras.eyes[kRight].world_from_camera.position - glm::dvec3(1.02, 2.0, 3.0)) < 1e-12);
+    CHECK(cameras.middle.intrinsics.fx == doctest::Approx(100.0));
+    CHECK(cameras.middle.intrinsics.fy == doctest::Approx(100.0));
+    CHECK(cameras.middle.intrinsics.cx == 100.0);
+    CHECK(cameras.middle.intrinsics.cy == 50.0);
 }
 
-// A scene that fills the box from (-1, -2, -3) to (1, 2, 3).
-Scene makeBox() {
-    Scene scene;
-    for (int i = 0; i <= 100; ++i) {
-        const float t = static_cast<float>(i) / 50.0f - 1.0f;
-        scene.positions.emplace_back(t, 2.0f * t, 3.0f * t);
+TEST_CASE("a file is framed whole: upright and from its front where its y is up, and from afar where it is one wide splat") {
+    Scene scene = makeBox("box.ply");
+    const Cameras cameras = makeCameras(renderOptions(""), {}, scene);
+    const Intrinsics& k = cameras.middle.intrinsics;
+    for (const glm::vec3& p : scene.positions) {
+        const glm::dvec3 c = transform(inverse(cameras.middle.world_from_camera), glm::dvec3(p));
+        CHECK(c.z > 0.2);
+        CHECK(std::abs(k.fx * c.x / c.z) < 512.0);
+        CHECK(std::abs(k.fy * c.y / c.z) < 512.0);
     }
-    return scene;
+    CHECK_NOTHROW(makeCameras(renderOptions(""), {}, Scene{}));
+    const View trained = startView(scene, {60.0}).view;
+    scene.y_up = true;
+    const View upright = startView(scene, {60.0}).view;
+    CHECK(trained.up == glm::dvec3(0.0, -1.0, 0.0));
+    CHECK(upright.up == glm::dvec3(0.0, 1.0, 0.0));
+    CHECK(upright.look == trained.look);
+    CHECK(upright.eye.z - upright.look.z == doctest::Approx(trained.look.z - trained.eye.z));
+    CHECK(upright.eye.z > upright.look.z);
+    Scene one;
+    one.name = "one.ply";
+    one.positions = {glm::vec3(1.0f, 2.0f, 3.0f)};
+    CHECK(startView(one, {60.0}).view.eye.z == doctest::Approx(2.0));
+    one.scales = {glm::vec2(0.1f, 4.0f)};
+    CHECK(startView(one, {60.0}).view.eye.z == doctest::Approx(3.0 - 24.0));
 }
 
-}  // namespace
-
-TEST_CASE("cameras lie with a scene in its folder, beside it, or where training leaves them") {
+TEST_CASE("cameras lie with a scene in its folder, beside it, or where training leaves them, and --view takes those") {
     const Workplace work;
-    const fs::path garden = work.path / "garden", iteration = garden / "point_cloud/iteration_7000";
+    const fs::path garden = work.path / "garden", iteration = garden / "point_cloud/iteration_7000", sog = work.path / "sog";
+    const fs::path scene = work.path / "a.ply", beside = work.path / "cameras.json", trained = garden / "cameras.json";
     fs::create_directories(iteration);
-    fs::create_directories(work.path / "sog");
-    for (const fs::path& file : {iteration / "point_cloud.ply", work.path / "a.ply", work.path / "sog/meta.json"}) { writeText(file, "x"); }
-    CHECK(findCameraFile(work.path / "a.ply").empty());
-    writeText(work.path / "cameras.json", "[]");
-    CHECK(findCameraFile(work.path / "a.ply") == work.path / "cameras.json");
-    CHECK(findCameraFile(work.path / "sog") == work.path / "cameras.json");
-    CHECK(findCameraFile(work.path / "sog/") == work.path / "cameras.json");
+    fs::create_directories(sog);
+    for (const fs::path& file : {iteration / "point_cloud.ply", scene, sog / "meta.json"}) { writeText(file, "x"); }
+    const auto with = [&](const std::string& options) {
+        return parse<RenderOptions>(fmt::format("render {} --out out {}", garden.string(), options)).run.camera;
+    };
+    CHECK(findCameraFile(scene).empty());
+    writeText(beside, "[]");
+    CHECK(findCameraFile(scene) == beside);
+    CHECK(findCameraFile(sog) == beside);
+    CHECK(findCameraFile(work.path / "sog/") == beside);
     CHECK(findCameraFile(garden).empty());  // of another scene
-    writeText(garden / "cameras.json", "[]");
-    writeText(work.path / "sog/cameras.json", "[]");
-    CHECK(findCameraFile(garden) == garden / "cameras.json");
-    CHECK(findCameraFile(iteration / "point_cloud.ply") == garden / "cameras.json");
-    CHECK(findCameraFile(work.path / "sog") == work.path / "sog/cameras.json");
-    CHECK(findCameraFile(work.path / "sog/meta.json") == work.path / "sog/cameras.json");
-    const auto view = parse<ViewOptions>({"view", (work.path / "a.ply").string(), "--view", "3"});
-    CHECK(view.run.camera.cameras_file == (work.path / "cameras.json").string());
-    CHECK(view.run.camera.view == 3);
-    CHECK(parse<ViewOptions>({"view", "a.ply", "--cameras", "c.json"}).run.camera.cameras_file == "c.json");
+    CHECK(errorOf([&] { with("--view 1"); }).starts_with("--view is given without --cameras"));
+    writeText(trained, "[]");
+    writeText(sog / "cameras.json", "[]");
+    CHECK(findCameraFile(garden) == trained);
+    CHECK(findCameraFile(iteration / "point_cloud.ply") == trained);
+    CHECK(findCameraFile(sog) == sog / "cameras.json");
+    CHECK(findCameraFile(sog / "meta.json") == sog / "cameras.json");
+    const auto viewed = parse<ViewOptions>("view " + scene.string() + " --view 3").run.camera;
+    CHECK(viewed.cameras_file == beside.string());
+    CHECK(viewed.view == 3);
+    CHECK(parse<ViewOptions>("view a --cameras c.json").run.camera.cameras_file == "c.json");
+    CHECK(with("--view 1").cameras_file == trained.string());
+    CHECK(with("--view 1").view == 1);
+    CHECK(with("").cameras_file.empty());
+    CHECK(with("--view 1 --cameras other.json").cameras_file == "other.json");
+    CHECK(errorOf([&] { with("--view 1 --eye 0,0,0"); }) == "--view and --eye contradict each other, must be one of them");
+    writeText(work.path / "a.toml", "headset = \"quest2\"\n");
+    CHECK(with("--view 1 --config " + (work.path / "a.toml").string()).headset.empty());
+    writeText(work.path / "b.toml", "cameras = \"b.json\"\n");
+    CHECK(with("--view 1 --config " + (work.path / "b.toml").string()).cameras_file == (work.path / "b.json").string());
+    const auto bench = parse<BenchOptions>("bench " + garden.string() + " --out out --view 1");
+    CHECK(bench.run.camera.cameras_file == trained.string());
+    CHECK(bench.asked.cameras_file == trained.string());
+    CHECK(errorOf([&] { parseLine("bench " + garden.string() + " builtin:fence --out out --view 1"); }) != "");
+    writeText(garden / "meta.json", "{}");  // a SOG scene is no training's output
+    CHECK(with("--view 1").cameras_file == trained.string());
 }
 
 TEST_CASE("one stands at the first camera that sees the scene, upright along the mean up of all") {
     const Workplace work;
-    Scene scene = makeBox();
-    scene.name = (work.path / "box.ply").string();
+    const Scene scene = makeBox((work.path / "box.ply").string());
     const auto camera = [](const char* name, const char* position, const char* rotation) {
         return fmt::format(R"({{"img_name": "{}", "position": {}, "rotation": {}, "width": 100, "height": 80, "fx": 80, "fy": 80}})", name,
                            position, rotation);
@@ -78,7 +147,8 @@ TEST_CASE("one stands at the first camera that sees the scene, upright along the
     const std::string away = camera("away", "[0, 0, -9]", "[[-1, 0, 0], [0, 1, 0], [0, 0, -1]]"),
                       right = camera("right", "[0, 0, -9]", "[[0.98, -0.198997487, 0], [0.198997487, 0.98, 0], [0, 0, 1]]"),
                       left = camera("left", "[1, 0, -9]", "[[0.98, 0.198997487, 0], [-0.198997487, 0.98, 0], [0, 0, 1]]");
-    writeText(work.path / "cameras.json", "[" + away + "," + right + "," + left + "]");
+    const fs::path file = work.path / "cameras.json";
+    writeText(file, "[" + away + "," + right + "," + left + "]");
     const StartView start = startView(scene);
     CAPTURE(start.why);
     CHECK(start.why.starts_with("at camera 1 (right) of "));
@@ -88,33 +158,17 @@ TEST_CASE("one stands at the first camera that sees the scene, upright along the
     CHECK(glm::distance(glm::normalize(start.view.look - start.view.eye), glm::dvec3(0, 0, 1)) < 1e-6);
     CHECK(start.view.look.z == doctest::Approx(0.0));  // among the splats
     // A place that is given wins, and so does a camera.
-    RunOptions options = render({"--eye", "0,0,5"});
-    CHECK(startView(scene, options.camera, 1.0).eye == glm::dvec3(0, 0, 5));
-    CHECK(makeCameras(options, {}, scene).view->up == start.view.up);
-    options = render({"--cameras", (work.path / "cameras.json").string(), "--view", "2"});
-    CHECK(startView(scene, options.camera, 1.0).eye == glm::dvec3(1, 0, -9));
+    const RunOptions placed = renderOptions("--eye 0,0,5");
+    CHECK(startView(scene, placed.camera, 1.0).eye == glm::dvec3(0, 0, 5));
+    CHECK(makeCameras(placed, {}, scene).view->up == start.view.up);
+    CHECK(startView(scene, renderOptions("--view 2 --cameras " + file.string()).camera, 1.0).eye == glm::dvec3(1, 0, -9));
     // Cameras of another scene and broken ones are said, and left.
-    writeText(work.path / "cameras.json", "[" + away + "]");
+    writeText(file, "[" + away + "]");
     CHECK(startView(scene).why.ends_with("cameras.json sees the scene"));
     CHECK(startView(scene).why.starts_with("outside"));
-    writeText(work.path / "cameras.json", "[{}]");
-    CHECK(startView(scene).why.find("not at a camera: " + (work.path / "cameras.json").string() + ": camera 0") != std::string::npos);
+    writeText(file, "[{}]");
+    CHECK(startView(scene).why.find("not at a camera: " + file.string() + ": camera 0") != std::string::npos);
     CHECK(startView(loadScene("builtin:fence")).why == "at the built-in scene's own view");
-}
-
-TEST_CASE("a wearer starts at the camera that is asked for, upright") {
-    const Workplace work;
-    Scene scene = makeBox();
-    scene.name = (work.path / "box.ply").string();
-    // It looks down by some 37 degrees, along (0, 0.6, 0.8).
-    writeText(
-        work.path / "c.json",
-        R"([{"position": [1, 2, 3], "rotation": [[1, 0, 0], [0, 0.8, 0.6], [0, -0.6, 0.8]], "width": 8, "height": 8, "fx": 9, "fy": 9}])");
-    const CameraOptions camera = parse<ViewOptions>({"view", scene.name, "--cameras", (work.path / "c.json").string()}).run.camera;
-    const Similarity start = startPlacement(startView(scene, camera, 1.0), 1.0);
-    CHECK(glm::distance(start.position, glm::dvec3(1, 2, 3)) < 1e-12);
-    // Up is the camera's.
-    CHECK(glm::distance(start.orientation * glm::dvec3(0, -1, 0), glm::dvec3(0, -0.8, 0.6)) < 1e-6);
 }
 
 }  // namespace start_view_test

@@ -4,18 +4,21 @@
 
 #include <filesystem>
 #include <fstream>
+#include <string>
 
 namespace binosplat::test {
 
-// Writes it into `folder`, which is to stand first in PATH.
-inline void writeCompilerOfChangedShaders(const std::filesystem::path& folder) {
+// Writes it into `folder`, which is to stand first in PATH. Lines of the shell may follow each shader, whose $name and file, $last, they
+// know.
+inline void writeCompilerOfChangedShaders(const std::filesystem::path& folder, const std::string& then = "") {
     std::filesystem::create_directory(folder);
     const std::filesystem::path compiler = folder / "glslangValidator";
     std::ofstream(compiler) << "#!/bin/sh\nfor word; do case $last in -o) out=$word ;; esac; last=$word; done\n"
                                "name=$(basename $last .comp)\n"
-                               "if cmp -s $last '" BINOSPLAT_SOURCE_DIR "/shaders/'$name.comp; then exec cp '" BINOSPLAT_BUILD
-                               "/shaders/embedded/'$name.spv $out; fi\n"
-                               "PATH=${PATH#*:} exec glslangValidator \"$@\"\n";
+                               "if cmp -s $last '" BINOSPLAT_SOURCE_DIR "/shaders/'*/$name.comp; then cp '" BINOSPLAT_BUILD
+                               "/shaders/embedded/'$name.spv $out; else PATH=${PATH#*:} glslangValidator \"$@\"; fi\n"
+                               "status=$?\n" +
+                                   then + "exit $status\n";
     std::filesystem::permissions(compiler, std::filesystem::perms::owner_all);
 }
 

@@ -1,8 +1,7 @@
-// The viewer where the headset sees where its wearer looks: what is rendered again follows, if the wearer lets it.
+// The viewer where the headset sees where its wearer looks, or takes foveated insets: it is sharp there, if the wearer lets it.
 #include "engine/scene/procedural.h"
-#include "tests/app/view/view_runs.h"
+#include "tests/app/view/view_acts.h"
 
-#include <algorithm>
 #include <tuple>
 
 TEST_SUITE_BEGIN("view_gaze");
@@ -33,14 +32,6 @@ Chosen findChosen(const ViewRun& run, std::size_t frame) {
     return chosen;
 }
 
-// The wearer looks to the left, from 0.55 s on to the right, and from 0.8 s on nobody sees where. 20 frames a second.
-const std::string kLooks =
-    "rate 20\nsize 384 384\nframes from 6 to 36 every 5\n"
-    "gaze 0.3 25 0\ngaze 0.35 25 0\ngaze 0.5 25 0\ngaze 0.55 -25 0\nat 0.8 gaze off\n";
-
-// The same in fewer and smaller frames, without the loss.
-const std::string kShort = "rate 20\nsize 256 256\nframes from 6 to 10 every 4\ngaze 0.35 25 0\ngaze 0.4 -25 0\n";
-
 // The atelier of fewer splats, lit once for all runs.
 std::string room() {
     static const Workplace made;
@@ -51,19 +42,36 @@ std::string room() {
                        view.look.z);
 }
 
-ViewRun look(const Workplace& work, const std::string& name, const std::string& keys, const std::string& script, int frames) {
-    std::ofstream(work.path / (name + ".toml")) << "[stereo]\nmode = \"predicted\"\nperiphery = \"full\"\nbudget = 0.04\nmove_cost = 0\n"
-                                                << keys;
-    return runView(work, name, script,
-                   fmt::format("{} --config {}.toml --frames {} --load-first --hide-panel --hide-hands", room(), name, frames));
+ViewRun look(const Workplace& work, const std::string& keys, const std::string& script, int frames) {
+    const std::string config = "[stereo]\nmode = \"predicted\"\nperiphery = \"full\"\nbudget = 0.04\nmove_cost = 0\nfoveation = 8\n";
+    const ViewRun run = runView(work, "look", script,
+                                fmt::format("{}{} --frames {} --load-first --hide-panel --hide-hands", room(),
+                                            withConfig(work, config + "[view]\ntint = true\n" + keys), frames));
+    checkClean(run);
+    return run;
 }
+
+Image partOf(const Image& picture, glm::uvec2 from, glm::uvec2 to) {
+    Image part{to - from, picture.channels, {}};
+    for (std::uint32_t y = from.y; y < to.y; ++y) {
+        const auto channels = static_cast<std::size_t>(picture.channels);
+        const auto row = picture.values.begin() + static_cast<std::ptrdiff_t>((std::size_t{y} * picture.size_px.x + from.x) * channels);
+        part.values.insert(part.values.end(), row, row + static_cast<std::ptrdiff_t>((to.x - from.x) * channels));
+    }
+    return part;
+}
+
+std::size_t viewsOf(const ViewRun& run, std::size_t frame) { return run.layers(frame, "projection").at(0).at("views").size(); }
 
 }  // namespace
 
 TEST_CASE("what is rendered again follows the eyes, and goes back to the lens's middle when they are lost") {
     const Workplace work;
-    const ViewRun run = look(work, "follow", "foveation = 8\n[view]\ntint = true\neye-tracking = true\n", kLooks, 37);
-    checkClean(run);
+    // The wearer looks to the left, from 0.55 s on to the right, and from 0.8 s on nobody sees where.
+    const ViewRun run = look(work, "eye-tracking = true\n",
+                             "rate 20\nsize 384 384\nframes from 6 to 36 every 5\n"
+                             "gaze 0.3 25 0\ngaze 0.35 25 0\ngaze 0.5 25 0\ngaze 0.55 -25 0\nat 0.8 gaze off\n",
+                             37);
     const Chosen left = findChosen(run, 6), right = findChosen(run, 16), lost = findChosen(run, 36);
     CHECK(left.pixels > 1000);
     CHECK(right.pixels > 1000);
@@ -79,18 +87,17 @@ TEST_CASE("what is rendered again follows the eyes, and goes back to the lens's 
     CHECK(lost.middle < 0.6);
     CHECK(lost.middle == findChosen(run, 31).middle);
     // Nobody is told where the wearer looks.
-    CHECK(run.outcome.output.find("gaze") == std::string::npos);
+    CHECK_FALSE(run.says("gaze"));
 }
 
 TEST_CASE("where the wearer does not let the viewer see them, or the headset cannot, the eyes are taken to look ahead") {
     const Workplace work;
-    const std::string tint = "foveation = 8\n[view]\ntint = true\n", allowed = tint + "eye-tracking = true\n";
-    for (const auto& [name, keys, script] :
-         {std::tuple("not_asked", tint, kShort), std::tuple("refused", allowed, kShort + "eye-tracking refused\n"),
-          std::tuple("no_extension", allowed, kShort + "extension XR_EXT_eye_gaze_interaction off\n")}) {
-        CAPTURE(name);
-        const ViewRun run = look(work, name, keys, script, 11);
-        checkClean(run);
+    for (const auto& [keys, line] : {std::pair("", ""), std::pair("eye-tracking = true\n", "eye-tracking refused\n"),
+                                     std::pair("eye-tracking = true\n", "extension XR_EXT_eye_gaze_interaction off\n")}) {
+        CAPTURE(line);
+        // Fewer and smaller frames.
+        const ViewRun run = look(
+            work, keys, std::string("rate 20\nsize 256 256\nframes from 6 to 10 every 4\ngaze 0.35 25 0\ngaze 0.4 -25 0\n") + line, 11);
         const Chosen left = findChosen(run, 6), right = findChosen(run, 10);
         CHECK(left.pixels > 300);
         CHECK(left.middle == right.middle);
@@ -98,6 +105,49 @@ TEST_CASE("where the wearer does not let the viewer see them, or the headset can
         CHECK(left.middle > 0.35);
         CHECK(left.middle < 0.75);
     }
+}
+
+TEST_CASE("with foveation a headset that takes insets has one for each eye, with every method, as good as the full picture within") {
+    const Workplace work;
+    // 45 degrees to each side in 256 pixels, and the middle half of them again: as many pixels as in the full picture, at the same places.
+    constexpr std::uint32_t kSize = 256, kQuarter = kSize / 4;
+    const std::string begin = "rate 50\nsize 256 256\ninset 26.565051177 size 128 128\nframes from 9 to 9 every 1\n";
+    const auto runInset = [&](const std::string& name, const std::string& script, double foveation, bool wanted) {
+        const std::string keys = fmt::format("[stereo]\nfoveation = {}\n{}foveated-inset = {}\n", foveation, kMethodPage, wanted);
+        const ViewRun run =
+            runView(work, name, script,
+                    "builtin:fence --mode two-pass --frames 200 --load-first --hide-panel --hide-hands" + withConfig(work, keys));
+        checkClean(run);
+        return run;
+    };
+    Acts acts(begin);
+    acts.press("right b");
+    for (const char* mode : {"mono", "predicted", "temporal"}) { acts.click(onMethod(mode)); }
+    // The session after a lost one has them, too.
+    acts.at("lose-session").wait(0.3);
+    const std::string rest = begin + "at 0.2 exit\n";
+    const ViewRun full = runInset("full", rest, 0.0, true), inset = runInset("inset", acts.script(), 20.0, true);
+    CHECK(viewsOf(full, 9) == 2);
+    std::size_t drawn = 0;
+    for (std::size_t frame = 0; frame < inset.frames.size(); ++frame) {
+        if (inset.layers(frame, "projection").empty()) { continue; }
+        ++drawn;
+        CHECK(viewsOf(inset, frame) == 4);
+    }
+    CHECK(drawn > 40);
+    checkOrder(inset, {"mode = \"mono\"", "mode = \"predicted\"", "mode = \"temporal\"", "another one begins"});
+    CHECK(inset.layers(inset.frameAt(acts.now_s - 0.1), "projection").size() == 1);
+    for (const int side : {0, 1}) {
+        const Image whole = full.eye(9, side), both = inset.eye(9, side);
+        const auto psnrOf = [&](glm::uvec2 from, glm::uvec2 to) {
+            return compare(partOf(whole, from, to), partOf(both, from, to)).psnrDb();
+        };
+        CHECK(psnrOf({kQuarter, kQuarter}, {3 * kQuarter, 3 * kQuarter}) >= 40.0);
+        CHECK(psnrOf({0, 0}, {kSize, kQuarter}) < 36.0);  // of half the size
+    }
+    // They go with what was asked for, and with the runtime.
+    CHECK(viewsOf(runInset("unwanted", rest, 20.0, false), 9) == 2);
+    CHECK(viewsOf(runInset("without", "extension XR_VARJO_quad_views off\n" + rest, 20.0, true), 9) == 2);
 }
 
 }  // namespace view_gaze_test

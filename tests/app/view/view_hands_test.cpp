@@ -1,8 +1,10 @@
-// Facts about what the wearer holds and sees beside the scene: rays, hands, controllers, the way to another place, the vignette.
-#include "engine/picture/metrics.h"
-#include "tests/app/view/view_panel.h"
+// Facts about controllers and hands: what their buttons and sticks do, and what is seen beside the scene: rays, hands, controllers, the way
+// to another place, the vignette, the room.
+#include "tests/app/view/view_acts.h"
 
 #include <doctest/doctest.h>
+
+#include <tuple>
 
 TEST_SUITE_BEGIN("view_hands");
 
@@ -16,263 +18,433 @@ namespace {
 const std::string kSmall = "rate 100\nsize 128 128\nframes every 5\n";
 // Where nobody looks at what the headset shows.
 const std::string kBlind = "rate 100\nsize 64 64\nframes none\n";
-const std::string kScene = "builtin:slanted-wall --load-first --mode mono";
-const std::string kJointless = "extension XR_EXT_hand_tracking off\n";
+const std::string kScene = kWall + " --mode mono", kWithHands = "builtin:slanted-wall --load-first --mode mono";
+const glm::dvec2 kMiddle(0.5, 0.5);
 
-// Lines that put a hand at a place and let it look at another one.
-std::string hand(const std::string& side, double time_s, const glm::dvec3& at, const glm::dvec3& look) {
-    return fmt::format("controller {} {} position {} {} {} look {} {} {}\n", side, time_s, at.x, at.y, at.z, look.x, look.y, look.z);
-}
-
-glm::dvec3 placeOf(const nlohmann::json& quad) {
-    const auto p = quad.at("pose").at("position").get<std::array<double, 3>>();
-    return {p[0], p[1] + 1.6, p[2]};
-}
-glm::dvec3 alongOf(const nlohmann::json& quad) {
-    const auto q = quad.at("pose").at("orientation").get<std::array<double, 4>>();
-    return glm::dquat(q[3], q[0], q[1], q[2]) * glm::dvec3(0.0, 1.0, 0.0);
-}
+glm::dvec3 stagePlace(const nlohmann::json& quad) { return stagePose(quad).position; }
+glm::dvec3 alongOf(const nlohmann::json& quad) { return stagePose(quad).orientation * glm::dvec3(0.0, 1.0, 0.0); }
 double heightOf(const nlohmann::json& quad) { return quad.at("size").at(1).get<double>(); }
 
-// Pictures of hands as their joints are, parts of controllers, the strips of an arc, where one will stand, and the vignette, by their size.
-std::vector<nlohmann::json> quadsAsWide(const ViewRun& run, std::size_t frame, double width_m) {
-    return run.quadsWhere(frame, [&](const nlohmann::json& quad) {
-        return quad.at("space") != "VIEW" && std::abs(quad.at("size").at(0).get<double>() - width_m) < 1e-4;
-    });
-}
-std::vector<nlohmann::json> hands(const ViewRun& run, std::size_t frame) { return quadsAsWide(run, frame, 0.3); }
-std::vector<nlohmann::json> knobs(const ViewRun& run, std::size_t frame) { return quadsAsWide(run, frame, 0.055); }
-std::vector<nlohmann::json> handles(const ViewRun& run, std::size_t frame) { return quadsAsWide(run, frame, 0.035); }
-std::vector<nlohmann::json> arc(const ViewRun& run, std::size_t frame) { return quadsAsWide(run, frame, 0.012); }
-std::vector<nlohmann::json> targets(const ViewRun& run, std::size_t frame) { return quadsAsWide(run, frame, 0.5); }
+std::vector<nlohmann::json> hands(const ViewRun& run, std::size_t frame) { return run.quadsAsWide(frame, 0.3); }
+std::vector<nlohmann::json> knobs(const ViewRun& run, std::size_t frame) { return run.quadsAsWide(frame, 0.055); }
+std::vector<nlohmann::json> handles(const ViewRun& run, std::size_t frame) { return run.quadsAsWide(frame, 0.035); }
+std::vector<nlohmann::json> arc(const ViewRun& run, std::size_t frame) { return run.quadsAsWide(frame, 0.012); }
+std::vector<nlohmann::json> targets(const ViewRun& run, std::size_t frame) { return run.quadsAsWide(frame, 0.5); }
 std::vector<nlohmann::json> vignettes(const ViewRun& run, std::size_t frame) {
     return run.quadsWhere(frame, [](const nlohmann::json& quad) { return quad.at("space") == "VIEW"; });
 }
 
-ViewRun runHands(const Workplace& work, const std::string& name, const std::string& lines, const std::string& options = "",
-                 const std::string& profile = "oculus/touch_controller", const std::string& headset = kSmall) {
-    const ViewRun run =
-        runView(work, name, headset + lines + "at 0.6 exit\n", kScene + options, kValidated + " SIMULATED_OPENXR_PROFILE=" + profile);
+ViewRun runHands(const Workplace& work, const std::string& script, const std::string& arguments) {
+    const ViewRun run = runView(work, "run", script, arguments);
     checkClean(run);
     for (const auto& frame : run.frames) { CHECK(frame.at("layers").size() <= 16); }
     return run;
 }
 
-// The brightest of a channel in the frame's left eye.
-double sumOfChannel(const Image& picture, int channel) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < picture.pixelCount(); ++i) {
-        sum += static_cast<double>(picture.values[i * static_cast<std::size_t>(picture.channels) + static_cast<std::size_t>(channel)]);
+// What the right hand feels, of so many frames.
+std::size_t pulses(const ViewRun& run, std::size_t first, std::size_t count) {
+    std::size_t found = 0;
+    for (std::size_t i = first; i < first + count; ++i) {
+        for (const auto& event : run.frames.at(i).at("events")) { found += event.get<std::string>().starts_with("haptic right") ? 1 : 0; }
     }
-    return sum / static_cast<double>(picture.pixelCount());
+    return found;
+}
+
+// Where the panel went, of a hand that squeezes and carries it up by 0.2 m.
+std::string highUp(const Panel& panel) {
+    Panel lifted = panel;
+    lifted.middle.y += 0.2;
+    return pointingAt(lifted, kMiddle);
+}
+void checkLifted(const ViewRun& run, double seconds) {
+    const glm::dvec3 way = panelOf(run, run.frameAt(seconds)).middle - panelBefore().middle;
+    CHECK(way.y == doctest::Approx(0.2).epsilon(0.01));
+    CHECK(way.x == doctest::Approx(0.0).epsilon(0.01));
+}
+
+// The frame of a line counts the frames before it.
+void checkSaidAt(const ViewRun& run, const std::string& line, double seconds) {
+    CAPTURE(line);
+    const double said_s = ViewRun::secondsOf(run.frames.at(std::stoul(line.substr(line.find(' ')))));
+    CHECK(said_s > seconds - 0.03);
+    CHECK(said_s < seconds + 0.08);
 }
 
 }  // namespace
 
-TEST_CASE("every hand that points has a ray: to the panel where it meets it, else short and fading; a lost hand has none") {
+TEST_CASE("every controller and bare hands show the panel, click and are felt; what is not in the hand does nothing") {
+    // One after the other, a fifth of a second each.
+    const std::vector<std::tuple<std::string, std::string, std::string>> controllers{
+        {"oculus/touch_controller", "trigger", "b"},        {"valve/index_controller", "trigger", "b"},
+        {"microsoft/motion_controller", "trigger", "menu"}, {"htc/vive_controller", "trigger", "menu"},
+        {"khr/simple_controller", "select", "menu"},        {"hp/mixed_reality_controller", "trigger", "b"},
+        {"samsung/odyssey_controller", "trigger", "menu"},  {"htc/vive_cosmos_controller", "trigger", "b"},
+        {"htc/vive_focus3_controller", "trigger", "b"},     {"bytedance/pico_neo3_controller", "trigger", "b"},
+        {"bytedance/pico4_controller", "trigger", "b"},     {"facebook/touch_controller_pro", "trigger", "b"},
+        {"meta/touch_controller_plus", "trigger", "b"}};
     const Workplace work;
-    const glm::dvec3 right_at(0.2, 1.2, -0.35), left_at(-0.2, 1.2, -0.35), panel_middle(-0.45, 1.5, -0.9);
+    Acts acts(kBlind);
+    acts.point(kBeside).wait(0.4 - acts.now_s);
+    std::vector<double> begins;
+    for (const auto& [profile, trigger, menu] : controllers) {
+        begins.push_back(acts.now_s);
+        acts.at("profile " + profile).wait(0.045).hold("right " + trigger, 0.03);
+        acts.wait(0.05).hold("right " + menu, 0.02).wait(0.05).hold("right " + menu, 0.02).wait(0.055);
+    }
+    // A fist carries the panel up and down again. Buttons of others are pressed before the own one.
+    std::vector<double> clicks, lifts;
+    const auto take = [&](const std::string& profile, const std::string& other, const std::string& click, const std::string& widget) {
+        acts.at("profile " + profile).wait(0.05).point(onMethod(widget)).press("right " + other);
+        clicks.push_back(acts.now_s);
+        acts.press("right " + click);
+    };
+    const double bare_begin = acts.now_s;
+    for (const auto& [profile, other, click, fist, widget] :
+         {std::tuple("ext/hand_interaction_ext", "trigger", "aim_activate_ext", "grasp_ext", "right"),
+          std::tuple("microsoft/hand_interaction", "aim_activate_ext", "select", "squeeze", "left")}) {
+        take(profile, other, click, widget);
+        acts.point(kMiddle).hold(fmt::format("right {}", fist), 0.35).wait(0.05).move("controller right", highUp(acts.panel), 0.1);
+        lifts.push_back(acts.look(0.05));
+        acts.point(kMiddle).wait(0.2);
+    }
+    const double bare_end = acts.now_s;
+    take("oculus/touch_controller", "aim_activate_ext", "trigger", "right");
+    const ViewRun run = runHands(work, acts.script(), kScene + withConfig(work, kMethodPage));
+    for (std::size_t i = 0; i < controllers.size(); ++i) {
+        CAPTURE(std::get<0>(controllers[i]));
+        const std::size_t first = run.frameAt(begins[i]);
+        CHECK(pulses(run, first + 3, 6) == 1);
+        CHECK(run.panels(first + 8).size() == 1);
+        CHECK(run.panels(first + 13).empty());
+        CHECK(run.panels(first + 19).size() == 1);
+    }
+    const std::size_t bare = run.frameAt(bare_begin) + 1;
+    CHECK(pulses(run, bare, run.frameAt(bare_end) - bare) == 0);
+    for (const double lifted_s : lifts) { checkLifted(run, lifted_s); }
+    const std::vector<std::string> changes = run.lines("dominant = ");
+    INFO(run.outcome.output);
+    REQUIRE(changes.size() == 3);
+    for (std::size_t i = 0; i < 3; ++i) {
+        CHECK(changes[i].ends_with(i == 1 ? "\"left\"" : "\"right\""));
+        checkSaidAt(run, changes[i], clicks[i]);
+    }
+}
+
+TEST_CASE("a grip that shivers holds the panel, one that only touches does not; what was pressed elsewhere counts once it was let go") {
+    const Workplace work;
+    Acts acts(kBlind + "profile valve/index_controller\n");
+    std::vector<double> looks, clicks;
+    // Let go half the way up, at last.
+    using Grip = std::vector<std::pair<double, double>>;
+    for (const Grip& grip : {Grip{{0, 0}, {0.05, 0.45}}, Grip{{0, 0}, {0.05, 0.6}, {0.15, 0.35}, {0.4, 0.35}, {0.42, 0}},
+                             Grip{{0, 0}, {0.05, 1}, {0.19, 1}, {0.2, 0.2}}}) {
+        acts.point(kMiddle).wait(0.05).pull("right squeeze", grip).wait(0.1);
+        acts.move("controller right", highUp(acts.panel), 0.2).wait(0.15);
+        looks.push_back(acts.look(0.05));
+        acts.press("right b").press("right b");
+    }
+    // Another program had the input, or another session of this one.
+    acts.point(placeOf("Vignette", true));
+    for (const std::string elsewhere : {"focused off", "lose-session"}) {
+        for (const std::string button : {"right trigger", "right b"}) {
+            acts.at(elsewhere).wait(0.01).hold(button, 0.24).wait(0.09);
+            if (elsewhere == "focused off") { acts.at("focused on"); }
+            acts.wait(0.17);
+            looks.push_back(acts.look(0.03));
+            clicks.push_back(acts.now_s);
+            acts.press(button);
+            looks.push_back(acts.look(0.02));
+            acts.wait(0.05);
+        }
+        acts.press("right b");
+    }
+    const ViewRun run = runHands(work, acts.script(), kScene);
+    const auto lifted = [&](std::size_t i) { return panelOf(run, run.frameAt(looks[i])).middle.y - acts.panel.middle.y; };
+    CHECK(lifted(0) == doctest::Approx(0.0));
+    checkLifted(run, looks[1]);
+    CHECK(lifted(2) > 0.05);
+    CHECK(lifted(2) < 0.15);
+    const std::vector<std::string> changes = run.lines("vignette = ");
+    INFO(run.outcome.output);
+    REQUIRE(changes.size() == 2);
+    for (const std::size_t i : {0, 1}) {
+        CAPTURE(i);
+        checkSaidAt(run, changes[i], clicks[2 * i]);
+        // The button that was held hides nothing; pressed again it does.
+        CHECK(run.panels(run.frameAt(looks[3 + 4 * i + 2])).size() == 1);
+        CHECK(run.panels(run.frameAt(looks[3 + 4 * i + 3])).empty());
+    }
+}
+
+TEST_CASE("rays end at the panel, else fade; hands are seen as their joints are; the panel comes before the eyes, and either hand clicks") {
+    const Workplace work;
+    const glm::dvec3 right_at(0.2, 1.2, -0.35), left_at(-0.2, 1.2, -0.35);
+    Acts acts(kSmall);
+    acts.move("controller right", lookingAt(right_at, acts.panel.middle)).move("controller left", lookingAt(left_at, {-0.2, 0.2, -1.0}));
+    const double both = acts.wait(0.03).look();
+    const double lost = acts.at("controller right off").look();
+    acts.at("controller right on").wait(0.05).press("left y");
+    // Without the panel there is a ray while the trigger is pulled.
+    const double hidden = acts.look(0.05);
+    const double pulled = acts.hold("right trigger", 0.1).wait(0.03).look();
+    const double let_go = acts.wait(0.03).look(0.05);
+    acts.move("controller right", lookingAt({0.1, 1.5, -0.4}, {0.1, 1.5, -1.0})).wait(0.05);
+    const double open = acts.look();
+    const double fist = acts.hold("right squeeze", 0.2).wait(0.05).look();
+    acts.wait(0.1).move("head", "position 1 1.6 0 turn 90 0").press("right b");
+    const double moved = acts.look(0.05);
+    const double gone = acts.press("left y").look(0.05);
+    acts.move("head", "position 0 1.6 0 turn 0 0").press("left y");
+    // Both hands point at it; the left one clicks on Quit, though the right one hovers elsewhere.
+    acts.move("controller right", lookingAt(right_at, {-0.45, 1.7, -0.9}));
+    acts.move("controller left", pointingAt(acts.panel, placeOf("Quit"))).wait(0.05).press("left trigger").wait(1.0);
+    // There is no room to be seen.
     const ViewRun run =
-        runHands(work, "rays",
-                 hand("right", 0, right_at, panel_middle) + hand("left", 0, left_at, {-0.2, 0.2, -1.0}) + "at 0.4 controller right off\n",
-                 "", "oculus/touch_controller", kBlind);
-    const auto rays = run.rays(30);
+        runHands(work, acts.script(), kWithHands + " --background 1,0,0" + withConfig(work, "[view]\npassthrough = true\n"));
+    CHECK(run.endSeconds() < acts.now_s - 0.5);
+    CHECK(run.frames.at(run.pictureAt(hidden)).at("blend_mode") == "OPAQUE");
+    const Colour corner = colourAt(run.eye(run.pictureAt(hidden), kLeft), {0, 0});
+    CHECK(corner[0] > 0.98f);
+    CHECK(corner[1] < 0.02f);
+    const auto rays = run.rays(run.frameAt(both));
     REQUIRE(rays.size() == 2);
-    // The left one misses and fades; the right one ends on the panel.
     CHECK(heightOf(rays[0]) < 0.5);
     CHECK(rays[0].at("views").at(0).at("rect") != rays[1].at("views").at(0).at("rect"));
     const glm::dvec3 half = 0.5 * heightOf(rays[1]) * alongOf(rays[1]);
-    const glm::dvec3 ends[]{placeOf(rays[1]) + half, placeOf(rays[1]) - half};
-    CHECK(std::min(glm::distance(ends[0], right_at), glm::distance(ends[1], right_at)) < 1e-4);
-    CHECK(std::min(glm::distance(ends[0], panel_middle), glm::distance(ends[1], panel_middle)) < 1e-3);
-    CHECK(run.rays(50).size() == 1);
-}
-
-TEST_CASE("without the panel a ray is there while the trigger is pulled") {
-    const Workplace work;
-    const ViewRun run = runHands(work, "bare", "press right trigger 0.3 0.4\n", " --hide-panel", "oculus/touch_controller", kBlind);
-    CHECK(run.rays(20).empty());
-    CHECK(run.rays(35).size() == 1);
-    CHECK(run.rays(50).empty());
-}
-
-TEST_CASE("either hand clicks on the panel") {
-    const Workplace work;
-    // Both point at it; the left one clicks on Quit, though the right one hovers elsewhere.
-    const ViewRun run =
-        runView(work, "left",
-                kBlind + hand("right", 0, {0.2, 1.2, -0.35}, {-0.45, 1.7, -0.9}) +
-                    "controller left 0 position -0.2 1.2 -0.35 look -0.289 1.765 -1.010\npress left trigger 0.2 0.25\nat 2 exit\n",
-                kScene);
-    checkClean(run);
-    CHECK(run.frames.size() < 60);
-}
-
-TEST_CASE("controllers are drawn where the grips are, and only while they are tracked") {
-    const Workplace work;
-    const glm::dvec3 at(0.05, 1.5, -0.4);
-    const ViewRun run =
-        runHands(work, "controllers",
-                 kJointless + hand("right", 0, at, {0.05, 1.5, -1.0}) + "at 0.2 controller left off\nat 0.4 controller right off\n",
-                 " --hide-panel");
-    CHECK(knobs(run, 15).size() == 2);
-    CHECK(handles(run, 15).size() == 2);
-    REQUIRE(knobs(run, 30).size() == 1);
-    REQUIRE(handles(run, 30).size() == 1);
-    // The handle lies about the grip, along its axis.
-    CHECK(glm::distance(placeOf(handles(run, 30)[0]), at) < 0.02);
-    CHECK(std::abs(alongOf(handles(run, 30)[0]).z) > 0.999);
-    CHECK(run.layers(50, "quad").empty());
-    // They are seen, and not with --hide-hands.
-    CHECK(compare(run.eye(30, kLeft), run.eye(50, kLeft)).psnrDb() < 45.0);
-    const ViewRun hidden = runHands(work, "none", kJointless, " --hide-panel --hide-hands");
-    CHECK(hidden.layers(30, "quad").empty());
-}
-
-TEST_CASE("a runtime that finds hands shows their joints in place of controllers") {
-    const Workplace work;
-    const ViewRun run = runHands(
-        work, "joints", hand("right", 0, {0.1, 1.5, -0.4}, {0.1, 1.5, -1.0}) + "press right squeeze 0.3 0.6\nat 0.5 controller left off\n",
-        " --hide-panel");
-    CHECK(hands(run, 20).size() == 2);
-    CHECK(knobs(run, 20).empty());
-    CHECK(hands(run, 55).size() == 1);
-    CHECK(glm::distance(placeOf(hands(run, 55)[0]), {0.1, 1.5, -0.4}) < 0.1);
+    const glm::dvec3 ends[]{stagePlace(rays[1]) + half, stagePlace(rays[1]) - half};
+    const auto nearest = [&](const glm::dvec3& place) { return std::min(glm::distance(ends[0], place), glm::distance(ends[1], place)); };
+    CHECK(nearest(right_at) < 1e-4);
+    CHECK(nearest(acts.panel.middle) < 1e-3);
+    CHECK(run.rays(run.frameAt(lost) + 1).size() == 1);
+    CHECK(hands(run, run.frameAt(both)).size() == 2);
+    CHECK(knobs(run, run.frameAt(both)).empty());
+    CHECK(hands(run, run.frameAt(lost) + 1).size() == 1);
+    for (const double seconds : {hidden, gone}) { CHECK(run.panels(run.frameAt(seconds)).empty()); }
+    for (const double seconds : {hidden, let_go}) { CHECK(run.rays(run.frameAt(seconds)).empty()); }
+    CHECK(run.rays(run.frameAt(pulled)).size() == 1);
+    const auto seen = hands(run, run.frameAt(open));
+    CHECK(std::ranges::count_if(seen, [](const auto& hand) { return glm::distance(stagePlace(hand), {0.1, 1.5, -0.4}) < 0.1; }) == 1);
     // A fist is another picture than a hand that is open. The scene is in its grip, and does not move with it.
-    const double likeness = compare(run.eye(20, kLeft), run.eye(40, kLeft)).psnrDb();
+    const double likeness = run.likeness(run.pictureAt(open), run.pictureAt(fist));
     CHECK(likeness < 45.0);
     CHECK(likeness > 15.0);
+    // The head looks along -x, from (1, 1.6, 0).
+    CHECK(glm::distance(panelOf(run, run.frameAt(moved)).middle, {0.1, 1.5, 0.45}) < 1e-4);
 }
 
-TEST_CASE("the wearer teleports to where the stick's arc ended, and says where that will be beforehand") {
+TEST_CASE("controllers are drawn where grips are; the wearer teleports to where the arc ended, on the floor that the runtime says") {
     const Workplace work;
-    std::ofstream(work.path / "teleport.toml") << "[view]\nlocomotion = \"teleport\"\nhands = false\n";
-    const std::string push =
-        "axis left thumbstick 0.2 0 0\naxis left thumbstick 0.21 0 1\naxis left thumbstick 0.35 0 1\naxis left thumbstick 0.36 0 0\n";
-    const std::string aim = hand("left", 0, {-0.2, 1.2, -0.35}, {-0.2, 1.0, -1.0});
-    const ViewRun run = runHands(work, "teleport", aim + push, " --hide-panel --config teleport.toml --eye 0,0,0 --look 0,0,9 --up 0,-1,0");
-    CHECK(arc(run, 30).size() == 6);
-    REQUIRE(targets(run, 30).size() == 1);
-    const glm::dvec3 target = placeOf(targets(run, 30)[0]);
-    CHECK(target.y == doctest::Approx(0.01));
-    CHECK(target.x == doctest::Approx(-0.2));
-    CHECK(target.z < -1.5);
-    CHECK(run.layers(45, "quad").empty());
-    CHECK(vignettes(run, 25).empty());
-    // The scene is as it would be seen from there.
-    const ViewRun there =
-        runHands(work, "there", "",
-                 fmt::format(" --hide-panel --hide-hands --eye {},0,{} --look {},0,9 --up 0,-1,0", target.x, -target.z, target.x));
-    CHECK(compare(run.eye(50, kLeft), there.eye(50, kLeft)).psnrDb() > 45.0);
-    CHECK(compare(run.eye(50, kLeft), run.eye(10, kLeft)).psnrDb() < 30.0);
-}
-
-TEST_CASE("the floor is where the runtime says, and the trigger teleports controllers that have no stick") {
-    const Workplace work;
-    std::ofstream(work.path / "teleport.toml") << "[view]\nlocomotion = \"teleport\"\nhands = false\n";
-    const std::string options = " --hide-panel --config teleport.toml", pull = "press right select 0.2 0.4\n";
-    const std::string away = "head 0 position 0 1.3 0\ncontroller right 0 position 0.2 0.9 -0.35\n";
-    const ViewRun low = runHands(work, "low", away + pull, options, "khr/simple_controller", kBlind);
-    REQUIRE(targets(low, 30).size() == 1);
-    // 1.3 m below the head, by STAGE; without any floor as far below as people are high.
-    CHECK(targets(low, 30)[0].at("pose").at("position").at(1).get<double>() == doctest::Approx(-1.29));
-    const ViewRun floorless = runHands(work, "floorless", away + pull + "stage off\nextension XR_EXT_local_floor off\n", options,
-                                       "khr/simple_controller", kBlind);
-    CHECK(targets(floorless, 30).at(0).at("pose").at("position").at(1).get<double>() == doctest::Approx(-1.59));
-}
-
-TEST_CASE("the view's edge is dark while a stick moves the wearer, its middle is not, and both can be switched off") {
-    const Workplace work;
-    // Slowly: the scene hardly moves.
-    const std::string walk =
-        "axis left thumbstick 0.05 0 0\naxis left thumbstick 0.06 0 0.2\naxis left thumbstick 0.22 0 0.2\n"
-        "axis left thumbstick 0.23 0 0\n";
-    const std::string options = " --hide-panel --hide-hands --background 1,1,1";
-    const ViewRun run = runHands(work, "dark", walk, options);
-    CHECK(vignettes(run, 5).empty());
-    CHECK(vignettes(run, 20).size() == 1);
-    CHECK(run.layers(57, "quad").empty());
-    const Image before = run.eye(5, kLeft), during = run.eye(20, kLeft), after = run.eye(55, kLeft);
-    const auto at = [](const Image& picture, std::uint32_t x, std::uint32_t y) {
-        return picture.values[(std::size_t{y} * picture.size_px.x + x) * static_cast<std::size_t>(picture.channels)];
+    const std::string config =
+        withConfig(work, "[view]\nlocomotion = \"teleport\"\npanel-page = \"scenes\"\n") + " --eye 0,0,0 --look 0,0,9 --up 0,-1,0";
+    const glm::dvec2 keep = placeOf("Keep this one", false, PanelPage::kScenes);
+    const glm::dvec3 right_at(0.05, 1.2, -0.4);
+    Acts acts(kSmall + "extension XR_EXT_hand_tracking off\n", {0.0, 1.3, 0.0});
+    acts.move("controller right", lookingAt(right_at, {0.05, 1.2, -1.0}));
+    const double both = acts.look();
+    const double one = acts.at("controller left off").look();
+    const double none = acts.at("controller right off").look();
+    acts.at("controller left on").at("controller right on").wait(0.05);
+    acts.move("controller left", lookingAt({-0.2, 0.9, -0.35}, {-0.2, 0.7, -1.0}));
+    const double by_stick = acts.push("left thumbstick", {0.0, 1.0}, 0.15).wait(0.06).look();
+    const double there = acts.wait(0.02).look(0.05);
+    acts.move("controller left", kLeftDown).press("left y").click(keep);
+    // The trigger of controllers that have no stick.
+    acts.at("profile khr/simple_controller").move("controller right", lookingAt({0.2, 0.9, -0.35}, {0.2, 0.9, -1.0})).wait(0.05);
+    const double by_trigger = acts.hold("right select", 0.2).wait(0.05).look();
+    acts.wait(0.1).click(keep, "right select").wait(0.1);
+    const ViewRun run = runHands(work, acts.script(), kWithHands + " --hide-panel" + config);
+    CHECK(knobs(run, run.frameAt(both)).size() == 2);
+    CHECK(handles(run, run.frameAt(both)).size() == 2);
+    const std::size_t frame = run.frameAt(one) + 1;
+    REQUIRE(knobs(run, frame).size() == 1);
+    REQUIRE(handles(run, frame).size() == 1);
+    // The handle lies about the grip, along its axis.
+    CHECK(glm::distance(stagePlace(handles(run, frame)[0]), right_at) < 0.02);
+    CHECK(std::abs(alongOf(handles(run, frame)[0]).z) > 0.999);
+    CHECK(run.layers(run.frameAt(none) + 1, "quad").empty());
+    CHECK(run.likeness(run.pictureAt(one + 0.01), run.pictureAt(none + 0.01)) < 45.0);
+    // It is said beforehand where that will be.
+    CHECK(arc(run, run.frameAt(by_stick)).size() == 6);
+    CHECK(vignettes(run, run.frameAt(by_stick)).empty());
+    CHECK(arc(run, run.frameAt(there)).empty());
+    CHECK(targets(run, run.frameAt(there)).empty());
+    const auto targetAt = [&](double seconds) {
+        const auto found = targets(run, run.frameAt(seconds));
+        REQUIRE(found.size() == 1);
+        return poseOf(found[0].at("pose")).position;
     };
-    CHECK(at(during, 2, 2) < 0.5f * at(before, 2, 2));
-    CHECK(at(during, 64, 2) < 0.7f * at(before, 64, 2));
-    CHECK(sumOfChannel(after, 0) > 0.9 * sumOfChannel(before, 0));
-    CHECK(sumOfChannel(during, 0) < 0.9 * sumOfChannel(before, 0));
-    std::ofstream(work.path / "clear.toml") << "[view]\nvignette = false\n";
-    const ViewRun clear = runHands(work, "clear", walk, options + " --config clear.toml");
-    CHECK(clear.layers(20, "quad").empty());
-    // The same step; the middle is the same.
-    CHECK(at(clear.eye(20, kLeft), 64, 64) == at(during, 64, 64));
+    const glm::dvec3 first = targetAt(by_stick), second = targetAt(by_trigger);
+    CHECK(first.x == doctest::Approx(-0.2));
+    CHECK(first.z < -1.5);
+    // 1.3 m below the head, and a little above that.
+    for (const glm::dvec3& target : {first, second}) { CHECK(target.y == doctest::Approx(-1.29)); }
+    const auto kept = keptPlaces(work);
+    REQUIRE(kept.size() == 2);
+    CHECK(glm::distance(kept[0].eye, {first.x, 0.0, -first.z}) < 1e-4);
+    CHECK(glm::distance(kept[1].eye - kept[0].eye, {second.x, 0.0, -second.z}) < 1e-4);
+}
+
+TEST_CASE("the wearer is moved by sticks, pads, hands, viewpoints and buttons, as far as they say and by nothing else; places are kept") {
+    const Workplace work;
+    REQUIRE(work.run("scene one-splat --out a.ply").exit_code == 0);
+    const std::string camera = R"("width": 8, "height": 8, "rotation": [[1,0,0],[0,1,0],[0,0,1]], "fx": 8, "fy": 8)";
+    std::ofstream(work.path / "cameras.json") << R"([{"img_name": "door", "position": [0, 0, 0], )" << camera
+                                              << R"(}, {"img_name": "window", "position": [0.5, 0, 0], )" << camera << "}]";
+    const auto onScenes = [](const std::string& name) { return placeOf(name, false, PanelPage::kScenes); };
+    Acts acts("rate 50\nsize 64 64\nframes none\n");
+    const auto keep = [&] { acts.click(onScenes("Keep this one")).wait(0.05); };
+    acts.click(onScenes("Next viewpoint")).press("right thumbstick").press("left thumbstick");
+    keep();  // 0: where the camera was
+    // A hand holds the scene while the room begins elsewhere, and again where it was.
+    acts.move("head", "position 0.5 1.6 0.4 turn 40 0").hold("left squeeze", 0.18).wait(0.1).at("recentre").wait(0.15);
+    acts.move("head", "position 0 1.6 0 turn 0 0").wait(0.05).at("recentre").wait(0.1);
+    keep();  // 1
+    // The stick of the hand that points at the panel moves nobody, the other one does.
+    acts.move("controller right", kRightDown).move("controller left", pointingAt(acts.panel, kMiddle));
+    acts.push("left thumbstick", {0.0, 1.0}, 0.1).wait(0.15);
+    keep();  // 2
+    acts.move("controller right", kRightDown).push("right thumbstick", {0.0, 1.0}, 0.1).wait(0.15);
+    keep();  // 3
+    acts.move("controller left", kLeftDown).push("left thumbstick", {0.0, 1.0}, 0.1).wait(0.15);
+    keep();  // 4
+    // What is pushed mostly aside turns and does not lift.
+    for (const glm::dvec2& aside : {glm::dvec2(0.9, 0.7), glm::dvec2(-1.0, 0.0)}) {
+        acts.move("controller right", kRightDown).push("right thumbstick", aside, 0.1).wait(0.15);
+        keep();  // 5 and 6
+    }
+    // A pad moves while it is pressed, not while a thumb rests on it.
+    acts.at("profile htc/vive_controller").wait(0.1).push("left trackpad", {0.0, 1.0}, 1.0).wait(0.1);
+    keep();  // 7
+    acts.hold("left trackpad", 0.1).wait(0.2);
+    keep();  // 8
+    acts.at("profile oculus/touch_controller").wait(0.4);
+    // The scene that one hand holds moves as far as the hand does, and not about it.
+    acts.hold("left squeeze", 0.2).wait(0.04).move("controller left", "position -0.1 1.4 -0.65 turn 30 -60", 0.1).wait(0.1);
+    keep();  // 9
+    // Both hands turn it about the vertical and make it larger, and tilt it, where that is wanted; then it is levelled.
+    const auto roll = [&](const std::string& left, const std::string& right) {
+        acts.move("controller left", kLeftDown).move("controller right", kRightDown).hold("left squeeze", 0.34).hold("right squeeze", 0.34);
+        acts.wait(0.05).move("controller left", "position " + left + " turn 0 -80", 0.1);
+        acts.move("controller right", "position " + right + " turn 0 -80", 0.1).wait(0.1);
+        keep();  // 10 and 11
+    };
+    roll("-0.3 1.3 -0.3", "0.4 1.3 -0.5");
+    acts.click(onScenes("View")).click(placeOf("Two-handed tilt")).click(placeOf("Scenes"));
+    roll("-0.17 1.1 -0.35", "0.17 1.3 -0.35");
+    acts.click(onScenes("View")).click(placeOf("Level")).click(placeOf("Scenes"));
+    keep();  // 12
+    acts.click(onScenes("View")).move("head", "position 0.4 1.5 0.3 turn 50 0").click(placeOf("Recentre")).wait(0.1);
+    const double recentred = acts.look();
+    const ViewRun run = runHands(work, acts.script(),
+                                 "a.ply --load-first --mode mono --hide-hands --metres-per-unit 0.5 --eye 0,0,1 --look 0,0,3 --up 0,-1,0" +
+                                     withConfig(work, "[view]\npanel-page = \"scenes\"\n"));
+    checkOrder(run, {"viewpoint 1 of 2: door", "viewpoint 2 of 2: window", "viewpoint 1 of 2: door", "this viewpoint is kept",
+                     "the room now begins where the wearer stands, 1.50 m above the floor"});
+    const auto kept = keptPlaces(work);
+    REQUIRE(kept.size() == 13);
+    const auto isNear = [](const glm::dvec3& a, const glm::dvec3& b, double tolerance = 1e-6) { return glm::distance(a, b) < tolerance; };
+    const auto ahead = [&](std::size_t i) { return kept[i].look - kept[i].eye; };
+    const auto step = [&](std::size_t i) { return kept[i].eye - kept[i - 1].eye; };
+    CHECK(isNear(kept[0].eye, {0.0, 0.0, 0.0}));
+    for (const std::size_t i : {1, 2, 5, 6, 7, 12}) {
+        CAPTURE(i);
+        CHECK(isNear(step(i), {0.0, 0.0, 0.0}));
+    }
+    // Half a metre is a unit, in our axes: x right, y down, z ahead.
+    CHECK(step(3).y < -0.05);
+    CHECK(isNear(step(4), {0.0, 0.0, step(4).z}));
+    CHECK(step(4).z > 0.1);
+    CHECK(isNear(ahead(5), {1.0, 0.0, std::sqrt(3.0)}, 1e-5));  // by 30 degrees
+    CHECK(isNear(ahead(6), {0.0, 0.0, 2.0}, 1e-5));
+    CHECK(step(8).z > 0.1);
+    // The wearer's room lies in the scene as far the other way.
+    CHECK(isNear(step(9), {-0.2, 0.4, -0.6}, 1e-4));
+    CHECK(isNear(ahead(9), {0.0, 0.0, 2.0}, 1e-4));
+    CHECK(glm::length(ahead(10)) < 1.5);
+    CHECK(std::abs(ahead(10).x) > 0.1);
+    const glm::dvec3 up(0.0, -1.0, 0.0);
+    for (const std::size_t i : {9, 10, 12}) { CHECK(isNear(kept[i].up, up, 2e-6)); }
+    CHECK(glm::dot(kept[11].up, up) < 0.92);
+    CHECK(isNear(run.viewPlace(run.frameAt(recentred), kLeft), {-0.0315, 0.0, 0.0}, 1e-5));
+}
+
+TEST_CASE("the view's edge is dark while a stick moves the wearer, its middle is not; it, hands, the room and teleport are switched") {
+    const Workplace work;
+    Acts acts("rate 100\nsize 64 64\nframes every 5\nblend-modes opaque alpha-blend\n");
+    const auto walk = [&] { return acts.push("left thumbstick", {0.0, 0.2}, 0.3).wait(0.2).look(); };
+    const double before = acts.look();
+    const double during = walk();
+    const double after = acts.wait(0.4).look();
+    acts.click(placeOf("Vignette", true));
+    const double without = walk();
+    acts.wait(0.05).click(placeOf("Hands", true)).click(placeOf("Passthrough", true)).click(placeOf("Teleport", true));
+    const double end = acts.look();
+    // Nothing is to be seen where the wearer looks.
+    const ViewRun run = runHands(work, acts.script(), kWithHands + " --background 1,1,1 --eye 0,0,0 --look 0,0,-9 --up 0,-1,0");
+    checkOrder(run, {"vignette = false", "hands = false", "passthrough = true", "locomotion = \"teleport\""});
+    for (const double seconds : {before, after, without}) { CHECK(vignettes(run, run.frameAt(seconds)).empty()); }
+    CHECK(vignettes(run, run.frameAt(during)).size() == 1);
+    const auto at = [&](double seconds, glm::uvec2 place) { return colourAt(run.eye(run.pictureAt(seconds), kLeft), place)[0]; };
+    CHECK(at(during, {1, 1}) < 0.5f * at(before, {1, 1}));
+    CHECK(at(during, {32, 1}) < 0.7f * at(before, {32, 1}));
+    CHECK(at(during, {32, 32}) == at(before, {32, 32}));
+    for (const double seconds : {after, without}) {
+        for (const glm::uvec2 place : {glm::uvec2(1, 1), glm::uvec2(32, 1)}) { CHECK(at(seconds, place) == at(before, place)); }
+    }
+    CHECK(hands(run, run.frameAt(before)).size() == 2);
+    CHECK(hands(run, run.frameAt(end)).empty());
+    CHECK(run.frames.at(run.frameAt(before)).at("blend_mode") == "OPAQUE");
+    CHECK(run.frames.at(run.frameAt(end)).at("blend_mode") == "ALPHA_BLEND");
 }
 
 TEST_CASE("the room shows behind the scene where the headset and the wearer let it, in every mode") {
     const Workplace work;
-    std::ofstream(work.path / "through.toml") << "[view]\npassthrough = true\n";
-    const std::string options = "builtin:slanted-wall --load-first --hide-panel --hide-hands --eye 0,0,-6 --look 0,0,3 --up 0,-1,0";
-    const auto run = [&](const std::string& name, const std::string& modes, const std::string& more,
-                         const std::string& room = "0.2 0.9 0.4") {
-        const ViewRun seen = runView(work, name, kSmall + "room-colour " + room + "\n" + modes + "at 0.2 exit\n", options + more);
-        checkClean(seen);
-        return seen;
+    const std::string ahead = kScene + " --eye 0,0,-6 --look 0,0,3 --up 0,-1,0 --background ";
+    const auto begin = [](const std::string& modes, const std::string& room) {
+        return "rate 50\nsize 128 128\nframes every 5\nblend-modes " + modes + "\nroom-colour " + room + "\n";
     };
-    // A pixel of the picture's corner, where the fence is not.
-    const auto corner = [](const Image& picture) { return glm::vec3(picture.values[0], picture.values[1], picture.values[2]); };
+    const std::string both = "opaque alpha-blend", green_room = "0.2 0.9 0.4";
+    // The picture's corner, where the scene is not.
+    const auto isCorner = [](const ViewRun& run, double seconds, int side, const glm::vec3& colour) {
+        const auto [r, g, b] = colourAt(run.eye(run.pictureAt(seconds), side), {0, 0});
+        return glm::length(glm::vec3(r, g, b) - colour) < 0.02f;
+    };
     const glm::vec3 red(1.0f, 0.0f, 0.0f), green(0.2f, 0.9f, 0.4f);
-    const auto isNear = [](const glm::vec3& a, const glm::vec3& b) { return glm::length(a - b) < 0.02f; };
-    const std::string blends = "blend-modes opaque alpha-blend\n", through = " --config through.toml";
-    for (const std::string mode : {"mono", "two-pass", "predicted"}) {
-        CAPTURE(mode);
-        const std::string in_mode = " --background 1,0,0 --mode " + mode;
-        const ViewRun seen = run("seen-" + mode, blends, in_mode + through);
-        CHECK(seen.frames.at(15).at("blend_mode") == "ALPHA_BLEND");
-        CHECK(seen.layers(15, "projection").at(0).at("flags") == nlohmann::json::array({"blend_texture_source_alpha"}));
-        for (const int side : {kLeft, kRight}) { CHECK(isNear(corner(seen.eye(15, side)), green)); }
+
+    Acts acts(begin(both, green_room));
+    const double opaque = acts.look();
+    acts.click(placeOf("Passthrough", true));
+    std::vector<double> looks{acts.look()};
+    acts.click(placeOf("Method", true));
+    for (const char* mode : {"two-pass", "predicted"}) {
+        acts.click(onMethod(mode));
+        looks.push_back(acts.look());
     }
-    const ViewRun opaque = run("opaque", blends, " --background 1,0,0 --mode mono");
-    CHECK(opaque.frames.at(15).at("blend_mode") == "OPAQUE");
-    for (const int side : {kLeft, kRight}) { CHECK(isNear(corner(opaque.eye(15, side)), red)); }
+    const ViewRun run = runHands(work, acts.script(), ahead + "1,0,0");
+    CHECK(run.frames.at(run.pictureAt(opaque)).at("blend_mode") == "OPAQUE");
+    for (const double seconds : looks) {
+        CAPTURE(seconds);
+        CHECK(run.frames.at(run.pictureAt(seconds)).at("blend_mode") == "ALPHA_BLEND");
+        CHECK(run.layers(run.pictureAt(seconds), "projection").at(0).at("flags") == nlohmann::json::array({"blend_texture_source_alpha"}));
+        for (const int side : {kLeft, kRight}) { CHECK(isCorner(run, seconds, side, green)); }
+    }
+    for (const int side : {kLeft, kRight}) { CHECK(isCorner(run, opaque, side, red)); }
+
     // Where the scene is, it is as it was: over its own black, and over a room that is black.
-    const std::string black = " --mode mono --background 0,0,0";
-    const ViewRun in_the_dark = run("dark", blends, black + through, "0 0 0");
-    CHECK(compare(in_the_dark.eye(15, kLeft), run("black", blends, black).eye(15, kLeft)).psnrDb() > 40.0);
+    Acts dark(begin(both, "0 0 0"));
+    const double own = dark.look();
+    dark.press("right b").click(placeOf("Passthrough", true)).press("right b");
+    const double through = dark.look();
+    const ViewRun in_the_dark = runHands(work, dark.script(), ahead + "0,0,0 --hide-panel");
+    CHECK(in_the_dark.layers(in_the_dark.pictureAt(own), "quad").empty());
+    CHECK(in_the_dark.frames.at(in_the_dark.pictureAt(through)).at("blend_mode") == "ALPHA_BLEND");
+    CHECK(in_the_dark.likeness(in_the_dark.pictureAt(own), in_the_dark.pictureAt(through)) > 40.0);
+
     // A headset that adds light to the room's.
-    const ViewRun additive = run("additive", "blend-modes additive\n", " --background 1,0,0 --mode mono" + through);
-    CHECK(additive.frames.at(15).at("blend_mode") == "ADDITIVE");
-    CHECK(isNear(corner(additive.eye(15, kLeft)), green));
-    // One that shuts the room out.
-    const ViewRun shut = run("shut", "", " --background 1,0,0 --mode mono" + through);
-    CHECK(shut.frames.at(15).at("blend_mode") == "OPAQUE");
-    CHECK(isNear(corner(shut.eye(15, kLeft)), red));
-}
-
-TEST_CASE("while the scene loads, the room shows where the wearer wants it") {
-    const Workplace work;
-    std::ofstream(work.path / "through.toml") << "[view]\npassthrough = true\n";
-    const ViewRun run =
-        runView(work, "waiting", "rate 100\nsize 32 32\nblend-modes alpha-blend opaque\nroom-colour 0.2 0.9 0.4\nat 0.05 exit\n",
-                "builtin:atelier --hide-panel --hide-hands --config through.toml");
-    checkClean(run);
-    const Image seen = run.eye(3, kLeft);
-    CHECK(seen.values[1] == doctest::Approx(0.9).epsilon(0.01));
-}
-
-TEST_CASE("how one moves and what is seen is chosen on the panel") {
-    const Workplace work;
-    const std::string small = kBlind + "blend-modes opaque alpha-blend\ncontroller left 0 position -0.2 1.2 -0.35 turn 0 -80\n";
-    const Panel panel = panelOf(runView(work, "look", small + "at 0.1 exit\n", kScene), 8);
-    const ViewRun run =
-        runView(work, "choose", small + clickOn(panel, {{0.856, 0.499}, {0.045, 0.665}, {0.262, 0.665}, {0.746, 0.665}}), kScene);
-    checkClean(run);
-    for (const char* change : {"locomotion = \"teleport\"", "vignette = false", "hands = false", "passthrough = true"}) {
-        INFO(change << " in " << run.outcome.output);
-        CHECK(run.outcome.output.find(change) != std::string::npos);
-    }
-    CHECK(hands(run, 20).size() == 2);
-    CHECK(hands(run, 80).empty());
-    CHECK(run.frames.at(20).at("blend_mode") == "OPAQUE");
-    CHECK(run.frames.at(95).at("blend_mode") == "ALPHA_BLEND");
+    const ViewRun additive =
+        runHands(work, begin("additive", green_room) + "at 0.3 exit\n", ahead + "1,0,0" + withConfig(work, "[view]\npassthrough = true\n"));
+    CHECK(additive.frames.at(10).at("blend_mode") == "ADDITIVE");
+    CHECK(isCorner(additive, 0.2, kLeft, green));
 }
 
 }  // namespace view_hands_test

@@ -3,13 +3,11 @@
 // of the wearer's time instead of a minute; frames come as fast as they can, ten to such a second. With BINOSPLAT_WALK_KEEP=FILE what was
 // alive stays there, see tests/faults/live.h. Under the address sanitizer ASAN_OPTIONS=malloc_context_size=1:quarantine_size_mb=16 keeps
 // its own memory from growing: it remembers each stack that it sees, and those of drivers without frame pointers are never the same.
-#include "tests/app/view/panel/panel_sketch.h"
-#include "tests/app/view/view_runs.h"
+#include "tests/app/view/view_acts.h"
+#include "tests/nightly.h"
 
 #include <doctest/doctest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <cstdlib>
 #include <iterator>
 #include <span>
@@ -32,21 +30,16 @@ constexpr int kFewestWarm = 5, kMostWarm = 60;
 
 // Rounds of ten seconds. The wearer is at rest whenever the panel comes before the eyes, so that it can be pointed at.
 std::string walkOf(int rounds, const std::string& folder) {
-    // Of the panel that hangs where docs/simulated_script.md says.
-    const auto lookAt = [](const glm::dvec2& place) {
-        const glm::dvec3 at = glm::dvec3(-0.45, 1.5, -0.9) + 0.468 * (place.x - 0.5) * glm::dvec3(0.894, 0.0, -0.447) +
-                              0.585 * (0.5 - place.y) * glm::dvec3(-0.044, 0.995, -0.088);
-        return fmt::format("position 0.2 1.2 -0.35 look {:.4f} {:.4f} {:.4f}\n", at.x, at.y, at.z);
-    };
-    const std::string page = lookAt(placeOf("Scenes")), next = lookAt(placeOfScene("Next scene", folder));
+    const std::string page = pointingAt(panelBefore(), placeOf("Scenes")),
+                      next = pointingAt(panelBefore(), placeOfScene("Next scene", folder));
     std::string script = fmt::format(
         "rate {}\nsize 64 64\nframes none\nvisibility-mask on\nimages 3 shuffled\nirregular 20\nstate-changes at-begin\n", kRate);
     for (int round = 0; round < rounds; ++round) {
         const double t = kRound * round;
         script += fmt::format("head {:.2f} position 0 1.6 0 turn 0 0\nhead {:.2f} position 0 1.6 0\n", t, t + 2.4);
         script += fmt::format("head {:.2f} position 0.3 1.5 -0.5 turn 25 -10\nhead {:.2f} position 0 1.6 0 turn 0 0\n", t + 3.5, t + 4.6);
-        script += fmt::format("controller right {:.2f} {}controller right {:.2f} {}", t + 0.2, page, t + 0.8, page);
-        script += fmt::format("controller right {:.2f} {}controller right {:.2f} {}", t + 0.9, next, t + 1.5, next);
+        script += fmt::format("controller right {:.2f} {}\ncontroller right {:.2f} {}\n", t + 0.2, page, t + 0.8, page);
+        script += fmt::format("controller right {:.2f} {}\ncontroller right {:.2f} {}\n", t + 0.9, next, t + 1.5, next);
         script += fmt::format("press right trigger {:.2f} {:.2f}\n", t + 0.4, t + 0.7);
         script += fmt::format("controller right {:.2f} position 0.5 1.3 -0.5 turn -60 10\n", t + 2.5);
         script += fmt::format("controller right {:.2f} position 0.3 1.1 -0.4 turn -80 -10\n", t + 4.5);
@@ -89,89 +82,68 @@ std::uint64_t medianHeapBytes(std::span<const Alive> lines) {
     return *middle;
 }
 
-std::size_t count(const std::string& text, const std::string& part) {
-    std::size_t found = 0;
-    for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) { ++found; }
-    return found;
-}
-
 // The C library hands out blocks below a size from a heap that others' small ones cut into pieces, and raises that size with what programs
 // free: then the heap grows with each scene though nothing more is in use. This holds the size where it begins.
 constexpr const char* kSteadyHeap = "MALLOC_MMAP_THRESHOLD_=131072";
 
 std::uint64_t mebibytes(std::uint64_t bytes) { return bytes >> 20; }
 
-class Walk {
-public:
-    Walk() {
-        std::filesystem::create_directories(work_.path / "scenes");
-        for (const char* name : {"one-splat", "slanted-wall"}) {
-            const Outcome made = work_.run(fmt::format("scene {} --out scenes/{}.ply", name, *name == 'o' ? "a" : "b"));
-            INFO(made.errors);
-            REQUIRE(made.exit_code == 0);
-        }
-    }
-
-    void go(const std::string& environment) {
+struct Walk : ViewRun {  // its frames are too many to be read
+    explicit Walk(const std::string& environment) {
+        const Workplace work;
+        std::filesystem::create_directories(work.path / "scenes");
+        REQUIRE(work.run("scene one-splat --out scenes/a.ply").exit_code == 0);
+        REQUIRE(work.run("scene slanted-wall --out scenes/b.ply").exit_code == 0);
         const char* const wanted = std::getenv("BINOSPLAT_WALK_SECONDS");
         const int rounds = std::max(static_cast<int>((wanted != nullptr ? std::atof(wanted) : 0.0) / kRound), 2 * kFewestWarm);
-        std::ofstream(work_.path / "walk.script") << walkOf(rounds, (work_.path / "scenes").string());
+        std::ofstream(work.path / "walk.script") << walkOf(rounds, (work.path / "scenes").string());
         const char* const kept = std::getenv("BINOSPLAT_WALK_KEEP");
-        const std::filesystem::path alive = kept != nullptr ? std::filesystem::path(kept) : work_.path / "alive.txt";
+        const std::filesystem::path file = kept != nullptr ? std::filesystem::path(kept) : work.path / "alive.txt";
         // In a process that begins with it: the C library reads its settings once.
-        outcome_ =
-            work_.runCommand(fmt::format("{} {} VK_ADD_LAYER_PATH='" BINOSPLAT_FAULT_LAYER
-                                         "' VK_INSTANCE_LAYERS=VK_LAYER_BINOSPLAT_faults BINOSPLAT_FAULT_LIVE='{}' '" BINOSPLAT_PROGRAM
-                                         "' view scenes/a.ply --load-first --frames {} --simulate walk.script --out walk",
-                                         environment, kSteadyHeap, alive.string(), 2 * rounds * static_cast<int>(kRound) * kRate));
-        lines_ = readAlive(alive);
+        outcome = work.runCommand(fmt::format(
+            "{} {} '" BINOSPLAT_PROGRAM "' view scenes/a.ply --load-first --frames {} --simulate walk.script --out walk", kSteadyHeap,
+            withFaults("BINOSPLAT_FAULT_LIVE='" + file.string() + "'", environment), 2 * rounds * static_cast<int>(kRound) * kRate));
+        lines_alive = readAlive(file);
         const auto least = static_cast<std::size_t>(rounds);
-        REQUIRE(lines_.size() >= least * 5);
-        warm_lines_ = lines_.size() * static_cast<std::size_t>(std::min(rounds / 2, kMostWarm)) / least;
-        MESSAGE(mebibytes(medianHeapBytes(warm()))
-                << " MiB of heap at first, later " << mebibytes(medianHeapBytes(later())) << ", at most resident "
-                << mebibytes(most(warm(), &Alive::resident_bytes)) << " and " << mebibytes(most(later(), &Alive::resident_bytes)));
-        CHECK(count(outcome_.output, "another one begins") + 1 >= least);
-        CHECK(count(outcome_.output, "shows ") >= least);
-        CHECK(count(outcome_.output, "the room now begins where the wearer stands") > least);
+        REQUIRE(lines_alive.size() >= least * 5);
+        const std::size_t warm_lines = lines_alive.size() * static_cast<std::size_t>(std::min(rounds / 2, kMostWarm)) / least;
+        warm = std::span(lines_alive).first(warm_lines);
+        later = std::span(lines_alive).subspan(warm_lines);
+        MESSAGE(mebibytes(medianHeapBytes(warm))
+                << " MiB of heap at first, later " << mebibytes(medianHeapBytes(later)) << ", at most resident "
+                << mebibytes(most(warm, &Alive::resident_bytes)) << " and " << mebibytes(most(later, &Alive::resident_bytes)));
+        CHECK(lines("another one begins").size() + 1 >= least);
+        CHECK(lines("shows ").size() >= least);
+        CHECK(lines("the room now begins where the wearer stands").size() > least);
     }
 
-    [[nodiscard]] const Outcome& outcome() const { return outcome_; }
-    [[nodiscard]] std::span<const Alive> warm() const { return std::span(lines_).first(warm_lines_); }
-    [[nodiscard]] std::span<const Alive> later() const { return std::span(lines_).subspan(warm_lines_); }
-
-private:
-    Workplace work_;
-    Outcome outcome_;
-    std::vector<Alive> lines_;
-    std::size_t warm_lines_ = 0;
+    std::vector<Alive> lines_alive;
+    std::span<const Alive> warm, later;
 };
 
 }  // namespace
 
-TEST_CASE_FIXTURE(Walk, "however long somebody walks about, nobody complains, and of the device no more is in use than at first") {
-    go(kValidated);
-    ViewRun run;  // its frames are too many to be read
-    run.outcome = outcome();
-    checkClean(run);
+TEST_CASE("however long somebody walks about, nobody complains, and of the device no more is in use than at first" * nightly()) {
+    const Walk walk(kValidated);
+    checkClean(walk);
     // To the object: what is lost in a round adds up in the later ones.
-    CHECK(most(later(), &Alive::most_objects) <= most(warm(), &Alive::most_objects));
+    CHECK(most(walk.later, &Alive::most_objects) <= most(walk.warm, &Alive::most_objects));
     // Where the wearer stands when a scene is there decides how long its lists are.
-    CHECK(most(later(), &Alive::most_device_bytes) <= most(warm(), &Alive::most_device_bytes) * 51 / 50);
+    CHECK(most(walk.later, &Alive::most_device_bytes) <= most(walk.warm, &Alive::most_device_bytes) * 51 / 50);
 }
 
-TEST_CASE_FIXTURE(Walk, "nor does the host's memory grow, and what was made for one scene is not made again for another") {
+TEST_CASE("nor does the host's memory grow, and what was made for one scene is not made again for another" * nightly()) {
     // The validation layer itself, of Vulkan 1.3.239, keeps 60 KiB more with each scene.
-    go("XDG_CONFIG_HOME=\"$PWD/../config\" DISPLAY= WAYLAND_DISPLAY=");
-    INFO("stderr: " << outcome().errors);
-    CHECK(outcome().exit_code == 0);
-    CHECK(outcome().errors.empty());
+    const Walk walk("XDG_CONFIG_HOME=\"$PWD/../config\" DISPLAY= WAYLAND_DISPLAY=");
+    INFO("stderr: " << walk.outcome.errors);
+    CHECK(walk.outcome.exit_code == 0);
+    CHECK(walk.outcome.errors.empty());
     // Scenes take turns, and either half of the walk may have a little more of the larger one.
-    CHECK(medianHeapBytes(later()) <= medianHeapBytes(warm()) + (512u << 10));
-    const std::uint64_t resident = most(warm(), &Alive::resident_bytes);
-    CHECK(most(later(), &Alive::resident_bytes) <= resident + resident / 50 + (8u << 20));
-    CHECK(warm().back().kernels_made > 10);
-    CHECK(later().back().kernels_made == warm().back().kernels_made);
+    CHECK(medianHeapBytes(walk.later) <= medianHeapBytes(walk.warm) + (512u << 10));
+    const std::uint64_t resident = most(walk.warm, &Alive::resident_bytes);
+    CHECK(most(walk.later, &Alive::resident_bytes) <= resident + resident / 50 + (8u << 20));
+    CHECK(walk.warm.back().kernels_made > 10);
+    CHECK(walk.later.back().kernels_made == walk.warm.back().kernels_made);
 }
 
 }  // namespace view_long_test

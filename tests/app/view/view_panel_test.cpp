@@ -1,13 +1,11 @@
-// Facts about the viewer's panel: a ray points, the trigger clicks, and what was chosen is so.
-#include "engine/picture/metrics.h"
-#include "tests/app/view/panel/panel_sketch.h"
+// Facts about the viewer's panel: a ray points, the trigger clicks, what was chosen is so and is seen, and what was saved comes back.
 #include "tests/app/view/unchanged_shaders.h"
-#include "tests/app/view/view_scripts.h"
+#include "tests/app/view/view_acts.h"
+#include "tests/nightly.h"
+#include "xr/simulated/extensions.h"
 
 #include <doctest/doctest.h>
 
-#include <cmath>
-#include <fstream>
 #include <iterator>
 
 TEST_SUITE_BEGIN("view_panel");
@@ -17,185 +15,269 @@ namespace view_panel_test {
 using namespace binosplat;
 using namespace binosplat::test;
 
-TEST_CASE("method and dominant eye are switched, and the wearer may quit from the panel") {
-    const Workplace work;
-    const Panel panel = startPanel(work);
-    const std::string script = kBlind + clickOn(panel, {onMethod("reproject"), onMethod("right"), onMethod("Quit"), {0.9, 0.95}});
-    const ViewRun run = runView(work, "click", script, kScene + withMethodPage(work));
-    checkClean(run);
-    CHECK(says(run, "mode = \"reproject\""));
-    CHECK(says(run, "dominant = \"right\""));
-    // It quit before the script's end at 1 s.
-    CHECK(run.frames.size() < 40);
-}
+namespace fs = std::filesystem;
 
-TEST_CASE("a rate chosen on the panel is the headset's from then on") {
-    const Workplace work;
-    const Panel panel = startPanel(work);
-    const ViewRun run = runView(work, "rate", kDense + clickOn(panel, {placeOf("120 Hz", true), {0.9, 0.95}}), kScene);
-    checkClean(run);
-    CHECK(says(run, "refresh-rate = 120"));
-    CHECK(run.frames.front().at("period_ns").get<std::int64_t>() > 9'000'000);
-    CHECK(run.frames.back().at("period_ns").get<std::int64_t>() == 8'333'333);
-}
+namespace {
 
-TEST_CASE("a rate that the headset refuses is said, and is no end") {
-    const Workplace work;
-    const ViewRun run =
-        runView(work, "fixed",
-                // The wearer's own changes, long after the end, are on the list as well.
-                "rate 90 fixed\n" + kDense.substr(kDense.find('\n') + 1) +
-                    clickOn(startPanel(work), {placeOf("120 Hz", true), {0.9, 0.95}}) + "at 20 rate 72\nat 21 rate 80\nat 22 rate 120\n",
-                kScene);
-    CHECK(run.outcome.exit_code == 0);
-    CHECK(run.outcome.output.find("VUID") == std::string::npos);
-    CHECK(says(run, "refresh-rate is 120, this headset refuses it (XR_ERROR_DISPLAY_REFRESH_RATE_UNSUPPORTED_FB)"));
-    CHECK(run.frames.back().at("period_ns").get<std::int64_t>() > 9'000'000);
-}
+const std::string kBlind = "rate 50\nsize 64 64\nframes none\n", kSmall = "rate 50\nsize 96 96\nframes every 2\n";
+const std::string kScene = kWall + " --mode mono";
+const std::string kSources = BINOSPLAT_SOURCE_DIR "/shaders";
 
-TEST_CASE("sliders take a click, and the resolution changes once the trigger is let go") {
+const std::string kAsHeadset = " --size 96x96 --fov-x 90 --ipd 0.063";
+
+}  // namespace
+
+TEST_CASE("what is clicked on the panel is so, beside it nothing is clicked, and settings and place are saved, and come back") {
     const Workplace work;
-    const Panel panel = startPanel(work);
-    const ViewRun run = runView(
-        work, "slide", kSmall + clickOn(panel, {onMethod("margin (paper)"), onMethod("budget"), onMethod("resolution"), {0.9, 0.95}}),
-        kScene + withMethodPage(work));
+    Acts acts("rate 50\nsize 160 160\nframes none\n");
+    // A step ahead.
+    acts.push("left thumbstick", {0.0, 1.0}, 0.1).wait(0.15).click({1.2, 0.3}).click({-0.2, 0.3});
+    const double beside = acts.look(0.05);
+    acts.click(onMethod("right")).click(onMethod("Save")).click(onMethod("left")).click(onMethod("Load")).wait(0.1);
+    acts.click(onMethod("margin (paper)")).click(onMethod("budget"));
+    // The resolution changes once the trigger is let go.
+    const double held = acts.point(onMethod("resolution")).hold("right trigger", 0.1).wait(0.05).look(0.1);
+    const double let_go = acts.look(0.05);
+    // Nobody reloads shaders who was not told where they are.
+    acts.click(onMethod("Shaders", true)).click(onMethod("reproject")).click(onMethod("View")).click(placeOf("120 Hz", true));
+    const double other_rate = acts.wait(0.05).look(0.05);
+    acts.click(placeOf("Quit")).wait(0.5);
+    // What the command line says of the simulated headset counts before the environment.
+    const ViewRun run = runView(work, "click", acts.script(), kScene + withConfig(work, kMethodPage),
+                                kValidated + " BINOSPLAT_SHADERS= SIMULATED_OPENXR_OUT=elsewhere SIMULATED_OPENXR_SCRIPT=nowhere.script");
     checkClean(run);
+    CHECK_FALSE(fs::exists(work.path / "elsewhere"));
+    CHECK(run.endSeconds() < acts.now_s - 0.3);
+    CHECK_FALSE(run.says("shaders"));
+    CHECK(glm::length(panelOf(run, 8).middle - acts.panel.middle) < 1e-5);
+    CHECK(std::abs(glm::dot(panelOf(run, 8).orientation, acts.panel.orientation)) > 1.0 - 1e-9);
+    const auto size = run.panels(8).at(0).at("size").get<std::array<double, 2>>();
+    CHECK(glm::length(glm::dvec2(size[0], size[1]) - kPanelMetres) < 1e-6);
+    checkOrder(run, {"dominant = \"right\"", "saved as ", "dominant = \"left\"", "loaded ", "dominant = \"right\"",
+                     "margin = ", "budget = ", "resolution-scale = ", "mode = \"reproject\"", "refresh-rate = 120"});
+    CHECK(std::stod(run.lines(" = ").at(0).substr(6)) > 50.0 * beside);
     const auto valueOf = [&](const std::string& key) {
-        const std::size_t at = run.outcome.output.find(key + " = ");
-        INFO(key << " in " << run.outcome.output);
-        REQUIRE(at != std::string::npos);
-        return std::stod(run.outcome.output.substr(at + key.size() + 3));
+        const std::string line = run.lines(key + " = ").at(0);
+        return std::stod(line.substr(line.find(key + " = ") + key.size() + 3));
     };
     // 0 to 128 pixels, 0 to 100 %, 0.1 to 2, all clicked at the same share of their length.
-    const double share = valueOf("budget");
+    const double share = valueOf("budget"), scale = valueOf("resolution-scale");
     CHECK(share > 0.4);
     CHECK(share < 0.6);
     CHECK(valueOf("margin") == doctest::Approx(128.0 * share).epsilon(0.02));
-    const double scale = valueOf("resolution-scale");
     CHECK(scale == doctest::Approx(0.1 + 1.9 * share).epsilon(0.02));
-    const auto sizeIn = [&](std::size_t frame) {
-        const auto rect = run.layers(frame, "projection").at(0).at("views").at(0).at("rect").get<std::array<int, 4>>();
-        return rect[2];
-    };
-    CHECK(sizeIn(20) == 160);
-    CHECK(sizeIn(35) == static_cast<int>(std::round(160.0 * scale)));
-}
+    CHECK(run.width(run.frameAt(held)) == 160);
+    CHECK(run.width(run.frameAt(let_go) + 2) == static_cast<int>(std::round(160.0 * scale)));
+    CHECK(run.periodNs(run.frameAt(let_go)) == 20'000'000);
+    CHECK(run.periodNs(run.frameAt(other_rate)) == 8'333'333);
 
-TEST_CASE("pointing beside the panel clicks nothing") {
-    const Workplace work;
-    const Panel panel = startPanel(work);
-    const ViewRun run = runView(work, "beside", kBlind + clickOn(panel, {{1.2, 0.3}, {-0.2, 0.3}}), kScene);
-    checkClean(run);
-    CHECK_FALSE(says(run, " = "));
-}
-
-TEST_CASE("settings and placement are saved as a config of the scene, and come back") {
-    const Workplace work;
-    const Panel panel = startPanel(work);
-    // A step ahead and a method, before they are saved.
-    const std::string walk =
-        "axis left thumbstick 0.05 0 0\naxis left thumbstick 0.06 0 1\naxis left thumbstick 0.14 0 1\naxis left thumbstick 0.15 0 0\n";
-    const ViewRun saved = runView(
-        work, "save",
-        kBlind + walk + clickOn(panel, {onMethod("reproject"), onMethod("Save"), onMethod("predicted"), onMethod("Load"), {0.9, 0.95}}),
-        kScene + withMethodPage(work));
-    checkClean(saved);
-    const std::string& output = saved.outcome.output;
-    const std::size_t at = output.find("saved as ");
-    REQUIRE(at != std::string::npos);
-    const std::filesystem::path file = output.substr(at + 9, output.find('\n', at) - at - 9);
-    CHECK(std::filesystem::weakly_canonical(file) == work.base / "config" / "binosplat" / "scenes" / "slanted-wall.view.toml");
-    CHECK(says(saved, "loaded " + file.string()));
-    CHECK(output.find("mode = \"predicted\"") < output.rfind("mode = \"reproject\""));
     // The viewer and `render` take the file.
-    const ViewRun again = runView(work, "again", kBlind + "at 0.1 exit\n", kWall + " --config '" + file.string() + "'");
-    checkClean(again);
-    CHECK(work.run("render builtin:slanted-wall --out rendered --size 32x32 --config '" + file.string() + "'").exit_code == 0);
+    const std::string said = run.lines("saved as ").at(0);
+    const fs::path file = said.substr(said.find("saved as ") + 9);
+    CHECK(fs::weakly_canonical(file) == work.base / "config" / "binosplat" / "scenes" / "slanted-wall.view.toml");
+    CHECK(run.says("loaded " + file.string()));
+    REQUIRE(work.run("render builtin:slanted-wall --out rendered --size 32x32 --config '" + file.string() + "'").exit_code == 0);
     std::ifstream report(work.path / "rendered" / "report.json");
-    CHECK(nlohmann::json::parse(report).at("options").at("mode") == "reproject");
+    const nlohmann::json options = nlohmann::json::parse(report).at("options");
+    CHECK(options.at("mode") == "mono");
+    CHECK(options.at("dominant") == "right");
     // The wearer stands there again, unless told where to.
-    const ViewRun there = runView(work, "there", kStill + "at 0.1 exit\n", kWall + " --mode reproject --hide-panel");
+    const auto look = [&](const std::string& name, const std::string& arguments) {
+        return runView(work, name, "rate 50\nsize 96 96\nframes every 5\nat 0.15 exit\n", kWall + " --hide-panel " + arguments);
+    };
+    const std::string as_then = "--mode mono --dominant right";
+    const ViewRun there = look("there", as_then), named = look("named", "--config '" + file.string() + "'"),
+                  before = look("before", as_then + " --eye 0,0,0 --look 0,0,3 --up 0,-1,0");
     checkClean(there);
-    CHECK(says(there, "the wearer stands where this scene was saved"));
-    const ViewRun before =
-        runView(work, "before", kStill + "at 0.1 exit\n", kWall + " --mode reproject --hide-panel --eye 0,0,0 --look 0,0,3 --up 0,-1,0");
-    CHECK_FALSE(says(before, "where this scene was saved"));
-    const ViewRun named = runView(work, "named", kStill + "at 0.1 exit\n", kWall + " --hide-panel --config '" + file.string() + "'");
-    CHECK(compare(there.eye(8, kLeft), named.eye(8, kLeft)).psnrDb() > 60.0);
-    CHECK(compare(there.eye(8, kLeft), before.eye(8, kLeft)).psnrDb() < 40.0);
-    // Another scene has another place, and one that cannot be read is said and does not keep anybody out.
-    CHECK_FALSE(
-        says(runView(work, "other", kBlind + "at 0.1 exit\n", "builtin:one-splat --load-first --mode mono"), "where this scene was saved"));
+    checkClean(named);
+    CHECK(there.says("the wearer stands where this scene was saved"));
+    CHECK_FALSE(before.says("where this scene was saved"));
+    CHECK(compare(there.eye(5, kLeft), named.eye(5, kLeft)).psnrDb() > 60.0);
+    CHECK(compare(there.eye(5, kLeft), before.eye(5, kLeft)).psnrDb() < 40.0);
+    // Another scene has another place, and a file that cannot be read is said and does not keep anybody out. A folder of shaders is read by
+    // the panel's button: not one that is not there, nor a pipe, which would keep the compiler, and the wearer, waiting.
+    Acts reload(kBlind);
+    reload.click(onMethod("Shaders", true)).wait(0.1);
+    const std::string method_page = withConfig(work, kMethodPage);
+    const ViewRun other =
+        runView(work, "other", reload.script(), kOneSplat + " --mode mono" + method_page, kValidated + " BINOSPLAT_SHADERS=nowhere");
+    checkClean(other);
+    CHECK_FALSE(other.says("where this scene was saved"));
+    CHECK(other.says("shaders stay as they were: nowhere/sort/cull_pages.comp is not there"));
     std::ofstream(file) << "[view]\nnonsense = 1\n";
-    const ViewRun broken = runView(work, "broken", kBlind + "at 0.1 exit\n", kScene);
+    REQUIRE(work.runCommand("mkdir -p pipe/sort && mkfifo pipe/sort/cull_pages.comp").exit_code == 0);
+    const ViewRun broken = runView(work, "broken", reload.script(), kScene + method_page + " --shaders pipe");
     checkClean(broken);
-    CHECK(says(broken, "slanted-wall.view.toml:2"));
+    CHECK(broken.says("slanted-wall.view.toml:2"));
+    CHECK(broken.says("shaders stay as they were: pipe/sort/cull_pages.comp is not a file"));
+}
+
+TEST_CASE("a rate that the headset lacks, or that it refuses, is said, and is no end") {
+    const Workplace work;
+    Acts acts("rate 90 fixed\nsize 64 64\nframes none\n");
+    acts.click(placeOf("120 Hz", true)).wait(0.1);
+    // The wearer's own changes, long after the end, are on the list as well.
+    const ViewRun run = runView(work, "fixed", acts.script() + "at 20 rate 72\nat 21 rate 80\nat 22 rate 120\n",
+                                kScene + withConfig(work, "[view]\nrefresh-rate = 75\n"));
+    CHECK(run.outcome.exit_code == 0);
+    CHECK_FALSE(run.says("VUID"));
+    CHECK(run.says("refresh-rate is 75, this headset has 72, 80, 90, 120"));
+    CHECK(run.says("refresh-rate is 120, this headset refuses it (XR_ERROR_DISPLAY_REFRESH_RATE_UNSUPPORTED_FB)"));
+    CHECK(run.periodNs(run.frames.size() - 1) == 11'111'111);
 }
 
 TEST_CASE("shaders are reloaded by a button, all or none, with a verdict") {
     const Workplace work;
-    const Panel panel = startPanel(work);
-    // The sources as they are; then a copy in which one line is broken, another that draws nothing, and a folder that is not there.
-    const std::filesystem::path sources = std::filesystem::path(BINOSPLAT_SOURCE_DIR) / "shaders";
-    const auto copyOf = [&](const std::string& name, const std::string& line, const std::string& replacement) {
-        std::filesystem::copy(sources, work.path / name, std::filesystem::copy_options::recursive);
-        const std::filesystem::path file = work.path / name / "present/present.comp";
-        std::ifstream in(file);
-        const std::string text(std::istreambuf_iterator<char>(in), {});
-        const std::size_t at = text.find(line);
-        REQUIRE(at != std::string::npos);
-        std::ofstream(file) << text.substr(0, at) + replacement + text.substr(at + line.size());
-    };
-    const std::string line = "    const uvec3 bytes = uvec3(colour * 255 + 0.5);";
-    copyOf("broken", line, "    const uvec3 bytes = nonsense;");
-    copyOf("black", line, "    const uvec3 bytes = uvec3(0);");
-    const std::string script = kSmall + clickOn(panel, {onMethod("Shaders", true), {0.9, 0.95}});
-    writeCompilerOfChangedShaders(work.path / "tools");  // the first run has no such help
-    const auto click = [&](const std::string& name, const std::string& folder, const std::string& more = " PATH=\"$PWD/tools:$PATH\"") {
-        const ViewRun run = runView(work, name, script, kScene + withMethodPage(work) + " --shaders '" + folder + "'", kValidated + more);
+    // As they are; then one line is broken; then it draws nothing.
+    fs::copy(kSources, work.path / "edited", fs::copy_options::recursive);
+    const fs::path present = fs::path("edited") / "present" / "present.comp";
+    std::ifstream in(work.path / present);
+    const std::string text(std::istreambuf_iterator<char>(in), {}), line = "    const uvec3 bytes = uvec3(colour * 255 + 0.5);";
+    const std::size_t at = text.find(line);
+    REQUIRE(at != std::string::npos);
+    fs::create_directory(work.path / "edits");
+    for (const auto& [edit, replacement] :
+         {std::pair("1", "    const uvec3 bytes = nonsense;"), std::pair("2", "    const uvec3 bytes = uvec3(0);")}) {
+        std::ofstream(work.path / "edits" / edit) << text.substr(0, at) + replacement + text.substr(at + line.size());
+    }
+    writeCompilerOfChangedShaders(work.path / "tools",
+                                  "if [ $name = present ]; then for edit in edits/*; do [ -e $edit ] && mv $edit $last; break; done; fi\n");
+    Acts acts(kSmall);
+    std::vector<double> looks{acts.look()};
+    for (int i = 0; i < 3; ++i) {
+        acts.click(onMethod("Shaders", true));
+        looks.push_back(acts.look());
+    }
+    const ViewRun run = runView(work, "reload", acts.script(), kScene + " --shaders edited" + withConfig(work, kMethodPage),
+                                kValidated + " PATH=\"$PWD/tools:$PATH\"");
+    checkClean(run);
+    std::size_t count = 0;
+    for (const auto& file : fs::recursive_directory_iterator(kSources)) { count += file.path().extension() == ".comp" ? 1 : 0; }
+    checkOrder(run, {fmt::format("{} shaders reloaded in ", count), "shaders stay as they were: " + present.string() + ":", "nonsense",
+                     " shaders reloaded in "});
+    // Away from the panel and the ray: the upper third of the right half.
+    const Image before = run.eye(run.pictureAt(looks[0]), kRight);
+    for (const std::size_t i : {1, 2, 3}) {
+        const Image after = run.eye(run.pictureAt(looks[i] + 0.04), kRight);
+        const glm::uvec2 size = before.size_px;
+        const std::size_t other = countPixels(before, after, std::not_equal_to{}, {size.x / 2 + 1, 0}, {size.x, size.y / 3});
+        CAPTURE(i);
+        CHECK((other == 0) == (i != 3));
+    }
+}
+
+TEST_CASE("every shader is compiled from its source as the build does it" * nightly()) {
+    const Workplace work;
+    Acts acts(kBlind);
+    acts.click(onMethod("Shaders", true)).wait(0.1);
+    const ViewRun run =
+        runView(work, "all", acts.script(), kScene + " --shaders '" + kSources + "'" + withConfig(work, kMethodPage), kValidated);
+    checkClean(run);
+    CHECK(run.says(" shaders reloaded in "));
+}
+
+TEST_CASE("a resolution that the device has no memory for is refused on the panel, and what was shown before stays") {
+    const Workplace work;
+    const std::string config = withConfig(work, kMethodPage + "resolution-scale = 0.25\n");
+    const auto choose = [&](const std::string& name, const std::string& headset, const std::string& arguments) {
+        Acts acts("rate 50\n" + headset);
+        acts.wait(0.1).press("right b").click(onMethod("resolution")).press("right b").wait(0.2);
+        const ViewRun run = runView(work, name, acts.script(), arguments + config);
         checkClean(run);
         return run;
     };
-    // Away from the panel and the ray: the upper third of the right half.
-    const auto sameAfterwards = [&](const ViewRun& run) {
-        const Image before = run.eye(8, kRight), after = run.eye(18, kRight);
-        std::size_t other = 0;
-        for (std::size_t i = 0; i < before.pixelCount() / 3; ++i) {
-            const std::size_t at = i * static_cast<std::size_t>(before.channels);
-            other +=
-                i % before.size_px.x > before.size_px.x / 2 && !std::equal(&before.values[at], &before.values[at] + 3, &after.values[at])
-                    ? 1
-                    : 0;
-        }
-        return other == 0;
-    };
-    const ViewRun good = click("good", sources.string(), "");
-    std::size_t count = 0;
-    for (const auto& file : std::filesystem::recursive_directory_iterator(sources)) { count += file.path().extension() == ".comp" ? 1 : 0; }
-    CHECK(says(good, fmt::format("{} shaders reloaded in ", count)));
-    CHECK(sameAfterwards(good));
-    const ViewRun bad = click("bad", "broken");
-    CHECK(says(bad, "shaders stay as they were: broken/present/present.comp:"));
-    CHECK(says(bad, "nonsense"));
-    CHECK(sameAfterwards(bad));
-    const ViewRun black = click("black-run", "black");
-    CHECK(says(black, " shaders reloaded in "));
-    CHECK_FALSE(sameAfterwards(black));
-    CHECK(says(click("missing", "nowhere"), "shaders stay as they were: nowhere/sort/cull_pages.comp is not there"));
-    // A pipe would keep the compiler, and the wearer, waiting.
-    REQUIRE(work.runCommand("mkdir -p pipe/sort && mkfifo pipe/sort/cull_pages.comp").exit_code == 0);
-    CHECK(says(click("pipe-run", "pipe"), "shaders stay as they were: pipe/sort/cull_pages.comp is not a file"));
+    const ViewRun run = choose("full", "size 1024 1024\nframes from 12 to 36 every 24\n", kWall + " --hide-panel --memory-limit 16");
+    CHECK(run.says("does not fit: "));
+    CHECK(run.says("the limit is 16.0 MiB (memory-limit)"));
+    CHECK(run.width(36) == 256);
+    CHECK(compare(run.eye(36, kLeft), run.eye(12, kLeft), 3).psnrDb() > 60.0);
+    // At the slider's middle (some 896 pixels) the eyes' pictures fit, and what is to bring them to the headset does not.
+    CHECK(choose("brought", "size 853 853\nframes none\n", kOneSplat + " --hide-panel --mode shared --memory-limit 24")
+              .says("presented pixels needs "));
 }
 
-TEST_CASE("nobody reloads shaders who was not told where they are") {
+TEST_CASE(
+    "tint and centre ROIs are seen in the eye that is made from the other, and a recorded walk with clicks is seen as it is rendered") {
     const Workplace work;
-    const Panel panel = startPanel(work);
-    const std::string script = kBlind + clickOn(panel, {onMethod("Shaders", true), {0.9, 0.95}});
-    const ViewRun run = runView(work, "none", script, kScene + withMethodPage(work), kValidated + " BINOSPLAT_SHADERS=");
+    std::ofstream motion(work.path / "walk.csv");
+    motion << "time_s,x,y,z,qx,qy,qz,qw\n";
+    for (int i = 0; i <= 300; ++i) {
+        // It rests at first.
+        const double time_s = i / 90.0, t = std::max(0.0, time_s - 1.3), turn = 0.2 * std::sin(2.0 * t), nod = 0.1 * std::sin(3.0 * t);
+        motion << fmt::format("{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},0,{:.6f}\n", time_s, 0.15 * std::sin(t),
+                              1.6 + 0.02 * std::sin(9.0 * t), -0.1 * t, nod, turn, std::sqrt(1.0 - nod * nod - turn * turn));
+    }
+    motion.close();
+    Acts acts("rate 50\nsize 96 96\nframes every 5\nhead-motion walk.csv\n");
+    const double plain = acts.look();
+    acts.press("right b").click(onMethod("Show how tiles were made"));
+    const double tinted = acts.look();
+    acts.click(onMethod("Centre ROI (paper)"));
+    const double centred = acts.look();
+    acts.click(onMethod("Show how tiles were made")).wait(1.3 - acts.now_s).click(onMethod("predicted")).wait(0.25);
+    const double walked = acts.click(onMethod("right")).press("right b").wait(0.2).look();
+    // Near enough to the bars that holes open inside the picture.
+    const ViewRun run =
+        runView(work, "walk", acts.script(),
+                "builtin:fence --load-first --hide-panel --hide-hands --mode paper --margin 0 --eye 0,0,0.5 --look 0,0,3 --up 0,-1,0" +
+                    withConfig(work, kMethodPage));
     checkClean(run);
-    CHECK_FALSE(says(run, "shaders"));
-    const ViewRun told = runView(work, "told", script, kScene + withMethodPage(work), kValidated + " BINOSPLAT_SHADERS=nowhere");
-    CHECK(says(told, "shaders stay as they were: nowhere/sort/cull_pages.comp is not there"));
+    checkOrder(run, {"tint = true", "center-roi = true", "tint = false", "mode = \"predicted\"", "dominant = \"right\"",
+                     "the runtime asked for the end"});
+    // What is greener than the picture beside it.
+    const auto shareAt = [&](int side) {
+        const Image before = run.eye(run.pictureAt(tinted), side), after = run.eye(run.pictureAt(centred), side);
+        const auto isTinted = [](const Colour& was, const Colour& is) { return is[1] - was[1] > 0.06f && was[0] - is[0] > 0.03f; };
+        return static_cast<double>(countPixels(before, after, isTinted)) / static_cast<double>(before.pixelCount());
+    };
+    CHECK(shareAt(kRight) > 0.02);
+    CHECK(shareAt(kLeft) < 0.005);
+    const glm::dvec3 start(0.0, 0.0, 0.5);
+    checkAgreesWithRender(work, run, run.pictureAt(plain), start, "--mode paper --margin 0" + kAsHeadset);
+    checkAgreesWithRender(work, run, run.pictureAt(walked), start,
+                          "--mode predicted --margin 0 --dominant right --center-roi" + kAsHeadset);
+    // The head walked, and every frame was shown as the eyes were.
+    for (const double seconds : {1.4, 1.6, walked}) {
+        const std::size_t frame = run.frameAt(seconds);
+        for (const std::size_t e : {0, 1}) {
+            const glm::dvec3 shown = run.viewPlace(frame, e), was = run.loggedEye(frame, e).position;
+            for (const int axis : {0, 2}) { CHECK(shown[axis] == doctest::Approx(was[axis]).epsilon(1e-4)); }
+        }
+    }
+    CHECK(run.loggedEye(run.frameAt(walked), 0).position.z < -0.05);
+}
+
+TEST_CASE("a runtime with no more than OpenXR 1.0 and Vulkan shows every method, takes clicks and knows no floor") {
+    const Workplace work;
+    std::string begin = "rate 50\nsize 96 96\nframes every 4\nstage off\nprofile khr/simple_controller\n";
+    for (const simulated::Extension& extension : simulated::kExtensions) {
+        const std::string name = extension.name;
+        if (name != "XR_KHR_vulkan_enable2") { begin += fmt::format("extension {} off\n", name); }
+    }
+    Acts acts(begin);
+    std::vector<std::string> said{"the room now begins where the wearer stands\n"};
+    for (const char* mode : {"reproject", "paper", "mono", "two-pass", "shared"}) {
+        acts.click(onMethod(mode), "right select");
+        said.push_back(fmt::format("mode = \"{}\"", mode));
+    }
+    acts.point(kBeside).press("right menu").at("controller left off").at("controller right off").wait(0.05);
+    const double shared = acts.look();
+    acts.at("controller left on").at("controller right on").wait(0.1).press("right menu");
+    acts.click(onMethod("View"), "right select").click(placeOf("Teleport"), "right select");
+    acts.move("controller right", lookingAt({0.2, 1.2, -0.35}, {0.2, 1.2, -1.0})).wait(0.05);
+    const double aiming = acts.hold("right select", 0.2).wait(0.05).look();
+    const ViewRun run = runView(work, "core", acts.script(),
+                                "builtin:fence --load-first --eye 0,0,0 --look 0,0,3 --up 0,-1,0" + withConfig(work, kMethodPage));
+    checkClean(run);
+    checkOrder(run, said);
+    const std::size_t frame = run.pictureAt(shared);
+    CHECK_FALSE(run.view(frame).contains("depth"));
+    checkAgreesWithRender(work, run, frame, {}, "--mode shared" + kAsHeadset);
+    CHECK(run.layers(run.frameAt(aiming), "quad").size() > 10);  // rays, controllers and an arc beside the panel
+    // Without any floor it is as far below as people are high.
+    const auto targets = run.quadsAsWide(run.frameAt(aiming), 0.5);
+    REQUIRE(targets.size() == 1);
+    CHECK(poseOf(targets[0].at("pose")).position.y == doctest::Approx(-1.59));
 }
 
 }  // namespace view_panel_test

@@ -2,14 +2,20 @@
 #pragma once
 
 #include "engine/picture/image_io.h"
+#include "engine/picture/metrics.h"
 #include "tests/run_program.h"
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
+#include <glm/glm.hpp>
+#include <glm/gtc/quaternion.hpp>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <fstream>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -21,11 +27,64 @@ inline const std::string kValidated =
     "XR_ENABLE_API_LAYERS=XR_APILAYER_LUNARG_core_validation "
     "XR_CORE_VALIDATION_EXPORT_TYPE=text";
 
+// The same on a device that fails as `faults` says (tests/faults).
+inline std::string withFaults(const std::string& faults, const std::string& environment = kValidated) {
+    return environment + " VK_ADD_LAYER_PATH='" BINOSPLAT_FAULT_LAYER "' VK_INSTANCE_LAYERS=VK_LAYER_BINOSPLAT_faults " + faults;
+}
+
+// A pose of the log, in OpenXR's axes.
+struct LoggedPose {
+    glm::dvec3 position;
+    glm::dquat orientation;
+};
+inline LoggedPose poseOf(const nlohmann::json& pose) {
+    const auto p = pose.at("position").get<std::array<double, 3>>();
+    const auto q = pose.at("orientation").get<std::array<double, 4>>();
+    return {{p[0], p[1], p[2]}, {q[3], q[0], q[1], q[2]}};
+}
+// Where a picture hangs, in STAGE.
+inline LoggedPose stagePose(const nlohmann::json& quad) {
+    const LoggedPose space = poseOf(quad.at("stage_from_space")), in_space = poseOf(quad.at("pose"));
+    return {space.position + space.orientation * in_space.position, space.orientation * in_space.orientation};
+}
+
+// Where an eye is in STAGE, and the tangents of what it sees.
+struct LoggedEye : LoggedPose {
+    double left, right, up, down;
+};
+
 struct ViewRun {
     Outcome outcome;
     std::filesystem::path out;
     std::vector<nlohmann::json> frames;   // of frames.jsonl
     std::vector<nlohmann::json> between;  // its lines that are no frames
+
+    [[nodiscard]] bool says(const std::string& words) const { return outcome.output.find(words) != std::string::npos; }
+    // The lines of its output that have these words.
+    [[nodiscard]] std::vector<std::string> lines(const std::string& words) const {
+        std::vector<std::string> found;
+        std::istringstream output(outcome.output);
+        for (std::string line; std::getline(output, line);) {
+            if (line.find(words) != std::string::npos) { found.push_back(line); }
+        }
+        return found;
+    }
+    // The first frame that was displayed so many seconds after the script began, or later.
+    [[nodiscard]] std::size_t frameAt(double seconds) const {
+        const auto found = std::ranges::find_if(frames, [&](const nlohmann::json& frame) { return secondsOf(frame) > seconds - 1e-4; });
+        CAPTURE(seconds);
+        REQUIRE(found != frames.end());
+        return static_cast<std::size_t>(found - frames.begin());
+    }
+    // The same of frames of which there are pictures.
+    [[nodiscard]] std::size_t pictureAt(double seconds) const {
+        std::size_t frame = frameAt(seconds);
+        while (frame < frames.size() && !frames[frame].contains("picture")) { ++frame; }
+        REQUIRE(frame < frames.size());
+        return frame;
+    }
+    [[nodiscard]] double endSeconds() const { return secondsOf(frames.back()); }
+    static double secondsOf(const nlohmann::json& frame) { return 1e-9 * frame.at("display_time_ns").get<double>() - 1.0; }
 
     // What the eye saw in a frame.
     [[nodiscard]] Image eye(std::size_t frame, int side) const {
@@ -38,6 +97,14 @@ struct ViewRun {
         }
         return half;
     }
+    // How alike two frames are to the left eye, in dB.
+    [[nodiscard]] double likeness(std::size_t a, std::size_t b) const { return compare(eye(a, 0), eye(b, 0)).psnrDb(); }
+    [[nodiscard]] LoggedEye loggedEye(std::size_t frame, std::size_t side) const {
+        const nlohmann::json& eye = frames.at(frame).at("eyes").at(side);
+        const auto tangent = [&](const char* name) { return std::tan(eye.at("fov").at(name).get<double>()); };
+        return {poseOf(eye.at("pose")), tangent("left"), tangent("right"), tangent("up"), tangent("down")};
+    }
+
     // The layers of a frame, of one type.
     [[nodiscard]] std::vector<nlohmann::json> layers(std::size_t frame, const std::string& type) const {
         std::vector<nlohmann::json> found;
@@ -46,12 +113,26 @@ struct ViewRun {
         }
         return found;
     }
+    // The scene's view of an eye.
+    [[nodiscard]] nlohmann::json view(std::size_t frame, std::size_t side = 0) const {
+        return layers(frame, "projection").at(0).at("views").at(side);
+    }
+    [[nodiscard]] int width(std::size_t frame) const { return view(frame).at("rect").get<std::array<int, 4>>()[2]; }
+    // Where the eyes' views are, in the room.
+    [[nodiscard]] glm::dvec3 viewPlace(std::size_t frame, std::size_t side) const { return poseOf(view(frame, side).at("pose")).position; }
+    [[nodiscard]] std::int64_t periodNs(std::size_t frame) const { return frames.at(frame).at("period_ns").get<std::int64_t>(); }
     // What hangs in the room, by how it is drawn: the panel is the largest picture, rays are thin.
     [[nodiscard]] std::vector<nlohmann::json> panels(std::size_t frame) const {
         return quadsWhere(frame, [](const nlohmann::json& quad) { return quad.at("views").at(0).at("rect").at(3) > 256; });
     }
     [[nodiscard]] std::vector<nlohmann::json> rays(std::size_t frame) const {
         return quadsWhere(frame, [](const nlohmann::json& quad) { return quad.at("size").at(0) < 0.01; });
+    }
+    // Of this width in metres: hands as their joints are, parts of controllers, the strips of an arc, where one will stand.
+    [[nodiscard]] std::vector<nlohmann::json> quadsAsWide(std::size_t frame, double width_m) const {
+        return quadsWhere(frame, [&](const nlohmann::json& quad) {
+            return quad.at("space") != "VIEW" && std::abs(quad.at("size").at(0).get<double>() - width_m) < 1e-4;
+        });
     }
     template <typename Condition>
     [[nodiscard]] std::vector<nlohmann::json> quadsWhere(std::size_t frame, const Condition& condition) const {
@@ -63,7 +144,7 @@ struct ViewRun {
     }
 };
 
-// `arguments` after the scene; a script of these lines drives the headset. The run is over after `seconds` at the latest.
+// `arguments` after `view`; a script of these lines drives the headset.
 inline ViewRun runView(const Workplace& work, const std::string& name, const std::string& script, const std::string& arguments,
                        const std::string& environment = kValidated) {
     std::ofstream(work.path / (name + ".script")) << script;
@@ -78,11 +159,12 @@ inline ViewRun runView(const Workplace& work, const std::string& name, const std
     return run;
 }
 
-// For the arguments: the panel opens with the page of methods.
-inline std::string withMethodPage(const Workplace& work) {
-    std::ofstream(work.path / "method.toml") << "[view]\npanel-page = \"method\"\n";
-    return " --config method.toml";
+// For the arguments: a config with these lines.
+inline std::string withConfig(const Workplace& work, const std::string& lines) {
+    std::ofstream(work.path / "view.toml") << lines;
+    return " --config view.toml";
 }
+inline const std::string kMethodPage = "[view]\npanel-page = \"method\"\n";
 
 // It ended well and no validation layer said a word.
 inline void checkClean(const ViewRun& run) {
@@ -92,6 +174,35 @@ inline void checkClean(const ViewRun& run) {
     CHECK(run.outcome.errors == "Core Validation output type: text, first time = true\n");  // the layer was there, and nothing else
     CHECK(run.outcome.output.find("VUID") == std::string::npos);
     CHECK(run.outcome.output.find("ERROR") == std::string::npos);
+}
+
+// It said one after the other.
+inline void checkOrder(const ViewRun& run, const std::vector<std::string>& said) {
+    std::size_t from = 0;
+    for (const std::string& words : said) {
+        INFO(words << " in " << run.outcome.output);
+        from = run.outcome.output.find(words, from);
+        REQUIRE(from != std::string::npos);
+        from += words.size();
+    }
+}
+
+using Colour = std::array<float, 3>;
+inline Colour colourAt(const Image& image, glm::uvec2 at) {
+    const float* value = &image.values.at((std::size_t{at.y} * image.size_px.x + at.x) * static_cast<std::size_t>(image.channels));
+    return {value[0], value[1], value[2]};
+}
+// Of pictures as large, or parts of them.
+template <typename Condition>
+std::size_t countPixels(const Image& a, const Image& b, const Condition& condition, glm::uvec2 from = {0, 0},
+                        glm::uvec2 to = {9999, 9999}) {
+    std::size_t found = 0;
+    for (std::uint32_t y = from.y; y < std::min(to.y, a.size_px.y); ++y) {
+        for (std::uint32_t x = from.x; x < std::min(to.x, a.size_px.x); ++x) {
+            found += condition(colourAt(a, {x, y}), colourAt(b, {x, y})) ? 1 : 0;
+        }
+    }
+    return found;
 }
 
 }  // namespace binosplat::test

@@ -1,12 +1,10 @@
-// Facts about `binosplat view`, driven through the standard OpenXR loader by scripts of the simulated headset.
-#include "engine/geometry.h"
-#include "engine/picture/metrics.h"
-#include "tests/app/view/light_fence.h"
-#include "tests/app/view/view_runs.h"
+// Facts about `binosplat view`, driven through the standard OpenXR loader by scripts of the simulated headset: what is seen, and where.
+#include "tests/app/view/view_acts.h"
 
 #include <doctest/doctest.h>
 
-#include <regex>
+#include <numeric>
+#include <optional>
 
 TEST_SUITE_BEGIN("view");
 
@@ -17,56 +15,191 @@ using namespace binosplat::test;
 
 namespace {
 
-// 90 frames a second; the session shows its first frame a hundredth of a second after its clock began.
-const std::string kSmall = "rate 90\nsize 192 192\n";
-const std::string kScene = "fence.ply --load-first";
-// Where nobody looks at the picture.
-const std::string kBlind = "rate 90\nsize 64 64\nframes none\n", kWall = "builtin:slanted-wall --load-first --hide-hands --mode ";
-
 // An asymmetric, canted headset.
 const char* const kHeadset =
     "name = \"Test\"\nsource = \"made up\"\nsize = \"192x176\"\ncanting_deg = 7.0\neye_distance_m = 0.066\n"
     "[left]\nleft = -48.0\nright = 36.0\nup = 40.0\ndown = -44.0\n"
     "[right]\nleft = -36.0\nright = 48.0\nup = 40.0\ndown = -44.0\n";
 
-std::string numbers(const glm::dvec3& v) { return fmt::format("{:.9f},{:.9f},{:.9f}", v.x, v.y, v.z); }
+// builtin:step-edge: a grey wall of 0.75 at depth 2 ends at about x = 0, with a darker one behind it.
+constexpr double kWallDepth = 2.0;
+constexpr float kHalfway = 0.575f;
 
-// Both eyes of a frame against what `binosplat render` makes of the same poses and angles.
-void checkAgrees(const Workplace& work, const ViewRun& run, std::size_t frame, const std::string& render_arguments) {
-    const Outcome rendered = work.run("render fence.ply --out expected --headset headset.toml " + render_arguments);
-    INFO(rendered.errors);
-    REQUIRE(rendered.exit_code == 0);
-    for (const int side : {kLeft, kRight}) {
-        const Image expected = readPicture(work.path / "expected" / (side == kLeft ? "left.png" : "right.png"));
-        const double psnr_db = compare(run.eye(frame, side), expected).psnrDb();
-        CAPTURE(side);
-        CHECK(psnr_db > 50.0);
-        // Which it would not for the other eye.
-        CHECK(compare(run.eye(frame, 1 - side), expected).psnrDb() < 30.0);
+// Where the wall's edge crosses a row, in pixels; empty if it does not.
+std::optional<double> findEdge(const Image& picture, std::uint32_t row) {
+    const auto grey = [&](std::uint32_t x) { return colourAt(picture, {x, row})[0]; };
+    for (std::uint32_t x = picture.size_px.x - 1; x > 0; --x) {
+        if (grey(x - 1) < kHalfway || grey(x) >= kHalfway) { continue; }
+        return x - 0.5 + static_cast<double>((grey(x - 1) - kHalfway) / (grey(x - 1) - grey(x)));
     }
+    return std::nullopt;
 }
+
+// The edge in the scene, if the wall is where it should be: the mean of its x, and the largest deviation from it.
+struct Edge {
+    double x, unevenness;
+};
+Edge measureEdge(const LoggedEye& eye, const Image& picture) {
+    std::vector<double> places;
+    for (std::uint32_t row = picture.size_px.y / 3; row < picture.size_px.y * 2 / 3; ++row) {
+        const std::optional<double> column = findEdge(picture, row);
+        if (!column) { continue; }
+        const double x = *column / picture.size_px.x, y = (row + 0.5) / picture.size_px.y;
+        const glm::dvec3 ray = eye.orientation * glm::dvec3(eye.left + x * (eye.right - eye.left), eye.up + y * (eye.down - eye.up), -1.0);
+        // The scene's depth is -z of STAGE.
+        places.push_back((eye.position + ray * ((-kWallDepth - eye.position.z) / ray.z)).x);
+    }
+    REQUIRE(places.size() > 40);
+    const double mean = std::accumulate(places.begin(), places.end(), 0.0) / static_cast<double>(places.size());
+    double worst = 0.0;
+    for (const double place : places) { worst = std::max(worst, std::abs(place - mean)); }
+    return {mean, worst};
+}
+
+// `made`: the right eye was made from the left one, whose silhouettes may be off by most of a pixel. A pixel is 0.02 wide there.
+void checkEdge(const ViewRun& run, std::size_t frame, bool made) {
+    CAPTURE(frame);
+    const Edge left = measureEdge(run.loggedEye(frame, 0), run.eye(frame, kLeft));
+    const Edge right = measureEdge(run.loggedEye(frame, 1), run.eye(frame, kRight));
+    CHECK(left.unevenness < 0.01);
+    CHECK(right.unevenness < (made ? 0.02 : 0.01));
+    CHECK(std::abs(left.x - right.x) < (made ? 0.02 : 0.004));
+    CHECK(std::abs(left.x) < 0.06);
+}
+
+// Where the wearer begins, pictures are of this size; what one loses where the runtime turns it by the last digit of a float.
+const std::string kBeginning = "rate 100\nsize 128 128\nframes every 5\n";
+constexpr double kSamePictureDb = 28.0, kOtherPictureDb = 25.0;
+
+void checkAtTheBeginning(const ViewRun& run, std::size_t frame) {
+    CAPTURE(frame);
+    CHECK(glm::length(run.viewPlace(frame, kLeft) - glm::dvec3(-0.0315, 0.0, 0.0)) < 1e-5);
+    CHECK(glm::length(run.viewPlace(frame, kRight) - glm::dvec3(0.0315, 0.0, 0.0)) < 1e-5);
+}
+
+glm::dvec3 panelInRoom(const ViewRun& run, std::size_t frame) { return poseOf(run.panels(frame).at(0).at("pose")).position; }
 
 }  // namespace
 
-TEST_CASE("the viewer runs until the runtime asks for the end") {
+TEST_CASE("in every mode a wall's edge stays straight and in its place, whatever the frusta, and depth goes along") {
     const Workplace work;
-    const ViewRun run = runView(work, "run", kBlind + "at 0.3 exit\n", kWall + "mono");
+    // Asymmetric and canted; then another pose of a head that is tilted, and then other angles.
+    const std::string left = "eye left angles -48 36 40 -44", right = "eye right angles -36 48 40 -44";
+    Acts acts("rate 50\nsize 208 192\nframes every 5\nipd 0.068\n" + left + "\n" + right + "\neye left cant 8\neye right cant 8\n");
+    const std::vector<std::string> modes{"two-pass", "shared", "predicted"};
+    std::vector<double> looks;
+    for (const std::string& mode : modes) {
+        if (mode != modes[0]) { acts.click(onMethod(mode)); }
+        looks.push_back(acts.look());
+        acts.move("head", "position 0.2 1.7 -0.3 rotation 0.05 0.1 0.12 0.98");
+        looks.push_back(acts.look());
+        acts.at("eye left angles -40 50 30 -50").at("eye right angles -30 35 45 -35");
+        looks.push_back(acts.look(0.12));
+        acts.at(left).at(right).move("head", "position 0 1.6 0 turn 0 0");
+    }
+    for (const char* mode : {"mono", "reproject"}) {
+        acts.click(onMethod(mode));
+        looks.push_back(acts.look());
+    }
+    const ViewRun run =
+        runView(work, "edge", acts.script(),
+                "builtin:step-edge --load-first --hide-hands --eye 0,0,0 --look 0,0,4 --mode two-pass" + withConfig(work, kMethodPage));
     checkClean(run);
-    CHECK(run.outcome.output.find("the runtime asked for the end") != std::string::npos);
-    REQUIRE(run.frames.size() >= 25);
-    bool focused = false;
-    for (const auto& frame : run.frames) { focused = focused || frame.at("session_state") == "FOCUSED"; }
-    CHECK(focused);
-    CHECK(run.layers(20, "projection").size() == 1);
-    CHECK(run.layers(20, "quad").size() >= 1);
+    CHECK(run.says("the runtime asked for the end"));
+    for (std::size_t i = 0; i < looks.size(); ++i) {
+        CAPTURE(i);
+        const std::size_t frame = run.pictureAt(looks[i]);
+        CHECK(run.frames[frame].at("session_state") == "FOCUSED");
+        for (const std::size_t side : {0, 1}) { CHECK(run.view(frame, side).contains("depth")); }
+        if (i < 3 * modes.size()) { checkEdge(run, frame, i >= 6); }
+    }
+    // Swapped eyes would be noticed.
+    const std::size_t first = run.pictureAt(looks[0]);
+    const Edge in_right = measureEdge(run.loggedEye(first, 1), run.eye(first, kLeft));
+    const Edge in_left = measureEdge(run.loggedEye(first, 0), run.eye(first, kRight));
+    CHECK(std::abs(in_right.x - in_left.x) > 0.05);
 }
 
-TEST_CASE("it stops after --frames") {
+TEST_CASE("the wearer sees what render makes of the same poses and angles") {
     const Workplace work;
-    const ViewRun run = runView(work, "run", kBlind, kWall + "mono --frames 12");
+    std::ofstream(work.path / "headset.toml") << kHeadset;
+    // From (0.05, -0.1, 0.2) of the scene; later a step, a turn of the head and a tilt, in OpenXR's axes, and another mode.
+    const std::string start = "--eye 0.05,-0.1,0.2 --look 0.05,-0.1,3 --up 0,-1,0", dominant = " --dominant right --mode ";
+    Acts acts("headset headset.toml\nframes from 30 to 90 every 60\n");
+    acts.wait(0.2).press("right b").click(onMethod("predicted")).press("right b");
+    acts.move("head", "position 0.12 1.52 -0.25 rotation 0.08 -0.15 0.06 0.98").wait(1.1 - acts.now_s);
+    const ViewRun run =
+        runView(work, "run", acts.script(),
+                "builtin:fence --load-first --hide-panel --hide-hands " + start + dominant + "two-pass" + withConfig(work, kMethodPage));
     checkClean(run);
-    CHECK(run.frames.size() >= 12);
-    CHECK(run.frames.size() <= 16);  // STOPPING takes a few
+    const glm::dvec3 eye(0.05, -0.1, 0.2);
+    checkAgreesWithRender(work, run, 30, eye, "--headset headset.toml" + dominant + "two-pass");
+    checkAgreesWithRender(work, run, 90, eye, "--headset headset.toml" + dominant + "predicted");
+}
+
+TEST_CASE("two runs with the virtual clock write the same files, and stop after --frames") {
+    const Workplace work;
+    const std::string script = "rate 90\nsize 96 96\nframes every 3\nhead 0 position 0 1.6 0\nhead 0.2 position 0.1 1.6 -0.1 turn 10 5\n";
+    const std::string arguments = kWall + " --hide-panel --frames 22";
+    const ViewRun first = runView(work, "first", script, arguments), second = runView(work, "second", script, arguments);
+    checkClean(first);
+    CHECK(first.frames.size() >= 22);
+    CHECK(first.frames.size() <= 26);  // STOPPING takes a few
+    CHECK(std::system(("diff -r '" + first.out.string() + "' '" + second.out.string() + "' >/dev/null").c_str()) == 0);
+}
+
+TEST_CASE("the wearer begins at the scene's own view, upright, wherever the runtime's spaces begin, and again when it recentres") {
+    const Workplace work;
+    const std::string scene = "builtin:fence --load-first --hide-hands --mode shared";
+    const ViewRun usual = runView(work, "usual",
+                                  kBeginning +
+                                      "head 0 position 0 1.6 0\nhead 0.1 position 0 1.6 0\nhead 0.15 position 0.8 1.4 0.5 turn 70 0\n"
+                                      "head 0.3 position 0.8 1.4 0.5 turn 70 0\nhead 0.35 position 0.8 1.4 0.5 turn -130 25\n"
+                                      "at 0.22 recentre\nat 0.4 recentre\nat 0.5 exit\n",
+                                  scene);
+    checkClean(usual);
+    CHECK(usual.says("1.60 m above the floor"));
+    CHECK(usual.says("frame 22: the room now begins where the wearer stands, 1.40 m above the floor"));
+    for (const std::size_t frame : {5, 10, 22, 23, 25, 45}) { checkAtTheBeginning(usual, frame); }
+    CHECK(usual.likeness(5, 20) < kOtherPictureDb);
+    CHECK(usual.likeness(5, 25) > kSamePictureDb);
+    CHECK(glm::length(panelInRoom(usual, 5) - panelInRoom(usual, 25)) < 1e-5);
+    // Upright, too: a tilted head sees a tilted scene.
+    CHECK(usual.likeness(5, 45) < kOtherPictureDb);
+    CHECK(std::abs(panelInRoom(usual, 5).y - panelInRoom(usual, 45).y) < 1e-5);
+    // The first true pose of the head counts: it looks aside, before it was lost, and first its turn alone is known.
+    const ViewRun away = runView(work, "away",
+                                 kBeginning +
+                                     "local position 5 0.3 2 turn 40 0\nhead 0 position 0.4 1.25 -0.3 turn -130 0\n"
+                                     "at -1 head off\nat 0.05 head turn-only\nat 0.12 head on\nat 0.2 exit\n",
+                                 scene);
+    checkClean(away);
+    CHECK(away.says("frame 12: the room now begins where the wearer stands, 1.25 m above the floor"));
+    for (const std::size_t frame : {10, 15}) {
+        checkAtTheBeginning(away, frame);
+        CHECK(std::abs(poseOf(away.view(frame).at("pose")).orientation.w) > 1.0 - 1e-9);
+    }
+    CHECK(compare(usual.eye(5, kLeft), away.eye(15, kLeft)).psnrDb() > kSamePictureDb);
+    CHECK(glm::length(panelInRoom(usual, 5) - panelInRoom(away, 15)) < 1e-5);
+}
+
+TEST_CASE("the near plane is in metres of the wearer, however large the scene is") {
+    const Workplace work;
+    // A metre is four scene units: the fence, a unit ahead, is nearer than 0.3 m.
+    const std::string camera = "--eye 0,0,0 --look 0,0,3 --up 0,-1,0 --mode two-pass --metres-per-unit 0.25";
+    const ViewRun run =
+        runView(work, "near", kBeginning + "at 0.1 exit\n", "builtin:fence --load-first --hide-panel --hide-hands --near 0.3 " + camera);
+    checkClean(run);
+    const auto rendered = [&](const std::string& near) {
+        REQUIRE(work.run("render builtin:fence --out expected --size 128x128 --fov-x 90 " + camera + " --near " + near).exit_code == 0);
+        return readPicture(work.path / "expected" / "left.png");
+    };
+    CHECK(compare(run.eye(5, kLeft), rendered("1.2")).psnrDb() > 45.0);
+    CHECK(compare(run.eye(5, kLeft), rendered("0.3")).psnrDb() < kOtherPictureDb);
+    for (const std::size_t side : {0, 1}) {
+        // Depth 0 is infinitely far, so that 1, the far end to OpenXR, is the near plane.
+        CHECK(run.view(5, side).at("depth").at("far").get<double>() == doctest::Approx(0.3));
+    }
 }
 
 TEST_CASE("without a runtime it exits with three and one line that says what was looked for and what to try") {
@@ -80,78 +213,41 @@ TEST_CASE("without a runtime it exits with three and one line that says what was
     CHECK(work.isEmpty());
 }
 
-TEST_CASE("bad input is known by its exit code") {
+TEST_CASE("bad input is known by its exit code, and named") {
     const Workplace work;
-    CHECK(work.run("view builtin:fence --simulate missing.script").exit_code == 1);
-    CHECK(work.run("view builtin:fence --out x").exit_code == 2);
-    std::ofstream(work.path / "bad.toml") << "[view]\nresolution-scale = 9\n";
-    CHECK(work.run("view builtin:fence --simulate --frames 3 --config bad.toml").errors.find("bad.toml:2") != std::string::npos);
-    const ViewRun missing = runView(work, "missing", kSmall + "at 1 exit\n", "nowhere.ply");
-    CHECK(missing.outcome.exit_code == 1);
-    CHECK(missing.outcome.errors.find("nowhere.ply") != std::string::npos);
-}
-
-TEST_CASE("the wearer sees what render makes of the same poses and angles") {
-    const Workplace work;
-    std::ofstream(work.path / "headset.toml") << kHeadset;
-    writeLightFence(work.path / "fence.ply");
-    // From (0.05, -0.1, 0.2) of the scene; later a step, a turn of the head and a tilt, in OpenXR's axes.
-    const std::string start = "--eye 0.05,-0.1,0.2 --look 0.05,-0.1,3 --up 0,-1,0";
-    const std::string script =
-        "headset headset.toml\nframes every 10\nhead 0 position 0 1.6 0\nhead 0.2 position 0 1.6 0\n"
-        "head 0.3 position 0.12 1.52 -0.25 rotation 0.08 -0.15 0.06 0.98\nat 0.36 exit\n";
-    for (const std::string mode : {"two-pass", "predicted"}) {
-        CAPTURE(mode);
-        const std::string stereo = fmt::format(" --mode {} --dominant right", mode);
-        const ViewRun run = runView(work, mode, script, kScene + " --hide-panel --hide-hands " + start + stereo);
-        checkClean(run);
-        checkAgrees(work, run, 10, start + stereo);
-        const glm::dquat head = glm::normalize(glm::dquat(0.98, 0.08, -0.15, 0.06));
-        const auto fromXr = [](const glm::dvec3& v) { return glm::dvec3(v.x, -v.y, -v.z); };
-        const glm::dvec3 eye = glm::dvec3(0.05, -0.1, 0.2) + fromXr({0.12, -0.08, -0.25});
-        const glm::dvec3 forward = fromXr(head * glm::dvec3(0, 0, -1)), up = fromXr(head * glm::dvec3(0, 1, 0));
-        checkAgrees(work, run, 30, fmt::format("--eye {} --look {} --up {}", numbers(eye), numbers(eye + forward), numbers(up)) + stereo);
-    }
-}
-
-TEST_CASE("two runs with the virtual clock write the same files") {
-    const Workplace work;
-    writeLightFence(work.path / "fence.ply");
-    const std::string script = kSmall + "head 0 position 0 1.6 0\nhead 0.2 position 0.1 1.6 -0.1 turn 10 5\nframes every 3\nat 0.25 exit\n";
-    const ViewRun first = runView(work, "first", script, kScene + " --hide-panel --hide-hands");
-    const ViewRun second = runView(work, "second", script, kScene + " --hide-panel --hide-hands");
-    checkClean(first);
-    CHECK(first.frames.size() > 15);
-    CHECK(std::system(("diff -r '" + first.out.string() + "' '" + second.out.string() + "' >/dev/null").c_str()) == 0);
-}
-
-TEST_CASE("depth goes along in every mode, if the runtime takes it") {
-    const Workplace work;
-    const auto depths = [&](const std::string& name, const std::string& script, const std::string& mode) {
-        const ViewRun run = runView(work, name, kBlind + script + "at 0.1 exit\n", kWall + mode);
-        checkClean(run);
-        int found = 0;
-        const nlohmann::json scene = run.layers(run.frames.size() - 3, "projection").at(0);
-        for (const auto& view : scene.at("views")) { found += view.contains("depth") ? 1 : 0; }
-        return found;
+    std::ofstream(work.path / "scale.toml") << "[view]\nresolution-scale = 9\n";
+    std::ofstream(work.path / "quality.toml") << "[view]\nquality = \"best\"\n";
+    std::ofstream(work.path / "broken.script") << "size 64 64\nwalk somewhere\n";
+    std::ofstream(work.path / "broken.ply") << "ply\nnonsense\n";
+    std::filesystem::create_directories(work.path / "mine");
+    std::ofstream(work.path / "mine" / "frame_000000.png") << "holiday";
+    struct Wrong {
+        std::string arguments;
+        int exit_code;
+        std::vector<std::string> errors;
     };
-    CHECK(depths("both", "", "shared") == 2);
-    CHECK(depths("mono", "", "mono") == 2);
-    CHECK(depths("made", "", "predicted") == 2);
-    CHECK(depths("moved", "", "reproject") == 2);
-    CHECK(depths("refused", "extension XR_KHR_composition_layer_depth off\n", "shared") == 0);
-}
-
-TEST_CASE("Ctrl-C ends it as the wearer would") {
-    const Workplace work;
-    std::ofstream(work.path / "rest.script") << kSmall;
-    // An endless script; the signal comes as soon as frames are written.
-    const Outcome outcome = work.run(
-        "view builtin:slanted-wall --load-first --mode mono --simulate rest.script --out seen & child=$!; "
-        "until [ -e seen/frame_000005.png ] || ! kill -0 $child; do :; done; kill -INT $child; wait $child");
-    INFO(outcome.errors);
-    CHECK(outcome.exit_code == 0);
-    CHECK(outcome.output.find("the runtime asked for the end") != std::string::npos);
+    for (const Wrong& wrong : {
+             Wrong{"builtin:fence --simulate missing.script", 1, {"missing.script"}},
+             Wrong{"builtin:fence --out x", 2, {}},
+             Wrong{"builtin:fence --simulate --config scale.toml", 1, {"scale.toml:2"}},
+             Wrong{"builtin:fence --simulate --config quality.toml", 1, {"quality.toml:2", "must be off, sharp, balanced or fast"}},
+             Wrong{"nowhere.ply --simulate", 1, {"nowhere.ply"}},
+             Wrong{"broken.ply --simulate", 1, {"binosplat: broken.ply:"}},
+             Wrong{"builtin:fence --simulate broken.script", 1, {"broken.script, see docs/simulated_script.md"}},
+             Wrong{"builtin:fence --simulate --out mine",
+                   1,
+                   {"mine/frame_000000.png: not what an earlier run left here, must be moved elsewhere\n",
+                    "--out: the simulated headset does not begin with mine"}},
+         }) {
+        CAPTURE(wrong.arguments);
+        const Outcome outcome = work.run("view " + wrong.arguments, "DISPLAY= WAYLAND_DISPLAY=");
+        INFO(outcome.errors);
+        CHECK(outcome.exit_code == wrong.exit_code);
+        for (const std::string& error : wrong.errors) { CHECK(outcome.errors.find(error) != std::string::npos); }
+        CHECK(outcome.errors.find("start one (Monado") == std::string::npos);
+    }
+    CHECK(std::filesystem::file_size(work.path / "mine" / "frame_000000.png") == 7);
+    CHECK_FALSE(std::filesystem::exists(work.path / "mine" / "frames.jsonl"));
 }
 
 }  // namespace view_test

@@ -1,9 +1,8 @@
 // The viewer beside its window, on a display without a screen (Xvfb) and with a mouse and keys without hands (xdotool).
 #pragma once
 
-#include "engine/geometry.h"
-#include "tests/app/view/panel/panel_sketch.h"
-#include "tests/app/view/view_runs.h"
+#include "engine/similarity.h"
+#include "tests/app/view/view_acts.h"
 #include "tests/xr/simulated/installed.h"
 
 #include <dlfcn.h>
@@ -12,11 +11,7 @@
 #include <pty.h>
 #include <signal.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <iterator>
-#include <sstream>
 
 namespace binosplat::test {
 
@@ -90,7 +85,7 @@ private:
     bool ended_ = false;
 };
 
-// Xvfb keeps its picture in a file.
+// Xvfb keeps its picture in a file. It ends when everybody has left it, also if the test crashed.
 class Screen {
 public:
     explicit Screen(const std::filesystem::path& folder)
@@ -98,7 +93,7 @@ public:
           server_(folder,
                   // Of numbers that are taken it complains first.
                   {"/bin/sh", "-c",
-                   fmt::format("exec Xvfb -displayfd 1 -screen 0 {}x{}x24 -fbdir '{}' 2> /dev/null", kScreenPx.x, kScreenPx.y,
+                   fmt::format("exec Xvfb -terminate -displayfd 1 -screen 0 {}x{}x24 -fbdir '{}' 2> /dev/null", kScreenPx.x, kScreenPx.y,
                                folder.string())},
                   "") {
         std::string line = server_.waitFor("\n");
@@ -139,39 +134,14 @@ private:
     Program server_;
 };
 
-// On a screen, with a mouse and keys.
-inline void handsOn(const Screen& screen, const std::string& does) {
-    const std::string command = "DISPLAY=" + screen.name + " timeout 60 xdotool " + does + " >/dev/null";
-    INFO(command);
-    REQUIRE(std::system(command.c_str()) == 0);
-}
-
-// Of a window by its name, as xdotool says it: "WINDOW=2097154", "WIDTH=648" and so on, one of them.
-inline unsigned long numberOfWindow(const Screen& screen, const std::string& name, const std::string& what) {
-    const std::string file = (screen.folder() / "number").string();
-    handsOn(screen, fmt::format("search --sync --onlyvisible --name '{}' getwindowgeometry --shell %1 | sed -n 's/^{}=//p' | tee '{}'",
-                                name, what, file));
-    unsigned long number = 0;
-    std::ifstream(file) >> number;
-    REQUIRE(number != 0);
-    return number;
-}
-
-// What xdotool of Debian 12 cannot do, by Xlib, which GLFW takes along itself.
+// What xdotool of Debian 12 cannot do, by Xlib, which GLFW takes along itself; for as long as the tests run.
 class XConnection {
 public:
-    explicit XConnection(const Screen& screen) {
+    explicit XConnection(const std::string& name) {
         REQUIRE(library_ != nullptr);
-        display_ = find<void* (*)(const char*)>("XOpenDisplay")(screen.name.c_str());
+        display_ = find<void* (*)(const char*)>("XOpenDisplay")(name.c_str());
         REQUIRE(display_ != nullptr);
     }
-    XConnection(const XConnection&) = delete;
-    XConnection& operator=(const XConnection&) = delete;
-    ~XConnection() {
-        find<int (*)(void*)>("XCloseDisplay")(display_);
-        dlclose(library_);
-    }
-
     // As desktops tell programs how large people want things; for as long as somebody is connected.
     void setDpi(int dpi) const {
         const std::string resources = fmt::format("Xft.dpi:\t{}\n", dpi);
@@ -226,30 +196,52 @@ private:
     void* display_ = nullptr;
 };
 
-inline void clickCross(const Screen& screen, const std::string& window_name) {
-    XConnection(screen).clickCross(numberOfWindow(screen, window_name, "WINDOW"));
+// One screen for all, with a mouse and keys. Somebody stays connected: a server whom everybody left begins anew, with its mouse in the
+// middle.
+struct Desk {
+    Workplace folder;
+    Screen screen{folder.path};
+    XConnection connection{screen.name};
+};
+inline const Desk& desk(int dpi = 96) {
+    static const Desk desk;
+    desk.connection.setDpi(dpi);
+    return desk;
+}
+inline std::string moveTo(const glm::dvec2& place) { return fmt::format("mousemove {:.0f} {:.0f} ", place.x, place.y); }
+inline void hands(const std::string& does) {
+    const std::string command = "DISPLAY=" + desk().screen.name + " timeout 60 xdotool " + does + " >/dev/null";
+    INFO(command);
+    REQUIRE(std::system(command.c_str()) == 0);
 }
 
-// The viewer beside its window, with a mouse and keys.
+// Of a window by its name, as xdotool says it: "WINDOW=2097154", "WIDTH=648" and so on, one of them.
+inline unsigned long numberOfWindow(const std::string& name, const std::string& what) {
+    const std::string file = (desk().screen.folder() / "number").string();
+    hands(fmt::format("search --sync --onlyvisible --name '{}' getwindowgeometry --shell %1 | sed -n 's/^{}=//p' | tee '{}'", name, what,
+                      file));
+    unsigned long number = 0;
+    std::ifstream(file) >> number;
+    REQUIRE(number != 0);
+    return number;
+}
+inline void clickCross(const std::string& window_name) { desk().connection.clickCross(numberOfWindow(window_name, "WINDOW")); }
+
+// The viewer beside its window.
 class Viewer {
 public:
-    Viewer(const Workplace& work, const std::string& options, int dpi = 96)
-        : screen_((std::filesystem::create_directory(work.base / "screen"), work.base / "screen")),
-          connection_(screen_),
-          program_((connection_.setDpi(dpi), work.path),
+    Viewer(const Workplace& work, const std::string& script, const std::string& options = "", int dpi = 96)
+        : program_((std::ofstream(work.path / "desk.script") << script, desk(dpi), work.path),
                    {"/bin/sh", "-c",
-                    "export PATH=\"$PWD/tools:$PATH\"; exec '" BINOSPLAT_PROGRAM "' view builtin:slanted-wall --load-first --mode mono " +
+                    "export PATH=\"$PWD/tools:$PATH\"; exec '" BINOSPLAT_PROGRAM "' view builtin:slanted-wall --load-first --mode mono "
+                    "--simulate desk.script --out seen " +
                         options},
-                   screen_.name) {
+                   desk(dpi).screen.name) {
         // While it loads, the panel has another layout.
         REQUIRE(program_.waitFor("shows builtin:slanted-wall") != "");
         // The keys go to the window that the mouse is in.
         hands("search --sync --onlyvisible --name '^binosplat$' mousemove --window %1 20 20");
     }
-
-    void hands(const std::string& does) const { handsOn(screen_, does); }
-    static std::string moveTo(const glm::dvec2& place) { return fmt::format("mousemove {:.0f} {:.0f} ", place.x, place.y); }
-    static std::string panel(const glm::dvec2& share) { return moveTo(glm::dvec2(kEyePx, 0.0) + share * kPanelInWindowPx); }
 
     // The panel goes or comes: by then everything before has reached the viewer.
     std::string tab() {
@@ -258,51 +250,48 @@ public:
         CHECK(lines != "");
         return lines;
     }
+    // One after the other, each of which has arrived before the next.
+    void handsInTurn(const std::vector<std::string>& all) {
+        for (const std::string& does : all) {
+            if (&does != &all.front()) { tab(); }
+            hands(does);
+        }
+    }
     void click(const glm::dvec2& share) {
-        hands(panel(share));
-        tab();
-        hands("mousedown 1");
-        tab();
-        hands("mouseup 1");
+        handsInTurn({moveTo(glm::dvec2(kEyePx, 0.0) + share * kPanelInWindowPx), "mousedown 1", "mouseup 1"});
+    }
+    void drag(int button, const glm::dvec2& from, const glm::dvec2& to) {
+        handsInTurn({moveTo(from), fmt::format("mousedown {}", button), moveTo(to), fmt::format("mouseup {}", button)});
     }
     // Where the wearer's room lies now, as the viewer saves it.
-    Pose placement(const Workplace& work, double* units_per_metre = nullptr) {
+    Similarity placement(const Workplace& work) {
         click(placeOf("Save", true));
         REQUIRE(program_.waitFor("slanted-wall.view.toml") != "");
         std::ifstream file(work.base / "config" / "binosplat" / "scenes" / "slanted-wall.view.toml");
         const std::string text{std::istreambuf_iterator<char>(file), {}};
-        const auto numbers = [&](const std::string& key) {
-            const std::size_t at = text.find(key + " = [");
+        const auto valueOf = [&](const std::string& key) {
+            const std::size_t at = text.find(key + " = ");
             REQUIRE(at != std::string::npos);
-            std::string list = text.substr(at + key.size() + 4);
-            list = list.substr(0, list.find(']'));
-            std::ranges::replace(list, ',', ' ');
-            std::istringstream words(list);
-            return std::vector<double>(std::istream_iterator<double>(words), {});
+            const std::size_t begin = at + key.size() + 3;
+            return nlohmann::json::parse(text.substr(begin, text.find('\n', begin) - begin));
         };
-        if (units_per_metre != nullptr) {
-            const std::string key = "units-per-metre = ";
-            const std::size_t at = text.find(key);
-            REQUIRE(at != std::string::npos);
-            *units_per_metre = std::stod(text.substr(at + key.size()));
-        }
-        const std::vector<double> p = numbers("scene-position"), q = numbers("scene-orientation");
-        return {{q.at(0), q.at(1), q.at(2), q.at(3)}, {p.at(0), p.at(1), p.at(2)}};
+        const auto p = valueOf("scene-position").get<std::array<double, 3>>();
+        const auto q = valueOf("scene-orientation").get<std::array<double, 4>>();
+        return {{q[0], q[1], q[2], q[3]}, {p[0], p[1], p[2]}, valueOf("units-per-metre").get<double>()};
+    }
+    // It ends well.
+    void checkEnd() {
+        CHECK(program_.exitCode() == 0);
+        INFO(program_.said());
+        CHECK(program_.said().find("frames; ") != std::string::npos);
+        CHECK(program_.said().find("VUID") == std::string::npos);
+        CHECK(program_.said().find("no window") == std::string::npos);
     }
 
     [[nodiscard]] Program& program() { return program_; }
-    [[nodiscard]] const Screen& screen() const { return screen_; }
-    [[nodiscard]] const XConnection& connection() const { return connection_; }
 
 private:
-    Screen screen_;
-    XConnection connection_;
     Program program_;
 };
-
-inline std::array<float, 3> colourAt(const Image& image, glm::uvec2 at) {
-    const float* value = &image.values.at((std::size_t{at.y} * image.size_px.x + at.x) * static_cast<std::size_t>(image.channels));
-    return {value[0], value[1], value[2]};
-}
 
 }  // namespace binosplat::test

@@ -1,13 +1,14 @@
-// Facts about the window beside the headset: what mouse, keys and files do there, and what it shows.
+// Facts about the window beside the headset: what mouse, keys and files do there, what it shows, and how it ends.
 #include "tests/app/view/view_window.h"
-#include "engine/picture/metrics.h"
+#include "app/view/panel/panel_font.h"
+#include "app/view/window/mirror_window.h"
+#include "engine/error.h"
 #include "tests/app/view/unchanged_shaders.h"
-#include "tests/app/view/view_panel.h"
+#include "tests/nightly.h"
 
-#include <imgui.h>
+#include <GLFW/glfw3.h>
 
-#include <cstdio>
-#include <functional>
+#include <chrono>
 #include <set>
 
 TEST_SUITE_BEGIN("view_window");
@@ -19,27 +20,36 @@ using namespace binosplat::test;
 
 namespace {
 
-// Where the panel's line about the last button begins where all widgets are there, in shares of its width and height: there two panels
-// differ that differ in it.
-glm::dvec2 placeOfMessage() {
-    PanelSketch sketch;
-    sketch.status.can_reload_shaders = sketch.status.can_pass_through = true;
-    sketch.status.refresh_rates = {72.0, 80.0, 90.0, 120.0};
-    const auto draw = [&](const char* message) {
-        sketch.status.message = message;
-        sketch.draw();
-        std::vector<ImVec2> places;
-        const ImDrawData& data = *ImGui::GetDrawData();
-        for (int list = 0; list < data.CmdListsCount; ++list) {
-            for (const ImDrawVert& vertex : data.CmdLists[list]->VtxBuffer) { places.push_back(vertex.pos); }
-        }
-        return places;
-    };
-    const std::vector<ImVec2> one = draw("MMMMMMMM"), other = draw("IIIIIIII");
-    const auto differs = [](const ImVec2& a, const ImVec2& b) { return a.x != b.x || a.y != b.y; };
-    const auto [first, its] = std::ranges::mismatch(one, other, std::not_fn(differs));
-    REQUIRE(first != one.end());
-    return glm::dvec2(first->x, first->y) / glm::dvec2(kPanelPx);
+const std::string kScene = "builtin:slanted-wall --load-first --mode mono";
+const std::string kSmall = "rate 60\nsize 96 96\nframes none\n";
+
+std::string onDesk() { return "XDG_CONFIG_HOME=\"$PWD/../config\" WAYLAND_DISPLAY= DISPLAY=" + desk().screen.name; }
+
+// In the fork that is the viewer: files, with a colon between, that are dropped when it first looks for events, and others, after a comma,
+// a second and a half later. What a desktop and a window say to each other meanwhile is GLFW's business: here GLFW only says that it has
+// happened.
+constexpr const char* kDropped = "BINOSPLAT_TEST_DROPPED";
+
+GLFWwindow* window_of_drop = nullptr;
+GLFWdropfun tell_of_drop = nullptr;
+
+template <typename Function>
+Function next(const char* name) {
+    return reinterpret_cast<Function>(dlsym(RTLD_NEXT, name));
+}
+
+std::vector<std::string> splitAt(const std::string& list, char mark) {
+    std::vector<std::string> parts;
+    std::istringstream stream(list);
+    for (std::string part; std::getline(stream, part, mark);) { parts.push_back(part); }
+    return parts;
+}
+
+void drop(const std::string& list) {
+    const std::vector<std::string> files = splitAt(list, ':');
+    std::vector<const char*> paths;
+    for (const std::string& file : files) { paths.push_back(file.c_str()); }
+    tell_of_drop(window_of_drop, static_cast<int>(paths.size()), paths.data());
 }
 
 // The pixels of the window next to the middles of the eye's, which it shows magnified.
@@ -57,34 +67,126 @@ Image eyeInWindow(const Image& screen, glm::uvec2 eye_px) {
 
 // Of the last composed picture.
 Image lastLeftEye(const std::filesystem::path& folder) {
-    std::size_t last = 0;
-    for (const auto& file : std::filesystem::directory_iterator(folder)) {
-        unsigned long frame = 0;
-        if (std::sscanf(file.path().filename().c_str(), "frame_%lu.png", &frame) == 1) { last = std::max<std::size_t>(last, frame); }
-    }
     ViewRun run;
     run.out = folder;
-    return run.eye(last, kLeft);
+    std::filesystem::path last;
+    for (const auto& file : std::filesystem::directory_iterator(folder)) {
+        if (file.path().extension() == ".png") { last = std::max(last, file.path()); }
+    }
+    return run.eye(std::stoul(last.stem().string().substr(6)), kLeft);
 }
 
-std::size_t coloursOfPanel(const Image& screen) {
-    std::set<std::array<float, 3>> colours;
-    for (std::uint32_t y = 0; y < static_cast<std::uint32_t>(kPanelInWindowPx.y); y += 3) {
-        for (std::uint32_t x = 0; x < static_cast<std::uint32_t>(kPanelInWindowPx.x); x += 3) {
-            colours.insert(colourAt(screen, {kEyePx + x, y}));
-        }
-    }
-    return colours.size();
+double turnBetween(const Similarity& a, const Similarity& b) {
+    const glm::dquat turn = glm::conjugate(a.orientation) * b.orientation;
+    return 2.0 * std::atan2(turn.y, turn.w);
 }
+glm::dvec3 stepBetween(const Similarity& a, const Similarity& b) { return glm::conjugate(a.orientation) * (b.position - a.position); }
+
+// Escape, or the window's cross, ends it in a headset that does this.
+void checkEnds(const std::string& lines, bool by_cross, int dpi = 96) {
+    CAPTURE(lines);
+    const Workplace work;
+    Viewer viewer(work, kSmall + lines, "", dpi);
+    // Keys are obeyed, and the panel with them.
+    viewer.tab();
+    viewer.tab();
+    if (dpi != 96) {
+        // The window is as large as the desktop wants things to be, and may be made another size in its shape.
+        const double scale = dpi / 96.0;
+        const glm::dvec2 size(numberOfWindow("^binosplat$", "WIDTH"), numberOfWindow("^binosplat$", "HEIGHT"));
+        CHECK(size == scale * glm::dvec2(kEyePx + kPanelInWindowPx.x, kEyePx));
+        const auto [resizes, keeps_shape] = desk(dpi).connection.resizesInShape(numberOfWindow("^binosplat$", "WINDOW"));
+        CHECK(resizes);
+        CHECK(keeps_shape);
+        // Its widgets are where they are shown.
+        viewer.handsInTurn(
+            {moveTo(scale * (glm::dvec2(kEyePx, 0.0) + placeOf("Vignette", true) * kPanelInWindowPx)), "mousedown 1", "mouseup 1"});
+        CHECK(viewer.program().waitFor("vignette = false") != "");
+    }
+    if (by_cross) {
+        clickCross("^binosplat$");
+    } else {
+        hands("key Escape");
+    }
+    viewer.checkEnd();
+}
+
+const std::string kOff = "at -1 worn off\n", kElsewhere = "at -1 visible off\n",
+                  kGone = "no-headset-for 1000000 after-loss\nat 0.1 lose-session\n";
 
 }  // namespace
 
-TEST_CASE("mouse and keys do in the window what hands do in the headset") {
+// The linker takes these two before GLFW's own.
+extern "C" GLFWdropfun glfwSetDropCallback(GLFWwindow* window, GLFWdropfun callback) {
+    window_of_drop = window;
+    tell_of_drop = callback;
+    return next<decltype(&glfwSetDropCallback)>("glfwSetDropCallback")(window, callback);
+}
+
+extern "C" void glfwPollEvents() {
+    static std::vector<std::string> drops;
+    static std::chrono::steady_clock::time_point next_drop;
+    next<decltype(&glfwPollEvents)>("glfwPollEvents")();
+    const char* const files = std::getenv(kDropped);
+    if (files == nullptr || tell_of_drop == nullptr) { return; }
+    if (next_drop == std::chrono::steady_clock::time_point()) { drops = splitAt(files, ','); }
+    if (drops.empty() || std::chrono::steady_clock::now() < next_drop) { return; }
+    next_drop = std::chrono::steady_clock::now() + std::chrono::milliseconds(1500);
+    drop(drops.front());
+    drops.erase(drops.begin());
+}
+
+TEST_CASE("the last of the scenes dropped on the window is shown, and one that cannot be read is named and changes nothing") {
+    if (!haveScreen() || run_in_fork == nullptr) { return; }
+    const Workplace work;
+    for (const char* name : {"a", "b"}) { REQUIRE(work.run(fmt::format("scene one-splat --out {}.ply", name)).exit_code == 0); }
+    std::ofstream(work.path / "broken.ply") << "ply\nnonsense\n";
+    const ViewRun run = runView(work, "dropped", "rate 45\nsize 64 64\nframes none\nat 4 exit\n", kScene,
+                                onDesk() + " SIMULATED_OPENXR_CLOCK=real " + kDropped + "=a.ply:b.ply,broken.ply");
+    INFO(run.outcome.output);
+    CHECK(run.outcome.exit_code == 0);
+    CHECK(run.outcome.errors.empty());
+    checkOrder(run, {"shows b.ply", "broken.ply:"});
+    CHECK_FALSE(run.says("a.ply"));
+    CHECK_FALSE(run.says("shows broken.ply"));
+}
+
+TEST_CASE("a mouse that lies on the panel leaves it to the hands") {
     if (!haveScreen()) { return; }
     const Workplace work;
-    std::ofstream(work.path / "rest.script") << "rate 30\nsize 192 192\nframes all\n";
+    hands(moveTo({900.0, 650.0}));
+    Acts acts("rate 90\nsize 64 64\nframes none\n");
+    acts.click(placeOf("Quit")).wait(1.0);
+    const ViewRun run = runView(work, "hand", acts.script(), kScene, onDesk() + " BINOSPLAT_VALIDATION=1");
+    INFO(run.outcome.output);
+    CHECK(run.outcome.exit_code == 0);
+    CHECK_FALSE(run.says("VUID"));
+    CHECK_FALSE(run.says("no window"));
+    CHECK(run.endSeconds() < acts.now_s - 0.5);
+}
+
+TEST_CASE("a lost device ends the viewer with three, also beside a window; of a lost display only the window is gone") {
+    if (!haveScreen()) { return; }
+    const Workplace work;
+    const std::string script = "rate 90\nsize 64 64\nframes none\nat 1 exit\n";
+    const ViewRun device = runView(work, "device", script, kScene, withFaults("BINOSPLAT_FAULT=submit:30:lost", onDesk()));
+    INFO(device.outcome.output);
+    CHECK(device.outcome.exit_code == 3);
+    CHECK_FALSE(device.says("no window"));
+    CHECK(device.outcome.errors.find("DeviceLost") != std::string::npos);
+    const ViewRun display = runView(work, "display", script, kScene, withFaults("BINOSPLAT_FAULT=present:5:surface-lost", onDesk()));
+    INFO(display.outcome.output);
+    CHECK(display.outcome.exit_code == 0);
+    CHECK(display.outcome.errors == "");
+    CHECK(display.says("the window is gone: "));
+    CHECK(display.frames.size() > 80);
+}
+
+TEST_CASE("mouse and keys do in the window what hands do in the headset, and it shows what the eye sees") {
+    if (!haveScreen()) { return; }
+    const Workplace work;
     writeCompilerOfChangedShaders(work.path / "tools");
-    Viewer viewer(work, "--simulate rest.script --out seen --shaders '" BINOSPLAT_SOURCE_DIR "/shaders'");
+    Viewer viewer(work, "rate 60\nsize 192 192\nframes every 10\n", "--shaders '" BINOSPLAT_SOURCE_DIR "/shaders'");
     Program& program = viewer.program();
 
     // The panel by mouse: a click on a switch, and the same again.
@@ -94,172 +196,134 @@ TEST_CASE("mouse and keys do in the window what hands do in the headset") {
     CHECK(program.waitFor("vignette = true") != "");
 
     // A drag of 100 pixels to the left turns by 0.4 radians, however many frames it takes; the scene follows the mouse, to the left.
-    const Pose start = viewer.placement(work);
-    viewer.hands(Viewer::moveTo({400.0, 300.0}));
-    viewer.tab();
-    viewer.hands("mousedown 1");
-    viewer.tab();
-    viewer.hands(Viewer::moveTo({300.0, 300.0}));
-    viewer.tab();
-    viewer.hands("mouseup 1");
-    const Pose turned = viewer.placement(work);
-    const auto turnBetween = [](const Pose& a, const Pose& b) {
-        const glm::dquat turn = glm::conjugate(a.orientation) * b.orientation;
-        return 2.0 * std::atan2(turn.y, turn.w);
-    };
+    const glm::dvec2 place(300.0, 300.0), beside(400.0, 300.0);
+    const Similarity start = viewer.placement(work);
+    viewer.drag(1, beside, place);
+    const Similarity turned = viewer.placement(work);
     CHECK(turnBetween(start, turned) == doctest::Approx(0.4).epsilon(1e-6));
 
     // Keys: forward is where the wearer now looks, arrows turn.
     const auto hold = [&](const std::string& key) {
-        viewer.hands(Viewer::moveTo({300.0, 300.0}) + "keydown " + key);
+        hands(moveTo(place) + "keydown " + key);
         viewer.tab();
         viewer.tab();
-        viewer.hands("keyup " + key);
+        hands("keyup " + key);
         return viewer.placement(work);
     };
-    const auto stepBetween = [](const Pose& a, const Pose& b) { return glm::conjugate(a.orientation) * (b.position - a.position); };
-    const Pose forward = hold("w"), sideways = hold("d"), sunk = hold("q");
+    const Similarity forward = hold("w"), sideways = hold("d"), sunk = hold("q");
     CHECK(stepBetween(turned, forward).z > 0.01);
     CHECK(std::abs(stepBetween(turned, forward).x) < 1e-6);
     CHECK(stepBetween(forward, sideways).x > 0.01);
     CHECK(std::abs(stepBetween(forward, sideways).z) < 1e-6);
     CHECK(stepBetween(sideways, sunk).y > 0.01);
-    const Pose right = hold("Right");
+    const Similarity right = hold("Right"), back = hold("s"), left = hold("Left");
     CHECK(turnBetween(sunk, right) > 0.01);
-    const Pose back = hold("s"), left = hold("Left");
     CHECK(stepBetween(right, back).z < -0.01);
     CHECK(turnBetween(back, left) < -0.01);
 
     // The wheel makes the scene grow about the wearer, the right button tilts it about the line of sight.
-    double before = 0.0, grown = 0.0;
-    const Pose wheel_from = viewer.placement(work, &before);
-    viewer.hands(Viewer::moveTo({300.0, 300.0}));
+    viewer.handsInTurn({moveTo(place), "click 4 click 4"});
     viewer.tab();
-    viewer.hands("click 4 click 4");
-    viewer.tab();
-    const Pose wheel_to = viewer.placement(work, &grown);
-    CHECK(grown == doctest::Approx(before / (1.1 * 1.1)).epsilon(1e-4));
-    CHECK(turnBetween(wheel_from, wheel_to) == doctest::Approx(0.0));
-    viewer.hands(Viewer::moveTo({300.0, 300.0}));
-    viewer.tab();
-    viewer.hands("mousedown 3");
-    viewer.tab();
-    viewer.hands(Viewer::moveTo({400.0, 300.0}));
-    viewer.tab();
-    viewer.hands("mouseup 3");
-    const Pose tilted = viewer.placement(work);
-    CHECK(glm::angle(glm::conjugate(wheel_to.orientation) * tilted.orientation) == doctest::Approx(0.4).epsilon(1e-4));
-    viewer.hands(Viewer::moveTo({400.0, 300.0}));
-    viewer.tab();
-    viewer.hands("mousedown 3");
-    viewer.tab();
-    viewer.hands(Viewer::moveTo({300.0, 300.0}));
-    viewer.tab();
-    viewer.hands("mouseup 3");
+    const Similarity grown = viewer.placement(work);
+    CHECK(grown.scale == doctest::Approx(left.scale / (1.1 * 1.1)).epsilon(1e-4));
+    CHECK(turnBetween(left, grown) == doctest::Approx(0.0));
+    viewer.drag(3, place, beside);
+    const Similarity tilted = viewer.placement(work);
+    CHECK(glm::angle(glm::conjugate(grown.orientation) * tilted.orientation) == doctest::Approx(0.4).epsilon(1e-4));
+    viewer.drag(3, beside, place);
 
     // R: the room begins where the head is.
-    viewer.hands("key r");
+    hands("key r");
     CHECK(program.waitFor("the room now begins where the wearer stands") != "");
 
     // What stands in the window is what the dominant eye sees, also by new shaders. It is there some frames later.
     if (viewer.tab().find("panel = true") != std::string::npos) { viewer.tab(); }
-    viewer.hands("key F5");
+    hands("key F5");
     CHECK(program.waitFor(" shaders reloaded in ") != "");
     for (int i = 0; i < 6; ++i) { viewer.tab(); }
-    const Image screen = viewer.screen().picture();
+    const Image screen = desk().screen.picture();
 
     // Escape ends the session as the wearer would.
-    viewer.hands("key Escape");
-    CHECK(program.exitCode() == 0);
-    INFO(program.said());
-    CHECK(program.said().find("frames; ") != std::string::npos);
-    CHECK(program.said().find("VUID") == std::string::npos);
-    CHECK(program.said().find("no window") == std::string::npos);
+    hands("key Escape");
+    viewer.checkEnd();
     const Image seen = lastLeftEye(work.path / "seen");
     REQUIRE(seen.channels == 3);
     CHECK(compare(eyeInWindow(screen, seen.size_px), seen).psnrDb() > 35.0);
-    // Beside it, the panel.
-    CHECK(coloursOfPanel(screen) > 10);
+    // Beside it, the panel, in many colours.
+    std::set<Colour> colours;
+    const auto isNew = [&](const Colour& colour, const Colour&) { return colours.insert(colour).second; };
+    CHECK(countPixels(screen, screen, isNew, {kEyePx, 0}, glm::uvec2(kEyePx + kPanelInWindowPx.x, kEyePx)) > 10);
 }
 
-TEST_CASE("a mouse that lies on the panel leaves it to the hands") {
+TEST_CASE("Escape, and the window's cross, end it while the headset is off, not looked at or gone") {
     if (!haveScreen()) { return; }
-    const Workplace work;
-    const std::string small = "rate 90\nsize 96 96\nframes none\n", scene = "builtin:slanted-wall --load-first --mode mono";
-    const Panel panel = panelOf(runView(work, "look", small + "at 0.1 exit\n", scene), 8);
-    std::filesystem::create_directory(work.base / "screen");
-    const Screen screen(work.base / "screen");
-    const XConnection stays(screen);  // a server whom everybody left begins anew, with its mouse in the middle
-    handsOn(screen, Viewer::moveTo({900.0, 650.0}));
-    const ViewRun run = runView(work, "hand", small + clickOn(panel, {placeOf("Quit"), {0.9, 0.95}}), scene,
-                                "XDG_CONFIG_HOME=\"$PWD/../config\" WAYLAND_DISPLAY= BINOSPLAT_VALIDATION=1 DISPLAY=" + screen.name);
-    INFO(run.outcome.output);
-    CHECK(run.outcome.exit_code == 0);
-    CHECK(run.outcome.output.find("VUID") == std::string::npos);
-    CHECK(run.outcome.output.find("no window") == std::string::npos);
-    CHECK(run.frames.size() < 50);  // the script's end comes later
+    checkEnds(kOff, false);
+    checkEnds(kElsewhere, true, 48);
+    checkEnds(kGone, false);
 }
 
-TEST_CASE("a session in place of a lost one is said on the panel") {
+TEST_CASE("Escape, and the window's cross, end it while the headset is off, not looked at or gone, the other way round" * nightly()) {
     if (!haveScreen()) { return; }
-    const glm::uvec2 place(glm::dvec2(kEyePx, 0.0) + placeOfMessage() * kPanelInWindowPx);
-    using Line = std::vector<std::array<float, 3>>;
-    const auto lineIn = [&](const Image& screen) {
-        Line line;
-        for (unsigned y = 0; y < 14; ++y) {
-            for (unsigned x = 0; x < 200; ++x) { line.push_back(colourAt(screen, place + glm::uvec2(x, y))); }
-        }
-        return line;
-    };
-    constexpr int kMostLooks = 20;
-    // The letters there, once they are the same twice, the panel gone and back between: what was drawn while it came is seen by then.
-    const auto read = [&](Viewer& viewer) {
-        Line line, before;
-        for (int i = 0; i < kMostLooks; ++i) {
-            viewer.tab();
-            viewer.tab();
-            line = lineIn(viewer.screen().picture());
-            if (line == before && std::set(line.begin(), line.end()).size() > 2) { break; }
-            before = line;
-        }
-        return line;
-    };
-    std::array<Line, 2> lines;
-    for (const bool is_lost : {false, true}) {
+    checkEnds(kOff, true);
+    checkEnds(kElsewhere, false);
+    checkEnds(kGone, true);
+}
+
+TEST_CASE("Escape, and the window's cross, end the wait for a headset") {
+    if (!haveScreen()) { return; }
+    for (const bool by_cross : {false, true}) {
+        CAPTURE(by_cross);
         const Workplace work;
-        std::ofstream(work.path / "lost.script") << "rate 30\nsize 96 96\nframes none\n" << (is_lost ? "at 0.5 lose-session\n" : "");
-        Viewer viewer(work, "--simulate lost.script --out seen --shaders '" BINOSPLAT_SOURCE_DIR "/shaders'");
-        if (is_lost) { REQUIRE(viewer.program().waitFor("another one begins") != ""); }
-        Line& line = lines[is_lost ? 1 : 0];
-        line = read(viewer);
-        CHECK(std::set(line.begin(), line.end()).size() > 2);
-        for (int i = 0; is_lost && line == lines[0] && i < kMostLooks; ++i) { line = read(viewer); }
-        viewer.hands("key Escape");
-        CHECK(viewer.program().exitCode() == 0);
+        std::ofstream(work.path / "never.script") << "no-headset-for 1000000\n";
+        Program program(work.path, {BINOSPLAT_PROGRAM, "view", "builtin:slanted-wall", "--simulate", "never.script"}, desk().screen.name);
+        REQUIRE(program.waitFor("has no headset yet") != "");
+        if (by_cross) {
+            clickCross("^binosplat waits for a headset");
+        } else {
+            hands("search --sync --onlyvisible --name '^binosplat waits' mousemove --window %1 20 20");
+            hands("key Escape");
+        }
+        CHECK(program.exitCode() == 0);
+        INFO(program.said());
+        CHECK(program.said().find("stopped before there was a headset") != std::string::npos);
     }
-    CHECK(lines[0] != lines[1]);
 }
 
-TEST_CASE("the window is as large as the desktop wants things to be, and may be made another size in its shape") {
+// The last: after a device of its own the test program is forked no more.
+TEST_CASE("a picture of a frame that was given up is drawn in the next, and a window that cannot be drawn on is gone") {
     if (!haveScreen()) { return; }
-    const Workplace work;
-    std::ofstream(work.path / "rest.script") << "rate 30\nsize 96 96\nframes none\n";
-    Viewer viewer(work, "--simulate rest.script --out seen", 48);
-    const glm::dvec2 size(numberOfWindow(viewer.screen(), "^binosplat$", "WIDTH"),
-                          numberOfWindow(viewer.screen(), "^binosplat$", "HEIGHT"));
-    CHECK(size == 0.5 * glm::dvec2(kEyePx + kPanelInWindowPx.x, kEyePx));
-    const auto [resizes, keeps_shape] = viewer.connection().resizesInShape(numberOfWindow(viewer.screen(), "^binosplat$", "WINDOW"));
-    CHECK(resizes);
-    CHECK(keeps_shape);
-    // Its widgets are where they are shown.
-    viewer.hands(Viewer::moveTo(0.5 * (glm::dvec2(kEyePx, 0.0) + placeOf("Vignette", true) * kPanelInWindowPx)));
-    viewer.tab();
-    viewer.hands("mousedown 1");
-    viewer.tab();
-    viewer.hands("mouseup 1");
-    CHECK(viewer.program().waitFor("vignette = false") != "");
-    viewer.hands("key Escape");
-    CHECK(viewer.program().exitCode() == 0);
+    setenv("DISPLAY", desk().screen.name.c_str(), 1);
+    unsetenv("WAYLAND_DISPLAY");
+    const std::unique_ptr<WindowSystem> windows = WindowSystem::find();
+    REQUIRE(windows != nullptr);
+    const std::vector<const char*> pictures{VK_KHR_SWAPCHAIN_EXTENSION_NAME};
+    const std::string see_window = "xdotool search --name '^binosplat$' > /dev/null";
+    {
+        const Context context({.device = {}, .instance_extensions = WindowSystem::instanceExtensions(), .device_extensions = pictures});
+        Canvas canvas(context, kPanelPx, vk::Format::eR8G8B8A8Unorm);
+        // Of the panel, too: its letters may change before it is drawn again.
+        canvas.begin({}, 0.01);
+        canvas.giveUp();
+        REQUIRE(canvas.font().want("\xd7\x90"));
+        canvas.font().build();
+        canvas.takeLetters();
+        canvas.begin({}, 0.01);
+        canvas.giveUp();
+        MirrorWindow window(context, canvas);
+        // The display may still be reading it.
+        for (int asked = 0; !window.drawn() && asked < 100'000; ++asked) { window.acquire(); }
+        const vk::Semaphore first = window.drawn();
+        CHECK(first);
+        for (int given_up = 0; given_up < 10; ++given_up) {
+            window.acquire();
+            CHECK(window.drawn() == first);
+        }
+        CHECK(std::system(see_window.c_str()) == 0);
+    }
+    const Context without_windows({.device = {}, .device_extensions = pictures});
+    const Canvas canvas(without_windows, kPanelPx, vk::Format::eR8G8B8A8Unorm);
+    CHECK_THROWS_AS(MirrorWindow(without_windows, canvas), Error);
+    CHECK(std::system(see_window.c_str()) != 0);
 }
 
 }  // namespace view_window_test

@@ -1,13 +1,11 @@
 // Facts about frames of any kind after frames of any other: modes, sizes, angles and whatever is kept change from frame to frame, as no
 // program does it, and each picture is what a frame that knows nothing of the ones before comes to, or near the full render.
-#include "engine/picture/metrics.h"
 #include "tests/engine/frame/frame_runs.h"
 
 #include <doctest/doctest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <random>
 #include <utility>
 
@@ -17,6 +15,7 @@ namespace frame_mix_test {
 
 using namespace binosplat;
 using test::Gpu;
+using test::KeptFrame;
 using test::ViewedScene;
 
 namespace {
@@ -159,26 +158,22 @@ private:
 // Whether the frames before leave it nothing but whether moving pays.
 bool standsAlone(const FrameSettings& settings) { return !hasPast(settings.mode) || !settings.keep_past; }
 
-std::vector<Image> picturesOf(const Context& context, const GpuScene& scene, const std::vector<Eye>& eyes, const FrameSettings& settings) {
-    StereoFrame frame(context, scene);
-    const test::KeptKernels kept(context, frame);
-    frame.render(eyes, settings);
+// Of frames that know of none before.
+std::vector<Image> picturesAlone(const StereoFrame& other, const std::vector<Eye>& eyes, const FrameSettings& settings) {
+    const auto frame = StereoFrame::beside(other);
+    frame->render(eyes, settings);
     std::vector<Image> pictures;
-    for (std::size_t e = 0; e < eyes.size(); ++e) { pictures.push_back(frame.readPicture(static_cast<int>(e))); }
+    for (std::size_t e = 0; e < eyes.size(); ++e) { pictures.push_back(frame->readPicture(static_cast<int>(e))); }
     return pictures;
 }
 
 }  // namespace
 
 TEST_CASE_FIXTURE(Gpu, "any frame may follow any other") {
-    const char* const more = std::getenv("BINOSPLAT_MIX_WALKS");  // by hand: so many
-    const unsigned walks = more != nullptr ? static_cast<unsigned>(std::atoi(more)) : 4;
     const ViewedScene room = test::viewBuiltin("builtin:atelier", {96, 80}, 8000);
-    const GpuScene scene(context(), room.scene);
-    for (unsigned seed = 1; seed <= walks; ++seed) {
+    for (unsigned seed = 1; seed <= 4; ++seed) {
         Walk walk(seed, room.eye);
-        StereoFrame mixed(context(), scene);
-        const test::KeptKernels kept(context(), mixed);
+        KeptFrame mixed(context(), room.scene);
         for (int i = 0; i < kFrames; ++i) {
             const std::vector<Eye> eyes = walk.eyes();
             const FrameSettings settings = walk.settings();
@@ -193,8 +188,8 @@ TEST_CASE_FIXTURE(Gpu, "any frame may follow any other") {
             FrameSettings full = settings;
             full.mode = eyes.size() == 1 ? Mode::kMono : Mode::kTwoPass;
             full.half_periphery = false;
-            const std::vector<Image> in_full = picturesOf(context(), scene, eyes, full);
-            const std::vector<Image> alone = standsAlone(settings) ? picturesOf(context(), scene, eyes, settings) : in_full;
+            const std::vector<Image> in_full = picturesAlone(mixed, eyes, full);
+            const std::vector<Image> alone = standsAlone(settings) ? picturesAlone(mixed, eyes, settings) : in_full;
             for (std::size_t e = 0; e < eyes.size(); ++e) {
                 CAPTURE(e);
                 const Image picture = mixed.readPicture(static_cast<int>(e));

@@ -2,10 +2,15 @@
 #pragma once
 
 #include "engine/frame/stereo_frame.h"
+#include "engine/picture/metrics.h"
 #include "tests/engine/frame/gpu_scenes.h"
 #include "tests/engine/gpu/gpu_fixture.h"
 
+#include <algorithm>
 #include <array>
+#include <optional>
+#include <utility>
+#include <vector>
 
 namespace binosplat::test {
 
@@ -37,15 +42,47 @@ private:
     Pool* pool_;
 };
 
+struct OwnScene {
+    std::optional<GpuScene> own_scene;
+};
+// A frame with such kernels, of a scene on the device or of one that it brings there itself. While one of them lives others make their
+// kernels anew, unless they are StereoFrame::beside it.
+class KeptFrame : private OwnScene, public StereoFrame {
+public:
+    KeptFrame(const Context& context, const GpuScene& scene, const FrameOptions& options = {})
+        : StereoFrame(context, scene, options), kept_(context, *this, options) {}
+    KeptFrame(const Context& context, const Scene& scene, const FrameOptions& options = {})
+        : OwnScene{std::optional<GpuScene>(std::in_place, context, scene)},
+          StereoFrame(context, *own_scene, options),
+          kept_(context, *this, options) {}
+
+private:
+    KeptKernels kept_;
+};
+
+// 0 as long as there was no frame.
+inline std::uint64_t countOf(const FrameResult& result, const char* name) {
+    const auto counters = result.counters.named();
+    return counters.empty() ? 0 : counters.at(name);
+}
+
+inline std::array<Image, 2> picturesOf(StereoFrame& frame) { return {frame.readPicture(kLeft), frame.readPicture(kRight)}; }
+
+using PairOfValues = std::array<std::vector<float>, 2>;
+inline PairOfValues shownBy(StereoFrame& frame) { return {frame.readPicture(kLeft).values, frame.readPicture(kRight).values}; }
+
+// Of the worse eye.
+inline double psnrDb(const std::array<Image, 2>& a, const std::array<Image, 2>& b) {
+    return std::min(compare(a[kLeft], b[kLeft]).psnrDb(), compare(a[kRight], b[kRight]).psnrDb());
+}
+
 struct MonoFrame {
     FrameResult result;
     Image picture, depth, moments;
 };
 inline MonoFrame renderMono(const Context& context, const Scene& scene, const Eye& eye, const FrameSettings& settings,
                             const FrameOptions& options = {}) {
-    const GpuScene gpu_scene(context, scene);
-    StereoFrame frame(context, gpu_scene, options);
-    const KeptKernels kept(context, frame, options);
+    KeptFrame frame(context, scene, options);
     FrameResult result = frame.render({&eye, 1}, settings);
     return {std::move(result), frame.readPicture(0), frame.readDominantDepth(),
             settings.keep_moments ? frame.readInverseDepthMoments() : Image{}};
@@ -57,11 +94,9 @@ struct PairOfPictures {
 };
 inline PairOfPictures renderPair(const Context& context, const Scene& scene, const std::array<Eye, 2>& eyes, const FrameSettings& settings,
                                  const FrameOptions& options = {}) {
-    const GpuScene gpu_scene(context, scene);
-    StereoFrame frame(context, gpu_scene, options);
-    const KeptKernels kept(context, frame, options);
+    KeptFrame frame(context, scene, options);
     FrameResult result = frame.render(eyes, settings);
-    return {std::move(result), {frame.readPicture(kLeft), frame.readPicture(kRight)}};
+    return {std::move(result), picturesOf(frame)};
 }
 
 }  // namespace binosplat::test

@@ -1,7 +1,5 @@
 // Facts about frames whose eye has half the resolution where it would not see more: against the twin, and against the same frames in full.
-#include "engine/picture/metrics.h"
 #include "engine/reference/periphery.h"
-#include "tests/engine/frame/affiliated_frames.h"
 #include "tests/engine/frame/frame_runs.h"
 
 #include <doctest/doctest.h>
@@ -14,7 +12,9 @@ TEST_SUITE_BEGIN("periphery_frames");
 namespace periphery_frames_test {
 
 using namespace binosplat;
+using test::countOf;
 using test::Gpu;
+using test::KeptFrame;
 using test::ViewedScene;
 using Tiles = std::vector<std::uint8_t>;
 
@@ -32,8 +32,6 @@ FrameSettings inFull(FrameSettings settings) {
     settings.half_periphery = false;
     return settings;
 }
-
-std::uint64_t count(const FrameResult& result, const char* name) { return result.counters.named().at(name); }
 
 // A headset's wide view of a room.
 ViewedScene viewRoom(glm::uvec2 size_px, std::uint64_t splats) {
@@ -74,9 +72,7 @@ TEST_CASE_FIXTURE(Gpu, "a picture in two is the twin's, of discs and of Gaussian
          {viewRoom({381, 279}, 20000), test::viewGaussians({143, 97}, false), test::viewGaussians({96, 80}, true)}) {
         // So few pixels show less than an eye resolves but far from where it looks.
         const Gaze gaze = view.scene.isGaussian3d() ? Gaze{{-3.0, 1.0, -2.0}, 0.0} : Gaze{{-0.5, 0.2, 1.0}, 0.15};
-        const GpuScene scene(context(), view.scene);
-        StereoFrame frame(context(), scene);
-        const test::KeptKernels kept(context(), frame);
+        KeptFrame frame(context(), view.scene);
         for (const Tiles& hidden : {Tiles{}, someHidden(view.eye)}) {
             CAPTURE(view.name);
             CAPTURE(hidden.empty());
@@ -92,8 +88,8 @@ TEST_CASE_FIXTURE(Gpu, "a picture in two is the twin's, of discs and of Gaussian
             const std::ptrdiff_t flips = view.scene.isGaussian3d() ? tiles / 8 : tiles / 50;
             checkAgainstTwin(frame.readPicture(0), twin.picture, flips);
             const auto own = static_cast<std::uint64_t>(std::ranges::count(twin.own_tiles, 1));
-            CHECK(std::max(own, count(result, "tiles_full_size")) - std::min(own, count(result, "tiles_full_size")) <= 2);
-            CHECK(count(result, "tiles_half_size") > 0);
+            CHECK(std::max(own, countOf(result, "tiles_full_size")) - std::min(own, countOf(result, "tiles_full_size")) <= 2);
+            CHECK(countOf(result, "tiles_half_size") > 0);
             const Image depth = frame.readDominantDepth();
             std::size_t off = 0;
             for (std::size_t i = 0; i < depth.values.size(); ++i) {
@@ -107,9 +103,7 @@ TEST_CASE_FIXTURE(Gpu, "a picture in two is the twin's, of discs and of Gaussian
 
 TEST_CASE_FIXTURE(Gpu, "where an eye looks its picture is the one in full, and what it sees of the rest is too little to be noticed") {
     const ViewedScene view = viewRoom({512, 448}, 60000);
-    const GpuScene scene(context(), view.scene);
-    StereoFrame frame(context(), scene);
-    const test::KeptKernels kept(context(), frame);
+    KeptFrame frame(context(), view.scene);
     for (const Gaze& gaze : {Gaze{{0.4, 0.0, 1.0}, 0.0}, Gaze{{-0.7, 0.3, 1.0}, 0.1}}) {
         CAPTURE(gaze.direction.x);
         const FrameResult full = frame.render({&view.eye, 1}, inFull(settingsFor(gaze)));
@@ -126,30 +120,27 @@ TEST_CASE_FIXTURE(Gpu, "where an eye looks its picture is the one in full, and w
             made_of_half += errors[t] > 0.0 ? 1 : 0;
             noticed += shares[t] * errors[t] >= static_cast<double>(gpu::kLeastSeenError) ? 1 : 0;
         }
-        MESSAGE(made_of_half << " of " << of_beyond << " tiles, " << noticed << " noticed; " << count(full, "tile_pairs") << " and "
-                             << count(half, "tile_pairs") << " + " << count(half, "tile_pairs_half_size") << " pairs");
         CHECK(100 * noticed <= made_of_half);
         CHECK(3 * made_of_half > of_beyond);
-        CHECK(count(half, "tile_pairs") + count(half, "tile_pairs_half_size") < count(full, "tile_pairs"));
-        CHECK(count(half, "tiles_full_size") + made_of_half <= count(half, "tiles"));
+        CHECK(countOf(half, "tile_pairs") + countOf(half, "tile_pairs_half_size") < countOf(full, "tile_pairs"));
+        CHECK(countOf(half, "tiles_full_size") + made_of_half <= countOf(half, "tiles"));
     }
 }
 
 TEST_CASE_FIXTURE(Gpu, "an eye that may look everywhere, or of which nothing is known, has one picture, byte for byte") {
     const ViewedScene view = viewRoom({200, 160}, 20000);
-    const GpuScene scene(context(), view.scene);
-    StereoFrame frame(context(), scene);
-    const test::KeptKernels kept(context(), frame);
+    KeptFrame frame(context(), view.scene);
     const FrameSettings clear = settingsFor({{0.0, 0.0, 1.0}, 1.6});
     const FrameResult full = frame.render({&view.eye, 1}, inFull(clear));
     const Image whole = frame.readPicture(0), depth = frame.readDominantDepth();
     const FrameResult made = frame.render({&view.eye, 1}, clear);
     CHECK(frame.readPicture(0).values == whole.values);
     CHECK(frame.readDominantDepth().values == depth.values);
-    CHECK(count(made, "tiles_half_size") == 0);
-    CHECK(count(made, "tile_pairs_half_size") == 0);
+    CHECK(countOf(made, "tiles_half_size") == 0);
+    CHECK(countOf(made, "tile_pairs_half_size") == 0);
     // Splats that only the other picture's low-pass brings in make no pair but where rounding does.
-    CHECK(static_cast<double>(count(made, "tile_pairs")) == doctest::Approx(static_cast<double>(count(full, "tile_pairs"))).epsilon(1e-3));
+    CHECK(static_cast<double>(countOf(made, "tile_pairs")) ==
+          doctest::Approx(static_cast<double>(countOf(full, "tile_pairs"))).epsilon(1e-3));
     FrameSettings unknown = clear;
     unknown.gazes = {};
     const FrameResult plain = frame.render({&view.eye, 1}, unknown);
@@ -163,63 +154,25 @@ TEST_CASE_FIXTURE(Gpu, "an eye that may look everywhere, or of which nothing is 
     CHECK(frame.readPicture(0).values == whole.values);
 }
 
-TEST_CASE_FIXTURE(Gpu, "frames that are not waited for follow the gaze, and have the pictures of those that are") {
+TEST_CASE_FIXTURE(
+    Gpu, "lists grow, whichever picture they are too short for; half the size takes fewer bytes, and other frames give them back") {
     const ViewedScene view = viewRoom({240, 200}, 20000);
-    const GpuScene scene(context(), view.scene);
-    const auto settingsAt = [](int step) {
-        FrameSettings settings = settingsFor({{0.2 * step - 0.4, 0.1 * step, 1.0}, 0.15});
-        settings.half_floats = true;
-        settings.keep_depth = false;
-        return settings;
-    };
-    const auto eyeAt = [&](int step) {
-        Eye eye = view.eye;
-        eye.world_from_camera.position.x += 0.01 * step;
-        return eye;
-    };
-    StereoFrame ahead(context(), scene);
-    const test::KeptKernels kept(context(), ahead);
-    std::uint64_t again = 0;
-    for (int step = 0; step < 5; ++step) {
-        const Eye eye = eyeAt(step);
-        const auto result = ahead.renderAhead({&eye, 1}, settingsAt(step));
-        if (result) { again = count(*result, "frames_done_again"); }
-    }
-    CHECK(again <= 1);  // the first
-    const Image last = ahead.readPicture(0);
-    const Eye eye = eyeAt(4);
-    StereoFrame waited(context(), scene);
-    waited.render({&eye, 1}, settingsAt(3));
-    const Image other = waited.readPicture(0);
-    waited.render({&eye, 1}, settingsAt(4));
-    CHECK(waited.readPicture(0).values == last.values);
-    CHECK(other.values != last.values);
-}
-
-TEST_CASE_FIXTURE(Gpu, "lists that are too short grow, whichever picture they are too short for") {
-    const ViewedScene view = viewRoom({240, 200}, 20000);
-    const GpuScene scene(context(), view.scene);
     const FrameSettings settings = settingsFor({{0.0, 0.0, 1.0}, 0.2});
-    StereoFrame roomy(context(), scene), short_of(context(), scene, {.first_capacity = {256, 256}});
-    const FrameResult result = roomy.render({&view.eye, 1}, settings), grown = short_of.render({&view.eye, 1}, settings);
-    CHECK(short_of.readPicture(0).values == roomy.readPicture(0).values);
-    CHECK(count(grown, "tile_pairs") == count(result, "tile_pairs"));
-    CHECK(count(grown, "tile_pairs_half_size") == count(result, "tile_pairs_half_size"));
-}
-
-TEST_CASE_FIXTURE(Gpu, "half the size makes fewer bytes of pictures than the eye's own size, and other frames give them back") {
-    const ViewedScene view = viewRoom({240, 200}, 20000);
-    const GpuScene scene(context(), view.scene);
-    StereoFrame frame(context(), scene);
-    const FrameSettings settings = settingsFor({{0.0, 0.0, 1.0}, 0.2});
-    frame.render({&view.eye, 1}, inFull(settings));
+    KeptFrame short_of(context(), view.scene, {.first_capacity = {256, 256}});
+    const auto roomy = StereoFrame::beside(short_of);
+    roomy->render({&view.eye, 1}, inFull(settings));
     const std::uint64_t before = context().memoryUse().current_bytes;
-    const FrameResult result = frame.render({&view.eye, 1}, settings);
+    const FrameResult result = roomy->render({&view.eye, 1}, settings);
     const std::uint64_t in_two = context().memoryUse().current_bytes;
     CHECK(in_two > before);
-    CHECK(count(result, "periphery_bytes") < count(result, "pixel_bytes") / 3);
-    frame.render({&view.eye, 1}, inFull(settings));
-    CHECK(context().memoryUse().current_bytes < in_two);
+    CHECK(countOf(result, "periphery_bytes") < countOf(result, "pixel_bytes") / 3);
+    const FrameResult grown = short_of.render({&view.eye, 1}, settings);
+    CHECK(short_of.readPicture(0).values == roomy->readPicture(0).values);
+    CHECK(countOf(grown, "tile_pairs") == countOf(result, "tile_pairs"));
+    CHECK(countOf(grown, "tile_pairs_half_size") == countOf(result, "tile_pairs_half_size"));
+    const std::uint64_t with_both = context().memoryUse().current_bytes;
+    roomy->render({&view.eye, 1}, inFull(settings));
+    CHECK(context().memoryUse().current_bytes < with_both);
 }
 
 }  // namespace periphery_frames_test

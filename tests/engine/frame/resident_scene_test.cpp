@@ -1,19 +1,22 @@
 // Facts about scenes whose parts come and go: they look like the same splats as a scene that stays, and no frame waits for them.
 #include "engine/error.h"
-#include "engine/picture/metrics.h"
 #include "tests/engine/frame/frame_runs.h"
 #include "tests/engine/passes/scene_pages.h"
+#include "tests/nightly.h"
 
 #include <doctest/doctest.h>
 
 #include <random>
+#include <set>
 
 TEST_SUITE_BEGIN("resident_scene");
 
 namespace resident_scene_test {
 
 using namespace binosplat;
+using test::countOf;
 using test::Gpu;
+using test::KeptFrame;
 using test::ViewedScene;
 
 namespace {
@@ -25,8 +28,8 @@ FrameSettings makeSettings(Mode mode) {
     return settings;
 }
 
-ViewedScene viewAtelier() {
-    ViewedScene view = test::viewBuiltin("builtin:atelier", {160, 144}, 20000);
+ViewedScene viewAtelier(glm::uvec2 size_px = {96, 80}) {
+    ViewedScene view = test::viewBuiltin("builtin:atelier", size_px, 20000);
     view.scene = test::inMortonOrder(view.scene);
     return view;
 }
@@ -50,11 +53,6 @@ void checkEqual(const std::vector<Image>& pictures, const std::vector<Image>& wa
     for (std::size_t e = 0; e < pictures.size(); ++e) { CHECK(pictures[e].values == wanted[e].values); }
 }
 
-std::uint64_t count(const FrameResult& result, const char* name) {
-    const auto counters = result.counters.named();
-    return counters.contains(name) ? counters.at(name) : 0;
-}
-
 // A scene in `parts` parts of about as many splats, each along Morton's curve.
 std::vector<Scene> inParts(const Scene& scene, std::size_t parts) {
     std::vector<Scene> some;
@@ -65,54 +63,56 @@ std::vector<Scene> inParts(const Scene& scene, std::size_t parts) {
     return some;
 }
 
-}  // namespace
+constexpr std::array kModes{Mode::kMono, Mode::kTwoPass, Mode::kShared, Mode::kPaper, Mode::kPredicted, Mode::kAlternate, Mode::kTemporal};
 
-TEST_CASE_FIXTURE(Gpu, "all of a scene in pages is the scene that stays, byte for byte, in every mode") {
-    ViewedScene view = viewAtelier();
-    for (const bool gaussians : {false, true}) {
-        if (gaussians) {
-            view = test::viewGaussians({160, 144}, true);
-            view.scene = test::inMortonOrder(view.scene);
-        }
-        const GpuScene whole(context(), view.scene);
-        for (const Mode mode :
-             {Mode::kMono, Mode::kTwoPass, Mode::kShared, Mode::kPaper, Mode::kPredicted, Mode::kAlternate, Mode::kTemporal}) {
-            for (const double cant : {0.0, 0.05}) {
-                if (cant > 0.0 && (mode == Mode::kMono || gaussians)) { continue; }
-                CAPTURE(static_cast<int>(mode));
-                CAPTURE(cant);
-                const test::WholeInPages pages(context(), view.scene, 7);
-                StereoFrame frame(context(), pages.resident.scene()), other(context(), whole);
-                FrameSettings settings = makeSettings(mode);
-                settings.order = cant > 0.0 ? Order::kDistance : Order::kDepth;
-                for (int step = 0; step < 3; ++step) {
-                    Eye eye = view.eye;
-                    eye.world_from_camera.position.x += 0.004 * step;
-                    const std::vector<Eye> eyes = eyesFor(mode, eye, cant);
-                    std::vector<Image> pictures, wanted;
-                    {
-                        const test::KeptKernels kept(context(), frame);
-                        pictures = render(frame, eyes, settings);
-                    }
-                    const test::KeptKernels kept(context(), other);
-                    wanted = render(other, eyes, settings);
-                    checkEqual(pictures, wanted);
-                }
-            }
+void checkPagesAreTheScene(const Context& context, const Scene& in_order, const Eye& start, std::span<const Mode> modes, double cant) {
+    const GpuScene whole(context, in_order);
+    for (const Mode mode : modes) {
+        CAPTURE(static_cast<int>(mode));
+        CAPTURE(cant);
+        const test::WholeInPages pages(context, in_order, 7);
+        KeptFrame frame(context, pages.resident.scene());
+        const auto other = StereoFrame::beside(frame);
+        other->show(whole);
+        FrameSettings settings = makeSettings(mode);
+        settings.order = cant > 0.0 ? Order::kDistance : Order::kDepth;
+        for (int step = 0; step < 3; ++step) {
+            Eye eye = start;
+            eye.world_from_camera.position.x += 0.004 * step;
+            const std::vector<Eye> eyes = eyesFor(mode, eye, cant);
+            checkEqual(render(frame, eyes, settings), render(*other, eyes, settings));
         }
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "what is there is seen, and nothing else, whatever came and went before it") {
-    const ViewedScene view = viewAtelier();
-    const std::vector<Scene> parts = inParts(view.scene, 9);
-    ResidentScene resident(context(), traitsOf(view.scene), {.capacity_pages = test::pagesOf(view.scene.size()) + 9});
-    StereoFrame frame(context(), resident.scene());
-    const test::KeptKernels kept(context(), frame);
+}  // namespace
+
+TEST_CASE_FIXTURE(Gpu, "all of a scene in pages is the scene that stays, byte for byte") {
+    const ViewedScene view = viewAtelier(), gaussians = test::viewGaussians({96, 80}, true);
+    checkPagesAreTheScene(context(), view.scene, view.eye, std::array{Mode::kPaper}, 0.0);
+    checkPagesAreTheScene(context(), view.scene, view.eye, std::array{Mode::kTemporal}, 0.05);
+    checkPagesAreTheScene(context(), test::inMortonOrder(gaussians.scene), gaussians.eye, std::array{Mode::kMono}, 0.0);
+}
+
+TEST_CASE_FIXTURE(Gpu, "all of a scene in pages is the scene that stays, byte for byte, in every mode" * test::nightly()) {
+    const ViewedScene view = viewAtelier(), gaussians = test::viewGaussians({96, 80}, true);
+    checkPagesAreTheScene(context(), view.scene, view.eye, kModes, 0.0);
+    checkPagesAreTheScene(context(), view.scene, view.eye, std::span(kModes).subspan(1), 0.05);
+    checkPagesAreTheScene(context(), test::inMortonOrder(gaussians.scene), gaussians.eye, kModes, 0.0);
+}
+
+TEST_CASE_FIXTURE(Gpu,
+                  "what is there is seen, and nothing else, whatever came and went before it, and hundreds of changes take no memory") {
+    const ViewedScene view = viewAtelier({160, 144});
+    constexpr std::uint32_t kParts = 16;
+    const std::vector<Scene> parts = inParts(view.scene, kParts);
+    ResidentScene resident(context(), traitsOf(view.scene), {.capacity_pages = test::pagesOf(view.scene.size()) + kParts});
+    KeptFrame frame(context(), resident.scene());
     std::vector<std::optional<ResidentScene::Part>> there(parts.size());
     std::mt19937 random(5);
     const std::vector<Eye> eyes = eyesFor(Mode::kShared, view.eye);
-    for (int step = 0; step < 12; ++step) {
+    std::uint64_t bytes = 0;
+    for (int step = 0; step < 50; ++step) {
         for (std::size_t p = 0; p < parts.size(); ++p) {
             if (random() % 2 == 0) { continue; }
             if (there[p]) {
@@ -122,29 +122,37 @@ TEST_CASE_FIXTURE(Gpu, "what is there is seen, and nothing else, whatever came a
                 REQUIRE(there[p].has_value());
             }
         }
-        const std::vector<Image> pictures = render(frame, eyes, makeSettings(Mode::kShared));
+        frame.renderAhead(eyes, makeSettings(Mode::kShared));
+        if (step == 10) { bytes = resident.scene().bytes(); }
+        if (step % 10 != 9) { continue; }
+        const auto pictures = test::picturesOf(frame);
         std::vector<std::uint32_t> splats;
-        for (std::size_t p = 0; p < parts.size(); ++p) {
-            for (std::size_t i = p * view.scene.size() / 9; there[p] && i < (p + 1) * view.scene.size() / 9; ++i) {
+        for (std::size_t p = 0; p < kParts; ++p) {
+            for (std::size_t i = p * view.scene.size() / kParts; there[p] && i < (p + 1) * view.scene.size() / kParts; ++i) {
                 splats.push_back(static_cast<std::uint32_t>(i));
             }
         }
         CHECK(resident.splatsShown() == splats.size());
         const GpuScene whole(context(), test::splatsOf(view.scene, splats));
-        StereoFrame other(context(), whole);
-        other.takeKernels(frame);
-        const std::vector<Image> wanted = render(other, eyes, makeSettings(Mode::kShared));
-        frame.takeKernels(other);
+        const auto other = StereoFrame::beside(frame);
+        other->show(whole);
+        other->render(eyes, makeSettings(Mode::kShared));
         // Splats of equal depth go by their places, which differ.
-        for (std::size_t e = 0; e < eyes.size(); ++e) { CHECK(compare(pictures[e], wanted[e]).psnrDb() >= 100.0); }
+        CHECK(test::psnrDb(pictures, test::picturesOf(*other)) >= 100.0);
     }
+    frame.finish();
+    CHECK(resident.scene().bytes() == bytes);
+    for (const auto& part : there) {
+        if (part) { resident.remove(*part); }
+    }
+    CHECK(resident.freePages() == resident.capacityPages());
+    CHECK(countOf(frame.render(eyes, makeSettings(Mode::kShared)), "splats_visible_left") == 0);
 }
 
 TEST_CASE_FIXTURE(Gpu, "a fade multiplies opacities, and at 0 nothing is seen or culled") {
     const ViewedScene view = viewAtelier();
     test::WholeInPages pages(context(), view.scene);
-    StereoFrame frame(context(), pages.resident.scene());
-    const test::KeptKernels kept(context(), frame);
+    KeptFrame frame(context(), pages.resident.scene());
     const std::vector<Eye> eyes{view.eye};
     for (const float fade : {1.0f, 0.37f, 0.0f, 0.9f}) {
         CAPTURE(fade);
@@ -153,10 +161,9 @@ TEST_CASE_FIXTURE(Gpu, "a fade multiplies opacities, and at 0 nothing is seen or
         Scene scene = view.scene;
         for (float& opacity : scene.opacities) { opacity *= fade; }
         const GpuScene whole(context(), scene);
-        StereoFrame other(context(), whole);
-        other.takeKernels(frame);
-        checkEqual(pictures, render(other, eyes, makeSettings(Mode::kMono)));
-        frame.takeKernels(other);
+        const auto other = StereoFrame::beside(frame);
+        other->show(whole);
+        checkEqual(pictures, render(*other, eyes, makeSettings(Mode::kMono)));
     }
 }
 
@@ -165,13 +172,12 @@ TEST_CASE_FIXTURE(Gpu, "a part that is longer than what a frame may bring is see
     const std::uint32_t pages = test::pagesOf(view.scene.size());
     ResidentScene resident(context(), traitsOf(view.scene), {.capacity_pages = pages, .most_bytes_a_frame = 1});
     const ResidentScene::Part part = resident.add(PackedPages(view.scene, resident.traits())).value();
-    StereoFrame frame(context(), resident.scene());
-    const test::KeptKernels kept(context(), frame);
+    KeptFrame frame(context(), resident.scene());
     const std::vector<Eye> eyes{view.eye};
     for (std::uint32_t page = 1; page <= pages; ++page) {
         const FrameResult result = frame.render(eyes, makeSettings(Mode::kMono));
         CHECK(resident.isInPlace(part) == (page == pages));
-        CHECK((count(result, "splats_visible") > 0) == (page == pages));
+        CHECK((countOf(result, "splats_visible") > 0) == (page == pages));
     }
     CHECK(resident.splatsShown() == view.scene.size());
     CHECK_FALSE(resident.hasChanges());
@@ -180,7 +186,7 @@ TEST_CASE_FIXTURE(Gpu, "a part that is longer than what a frame may bring is see
     const ResidentScene::Part other = resident.add(PackedPages(view.scene, resident.traits())).value();
     frame.render(eyes, makeSettings(Mode::kMono));
     resident.remove(other);
-    CHECK(count(frame.render(eyes, makeSettings(Mode::kMono)), "splats_visible") == 0);
+    CHECK(countOf(frame.render(eyes, makeSettings(Mode::kMono)), "splats_visible") == 0);
     CHECK(resident.splatsAdded() == 0);
     CHECK(resident.freePages() == pages);
 }
@@ -202,38 +208,33 @@ TEST_CASE_FIXTURE(Gpu, "what has no room, or is of another kind, is refused, and
 }
 
 TEST_CASE_FIXTURE(Gpu, "colours of fewer SH bands than the scene's are as they are, those of more lose the higher ones") {
-    ViewedScene view = test::viewBuiltin("builtin:atelier", {160, 144}, 4000);
+    ViewedScene view = test::viewBuiltin("builtin:atelier", {96, 80}, 4000);
     REQUIRE(view.scene.sh_degree > 0);
     Scene flat = view.scene;
     LoadNotes notes;
     limitShDegree(flat, 0, notes);
-    const GpuScene whole(context(), flat);
-    StereoFrame other(context(), whole);
-    const test::KeptKernels kept(context(), other);
+    KeptFrame other(context(), flat);
     const std::vector<Image> wanted = render(other, {view.eye}, makeSettings(Mode::kMono));
     for (const auto& [scene, traits] : {std::pair(&flat, traitsOf(view.scene)), std::pair(&view.scene, traitsOf(flat))}) {
         ResidentScene resident(context(), traits, {.capacity_pages = test::pagesOf(scene->size())});
         REQUIRE(resident.add(PackedPages(*scene, traits)).has_value());
-        StereoFrame frame(context(), resident.scene());
-        frame.takeKernels(other);
-        checkEqual(render(frame, {view.eye}, makeSettings(Mode::kMono)), wanted);
-        other.takeKernels(frame);
+        other.show(resident.scene());
+        checkEqual(render(other, {view.eye}, makeSettings(Mode::kMono)), wanted);
     }
 }
 
 TEST_CASE_FIXTURE(Gpu, "kernels that are made ahead leave what has come to the frame that is drawn") {
     const ViewedScene view = viewAtelier();
     const test::WholeInPages pages(context(), view.scene);
-    StereoFrame frame(context(), pages.resident.scene());
-    const test::KeptKernels kept(context(), frame);
+    KeptFrame frame(context(), pages.resident.scene());
     const std::vector<Eye> eyes = eyesFor(Mode::kTemporal, view.eye);
     frame.makeKernels(eyes, makeSettings(Mode::kTemporal));
     CHECK(pages.resident.hasChanges());
     const FrameResult first = frame.render(eyes, makeSettings(Mode::kShared));
-    CHECK(count(first, "splats_visible_left") > 0);
+    CHECK(countOf(first, "splats_visible_left") > 0);
     CHECK_FALSE(pages.resident.hasChanges());
     // And where nothing comes, nothing is recorded.
-    CHECK(count(frame.render(eyes, makeSettings(Mode::kShared)), "commands") < count(first, "commands"));
+    CHECK(countOf(frame.render(eyes, makeSettings(Mode::kShared)), "commands") < countOf(first, "commands"));
 }
 
 TEST_CASE("frames go on while parts come and go, though the device has not begun") {
@@ -247,7 +248,7 @@ TEST_CASE("frames go on while parts come and go, though the device has not begun
     StereoFrame frame(context, resident.scene());
     const std::vector<Eye> eyes = eyesFor(Mode::kShared, view.eye);
     frame.renderAhead(eyes, makeSettings(Mode::kShared));
-    // All that is submitted from now on waits for the host, which would wait for ever were a frame waited for.
+    // All that is submitted from now on waits for the host, which would wait for ever were a frame waited for, with changes or without.
     const vk::SemaphoreTypeCreateInfo timeline(vk::SemaphoreType::eTimeline, 0);
     const vk::raii::Semaphore gate = context.device().createSemaphore(vk::SemaphoreCreateInfo({}, &timeline));
     constexpr std::uint64_t kOpen = 1;
@@ -269,62 +270,27 @@ TEST_CASE("frames go on while parts come and go, though the device has not begun
     context.device().signalSemaphore(vk::SemaphoreSignalInfo(*gate, kOpen));
     const auto last = frame.finish();
     REQUIRE(last.has_value());
-    CHECK(count(*last, "frames_cut_short") == 0);
-    CHECK(count(*last, "splats_visible_left") > 0);
+    CHECK(countOf(*last, "frames_cut_short") == 0);
+    CHECK(countOf(*last, "splats_visible_left") > 0);
     context.device().waitIdle();
     CHECK(context.validationMessages().empty());
-}
-
-TEST_CASE_FIXTURE(Gpu, "a thousand changes take no memory, and each frame shows what was there when it was recorded") {
-    const ViewedScene view = viewAtelier();
-    const std::vector<Scene> parts = inParts(view.scene, 16);
-    ResidentScene resident(context(), traitsOf(view.scene), {.capacity_pages = test::pagesOf(view.scene.size())});
-    StereoFrame frame(context(), resident.scene());
-    const test::KeptKernels kept(context(), frame);
-    std::vector<std::pair<std::size_t, ResidentScene::Part>> there;
-    std::mt19937 random(9);
-    const std::vector<Eye> eyes = eyesFor(Mode::kShared, view.eye);
-    std::uint64_t changes = 0, bytes = 0;
-    for (int step = 0; changes < 1000; ++step) {
-        for (int change = 0; change < 25; ++change, ++changes) {
-            if (there.size() > 12 || (!there.empty() && random() % 2 == 0)) {
-                const std::size_t gone = random() % there.size();
-                resident.remove(there[gone].second);
-                there.erase(there.begin() + static_cast<std::ptrdiff_t>(gone));
-            } else {
-                const std::size_t part = random() % parts.size();
-                if (const auto added = resident.add(PackedPages(parts[part], resident.traits()))) { there.emplace_back(part, *added); }
-            }
-        }
-        frame.renderAhead(eyes, makeSettings(Mode::kShared));
-        if (step == 10) { bytes = resident.scene().bytes(); }
-    }
-    frame.finish();
-    CHECK(resident.scene().bytes() == bytes);
-    std::uint64_t splats = 0;
-    for (const auto& [part, number] : there) { splats += parts[part].size(); }
-    CHECK(resident.splatsShown() == splats);
-    for (const auto& [part, number] : there) { resident.remove(number); }
-    CHECK(resident.freePages() == resident.capacityPages());
-    CHECK(count(frame.render(eyes, makeSettings(Mode::kShared)), "splats_visible_left") == 0);
 }
 
 TEST_CASE_FIXTURE(Gpu, "lists have room for what comes, so that no frame is cut short for it") {
     const ViewedScene view = viewAtelier();
     const std::vector<Scene> parts = inParts(view.scene, 8);
     ResidentScene resident(context(), traitsOf(view.scene), {.capacity_pages = test::pagesOf(view.scene.size()) + 8});
-    StereoFrame frame(context(), resident.scene(), {.first_capacity = {1, 1}, .threads_per_cell = 0});
-    const test::KeptKernels kept(context(), frame);
+    KeptFrame frame(context(), resident.scene(), {.first_capacity = {1, 1}, .threads_per_cell = 0});
     const std::vector<Eye> eyes = eyesFor(Mode::kShared, view.eye);
     for (std::size_t step = 0; step < 24; ++step) {
         if (step % 3 == 0) { REQUIRE(resident.add(PackedPages(parts[step / 3], resident.traits())).has_value()); }
         frame.renderAhead(eyes, makeSettings(Mode::kShared));
     }
-    CHECK(count(*frame.finish(), "frames_cut_short") == 0);
+    CHECK(countOf(*frame.finish(), "frames_cut_short") == 0);
 }
 
 TEST_CASE_FIXTURE(Gpu, "where a part is exchanged, pictures that are made from their pasts are right again within some frames") {
-    const ViewedScene view = viewAtelier();
+    const ViewedScene view = viewAtelier({112, 96});
     // What stands before the walls is exchanged for the same in other colours.
     const std::vector<Scene> parts = inParts(view.scene, 12);
     Scene other = parts[5];
@@ -335,29 +301,24 @@ TEST_CASE_FIXTURE(Gpu, "where a part is exchanged, pictures that are made from t
         std::vector<ResidentScene::Part> there;
         for (const Scene& part : parts) { there.push_back(resident.add(PackedPages(part, resident.traits())).value()); }
         // The others are recorded after the first, which brings the changes.
-        StereoFrame first(context(), resident.scene()), second(context(), resident.scene()), full(context(), resident.scene());
-        const std::unique_ptr<StereoFrame> beside = StereoFrame::beside(first);
+        KeptFrame first(context(), resident.scene());
+        const auto second = StereoFrame::beside(first), full = StereoFrame::beside(first);
         Eye eye = view.eye;
         int step = 0;
-        const auto go = [&](StereoFrame& frame, Mode mode) {
-            const test::KeptKernels kept(context(), frame);
-            return render(frame, eyesFor(mode, eye), makeSettings(mode));
-        };
-        // The worse eye of each.
+        const auto go = [&](StereoFrame& frame, Mode mode) { return render(frame, eyesFor(mode, eye), makeSettings(mode)); };
         const auto psnrs = [&] {
             eye.world_from_camera.position.x = view.eye.world_from_camera.position.x + 0.002 * ++step;
-            const std::array shown{go(first, Mode::kTemporal), go(second, Mode::kTemporal), go(*beside, Mode::kTemporal)};
-            const std::vector<Image> wanted = go(full, Mode::kShared);
-            std::array<double, 3> worst{};
+            const std::array shown{go(first, Mode::kTemporal), go(*second, Mode::kTemporal)};
+            const std::vector<Image> wanted = go(*full, Mode::kShared);
+            std::array<double, 2> worst{};
             for (std::size_t f = 0; f < shown.size(); ++f) {
                 worst[f] = std::min(compare(shown[f][0], wanted[0]).psnrDb(), compare(shown[f][1], wanted[1]).psnrDb());
             }
             return worst;
         };
-        std::array<double, 3> before{};
-        for (int frame = 0; frame < 12; ++frame) { before = psnrs(); }
+        std::array<double, 2> before{}, after{};
+        for (int frame = 0; frame < 8; ++frame) { before = psnrs(); }
         const ResidentScene::Part come = resident.add(PackedPages(other, resident.traits()), fades ? 0.0f : 1.0f).value();
-        std::array<double, 3> after{};
         if (fades) {
             for (int frame = 1; frame <= 4; ++frame) {
                 resident.setFade(come, 0.25f * static_cast<float>(frame));
@@ -368,10 +329,9 @@ TEST_CASE_FIXTURE(Gpu, "where a part is exchanged, pictures that are made from t
             resident.remove(there[5]);
         }
         for (int frame = 0; frame < 8; ++frame) { after = psnrs(); }
-        INFO("before " << before[0] << " dB, after " << after[0] << " dB");
+        MESSAGE(fades << " before " << before[0] << " dB, after " << after[0] << " dB");
         CHECK(after[0] >= before[0] - 3.0);  // without a word of changes: 17.5 dB below that, and 2.9 where it fades
         CHECK(after[1] == doctest::Approx(after[0]).epsilon(1e-6));
-        CHECK(after[2] == doctest::Approx(after[0]).epsilon(1e-6));
     }
 }
 
@@ -385,8 +345,7 @@ TEST_CASE_FIXTURE(Gpu, "of a scene that is seen in part, a frame looks at the pa
         bounds.push_back(reference::boundPage(view.scene, first, std::min<std::size_t>(gpu::kPageSplats, view.scene.size() - first)));
     }
     const test::WholeInPages whole(context(), view.scene, 50);
-    StereoFrame frame(context(), whole.resident.scene());
-    const test::KeptKernels kept(context(), frame);
+    KeptFrame frame(context(), whole.resident.scene());
     for (const double zoom : {1.0, 2.0, 8.0, 16.0}) {
         CAPTURE(zoom);
         Eye eye = view.eye;
@@ -395,17 +354,16 @@ TEST_CASE_FIXTURE(Gpu, "of a scene that is seen in part, a frame looks at the pa
         const FrameResult result = frame.render({&eye, 1}, makeSettings(Mode::kMono));
         const auto found = reference::cullPages(bounds, false, {&eye, 1}, {});
         const auto seen = static_cast<double>(std::ranges::count(found, 1));
-        CHECK(count(result, "pages_resident") == pages);
-        CHECK(std::abs(static_cast<double>(count(result, "pages_seen")) - seen) <= 2.0);
-        CHECK(count(result, "splats_visible") > 0);
+        CHECK(countOf(result, "pages_resident") == pages);
+        CHECK(std::abs(static_cast<double>(countOf(result, "pages_seen")) - seen) <= 2.0);
+        CHECK(countOf(result, "splats_visible") > 0);
         // Boxes see about twice the pages that hold a visible splat, not more.
         const auto visible = reference::cull(view.scene, {&eye, 1}, {});
-        std::size_t needed = 0;
-        for (std::uint32_t p = 0; p < pages; ++p) {
-            const auto first = visible.begin() + p * gpu::kPageSplats, end = std::min(first + gpu::kPageSplats, visible.end());
-            needed += std::find(first, end, 1) != end ? 1 : 0;
+        std::set<std::size_t> needed;
+        for (std::size_t i = 0; i < visible.size(); ++i) {
+            if (visible[i] != 0) { needed.insert(i / gpu::kPageSplats); }
         }
-        CHECK(static_cast<double>(count(result, "pages_seen")) <= 2.5 * static_cast<double>(needed) + 4.0);
+        CHECK(static_cast<double>(countOf(result, "pages_seen")) <= 2.5 * static_cast<double>(needed.size()) + 4.0);
     }
 }
 

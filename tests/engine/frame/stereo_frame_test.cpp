@@ -1,5 +1,5 @@
-// Facts about frames that need no twin: what must not change a picture does not change a byte of it; and limits, counters, memory.
-#include "engine/picture/metrics.h"
+// Facts about whole frames: what must not change a picture does not change a byte of it; and limits, counters, memory.
+#include "tests/engine/frame/affiliated_frames.h"
 #include "tests/engine/frame/frame_runs.h"
 
 #include <doctest/doctest.h>
@@ -12,6 +12,7 @@ namespace stereo_frame_test {
 
 using namespace binosplat;
 using test::Gpu;
+using test::KeptFrame;
 using test::renderMono;
 using test::renderPair;
 using test::ViewedScene;
@@ -25,19 +26,7 @@ FrameSettings makeSettings(Mode mode, Side dominant = kLeft) {
     return settings;
 }
 
-ViewedScene viewAtelier(glm::uvec2 size_px = {256, 256}) { return test::viewBuiltin("builtin:atelier", size_px, 20000); }
-
-// The eyes of a headset: asymmetric angles, mirrored, the axes turned outwards by `canting_rad`.
-std::array<Eye, 2> headsetEyes(const Eye& middle, double canting_rad) {
-    std::array<Eye, 2> eyes = stereoPair(middle, 0.063);
-    const std::array<ViewAngles, 2> angles{ViewAngles{-0.8, 0.6, 0.7, -0.75}, ViewAngles{-0.6, 0.8, 0.7, -0.75}};
-    for (int e = 0; e < 2; ++e) {
-        eyes[e].intrinsics = intrinsicsFromAngles(angles[e], eyes[e].size_px);
-        const double turn = e == kLeft ? -canting_rad : canting_rad;
-        eyes[e].world_from_camera.orientation = eyes[e].world_from_camera.orientation * glm::angleAxis(turn, glm::dvec3(0, 1, 0));
-    }
-    return eyes;
-}
+ViewedScene viewAtelier(glm::uvec2 size_px = {128, 128}) { return test::viewBuiltin("builtin:atelier", size_px, 20000); }
 
 bool allFinite(const Image& image) { return compare(image, image, image.channels).not_finite == 0; }
 
@@ -47,51 +36,40 @@ bool isAlike(const Image& a, const Image& b) {
     return difference.not_finite == 0 && difference.psnrDb() >= 80.0 && difference.shareOff() <= 0.0002;
 }
 
-Image shiftRight(const Image& image) {
-    Image shifted = image;
-    std::rotate(shifted.values.begin(), shifted.values.end() - image.channels, shifted.values.end());
-    return shifted;
-}
-
 }  // namespace
 
-TEST_CASE_FIXTURE(Gpu, "frames are the same from run to run, byte for byte") {
-    const ViewedScene view = viewAtelier();
-    const auto eyes = headsetEyes(view.eye, 0.0);
-    const GpuScene scene(context(), view.scene);
-    StereoFrame frame(context(), scene);
-    const test::KeptKernels kept(context(), frame);
-    frame.render(eyes, makeSettings(Mode::kShared));
-    const std::array<Image, 2> first{frame.readPicture(kLeft), frame.readPicture(kRight)};
-    const Image first_depth = frame.readDominantDepth();
-    for (int run = 0; run < 3; ++run) {
-        frame.render(eyes, makeSettings(Mode::kShared));
-        CHECK(frame.readPicture(kLeft).values == first[kLeft].values);
-        CHECK(frame.readPicture(kRight).values == first[kRight].values);
-        CHECK(frame.readDominantDepth().values == first_depth.values);
-    }
-    const auto anew = renderPair(context(), view.scene, eyes, makeSettings(Mode::kShared));
-    CHECK(anew.pictures[kLeft].values == first[kLeft].values);
-    CHECK(anew.pictures[kRight].values == first[kRight].values);
-}
-
-TEST_CASE_FIXTURE(Gpu, "sharing what eyes can share changes no byte, whether they are parallel or canted, of discs and of 3D Gaussians") {
+TEST_CASE_FIXTURE(Gpu, "sharing what eyes can share changes no byte, parallel or canted, by depth or by distance, of any kind of splats") {
     ViewedScene atelier = viewAtelier();
     atelier.eye.world_from_camera.orientation =
         glm::normalize(atelier.eye.world_from_camera.orientation * glm::dquat(0.98, 0.03, -0.07, 0.11));
-    for (const ViewedScene& view : {atelier, test::viewGaussians({160, 120}, false), test::viewGaussians({160, 120}, true)}) {
+    for (const ViewedScene& view : {atelier, test::viewGaussians({96, 80}, false), test::viewGaussians({96, 80}, true)}) {
         CAPTURE(view.name);
+        KeptFrame frame(context(), view.scene);
         for (const Side dominant : {kLeft, kRight}) {
-            for (const double canting_rad : {0.0, glm::radians(5.0)}) {
+            for (const double canting_rad : {0.0, glm::radians(10.0)}) {
                 CAPTURE(canting_rad);
-                const auto eyes = headsetEyes(view.eye, canting_rad);
-                const auto apart = renderPair(context(), view.scene, eyes, makeSettings(Mode::kTwoPass, dominant));
-                const auto shared = renderPair(context(), view.scene, eyes, makeSettings(Mode::kShared, dominant));
-                for (int e = 0; e < 2; ++e) {
-                    CAPTURE(e);
-                    const auto alone = renderMono(context(), view.scene, eyes[e], makeSettings(Mode::kMono));
-                    CHECK(apart.pictures[e].values == alone.picture.values);
-                    CHECK(shared.pictures[e].values == alone.picture.values);
+                const auto eyes = test::headsetEyes(view.eye, canting_rad);
+                frame.render(eyes, makeSettings(Mode::kTwoPass, dominant));
+                const test::PairOfValues apart = test::shownBy(frame);
+                frame.render(eyes, makeSettings(Mode::kShared, dominant));
+                CHECK(test::shownBy(frame) == apart);
+                for (std::size_t e = 0; e < 2; ++e) {
+                    frame.render({&eyes[e], 1}, makeSettings(Mode::kMono));
+                    CHECK(frame.readPicture(0).values == apart[e]);
+                }
+                // By distance both eyes have one order.
+                FrameSettings settings = makeSettings(Mode::kTwoPass, dominant);
+                settings.order = Order::kDistance;
+                frame.render(eyes, settings);
+                const test::PairOfValues apart_by_distance = test::shownBy(frame);
+                settings.mode = Mode::kShared;
+                const FrameResult result = frame.render(eyes, settings);
+                CHECK(test::shownBy(frame) == apart_by_distance);
+                CHECK(std::ranges::count_if(result.gpu_ms, [](const auto& pass) { return pass.label.pass == "sort_depth"; }) == 1);
+                if (view.scene.isGaussian3d()) { continue; }
+                for (std::size_t e = 0; e < 2; ++e) {
+                    const auto twin = reference::render(view.scene, eyes[e], {.order_from = middleOf(eyes)});
+                    CHECK(isAlike(frame.readPicture(static_cast<int>(e)), test::toImage(twin)));
                 }
             }
         }
@@ -104,7 +82,7 @@ TEST_CASE_FIXTURE(Gpu, "a pass that does not run has no time") {
         for (const double canting_rad : {0.0, glm::radians(5.0)}) {
             CAPTURE(nameOf(mode));
             CAPTURE(canting_rad);
-            const auto made = renderPair(context(), view.scene, headsetEyes(view.eye, canting_rad), makeSettings(mode));
+            const auto made = renderPair(context(), view.scene, test::headsetEyes(view.eye, canting_rad), makeSettings(mode));
             const auto ran = [&](const char* pass) {
                 return std::ranges::any_of(made.result.gpu_ms, [&](const auto& one) { return one.label.text() == pass; });
             };
@@ -113,45 +91,6 @@ TEST_CASE_FIXTURE(Gpu, "a pass that does not run has no time") {
             CHECK(ran("affiliated resample"));
         }
     }
-}
-
-TEST_CASE_FIXTURE(Gpu, "both eyes share one order by distance, canted or not, and sharing it changes no byte") {
-    ViewedScene view = viewAtelier();
-    view.eye.world_from_camera.orientation = glm::normalize(view.eye.world_from_camera.orientation * glm::dquat(0.98, 0.03, -0.07, 0.11));
-    for (const Side dominant : {kLeft, kRight}) {
-        for (const double canting_rad : {0.0, glm::radians(10.0)}) {
-            CAPTURE(canting_rad);
-            const auto eyes = headsetEyes(view.eye, canting_rad);
-            FrameSettings settings = makeSettings(Mode::kTwoPass, dominant);
-            settings.order = Order::kDistance;
-            const auto apart = renderPair(context(), view.scene, eyes, settings);
-            settings.mode = Mode::kShared;
-            const auto shared = renderPair(context(), view.scene, eyes, settings);
-            const auto is_sort = [](const auto& pass) { return pass.label.pass == "sort_depth"; };
-            CHECK(std::ranges::count_if(shared.result.gpu_ms, is_sort) == 1);
-            reference::Settings twin_settings;
-            twin_settings.order_from = middleOf(eyes);
-            for (int e = 0; e < 2; ++e) {
-                CAPTURE(e);
-                CHECK(shared.pictures[e].values == apart.pictures[e].values);
-                CHECK(isAlike(shared.pictures[e], test::toImage(reference::render(view.scene, eyes[e], twin_settings))));
-            }
-        }
-    }
-}
-
-TEST_CASE_FIXTURE(Gpu, "an order by distance is that of another orientation, one by depth is not") {
-    const ViewedScene view = viewAtelier();
-    Eye turned = view.eye;
-    turned.world_from_camera.orientation = view.eye.world_from_camera.orientation * glm::angleAxis(0.3, glm::dvec3(0.2, 0.9, 0.1));
-    const auto visible = reference::cull(view.scene, std::array{view.eye, turned}, {});
-    const auto orderOf = [&](const Eye& eye, bool by_distance) {
-        reference::Settings settings;
-        if (by_distance) { settings.order_from = eye.world_from_camera.position; }
-        return reference::sortDepth(reference::compact(view.scene, visible, eye, settings));
-    };
-    CHECK(orderOf(view.eye, true) == orderOf(turned, true));
-    CHECK(orderOf(view.eye, false) != orderOf(turned, false));
 }
 
 TEST_CASE_FIXTURE(Gpu, "while an eye turns, what it sees along a ray stays by distance and pops by depth") {
@@ -173,41 +112,32 @@ TEST_CASE_FIXTURE(Gpu, "while an eye turns, what it sees along a ray stays by di
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "capacities that are too small grow, and the picture is the same") {
-    const ViewedScene view = viewAtelier();
-    const auto roomy = renderMono(context(), view.scene, view.eye, makeSettings(Mode::kMono),
-                                  {.first_capacity = {20000, 1u << 20}, .threads_per_cell = 0});
-    const auto grown =
-        renderMono(context(), view.scene, view.eye, makeSettings(Mode::kMono), {.first_capacity = {1, 1}, .threads_per_cell = 0});
-    CHECK(grown.picture.values == roomy.picture.values);
-    CHECK(grown.depth.values == roomy.depth.values);
-    CHECK(grown.result.counters.named().at("tile_pairs") == roomy.result.counters.named().at("tile_pairs"));
-}
-
-TEST_CASE("a scene split over several allocations gives the same picture") {
+TEST_CASE_FIXTURE(Gpu, "a scene split over several allocations gives the same picture") {
     // 100,000 splats of 140 bytes; an upload takes 65,536 at a time.
-    const ViewedScene view = test::viewBuiltin("builtin:atelier", {160, 160}, 100000);
-    const Context whole({.device = {}, .validation = test::kValidation, .max_allocation_bytes = 0});
+    const ViewedScene view = test::viewBuiltin("builtin:atelier", {96, 96}, 100000);
     const Context split({.device = {}, .validation = test::kValidation, .max_allocation_bytes = 10'000'000});
-    CHECK(GpuScene(whole, view.scene).chunkCount() == 1);
+    CHECK(GpuScene(context(), view.scene).chunkCount() == 1);
     CHECK(GpuScene(split, view.scene).chunkCount() > 1);
-    const auto one = renderMono(whole, view.scene, view.eye, makeSettings(Mode::kMono));
+    const auto one = renderMono(context(), view.scene, view.eye, makeSettings(Mode::kMono));
     const auto many = renderMono(split, view.scene, view.eye, makeSettings(Mode::kMono));
     CHECK(many.picture.values == one.picture.values);
     CHECK(many.depth.values == one.depth.values);
-    CHECK(whole.validationMessages().empty());
     CHECK(split.validationMessages().empty());
 }
 
 TEST_CASE_FIXTURE(Gpu, "the number of threads of a cell does not show") {
-    for (const ViewedScene& view : {viewAtelier(), test::viewCloud({200, 150})}) {
-        const auto first = renderMono(context(), view.scene, view.eye, makeSettings(Mode::kMono),
-                                      {.first_capacity = {65536, 262144}, .threads_per_cell = 8});
-        for (const std::uint32_t threads : {16u, 32u, 64u}) {
-            CAPTURE(threads);
-            const auto other = renderMono(context(), view.scene, view.eye, makeSettings(Mode::kMono),
-                                          {.first_capacity = {65536, 262144}, .threads_per_cell = threads});
-            CHECK(compare(other.picture, first.picture, 4).psnrDb() >= 150.0);  // measured: 169.7
+    const std::array views{viewAtelier(), test::viewCloud({100, 75})};
+    const std::array<GpuScene, 2> scenes{GpuScene(context(), views[0].scene), GpuScene(context(), views[1].scene)};
+    std::array<Image, 2> first;
+    for (const std::uint32_t threads : {8u, 16u, 32u, 64u}) {
+        CAPTURE(threads);
+        StereoFrame frame(context(), scenes[0], {.threads_per_cell = threads});
+        for (std::size_t v = 0; v < views.size(); ++v) {
+            frame.show(scenes[v]);
+            frame.render({&views[v].eye, 1}, makeSettings(Mode::kMono));
+            const Image picture = frame.readPicture(0);
+            if (threads == 8) { first[v] = picture; }
+            CHECK(compare(picture, first[v], 4).psnrDb() >= 150.0);  // measured: 169.7
         }
     }
 }
@@ -237,14 +167,23 @@ TEST_CASE_FIXTURE(Gpu, "where no splat is seen there is the background, without 
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "images of odd sizes are rendered as the twin renders them, down to one pixel") {
+TEST_CASE_FIXTURE(Gpu, "images of odd sizes are rendered as the twin renders them, down to one pixel, and eyes may differ in size") {
+    const ViewedScene view = viewAtelier();
+    KeptFrame frame(context(), view.scene);
     for (const glm::uvec2 size_px : {glm::uvec2(1, 1), glm::uvec2(17, 33), glm::uvec2(3, 200), glm::uvec2(31, 16)}) {
         CAPTURE(size_px.x);
-        const ViewedScene view = viewAtelier(size_px);
-        const auto frame = renderMono(context(), view.scene, view.eye, makeSettings(Mode::kMono));
-        const auto twin = reference::render(view.scene, view.eye, {});
-        CHECK(allFinite(frame.depth));
-        CHECK(compare(frame.picture, test::toImage(twin), 4).psnrDb() >= 80.0);
+        const Eye eye = viewAtelier(size_px).eye;
+        frame.render({&eye, 1}, makeSettings(Mode::kMono));
+        CHECK(allFinite(frame.readDominantDepth()));
+        CHECK(compare(frame.readPicture(0), test::toImage(reference::render(view.scene, eye, {})), 4).psnrDb() >= 80.0);
+    }
+    std::array<Eye, 2> eyes = stereoPair(view.eye, 0.063);
+    eyes[kRight].size_px = {100, 180};
+    frame.render(eyes, makeSettings(Mode::kTwoPass));
+    const test::PairOfValues both = test::shownBy(frame);
+    for (std::size_t e = 0; e < 2; ++e) {
+        frame.render({&eyes[e], 1}, makeSettings(Mode::kMono));
+        CHECK(frame.readPicture(0).values == both[e]);
     }
 }
 
@@ -265,34 +204,10 @@ TEST_CASE_FIXTURE(Gpu, "walls beside the eye are finite along their horizon, whe
     CHECK(frame.result.counters.named().at("tile_pairs") > 0);
 }
 
-TEST_CASE_FIXTURE(Gpu, "eyes may differ in size") {
-    const ViewedScene view = viewAtelier();
-    std::array<Eye, 2> eyes = stereoPair(view.eye, 0.063);
-    eyes[kRight].size_px = {100, 180};
-    const auto pair = renderPair(context(), view.scene, eyes, makeSettings(Mode::kTwoPass));
-    for (int e = 0; e < 2; ++e) {
-        CHECK(pair.pictures[e].values == renderMono(context(), view.scene, eyes[e], makeSettings(Mode::kMono)).picture.values);
-    }
-}
-
-TEST_CASE_FIXTURE(Gpu, "pictures shifted by a pixel, swapped eyes and another baseline do not pass as the same") {
-    const ViewedScene view = viewAtelier();
-    const auto pair = renderPair(context(), view.scene, stereoPair(view.eye, 0.063), makeSettings(Mode::kTwoPass));
-    const Image &left = pair.pictures[kLeft], &right = pair.pictures[kRight];
-    CHECK(isAlike(left, left));
-    CHECK(isAlike(left, test::toImage(reference::render(view.scene, stereoPair(view.eye, 0.063)[kLeft], {}))));
-    CHECK_FALSE(isAlike(left, shiftRight(left)));
-    CHECK_FALSE(isAlike(left, right));
-    CHECK_FALSE(isAlike(right, left));
-    const auto closer = renderPair(context(), view.scene, stereoPair(view.eye, 0.060), makeSettings(Mode::kTwoPass));
-    CHECK_FALSE(isAlike(left, closer.pictures[kLeft]));
-}
-
 TEST_CASE_FIXTURE(Gpu, "eyes that change their roles take over what the other was made with") {
     const ViewedScene view = viewAtelier();
-    const GpuScene scene(context(), view.scene);
-    StereoFrame frame(context(), scene);
-    const auto eyes = headsetEyes(view.eye, 0.0);
+    KeptFrame frame(context(), view.scene);
+    const auto eyes = test::headsetEyes(view.eye, 0.0);
     frame.render(eyes, makeSettings(Mode::kPredicted, kLeft));
     const std::uint64_t kinds = frame.warpBuffers().tileKinds().value;
     for (const Side dominant : {kRight, kLeft}) {
@@ -306,7 +221,7 @@ TEST_CASE_FIXTURE(Gpu, "eyes that change their roles take over what the other wa
 }
 
 TEST_CASE_FIXTURE(Gpu, "counters of pairs are the twin's within one percent") {
-    for (const ViewedScene& view : {viewAtelier(), test::viewBuiltin("builtin:slanted-wall", {256, 256})}) {
+    for (const ViewedScene& view : {viewAtelier({256, 256}), test::viewBuiltin("builtin:slanted-wall", {256, 256})}) {
         CAPTURE(view.name);
         const reference::Settings settings;
         const auto visible = reference::compact(view.scene, reference::cull(view.scene, {&view.eye, 1}, settings), view.eye, settings);
@@ -327,7 +242,7 @@ TEST_CASE_FIXTURE(Gpu, "memory keeps to its bounds a splat, a visible splat, a p
     CHECK(deviceBytesPerSplat(3, false) <= 160);
     const FrameCapacity capacity{1024, 1024};  // and so both lists grow to what is needed
     for (const auto& [view, most_bytes] :
-         {std::pair(viewAtelier(), 160.0), std::pair(test::viewBuiltin("builtin:fence", {256, 256}), 64.0)}) {
+         {std::pair(viewAtelier({256, 256}), 160.0), std::pair(test::viewBuiltin("builtin:fence", {256, 256}), 64.0)}) {
         CAPTURE(view.name);
         const auto counters =
             renderMono(context(), view.scene, view.eye, makeSettings(Mode::kMono), {.first_capacity = capacity, .threads_per_cell = 0})

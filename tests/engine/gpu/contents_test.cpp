@@ -3,51 +3,42 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <array>
 #include <random>
+
+TEST_SUITE_BEGIN("contents");
 
 namespace contents_test {
 
 using namespace binosplat;
 
-TEST_SUITE_BEGIN("contents");
-
-TEST_CASE("whatever comes to lie over a part takes its place there, and leaves the rest") {
-    Contents contents;
-    contents.fill(100, 100, Content::kDepthKeys);
-    CHECK(contents.hold(100, 100, Content::kDepthKeys));
-    CHECK_FALSE(contents.hold(100, 1, Content::kTileCounts));
-    CHECK(contents.hold(0, 100, Content::kTileCounts));  // nobody said anything of it
-    contents.fill(120, 10, Content::kTileCounts);
-    CHECK(contents.hold(100, 20, Content::kDepthKeys));
-    CHECK(contents.hold(120, 10, Content::kTileCounts));
-    CHECK(contents.hold(130, 70, Content::kDepthKeys));
-    CHECK_FALSE(contents.hold(100, 100, Content::kDepthKeys));
-    CHECK(contents.hold(125, 0, Content::kDepthKeys));
-    contents.forget();
-    CHECK(contents.hold(120, 10, Content::kDepthKeys));
-}
-
-TEST_CASE("any parts over any others end as a byte-wise account has it") {
+TEST_CASE("parts over any others take their place there and leave the rest, as a byte-wise account has it") {
     std::mt19937 random(7);
     for (int walk = 0; walk < 50; ++walk) {
         Contents contents;
         std::array<int, 64> bytes{};
-        bytes.fill(-1);
+        bytes.fill(-1);  // nobody said anything of them
+        const auto isContent = [&](std::uint64_t begin, std::uint64_t count, int content) {
+            return std::all_of(bytes.begin() + begin, bytes.begin() + begin + count, [&](int byte) { return byte < 0 || byte == content; });
+        };
         for (int step = 0; step < 40; ++step) {
             const std::uint64_t begin = random() % 60, count = random() % (64 - begin);
-            const auto content = static_cast<Content>(random() % 3);
-            contents.fill(begin, count, content);
-            for (std::uint64_t i = begin; i < begin + count; ++i) { bytes[i] = static_cast<int>(content); }
+            const int content = static_cast<int>(random() % 3);
+            contents.fill(begin, count, static_cast<Content>(content));
+            std::fill_n(bytes.begin() + begin, count, content);
+            bool is_same = true;
             for (std::uint64_t i = 0; i < bytes.size(); ++i) {
                 for (int kind = 0; kind < 3; ++kind) {
-                    REQUIRE(contents.hold(i, 1, static_cast<Content>(kind)) == (bytes[i] < 0 || bytes[i] == kind));
+                    is_same = is_same && contents.hold(i, 1, static_cast<Content>(kind)) == isContent(i, 1, kind);
+                    is_same = is_same && contents.hold(i / 2, i % 32, static_cast<Content>(kind)) == isContent(i / 2, i % 32, kind);
                 }
             }
+            REQUIRE(is_same);
         }
+        contents.forget();
+        CHECK(contents.hold(0, 64, Content::kDepthKeys));
     }
 }
-
-TEST_SUITE_END();
 
 }  // namespace contents_test

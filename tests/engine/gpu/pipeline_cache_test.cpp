@@ -2,11 +2,12 @@
 #include "engine/gpu/pipeline_cache.h"
 #include "engine/gpu/kernel.h"
 #include "engine/passes/passes.h"
+#include "tests/engine/gpu/gpu_fixture.h"
+#include "tests/run_program.h"
 
 #include <doctest/doctest.h>
 #include <sys/stat.h>
 
-#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <string>
@@ -16,6 +17,7 @@ TEST_SUITE_BEGIN("pipeline_cache");
 namespace pipeline_cache_test {
 
 using namespace binosplat;
+using namespace binosplat::test;
 namespace fs = std::filesystem;
 
 namespace {
@@ -43,27 +45,24 @@ Bytes someData(const vk::PhysicalDeviceProperties& device) {
     return data;
 }
 
+// A variable, as long as it lives.
 struct Environment {
-    Environment(const char* variable, const std::string& value) : name(variable) {
-        const char* now = std::getenv(variable);
-        before = now != nullptr ? now : "";
-        setenv(variable, value.c_str(), 1);
+    Environment(const char* variable, const std::string& value) : name(variable), before(environment(variable)) {
+        setEnvironment(name, value);
     }
-    ~Environment() { setenv(name, before.c_str(), 1); }
+    Environment(const Environment&) = delete;
+    Environment& operator=(const Environment&) = delete;
+    ~Environment() { setEnvironment(name, before); }
     const char* name;
     std::string before;
 };
 
 }  // namespace
 
-TEST_CASE("what is kept comes back") {
-    const auto device = someDevice();
-    CHECK(unsealPipelineCache(sealPipelineCache(someData(device)), device) == someData(device));
-}
-
-TEST_CASE("a file that is cut off, changed or another device's is as good as none") {
+TEST_CASE("what is kept comes back; a file that is cut off, changed or another device's is as good as none") {
     const auto device = someDevice();
     const Bytes file = sealPipelineCache(someData(device));
+    CHECK(unsealPipelineCache(file, device) == someData(device));
     for (const std::size_t bytes : {std::size_t{0}, std::size_t{1}, std::size_t{31}, std::size_t{40}, file.size() - 1}) {
         CHECK(unsealPipelineCache(Bytes(file.begin(), file.begin() + static_cast<std::ptrdiff_t>(bytes)), device).empty());
     }
@@ -80,52 +79,36 @@ TEST_CASE("a file that is cut off, changed or another device's is as good as non
     CHECK(unsealPipelineCache(file, other).empty());
 }
 
-TEST_CASE("the environment says where it is kept") {
-    const Environment home("HOME", "/home/somebody");
-    const Environment cache("XDG_CACHE_HOME", "");
-    const Environment chosen("BINOSPLAT_PIPELINE_CACHE", "");
-    CHECK(pipelineCacheFolder() == "/home/somebody/.cache/binosplat");
-    setenv("XDG_CACHE_HOME", "/var/cache/x", 1);
-    CHECK(pipelineCacheFolder() == "/var/cache/x/binosplat");
-    setenv("BINOSPLAT_PIPELINE_CACHE", "/tmp/mine", 1);
-    CHECK(pipelineCacheFolder() == "/tmp/mine");
-    setenv("BINOSPLAT_PIPELINE_CACHE", "0", 1);
-    CHECK(pipelineCacheFolder().empty());
-    // Relative paths are nobody's, says the XDG base directory specification.
-    setenv("BINOSPLAT_PIPELINE_CACHE", "", 1);
-    setenv("XDG_CACHE_HOME", "here", 1);
-    setenv("HOME", "", 1);
+TEST_CASE("it is kept in the user's cache folder, or where the environment says") {
+    const Environment home("HOME", "/home/somebody"), cache("XDG_CACHE_HOME", "");
+    for (const auto& [chosen, folder] : {std::pair("", "/home/somebody/.cache/binosplat"), {"/tmp/mine", "/tmp/mine"}, {"0", ""}}) {
+        const Environment choice("BINOSPLAT_PIPELINE_CACHE", chosen);
+        CHECK(pipelineCacheFolder() == folder);
+    }
+    const Environment choice("BINOSPLAT_PIPELINE_CACHE", ""), nowhere("HOME", "");
     CHECK(pipelineCacheFolder().empty());
 }
 
 TEST_CASE("a folder that cannot be written, a file of rubbish and a pipe trouble nobody") {
-    std::string name = (fs::temp_directory_path() / "binosplat-cache-XXXXXX").string();
-    const fs::path folder = mkdtemp(name.data());
-    {
-        const Environment chosen("BINOSPLAT_PIPELINE_CACHE", folder.string());
-        const Context context({.device = {}, .validation = true});
-        std::ofstream(pipelineCacheFile(context.physicalDevice())) << std::string(5000, 'x');
-    }
-    const fs::path pipe_folder = folder / "pipes";
-    {
-        const Environment chosen("BINOSPLAT_PIPELINE_CACHE", pipe_folder.string());
-        fs::create_directory(pipe_folder);
-        const Context context({.device = {}, .validation = true});
-        REQUIRE(::mkfifo(pipelineCacheFile(context.physicalDevice()).c_str(), 0600) == 0);
-    }
-    for (const fs::path& place : {fs::path("/proc/nowhere"), folder, pipe_folder}) {
+    const Workplace work;
+    const fs::path folder = work.path / "rubbish", pipe_folder = work.path / "pipes";
+    const auto fileIn = [](const fs::path& place) {
         const Environment chosen("BINOSPLAT_PIPELINE_CACHE", place.string());
-        for (int run = 0; run < 2; ++run) {
-            const Context context({.device = {}, .validation = true});
-            const Kernel kernel(context, passKernels(context).front());
-            CHECK(kernel.pipeline());
-            CHECK(context.validationMessages().empty());
-        }
+        fs::create_directory(place);
+        return pipelineCacheFile(Gpu::shared().physicalDevice());
+    };
+    std::ofstream(fileIn(folder)) << std::string(5000, 'x');
+    REQUIRE(::mkfifo(fileIn(pipe_folder).c_str(), 0600) == 0);
+    // The rubbish makes way for a file that the second run finds.
+    for (const fs::path& place : {fs::path("/proc/nowhere"), pipe_folder, folder, folder}) {
+        const Environment chosen("BINOSPLAT_PIPELINE_CACHE", place.string());
+        const Context context({.device = {}, .validation = true});
+        const Kernel kernel(context, passKernels(context).front());
+        CHECK(kernel.pipeline());
+        CHECK(context.validationMessages().empty());
     }
     for (const auto& entry : fs::directory_iterator(pipe_folder)) { CHECK(entry.is_fifo()); }
-    fs::remove_all(pipe_folder);
     for (const auto& entry : fs::directory_iterator(folder)) { CHECK(entry.path().extension() == ".pipelines"); }
-    fs::remove_all(folder);
 }
 
 }  // namespace pipeline_cache_test

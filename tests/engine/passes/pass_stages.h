@@ -34,6 +34,21 @@ struct TwinStages {
     std::vector<reference::TileRange> ranges;
 };
 
+// Scenes of all kinds, and what the twin makes of them.
+struct StagedScene {
+    ViewedScene view;
+    TwinStages twin{view, {}};
+};
+inline const std::vector<StagedScene>& stagedScenes() {
+    static const std::vector<StagedScene> scenes{{viewBuiltin("builtin:atelier", {256, 256}, 20000)},
+                                                 {viewBuiltin("builtin:fence", {250, 190})},
+                                                 {viewBuiltin("builtin:slanted-wall", {256, 256})},
+                                                 {viewCloud({200, 150})},
+                                                 {viewGaussians({200, 150}, false)},
+                                                 {viewGaussians({200, 150}, true)}};
+    return scenes;
+}
+
 // A scene and its eyes on the device.
 struct SceneOnDevice {
     SceneOnDevice(Gpu& gpu, const Scene& host_scene, const std::vector<Eye>& host_eyes, double near)
@@ -49,11 +64,11 @@ struct SceneOnDevice {
     Buffer eyes;
 };
 
-// The depth's key and back (shaders/sort/compact.comp): integers in the order of the floats.
-inline std::uint32_t sortableBits(float value) {
-    const auto bits = std::bit_cast<std::uint32_t>(value);
-    return (bits >> 31) != 0 ? ~bits : bits | 0x80000000u;
-}
+inline constexpr double kEpsilon = 0x1p-24;  // of a float32 rounding
+// What the device rounds when it takes a splat to the camera: the eye has 48 bits, so that nothing counts but how far apart they are.
+inline double distanceToRound(const glm::dvec3& position, const Eye& eye) { return glm::length(position - eye.world_from_camera.position); }
+
+// The depth that a key stands for (shaders/sort/compact.comp): integers in the order of the floats.
 inline float floatOfKey(std::uint32_t key) { return std::bit_cast<float>((key >> 31) != 0 ? key & 0x7fffffffu : ~key); }
 
 // ProjectedSplat::opacity (-log2, negative where there is no reference) and ::colour (three half floats).

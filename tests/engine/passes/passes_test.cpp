@@ -1,12 +1,15 @@
-// Facts about the passes over splats, cull to project, each started from what the twin's pass before it left.
-#include "engine/passes/sort.h"
+// Facts about the passes over a scene, cull_pages, cull and compact, each started from what the twin's pass before it left.
+#include "engine/passes/passes.h"
 #include "tests/engine/passes/pass_stages.h"
+#include "tests/engine/passes/scene_pages.h"
+#include "tests/nightly.h"
 
 #include <doctest/doctest.h>
 
+#include <bit>
 #include <limits>
-#include <map>
 #include <optional>
+#include <random>
 
 TEST_SUITE_BEGIN("passes");
 
@@ -15,30 +18,82 @@ namespace passes_test {
 using namespace binosplat;
 using test::Gpu;
 using test::SceneOnDevice;
-using test::TwinStages;
 using test::ViewedScene;
 
 namespace {
 
 constexpr std::size_t kGroupWords = gpu::kCullBlock / 32;
-constexpr double kEpsilon = 0x1p-24;  // of a float32 rounding
 
 const reference::Settings kSettings{};
 
-std::vector<ViewedScene> realScenes() {
-    return {test::viewBuiltin("builtin:atelier", {256, 256}, 20000), test::viewBuiltin("builtin:fence", {250, 190}),
-            test::viewBuiltin("builtin:slanted-wall", {256, 256}), test::viewBuiltin("builtin:step-edge", {256, 256})};
+// Where the view looks from, and from anywhere else: within the scene and beside it, turned at random, near to what it sees, with a narrow
+// and a wide view, off its axis; also as pictures of half the size have it. Before each one that is parallel to it, behind each a canted
+// one.
+std::vector<Eye> eyesAbout(const ViewedScene& view, int count) {
+    std::mt19937 random(7);
+    const auto draw = [&](double low, double high) { return low + (high - low) * static_cast<double>(random() >> 8) / 16777216.0; };
+    std::vector<Eye> eyes;
+    for (int i = 0; i < count; ++i) {
+        Eye eye = view.eye;
+        if (i > 0) {
+            const glm::dvec3 splat(view.scene.positions[random() % view.scene.size()]);
+            eye.world_from_camera.position = splat + std::pow(10.0, draw(-3.0, 0.5)) * glm::dvec3(draw(-1, 1), draw(-1, 1), draw(-1, 1));
+            eye.world_from_camera.orientation = glm::normalize(glm::dquat(draw(-1, 1), draw(-1, 1), draw(-1, 1), draw(-1, 1)));
+            const double focal = eye.size_px.x * std::pow(2.0, draw(-1.5, 2.0));
+            eye.intrinsics = {focal, focal * draw(0.8, 1.2), eye.size_px.x * draw(0.2, 0.8), eye.size_px.y * draw(0.2, 0.8)};
+            eye.own_pixel_px = i % 4 == 3 ? 0.5 : 1.0;
+        }
+        Eye canted = stereoPair(eye, 0.063)[1];
+        eyes.insert(eyes.end(), {canted, eye});
+        glm::dquat& orientation = canted.world_from_camera.orientation;
+        orientation = orientation * glm::angleAxis(0.1, glm::dvec3(0, 1, 0));
+        eyes.push_back(canted);
+    }
+    return eyes;
 }
 
-std::vector<ViewedScene> allScenes() {
-    std::vector<ViewedScene> scenes = realScenes();
-    scenes.push_back(test::viewCloud({200, 150}));
-    for (const bool antialiased : {false, true}) { scenes.push_back(test::viewGaussians({200, 150}, antialiased)); }
-    return scenes;
-}
+// Pages and eyes on the device.
+class Pages {
+public:
+    struct Found {
+        std::vector<std::uint32_t> list;
+        gpu::ListState state;
+    };
 
-// What the device rounds when it takes a splat to the camera: the eye has 48 bits, so that nothing counts but how far apart they are.
-double distanceToRound(const glm::dvec3& position, const Eye& eye) { return glm::length(position - eye.world_from_camera.position); }
+    Pages(Gpu& gpu, const std::vector<gpu::ScenePage>& pages, std::uint32_t shape, const std::vector<Eye>& eyes)
+        : gpu_(gpu), kernel_(gpu.kernel(CullPagesKernel{.splat_kind = shape})), count_(static_cast<gpu::uint>(pages.size())) {
+        std::vector<gpu::EyeView> views;
+        for (const Eye& eye : eyes) { views.push_back(viewOf(eye, kSettings.near)); }
+        table_ = gpu.upload("pages", pages);
+        eyes_ = gpu.upload("eyes", views);
+        bits_ = gpu.allocate<gpu::uint>("bits", (pages.size() + 31) / 32);
+        offsets_ = gpu.allocate<gpu::uint>("offsets", (pages.size() + 31) / 32);
+        list_ = gpu.allocate<gpu::uint>("list", pages.size());
+        state_ = gpu.upload("state", std::vector{gpu::ListState{}});
+    }
+
+    // For the eyes from `first` on.
+    Found cull(std::size_t first, std::size_t eyes) {
+        const gpu::CullPagesPass pass{.pages = table_.address<gpu::ScenePage>(),
+                                      .eyes = eyes_.address<gpu::EyeView>(),
+                                      .page_bits = bits_.address<gpu::uint>(),
+                                      .word_offsets = offsets_.address<gpu::uint>(),
+                                      .page_list = list_.address<gpu::uint>(),
+                                      .visible_pages = state_.address<gpu::ListState>(),
+                                      .page_count = count_,
+                                      .first_eye = static_cast<gpu::uint>(first),
+                                      .eye_count = static_cast<gpu::uint>(eyes)};
+        gpu_.run([&](Commands& commands) { commands.dispatchOver(kernel_, pass, count_); });
+        const auto state = gpu_.readBack<gpu::ListState>(state_, 1)[0];
+        return {gpu_.readBack<gpu::uint>(list_, state.count), state};
+    }
+
+private:
+    Gpu& gpu_;
+    const Kernel& kernel_;
+    gpu::uint count_;
+    Buffer table_, eyes_, bits_, offsets_, list_, state_;
+};
 
 struct Culled {
     std::vector<std::uint32_t> bits, group_offsets;
@@ -46,9 +101,9 @@ struct Culled {
     [[nodiscard]] bool has(std::size_t splat) const { return ((bits[splat / 32] >> (splat % 32)) & 1) != 0; }
 };
 
-Culled cullOnDevice(Gpu& gpu, const SceneOnDevice& device, std::uint32_t eye_count) {
+Culled cullOnDevice(Gpu& gpu, const SceneOnDevice& device, std::size_t first_eye, std::uint32_t eye_count) {
     const std::uint32_t count = device.scene.splatCount();
-    const std::size_t groups = (count + gpu::kCullBlock - 1) / gpu::kCullBlock;
+    const std::size_t groups = test::pagesOf(count);
     const Kernel& kernel = gpu.kernel(CullKernel{.splat_kind = device.scene.splatShape()});
     const Buffer bits = gpu.allocate<std::uint32_t>("bits", groups * kGroupWords), counts = gpu.allocate<std::uint32_t>("counts", groups);
     const Buffer list = gpu.upload("visible", std::vector{gpu::ListState{}});
@@ -60,11 +115,81 @@ Culled cullOnDevice(Gpu& gpu, const SceneOnDevice& device, std::uint32_t eye_cou
     pass.visible = list.address<gpu::ListState>();
     pass.splat_count = count;
     pass.chunk_bits = device.scene.chunkBits();
+    pass.first_eye = static_cast<gpu::uint>(first_eye);
     pass.eye_count = eye_count;
     pass.capacity = count;
     gpu.run([&](Commands& commands) { commands.dispatchOver(kernel, pass, count, gpu::kCullBlock); });
     return {gpu.readBack<std::uint32_t>(bits, groups * kGroupWords), gpu.readBack<std::uint32_t>(counts, groups),
             gpu.readBack<gpu::ListState>(list, 1)[0]};
+}
+
+// The twin's bounds of a scene's pages, which the device's hold, and little more.
+std::vector<reference::Page> boundPages(const Scene& scene, const PackedPages& packed) {
+    std::vector<reference::Page> pages;
+    for (std::size_t first = 0; first < scene.size(); first += gpu::kPageSplats) {
+        pages.push_back(reference::boundPage(scene, first, std::min<std::size_t>(gpu::kPageSplats, scene.size() - first)));
+        const gpu::ScenePage& page = packed.pages()[pages.size() - 1];
+        const reference::Page& twin = pages.back();
+        REQUIRE(page.count == twin.count);
+        const double hair = 1e-4 * (1.0 + glm::length(twin.high - twin.low));
+        for (int axis = 0; axis < 3; ++axis) {
+            const double low = page.low[axis], high = page.high[axis];
+            REQUIRE(low <= twin.low[axis]);
+            REQUIRE(low >= twin.low[axis] - hair);
+            REQUIRE(high >= twin.high[axis]);
+            REQUIRE(high <= twin.high[axis] + hair);
+        }
+        REQUIRE(static_cast<double>(page.reach) >= twin.reach);
+        REQUIRE(static_cast<double>(page.reach) <= 1.001 * twin.reach + 1e-5);
+    }
+    REQUIRE(packed.pageCount() == pages.size());
+    return pages;
+}
+
+// cull_pages and cull from `count` places about each of the scenes.
+void checkPages(Gpu& gpu, int count) {
+    std::size_t kept = 0, left_out = 0, splats_kept = 0, pages_left_out = 0;
+    std::vector<ViewedScene> scenes{test::viewBuiltin("builtin:atelier", {256, 192}, 20000), test::viewCloud({200, 150})};
+    for (const bool antialiased : {false, true}) { scenes.push_back(test::viewGaussians({200, 150}, antialiased)); }
+    for (ViewedScene& view : scenes) {
+        CAPTURE(view.name);
+        view.scene = test::inMortonOrder(view.scene);
+        const PackedPages packed(view.scene, traitsOf(view.scene));
+        const std::vector<reference::Page> pages = boundPages(view.scene, packed);
+
+        const std::vector<Eye> eyes = eyesAbout(view, count);
+        const SceneOnDevice device(gpu, view.scene, eyes, kSettings.near);
+        Pages on_device(gpu, packed.pages(), device.scene.splatShape(), eyes);
+        for (std::size_t e = 1; e < eyes.size(); e += 3) {
+            for (const auto& [first, many] : {std::pair(e - 1, 2), std::pair(e, 1), std::pair(e, 2)}) {
+                const Pages::Found found = on_device.cull(first, static_cast<std::size_t>(many));
+                REQUIRE(found.state.count == found.list.size());
+                REQUIRE(found.state.per_item.x * found.state.per_item.y >= found.list.size());
+                REQUIRE(std::ranges::is_sorted(found.list));
+                const auto some = std::span(eyes).subspan(first, static_cast<std::size_t>(many));
+                const auto least = reference::cullPages(pages, view.scene.isGaussian3d(), some, kSettings);
+                const auto most = reference::cullPages(pages, view.scene.isGaussian3d(), some, kSettings, 1e-4);
+                for (std::uint32_t p = 0; p < pages.size(); ++p) {
+                    const bool is_found = std::ranges::binary_search(found.list, p);
+                    if (least[p] != 0) { REQUIRE(is_found); }
+                    if (is_found) { REQUIRE(most[p] != 0); }
+                    ++(is_found ? kept : left_out);
+                }
+                if (many == 2) { continue; }
+                const Culled culled = cullOnDevice(gpu, device, first, 1);
+                for (std::uint32_t i = 0; i < view.scene.size(); ++i) {
+                    if (!culled.has(i)) { continue; }
+                    ++splats_kept;
+                    REQUIRE(std::ranges::binary_search(found.list, i / gpu::kPageSplats));
+                }
+                pages_left_out += pages.size() - found.list.size();
+            }
+        }
+    }
+    CHECK(kept > 1000);
+    CHECK(left_out > 1000);
+    CHECK(splats_kept > 10000);
+    CHECK(pages_left_out > 200);
 }
 
 struct Compacted {
@@ -101,244 +226,102 @@ Compacted compactOnDevice(Gpu& gpu, const SceneOnDevice& device, const std::vect
     return {gpu.readBack<std::uint32_t>(keys, visible.size()), gpu.readBack<std::uint32_t>(splats, visible.size())};
 }
 
-// How far projected splats are from the twin's, in units of what rounding can do.
-struct FieldErrors {
-    std::map<std::string, double> worst;
-    std::size_t other_kind = 0, edge_on = 0;
-
-    void note(const std::string& field, double error, double unit) {
-        worst[field] = std::max(worst[field], std::isnan(error) ? std::numeric_limits<double>::infinity() : std::abs(error) / unit);
-    }
-
-    void note(const gpu::ProjectedSplat& splat, const reference::ProjectedSplat& truth, const ViewedScene& view, std::uint32_t i) {
-        const test::OpacityColour packed = test::unpack(splat);
-        if (packed.has_reference != truth.low_pass) {
-            ++other_kind;
-            return;
-        }
-        noteColour(packed, truth, view.scene, i);
-        const glm::dvec2 focal(view.eye.intrinsics.fx, view.eye.intrinsics.fy), principal(view.eye.intrinsics.cx, view.eye.intrinsics.cy);
-        const glm::dvec3 position(view.scene.positions[i]), from_eye = position - view.eye.world_from_camera.position;
-        const double rounding = kEpsilon * distanceToRound(position, view.eye);  // of the centre in camera space
-        const double z = truth.depth;
-        if (truth.low_pass) {
-            const glm::dvec2 c = (truth.reference_px - principal) / focal * z;
-            for (int axis = 0; axis < 2; ++axis) {
-                // A position's own rounding, where it lies far from the scene's origin, and 2^-7 of the two floats'.
-                const double coarse = focal[axis] * (1.0 + std::abs(c[axis]) / z) * rounding / z + kEpsilon * principal[axis];
-                note("reference_px", test::referenceOf(splat)[axis] - truth.reference_px[axis], coarse / 128.0);
-            }
-            note("1/z", static_cast<double>(splat.inverse_depth) * z - 1.0, rounding / z);
-        }
-        if (truth.gaussian) {
-            noteGaussian(splat, truth, view, i, rounding / z);
-            return;
-        }
-        if (splat.plane_from_pixel.x >= gpu::kMaxPlaneSlope) {
-            ++edge_on;
-            return;
-        }
-        // Everything else is divided by delta = t_w . c, whose relative error is rounding / delta. u/z and v/z are cross products of
-        // the length of c, over s delta and the focal length.
-        const glm::quat& q = view.scene.rotations[i];
-        const double delta = std::abs(glm::dot(glm::mat3_cast(glm::dquat(q.w, q.x, q.y, q.z))[2], from_eye));
-        const double scale = static_cast<double>(std::min(view.scene.scales[i].x, view.scene.scales[i].y));
-        const double row = rounding / delta * distanceToRound(position, view.eye) / (scale * delta * std::min(focal.x, focal.y));
-        const glm::dvec3 plane_error = glm::dvec3(splat.plane_from_pixel) - truth.plane_from_pixel;
-        note("A", plane_error.x, row);
-        note("B", plane_error.y, row);
-        note("D", plane_error.z, row);
-        for (int axis = 0; axis < 2; ++axis) {
-            const double error = static_cast<double>(splat.perspective[axis]) - truth.perspective[axis];
-            note("perspective", error * focal[axis], rounding / (delta * delta));
-        }
-        if (!truth.low_pass) {
-            const double size = std::max(view.eye.size_px.x, view.eye.size_px.y);
-            for (int axis = 0; axis < 2; ++axis) {
-                note("offset", static_cast<double>(splat.reference_px[axis]) - truth.plane_offset[axis], row * size);
-            }
-            note("1/z", static_cast<double>(splat.inverse_depth) - truth.inverse_depth, 3.0 * rounding / (delta * delta));
-        }
-    }
-
-private:
-    // Of the axes on the screen, in pixels, what rounding makes of the line of sight is a part of the longest; the low-pass is half a
-    // pixel.
-    void noteGaussian(const gpu::ProjectedSplat& splat, const reference::ProjectedSplat& truth, const ViewedScene& view, std::uint32_t i,
-                      double rounding) {
-        const glm::dvec2 focal(view.eye.intrinsics.fx, view.eye.intrinsics.fy), sigma_px = truth.reach_px / std::sqrt(truth.cut);
-        const double longest_px = std::max(view.scene.scales[i].x, view.scene.scales[i].y) * std::max(focal.x, focal.y) / truth.depth;
-        const double unit = rounding * (1.0 + longest_px / std::sqrt(0.3));
-        const glm::dvec3 plane_error = glm::dvec3(splat.plane_from_pixel) - truth.plane_from_pixel;
-        note("Gaussian A", plane_error.x, unit * truth.plane_from_pixel.x);
-        note("Gaussian B", plane_error.y, unit * truth.plane_from_pixel.x * (1.0 + sigma_px.x / sigma_px.y));
-        note("Gaussian D", plane_error.z, unit * truth.plane_from_pixel.z);
-        // Of 1/z, over a standard deviation on the screen. Sigma2^-1 divides by the shortest axis what the longest one brings.
-        const double climb = std::max(view.scene.scales[i].x, view.scene.scales[i].y) / truth.depth;
-        for (int axis = 0; axis < 2; ++axis) {
-            const double error = static_cast<double>(splat.perspective[axis]) - truth.perspective[axis];
-            note("Gaussian perspective", error * sigma_px[axis] * truth.depth, unit * climb * (1.0 + longest_px / std::sqrt(0.3)));
-        }
-        note("dimmed opacity", test::unpack(splat).opacity / truth.opacity - 1.0, 1.1e-5 + unit);
-    }
-
-    void noteColour(const test::OpacityColour& packed, const reference::ProjectedSplat& truth, const Scene& scene, std::uint32_t i) {
-        // Half a step of 2^-15 of -log2(opacity) is 1.06e-5 of the opacity.
-        if (!truth.gaussian) { note("opacity", packed.opacity / truth.opacity - 1.0, 1.1e-5); }
-        // Half floats lose up to 2^-11 of themselves, in each coefficient and in the colour. No harmonic is above 1.1.
-        const auto stride = 3 * static_cast<std::size_t>(shCoefficientCount(scene.sh_degree));
-        for (int channel = 0; channel < 3; ++channel) {
-            double size = truth.colour[channel];
-            for (std::size_t k = static_cast<std::size_t>(channel); k < stride; k += 3) {
-                size += 1.1 * std::abs(static_cast<double>(scene.sh[i * stride + k]));
-            }
-            note("colour", packed.colour[channel] - truth.colour[channel], size * 0x1p-11 + 1e-6);
-        }
-    }
-};
-
 }  // namespace
 
-TEST_CASE_FIXTURE(Gpu, "cull misses no splat that the twin sees, and keeps hardly one that the twin's culling does not") {
-    for (const ViewedScene& view : allScenes()) {
+TEST_CASE_FIXTURE(Gpu,
+                  "cull_pages finds the twin's pages, up to a hair of what each sees, and leaves none out with a splat that cull keeps") {
+    checkPages(*this, 24);
+}
+TEST_CASE_FIXTURE(Gpu, "cull_pages does so from many more places" * test::nightly()) { checkPages(*this, 100); }
+
+TEST_CASE_FIXTURE(Gpu, "the list of pages is right at every size") {
+    std::mt19937 random(3);
+    for (const std::uint32_t count : {1u, 2u, 31u, 32u, 33u, 127u, 128u, 129u, 1023u, 1024u, 1025u, 4097u, 40000u}) {
+        CAPTURE(count);
+        std::vector<gpu::ScenePage> pages;
+        std::vector<std::uint32_t> expected;
+        for (std::uint32_t p = 0; p < count; ++p) {
+            const bool is_empty = random() % 4 == 0, is_seen = random() % 2 == 0;
+            const float z = is_seen ? 2.0f : -2.0f;
+            pages.push_back({.low = {-0.1f, -0.1f, z}, .reach = 0.1f, .high = {0.1f, 0.1f, z + 0.1f}, .count = is_empty ? 0u : 5u});
+            if (!is_empty && is_seen) { expected.push_back(p); }
+        }
+        const Pages::Found found = Pages(*this, pages, gpu::kDiscs, {test::makeEye({64, 64})}).cull(0, 1);
+        CHECK(found.list == expected);
+        CHECK(found.state.needed == expected.size());
+        const std::uint32_t groups = found.state.per_item.x * found.state.per_item.y * found.state.per_item.z;
+        CHECK(groups >= expected.size());
+        CHECK(groups < expected.size() + gpu::kMaxGroupsX);
+        CHECK(found.state.per_item.x <= gpu::kMaxGroupsX);
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu, "a page whose bounds are not numbers, or too large for them, is left to cull") {
+    constexpr float kHuge = 3e38f, kNone = std::numeric_limits<float>::quiet_NaN();
+    const std::vector<gpu::ScenePage> pages{
+        {.low = glm::vec3(-kHuge), .reach = 1.0f, .high = glm::vec3(kHuge), .count = 1},
+        {.low = glm::vec3(kNone), .reach = 1.0f, .high = glm::vec3(kNone), .count = 1},
+        {.low = {-1.0f, -1.0f, -3.0f}, .reach = std::numeric_limits<float>::infinity(), .high = {1.0f, 1.0f, 3.0f}, .count = 1}};
+    for (const std::uint32_t shape : {gpu::kDiscs, gpu::kGaussians}) {
+        CHECK(Pages(*this, pages, shape, {test::makeEye({64, 64})}).cull(0, 1).list == std::vector<std::uint32_t>{0, 1, 2});
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu,
+                  "cull misses no splat that the twin sees, keeps hardly one more than its culling, and for two eyes what either sees") {
+    for (const auto& [view, twin] : test::stagedScenes()) {
         CAPTURE(view.name);
-        const TwinStages twin(view, kSettings);
-        const Culled culled = cullOnDevice(*this, SceneOnDevice(*this, view.scene, {view.eye}, kSettings.near), 1);
+        Eye other = view.eye;
+        other.world_from_camera.orientation = other.world_from_camera.orientation * glm::angleAxis(0.5, glm::dvec3(0, 1, 0));
+        const SceneOnDevice device(*this, view.scene, {view.eye, other}, kSettings.near);
+        const Culled culled = cullOnDevice(*this, device, 0, 1), turned = cullOnDevice(*this, device, 1, 1),
+                     both = cullOnDevice(*this, device, 0, 2);
         std::size_t missed = 0, kept = 0;
         for (const reference::TilePair& pair : twin.pairs) { missed += culled.has(twin.order[pair.splat]) ? 0 : 1; }
         for (std::size_t i = 0; i < view.scene.size(); ++i) { kept += culled.has(i) ? 1 : 0; }
         CHECK(missed == 0);
         CHECK(static_cast<double>(kept) <= 1.02 * static_cast<double>(twin.order.size()));
         std::size_t wrong_counts = 0, ones = 0;
-        for (std::size_t g = 0; g < culled.group_offsets.size(); ++g) {
-            wrong_counts += culled.group_offsets[g] == ones ? 0 : 1;
-            for (std::size_t w = 0; w < kGroupWords; ++w) {
-                ones += static_cast<std::size_t>(std::popcount(culled.bits[kGroupWords * g + w]));
-            }
+        for (std::size_t w = 0; w < culled.bits.size(); ++w) {
+            wrong_counts += w % kGroupWords != 0 || culled.group_offsets[w / kGroupWords] == ones ? 0 : 1;
+            ones += static_cast<std::size_t>(std::popcount(culled.bits[w]));
+            REQUIRE(both.bits[w] == (culled.bits[w] | turned.bits[w]));
         }
         CHECK(culled.visible.count == ones);
         CHECK(wrong_counts == 0);
+        CHECK(culled.bits != turned.bits);
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "cull for two eyes keeps what either keeps") {
-    const ViewedScene view = test::viewBuiltin("builtin:atelier", {256, 256}, 20000);
-    Eye other = view.eye;
-    other.world_from_camera.orientation = other.world_from_camera.orientation * glm::angleAxis(0.5, glm::dvec3(0, 1, 0));
-    const Culled one = cullOnDevice(*this, SceneOnDevice(*this, view.scene, {view.eye}, kSettings.near), 1);
-    const Culled two = cullOnDevice(*this, SceneOnDevice(*this, view.scene, {other}, kSettings.near), 1);
-    const Culled both = cullOnDevice(*this, SceneOnDevice(*this, view.scene, {view.eye, other}, kSettings.near), 2);
-    CHECK(one.bits != two.bits);
-    for (std::size_t w = 0; w < both.bits.size(); ++w) { REQUIRE(both.bits[w] == (one.bits[w] | two.bits[w])); }
-}
-
-TEST_CASE_FIXTURE(Gpu, "compact lists the visible splats in the scene's order with keys that order as their depths") {
-    for (const ViewedScene& view : allScenes()) {
-        CAPTURE(view.name);
-        const TwinStages twin(view, kSettings);
-        const SceneOnDevice device(*this, view.scene, {view.eye}, kSettings.near);
-        const Compacted compacted = compactOnDevice(*this, device, twin.compacted.splats, {});
-        CHECK(compacted.splats == twin.compacted.splats);
-        // Keys order as the floats they stand for; those are the depths, up to a few roundings of the distance.
+TEST_CASE_FIXTURE(Gpu, "compact lists what is visible in the scene's order, with keys that order as depths or, anywhere, as distances") {
+    const auto check = [&](const ViewedScene& view, const reference::Settings& settings) {
+        const auto visible = reference::cull(view.scene, {&view.eye, 1}, settings);
+        const reference::Visible twin = reference::compact(view.scene, visible, view.eye, settings);
+        const SceneOnDevice device(*this, view.scene, {view.eye}, settings.near);
+        const Compacted compacted = compactOnDevice(*this, device, twin.splats, settings.order_from);
+        CHECK(compacted.splats == twin.splats);
+        // Keys order as the floats they stand for; those are the depths, up to a few roundings of the distance, or its squares.
         double worst = 0.0;
         for (std::size_t i = 0; i < compacted.keys.size(); ++i) {
-            const glm::dvec3 position(view.scene.positions[twin.compacted.splats[i]]);
-            const double distance = distanceToRound(position, view.eye);
-            worst = std::max(worst, std::abs(static_cast<double>(test::floatOfKey(compacted.keys[i])) - twin.compacted.depths[i]) /
-                                        (kEpsilon * distance));
+            const double unit =
+                settings.order_from ? twin.depths[i] : test::distanceToRound(glm::dvec3(view.scene.positions[twin.splats[i]]), view.eye);
+            worst = std::max(worst,
+                             std::abs(static_cast<double>(test::floatOfKey(compacted.keys[i])) - twin.depths[i]) / (test::kEpsilon * unit));
         }
         CHECK(worst <= 8.0);  // measured: 2.4
-    }
-}
-
-TEST_CASE_FIXTURE(Gpu, "compact has keys that order as the distances from the middle between the eyes, also far from the world's origin") {
-    for (const double offset : {0.0, 1e6}) {
-        for (ViewedScene view : allScenes()) {
-            CAPTURE(view.name);
+    };
+    for (const auto& staged : test::stagedScenes()) {
+        ViewedScene view = staged.view;
+        CAPTURE(view.name);
+        check(view, kSettings);
+        for (const double offset : {0.0, 1e6}) {
             CAPTURE(offset);
             for (glm::vec3& position : view.scene.positions) { position += static_cast<float>(offset); }
             view.eye.world_from_camera.position += offset;
             reference::Settings settings;
             // No float32, so that the rest beside it counts.
             settings.order_from = view.eye.world_from_camera.position + glm::dvec3(0.0317, 1e-7, -1e-5);
-            const TwinStages twin(view, settings);
-            const SceneOnDevice device(*this, view.scene, {view.eye}, settings.near);
-            const Compacted compacted = compactOnDevice(*this, device, twin.compacted.splats, settings.order_from);
-            CHECK(compacted.splats == twin.compacted.splats);
-            double worst = 0.0;
-            for (std::size_t i = 0; i < compacted.keys.size(); ++i) {
-                const double square = twin.compacted.depths[i];
-                worst = std::max(worst, std::abs(static_cast<double>(test::floatOfKey(compacted.keys[i])) - square) / (kEpsilon * square));
-            }
-            CHECK(worst <= 8.0);
-        }
-    }
-}
-
-TEST_CASE("keys of depths order as the depths, behind the eye too") {
-    const std::vector<float> ascending{-1e30f, -2.0f, -1.0f, -1e-30f, 0.0f, 1e-30f, 1.0f, 1.0000001f, 2.0f, 1e30f};
-    for (std::size_t i = 1; i < ascending.size(); ++i) { CHECK(test::sortableBits(ascending[i - 1]) < test::sortableBits(ascending[i])); }
-    for (const float value : ascending) { CHECK(test::floatOfKey(test::sortableBits(value)) == value); }
-}
-
-TEST_CASE_FIXTURE(Gpu, "sort_depth puts the twin's depths front to back, ties by index") {
-    const Sort sort(context());
-    for (const ViewedScene& view : allScenes()) {
-        CAPTURE(view.name);
-        const TwinStages twin(view, kSettings);
-        const std::size_t count = twin.order.size();
-        std::vector<std::uint32_t> keys;
-        for (const double depth : twin.compacted.depths) { keys.push_back(test::sortableBits(static_cast<float>(depth))); }
-        const Buffer key_buffer = upload("keys", keys), values = upload("splats", twin.compacted.splats),
-                     list = upload("list", std::vector{test::makeList(count)});
-        const Buffer spare_keys = allocate<gpu::uint>("spare keys", count), spare_values = allocate<gpu::uint>("spare", count);
-        const Buffer histograms(context(), "histograms", Sort::histogramBytes(count));
-        KeyValues sorted;
-        run([&](Commands& commands) {
-            sorted = sort.record(commands, {key_buffer.address<gpu::uint>(), values.address<gpu::uint>()},
-                                 {spare_keys.address<gpu::uint>(), spare_values.address<gpu::uint>()}, histograms.address<gpu::uint>(),
-                                 list, 0, 32);
-        });
-        CHECK(sorted.values.value == values.address<gpu::uint>().value);
-        // The twin's order but for splats whose depths are one and the same float32: those are in the order of their indices.
-        std::vector<std::uint32_t> expected = twin.order;
-        std::vector<float> depth_of(view.scene.size());
-        for (std::size_t i = 0; i < count; ++i) { depth_of[twin.compacted.splats[i]] = static_cast<float>(twin.compacted.depths[i]); }
-        for (auto begin = expected.begin(); begin != expected.end();) {
-            const auto end = std::find_if(begin, expected.end(), [&](std::uint32_t splat) { return depth_of[splat] != depth_of[*begin]; });
-            std::sort(begin, end);
-            begin = end;
-        }
-        CHECK(readBack<std::uint32_t>(values, count) == expected);
-    }
-}
-
-TEST_CASE_FIXTURE(Gpu, "project gives the twin's fields, up to roundings times the condition of each") {
-    // Measured: reference 1.3, A and B 19, D 11 (16.1 on an NVIDIA H100), perspective 5, 1/z 3.1, offset 0.7, of Gaussians 2, in roundings.
-    const std::map<std::string, double> bounds{
-        {"opacity", 1.0},    {"colour", 1.0},     {"reference_px", 4.0},         {"1/z", 8.0},           {"A", 32.0},
-        {"B", 32.0},         {"D", 24.0},         {"perspective", 16.0},         {"offset", 2.0},        {"Gaussian A", 4.0},
-        {"Gaussian B", 4.0}, {"Gaussian D", 4.0}, {"Gaussian perspective", 2.0}, {"dimmed opacity", 4.0}};
-    for (const ViewedScene& view : allScenes()) {
-        CAPTURE(view.name);
-        const TwinStages twin(view, kSettings);
-        const SceneOnDevice device(*this, view.scene, {view.eye}, kSettings.near);
-        const test::ProjectedOnDevice projected = test::projectOnDevice(*this, device, twin.order);
-        const auto splats = readBack<gpu::ProjectedSplat>(projected.splats, projected.count);
-        const auto tile_counts = readBack<std::uint32_t>(projected.tile_counts, projected.count);
-        FieldErrors errors;
-        std::size_t compared = 0;
-        for (std::size_t rank = 0; rank < splats.size(); ++rank) {
-            if (tile_counts[rank] == 0) { continue; }  // nothing is said of what meets no tile
-            errors.note(splats[rank], twin.splats[rank], view, twin.order[rank]);
-            ++compared;
-        }
-        CHECK(2 * compared > splats.size());
-        CHECK(errors.other_kind == 0);
-        CHECK(errors.edge_on <= (view.name == "cloud" ? 40 : 0));
-        for (const auto& [field, error] : errors.worst) {
-            CAPTURE(field);
-            CHECK(error <= bounds.at(field));
+            check(view, settings);
         }
     }
 }

@@ -1,13 +1,15 @@
 // Facts about the passes that make an eye from its past, each held to its twin, which goes on from what the device had one pass before:
-// warp_past and warp_pixels, and what rasterize measures (price and select: past_choice_test.cpp). Where a depth or a place lies on a
-// threshold, float32 may come to the other side: such flips have a budget.
+// warp_past and warp_pixels, what rasterize measures (price and select: selection_test.cpp), and what a scene changes meanwhile. Where a
+// depth or a place lies on a threshold, float32 may come to the other side: such flips have a budget.
+#include "engine/frame/changes.h"
 #include "tests/engine/passes/past_stages.h"
+#include "tests/nightly.h"
 
 #include <doctest/doctest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
+#include <random>
 
 TEST_SUITE_BEGIN("past_passes");
 
@@ -24,8 +26,19 @@ namespace {
 
 constexpr double kSteps = test::kErrorSteps;
 
-ViewedScene viewAtelier() { return test::viewBuiltin("builtin:atelier", {150, 110}, 20000); }
-ViewedScene viewFence() { return test::viewBuiltin("builtin:fence", {150, 110}); }
+const ViewedScene& atelier() {
+    static const ViewedScene view = test::viewBuiltin("builtin:atelier", {150, 110}, 20000);
+    return view;
+}
+const ViewedScene& fence() {
+    static const ViewedScene view = test::viewBuiltin("builtin:fence", {150, 110});
+    return view;
+}
+// Rows of a multiple of four pixels are written four at a time, and in half floats all of a block's row.
+const ViewedScene& evenFence() {
+    static const ViewedScene view = test::viewBuiltin("builtin:fence", {160, 112});
+    return view;
+}
 
 struct Differences {
     std::size_t pixels = 0, other_depths = 0, other_spreads = 0, quarters = 0, other_grown = 0, tiles = 0, other_tiles = 0,
@@ -76,147 +89,167 @@ std::size_t countOtherDepths(const Image& depths, const reference::Past& past) {
     return other;
 }
 
+// Boxes about an eye: before it, around it, beside it and behind it, from a speck to a hall.
+std::vector<SceneChange> boxesAbout(const Eye& eye, int count, unsigned seed) {
+    std::mt19937 random(seed);
+    const auto draw = [&](double low, double high) { return low + (high - low) * static_cast<double>(random() >> 8) / 16777216.0; };
+    std::vector<SceneChange> boxes;
+    for (int i = 0; i < count; ++i) {
+        const glm::dvec3 middle = eye.world_from_camera.position + glm::dvec3(draw(-3, 3), draw(-3, 3), draw(-3, 3));
+        const glm::dvec3 half = std::pow(10.0, draw(-3.0, 0.5)) * glm::dvec3(draw(0, 1), draw(0, 1), draw(0, 1));
+        boxes.push_back({glm::vec3(middle - half), glm::vec3(middle + half), static_cast<float>(draw(0.01, 1.0))});
+    }
+    return boxes;
+}
+
+// How pictures are kept, and of what.
+struct Way {
+    const ViewedScene& view;
+    bool half_floats, hides;
+    double cant = 0.0;
+
+    [[nodiscard]] test::WalkSettings settings() const {
+        test::WalkSettings settings{.half_floats = half_floats, .cant = cant};
+        if (!hides) { return settings; }
+        settings.hidden.fill(std::vector<std::uint8_t>(test::tileCount(view.eye.size_px), 0));
+        for (auto& tiles : settings.hidden) { tiles[0] = tiles[9] = tiles[33] = tiles[34] = 1; }
+        return settings;
+    }
+};
+
+// Pictures that are made from the last ones alone.
+void checkWarped(Gpu& gpu, const Way& way) {
+    INFO(way.view.name, ", hides ", way.hides);
+    const test::WalkSettings settings = way.settings();
+    const auto& hidden = settings.hidden;
+    Walk walk(gpu, way.view, settings);
+    walk.go(0.0, 0.0);
+    std::array<EyeOnDevice, 2> before{walk.read(kLeft), walk.read(kRight)};
+    Differences all;
+    std::size_t one_by_one = 0, blocks = 0;
+    for (const double step : {1.0, 2.0, 10.0}) {  // the last so far that blocks of a cell come from two
+        walk.go(step, 0.0);
+        for (const int eye : {kLeft, kRight}) {
+            EyeOnDevice made = walk.read(eye);
+            const auto e = static_cast<std::size_t>(eye);
+            reference::WarpedPast warped = reference::warpPast(before[e].past, walk.eyes()[e], hidden[e], settings.background);
+            one_by_one += static_cast<std::size_t>(std::ranges::count(warped.one_by_one, 1));
+            blocks += warped.one_by_one.size();
+            compareWarped(all, made, std::move(warped.picture));
+            if (eye == kLeft) { CHECK(countOtherDepths(walk.readDepth(), made.past) == 0); }
+            before[e] = std::move(made);
+        }
+    }
+    CHECK(-10.0 * std::log10(all.squares / static_cast<double>(all.pixels)) >= 55.0);
+    CHECK(one_by_one > blocks / 20);
+    CHECK(one_by_one < blocks - blocks / 20);
+    CHECK(test::share(all.other_depths, all.pixels) <= 0.001);
+    CHECK(test::share(all.other_spreads, all.pixels) <= 0.001);
+    CHECK(test::share(all.other_tiles, all.tiles) <= 0.005);
+    CHECK(test::share(all.other_grown, all.quarters) <= 0.005);
+    CHECK(test::share(all.other_errors, all.quarters) <= 0.005);
+    CHECK(test::isNear(all.grown, all.twin_grown, 0.001, 0.0));
+}
+
+// Pictures that have no past, and what they leave for later.
+void checkFirst(Gpu& gpu, const Way& way) {
+    INFO(way.view.name, ", half floats ", way.half_floats, ", cant ", way.cant, ", hides ", way.hides);
+    const test::WalkSettings settings = way.settings();
+    const auto& hidden = settings.hidden;
+    Walk walk(gpu, way.view, settings);
+    walk.go(0.0, 0.2);
+    const EyeOnDevice left = walk.read(kLeft), right = walk.read(kRight);
+    const std::array<Image, 2> predicted = walk.predicted(0.2);
+    for (const auto& [eye, made] : {std::pair(kLeft, &left), std::pair(kRight, &right)}) {
+        for (std::size_t i = 0; i < made->past.rgba.size(); ++i) {
+            for (int channel = 0; channel < 4; ++channel) {
+                REQUIRE(made->past.rgba[i][channel] ==
+                        static_cast<double>(predicted[eye].values[4 * i + static_cast<std::size_t>(channel)]));
+            }
+        }
+    }
+
+    reference::StereoSettings stereo;
+    stereo.source_hidden = hidden[0];
+    stereo.target_hidden = hidden[1];
+    const reference::StereoPictures pictures =
+        reference::renderStereo(way.view.scene, {walk.eyes()[0], walk.eyes()[1]}, stereo, {.background = settings.background});
+    const reference::Past twin = reference::pastOf(walk.eyes()[1], pictures);
+    std::size_t moved = 0, other_tiles = 0, pixels = 0, other_depths = 0, other_spreads = 0, hidden_tiles = 0;
+    const std::size_t columns = tilesOf(twin.eye.size_px).x;
+    for (std::size_t t = 0; t < twin.tiles.size(); ++t) {
+        const reference::PastTile& a = right.past.tiles[t];
+        CHECK(a.age == 0);
+        CHECK(a.growth == 0.0);
+        if (right.kinds[t] == gpu::kTileHidden) {
+            ++hidden_tiles;
+            CHECK(a.cost == 0);
+            CHECK(a.errors == std::array<double, 4>{});
+        } else if (right.kinds[t] != 0) {
+            CHECK(a.errors == std::array<double, 4>{});  // rendered
+        } else {
+            ++moved;
+            // What it is told by, as the twin goes on from it. That the device expects the twin's errors: selection_test.cpp.
+            reference::StereoPictures told;
+            told.tile_kinds = {TileKind::kNone};
+            told.tile_errors = {right.errors[t] / kSteps};
+            told.tile_costs = {right.costs[t]};
+            const reference::PastTile expected = reference::pastOf(walk.eyes()[1], told).tiles[0];
+            CHECK(a.cost == expected.cost);
+            CHECK(test::isNear(a.errors[0], expected.errors[0], 1e-5, 0.0));
+            other_tiles += test::isNear(a.errors[0], twin.tiles[t].errors[0], 0.02, 1e-4) ? 0 : 1;
+            CHECK(a.errors == std::array{a.errors[0], a.errors[0], a.errors[0], a.errors[0]});
+        }
+    }
+    for (std::size_t i = 0; i < twin.pixels.size(); ++i) {
+        const std::size_t x = i % twin.eye.size_px.x, y = i / twin.eye.size_px.x;
+        const gpu::uint kind = right.kinds[y / gpu::kTileSize * columns + x / gpu::kTileSize];
+        const auto &a = right.past.pixels[i], &b = twin.pixels[i];
+        if (kind == gpu::kTileHidden) { CHECK(!a.has_value()); }
+        if (kind != 0) { continue; }
+        ++pixels;
+        REQUIRE(a.has_value());
+        other_depths += b && test::isNear(a->inverse_depth, b->inverse_depth, 1e-3, 1e-5) ? 0 : 1;
+        // Of a single surface it is rounding that spreads.
+        constexpr std::uint32_t kRounding = 12;
+        other_spreads += b && std::max(a->spread, kRounding) == std::max(b->spread, kRounding) ? 0 : 1;
+    }
+    CHECK(hidden_tiles == (way.hides ? 4u : 0u));
+    CHECK(moved > 10);
+    CHECK(test::share(other_tiles, moved) <= 0.25);  // a splat that only just meets a tile of the source is no newcomer
+    CHECK(test::share(other_depths, pixels) <= 0.01);
+    CHECK(test::share(other_spreads, pixels) <= 0.02);
+}
+
 }  // namespace
 
 TEST_CASE_FIXTURE(Gpu, "warp_past and warp_pixels make the twin's picture, and expect the twin's errors") {
-    // Rows of a multiple of four pixels are written four at a time, and in half floats all of a block's row.
-    for (const auto& [view, half_floats] :
-         {std::pair(viewAtelier(), false), std::pair(test::viewBuiltin("builtin:fence", {160, 112}), true)}) {
-        for (const bool hides : {false, true}) {
-            test::WalkSettings settings{.half_floats = half_floats};
-            auto& hidden = settings.hidden;
-            if (hides) {
-                hidden.fill(std::vector<std::uint8_t>(70, 0));
-                for (auto& tiles : hidden) { tiles[0] = tiles[9] = tiles[33] = tiles[34] = 1; }
-            }
-            CAPTURE(view.name);
-            CAPTURE(hides);
-            Walk walk(*this, view, settings);
-            walk.go(0.0, 0.0);
-            std::array<EyeOnDevice, 2> before{walk.read(kLeft), walk.read(kRight)};
-            Differences all;
-            std::size_t one_by_one = 0, blocks = 0;
-            for (const double step : {1.0, 2.0, 10.0}) {  // the last so far that blocks of a cell come from two
-                walk.go(step, 0.0);
-                for (const int eye : {kLeft, kRight}) {
-                    EyeOnDevice made = walk.read(eye);
-                    const auto e = static_cast<std::size_t>(eye);
-                    reference::WarpedPast warped = reference::warpPast(before[e].past, walk.eyes()[e], hidden[e], settings.background);
-                    one_by_one += static_cast<std::size_t>(std::ranges::count(warped.one_by_one, 1));
-                    blocks += warped.one_by_one.size();
-                    compareWarped(all, made, std::move(warped.picture));
-                    if (eye == kLeft) { CHECK(countOtherDepths(walk.readDepth(), made.past) == 0); }
-                    before[e] = std::move(made);
-                }
-            }
-            const double psnr_db = -10.0 * std::log10(all.squares / static_cast<double>(all.pixels));
-            MESSAGE(view.name << ": " << psnr_db << " dB to the twin; one by one " << test::share(one_by_one, blocks)
-                              << " of the blocks; other: depths " << test::share(all.other_depths, all.pixels) << ", spreads "
-                              << test::share(all.other_spreads, all.pixels) << ", tiles " << test::share(all.other_tiles, all.tiles)
-                              << ", growth of errors " << test::share(all.other_grown, all.quarters) << ", errors "
-                              << test::share(all.other_errors, all.quarters) << "; sum of growth " << all.grown << " and "
-                              << all.twin_grown);
-            CHECK(one_by_one > blocks / 20);
-            CHECK(one_by_one < blocks - blocks / 20);
-            CHECK(psnr_db >= 55.0);
-            CHECK(test::share(all.other_depths, all.pixels) <= 0.001);
-            CHECK(test::share(all.other_spreads, all.pixels) <= 0.001);
-            CHECK(test::share(all.other_tiles, all.tiles) <= 0.005);
-            CHECK(test::share(all.other_grown, all.quarters) <= 0.005);
-            CHECK(test::share(all.other_errors, all.quarters) <= 0.005);
-            CHECK(test::isNear(all.grown, all.twin_grown, 0.001, 0.0));
-        }
-    }
+    checkWarped(*this, {atelier(), false, true});
+    checkWarped(*this, {evenFence(), true, false});
 }
 
 TEST_CASE_FIXTURE(Gpu, "where there is no past both pictures are predicted's, and what they leave for later is the twin's") {
-    for (const auto& [view, half_floats, cant] : {std::tuple(viewAtelier(), false, 0.0), std::tuple(viewFence(), true, 0.0),
-                                                  std::tuple(viewAtelier(), false, 0.05), std::tuple(viewAtelier(), true, 0.0)}) {
-        for (const bool hides : {false, true}) {
-            CAPTURE(view.name);
-            CAPTURE(half_floats);
-            CAPTURE(cant);
-            CAPTURE(hides);
-            test::WalkSettings settings{.half_floats = half_floats, .cant = cant};
-            auto& hidden = settings.hidden;
-            if (hides) {
-                hidden.fill(std::vector<std::uint8_t>(70, 0));
-                for (auto& tiles : hidden) { tiles[0] = tiles[9] = tiles[33] = tiles[34] = 1; }
-            }
-            Walk walk(*this, view, settings);
-            walk.go(0.0, 0.2);
-            const EyeOnDevice left = walk.read(kLeft), right = walk.read(kRight);
-            const std::array<Image, 2> predicted = walk.predicted(0.2);
-            for (const auto& [eye, made] : {std::pair(kLeft, &left), std::pair(kRight, &right)}) {
-                for (std::size_t i = 0; i < made->past.rgba.size(); ++i) {
-                    for (int channel = 0; channel < 4; ++channel) {
-                        REQUIRE(made->past.rgba[i][channel] ==
-                                static_cast<double>(predicted[eye].values[4 * i + static_cast<std::size_t>(channel)]));
-                    }
-                }
-            }
+    checkFirst(*this, {atelier(), false, false});
+    checkFirst(*this, {fence(), true, true});
+    checkFirst(*this, {atelier(), false, true, 0.05});
+}
 
-            reference::StereoSettings stereo;
-            stereo.source_hidden = hidden[0];
-            stereo.target_hidden = hidden[1];
-            const reference::StereoPictures pictures =
-                reference::renderStereo(view.scene, {walk.eyes()[0], walk.eyes()[1]}, stereo, {.background = settings.background});
-            const reference::Past twin = reference::pastOf(walk.eyes()[1], pictures);
-            std::size_t moved = 0, other_tiles = 0, pixels = 0, other_depths = 0, other_spreads = 0, hidden_tiles = 0;
-            const std::size_t columns = tilesOf(twin.eye.size_px).x;
-            for (std::size_t t = 0; t < twin.tiles.size(); ++t) {
-                const reference::PastTile& a = right.past.tiles[t];
-                CHECK(a.age == 0);
-                CHECK(a.growth == 0.0);
-                if (right.kinds[t] == gpu::kTileHidden) {
-                    ++hidden_tiles;
-                    CHECK(a.cost == 0);
-                    CHECK(a.errors == std::array<double, 4>{});
-                } else if (right.kinds[t] != 0) {
-                    CHECK(a.errors == std::array<double, 4>{});  // rendered
-                } else {
-                    ++moved;
-                    // What it is told by, as the twin goes on from it. That the device expects the twin's errors: selection_test.cpp.
-                    reference::StereoPictures told;
-                    told.tile_kinds = {TileKind::kNone};
-                    told.tile_errors = {right.errors[t] / kSteps};
-                    told.tile_costs = {right.costs[t]};
-                    const reference::PastTile expected = reference::pastOf(walk.eyes()[1], told).tiles[0];
-                    CHECK(a.cost == expected.cost);
-                    CHECK(test::isNear(a.errors[0], expected.errors[0], 1e-5, 0.0));
-                    other_tiles += test::isNear(a.errors[0], twin.tiles[t].errors[0], 0.02, 1e-4) ? 0 : 1;
-                    CHECK(a.errors == std::array{a.errors[0], a.errors[0], a.errors[0], a.errors[0]});
-                }
-            }
-            for (std::size_t i = 0; i < twin.pixels.size(); ++i) {
-                const std::size_t x = i % twin.eye.size_px.x, y = i / twin.eye.size_px.x;
-                const gpu::uint kind = right.kinds[y / gpu::kTileSize * columns + x / gpu::kTileSize];
-                const auto &a = right.past.pixels[i], &b = twin.pixels[i];
-                if (kind == gpu::kTileHidden) { CHECK(!a.has_value()); }
-                if (kind != 0) { continue; }
-                ++pixels;
-                REQUIRE(a.has_value());
-                other_depths += b && test::isNear(a->inverse_depth, b->inverse_depth, 1e-3, 1e-5) ? 0 : 1;
-                // Of a single surface it is rounding that spreads.
-                constexpr std::uint32_t kRounding = 12;
-                other_spreads += b && std::max(a->spread, kRounding) == std::max(b->spread, kRounding) ? 0 : 1;
-            }
-            MESSAGE(view.name << ": " << moved << " tiles moved; other tiles " << test::share(other_tiles, moved) << ", depths "
-                              << test::share(other_depths, pixels) << ", spreads " << test::share(other_spreads, pixels));
-            CHECK(hidden_tiles == (hides ? 4u : 0u));
-            CHECK(moved > 10);
-            CHECK(test::share(other_tiles, moved) <= 0.25);  // a splat that only just meets a tile of the source is no newcomer
-            CHECK(test::share(other_depths, pixels) <= 0.01);
-            CHECK(test::share(other_spreads, pixels) <= 0.02);
-        }
+TEST_CASE_FIXTURE(Gpu, "pictures from pasts and without are so in floats and half floats, whatever lenses hide" * test::nightly()) {
+    for (const bool hides : {false, true}) {
+        checkWarped(*this, {atelier(), false, hides});
+        checkWarped(*this, {evenFence(), true, hides});
+        checkFirst(*this, {atelier(), true, hides});
+        checkFirst(*this, {atelier(), false, hides});
+        checkFirst(*this, {atelier(), false, hides, 0.05});
+        checkFirst(*this, {fence(), true, hides});
     }
 }
 
 TEST_CASE_FIXTURE(Gpu, "a frame's choice is the twin's, and tiles that were rendered again say what they had been off by") {
-    for (const ViewedScene& view : {viewAtelier(), viewFence()}) {
-        CAPTURE(view.name);
+    for (const ViewedScene* view : {&atelier(), &fence()}) {
+        CAPTURE(view->name);
         // Of two walks that are alike so far one renders tiles again in the last frame.
-        Walk walk(*this, view), only_warps(*this, view);
+        Walk walk(*this, *view), only_warps(*this, *view);
         constexpr int kFrames = 3;
         for (int step = 0; step <= kFrames; ++step) {
             walk.go(step, step == kFrames ? 0.3 : 0.0);
@@ -279,6 +312,112 @@ TEST_CASE_FIXTURE(Gpu, "every tile of a picture that moves has its turn, also wh
     walk.go(0.0, 0.0);
     walk.go(5.0, 0.0);
     for (const int eye : {kLeft, kRight}) { CHECK(std::ranges::count(walk.read(eye).errors, 0u) == 0); }
+}
+
+TEST_CASE("what lies in a box is seen in its rectangle, also where the box reaches through the near plane") {
+    const Eye eye = test::makeOddEye({200, 150});
+    const glm::dmat3 camera_from_world = glm::mat3_cast(glm::conjugate(eye.world_from_camera.orientation));
+    std::mt19937 random(11);
+    const auto draw = [&] { return static_cast<double>(random() >> 8) / 16777216.0; };
+    std::size_t seen = 0, unseen_boxes = 0, through = 0;
+    for (const SceneChange& box : boxesAbout(eye, 400, 1)) {
+        const std::vector<gpu::ChangedRect> rects = rectsOf({&box, 1}, eye, 0.2);
+        if (rects.empty()) { ++unseen_boxes; }
+        if (!rects.empty()) { CHECK(rects[0].error == gpu::kChangedError * box.amount); }
+        bool is_before = false, is_behind = false;
+        for (int i = 0; i < 200; ++i) {
+            const glm::dvec3 at = glm::mix(glm::dvec3(box.low), glm::dvec3(box.high), glm::dvec3(draw(), draw(), draw()));
+            const glm::dvec3 c = camera_from_world * (at - eye.world_from_camera.position);
+            (c.z < 0.2 ? is_behind : is_before) = true;
+            if (c.z < 0.2) { continue; }
+            const glm::dvec2 place(eye.intrinsics.fx * c.x / c.z + eye.intrinsics.cx, eye.intrinsics.fy * c.y / c.z + eye.intrinsics.cy);
+            if (place.x < 0.0 || place.y < 0.0 || place.x >= 200.0 || place.y >= 150.0) { continue; }
+            REQUIRE(rects.size() == 1);
+            REQUIRE(glm::all(glm::lessThanEqual(glm::dvec2(rects[0].begin_px), place)));
+            REQUIRE(glm::all(glm::greaterThanEqual(glm::dvec2(rects[0].end_px), place)));
+            ++seen;
+        }
+        through += is_before && is_behind ? 1 : 0;
+    }
+    CHECK(seen > 1000);
+    CHECK(unseen_boxes > 100);
+    CHECK(through > 20);
+}
+
+TEST_CASE("a box before the eye has a rectangle of its own size and the low-pass, one beside it or behind it has none") {
+    const Eye eye = test::makeEye({101, 101});
+    const auto rectOf = [&](const glm::vec3& low, const glm::vec3& high) {
+        const SceneChange box{low, high, 1.0f};
+        return rectsOf({&box, 1}, eye, 0.2);
+    };
+    // 100 px of focal length about (50.5, 50.5).
+    const auto rects = rectOf({-0.2f, 0.1f, 2.0f}, {0.1f, 0.2f, 2.0f});
+    REQUIRE(rects.size() == 1);
+    CHECK(rects[0].begin_px == glm::uvec2(37, 52));
+    CHECK(rects[0].end_px == glm::uvec2(59, 64));
+    CHECK(rectOf({2.0f, 0.0f, 2.0f}, {3.0f, 1.0f, 2.0f}).empty());
+    CHECK(rectOf({-1.0f, -1.0f, -3.0f}, {1.0f, 1.0f, 0.1f}).empty());
+}
+
+TEST_CASE("more changes than a picture takes are joined, and none is lost") {
+    const Eye eye = test::makeEye({256, 256});
+    std::vector<SceneChange> boxes;
+    for (int i = 0; i < 1000; ++i) {
+        const float x = -2.0f + 0.004f * static_cast<float>(i);
+        boxes.push_back({{x, -0.1f, 2.0f}, {x + 0.001f, 0.1f, 2.0f}, i % 7 == 0 ? 1.0f : 0.5f});
+    }
+    const auto rects = rectsOf(boxes, eye, 0.2);
+    CHECK(rects.size() <= kMostChanges);
+    for (const SceneChange& box : boxes) {
+        const auto alone = rectsOf({&box, 1}, eye, 0.2);
+        if (alone.empty()) { continue; }
+        CHECK(std::ranges::any_of(rects, [&](const gpu::ChangedRect& rect) {
+            return glm::all(glm::lessThanEqual(rect.begin_px, alone[0].begin_px)) &&
+                   glm::all(glm::greaterThanEqual(rect.end_px, alone[0].end_px)) && rect.error >= alone[0].error;
+        }));
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu, "mark_changed gives the twin's errors") {
+    for (const glm::uvec2 size_px : {glm::uvec2(16, 16), glm::uvec2(200, 150), glm::uvec2(333, 47)}) {
+        Eye eye = test::makeOddEye(size_px);
+        std::mt19937 random(2);
+        const glm::uvec2 size_tiles = tilesOf(size_px);
+        std::vector<gpu::PastTile> tiles(std::size_t{size_tiles.x} * size_tiles.y);
+        std::vector<reference::PastTile> twin;
+        for (gpu::PastTile& tile : tiles) {
+            tile = {.cost = static_cast<gpu::uint>(random() % 100),
+                    .age = static_cast<gpu::uint>(random() % 10),
+                    .growth = 0.25f,
+                    .errors = {},
+                    .grown = {}};
+            for (int q = 0; q < 4; ++q) { tile.errors[q] = static_cast<float>(random() % 512) / 2048.0f; }
+            twin.push_back(test::tileOf(tile));
+        }
+        const std::vector<gpu::ChangedRect> rects = rectsOf(boxesAbout(eye, 60, 3), eye, 0.2);
+        REQUIRE(rects.size() >= 3);
+        std::vector<reference::ChangedRect> twin_rects;
+        for (const gpu::ChangedRect& rect : rects) { twin_rects.push_back({rect.begin_px, rect.end_px, static_cast<double>(rect.error)}); }
+        reference::markChanged(twin, size_px, twin_rects);
+        const Buffer tile_buffer = upload("tiles", tiles), rect_buffer = upload("rects", rects);
+        const gpu::MarkChangedPass pass{.tiles = tile_buffer.address<gpu::PastTile>(),
+                                        .rects = rect_buffer.address<gpu::ChangedRect>(),
+                                        .size_tiles = size_tiles,
+                                        .count = static_cast<gpu::uint>(rects.size())};
+        const Kernel& kernel = this->kernel(MarkChangedKernel{});
+        run([&](Commands& commands) { commands.dispatchOver(kernel, pass, tiles.size(), gpu::kWarpGroup); });
+        const auto marked = readBack<gpu::PastTile>(tile_buffer, tiles.size());
+        std::size_t changed = 0;
+        for (std::size_t t = 0; t < tiles.size(); ++t) {
+            CHECK(marked[t].cost == tiles[t].cost);
+            CHECK(marked[t].age == tiles[t].age);
+            for (int q = 0; q < 4; ++q) {
+                REQUIRE(std::abs(static_cast<double>(marked[t].errors[q]) - twin[t].errors[static_cast<std::size_t>(q)]) < 1e-5);
+                changed += marked[t].errors[q] != tiles[t].errors[q] ? 1 : 0;
+            }
+        }
+        CHECK(changed > 0);
+    }
 }
 
 }  // namespace past_passes_test

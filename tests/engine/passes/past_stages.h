@@ -33,19 +33,15 @@ inline EyeOnDevice readEye(Gpu& gpu, StereoFrame& frame, int index, const Eye& e
     const Picture& picture = frame.picture(index);
     EyeOnDevice read{{eye, {}, {}, {}}, {}, {}, {}};
     const std::size_t pixels = std::size_t{eye.size_px.x} * eye.size_px.y;
-    if (picture.half_floats) {
-        for (const gpu::uvec2& c : gpu.readBack<gpu::uvec2>(picture.colours, pixels)) {
-            read.past.rgba.emplace_back(glm::unpackHalf2x16(c.x), glm::unpackHalf2x16(c.y));
-        }
-    } else {
-        for (const gpu::vec4& colour : gpu.readBack<gpu::vec4>(picture.colours, pixels)) { read.past.rgba.emplace_back(colour); }
+    for (const gpu::vec4& colour : picture.half_floats ? unpackHalves(gpu.readBack<gpu::uvec2>(picture.colours, pixels))
+                                                       : gpu.readBack<gpu::vec4>(picture.colours, pixels)) {
+        read.past.rgba.emplace_back(colour);
     }
     for (const gpu::uint word : gpu.readBack<gpu::uint>(picture.words, pixels)) {
         const reference::Arrival held = unpackArrival(word);
         read.past.pixels.push_back(word == 0 ? std::nullopt : std::optional(reference::MovingPixel{held.inverse_depth, held.spread}));
     }
-    const glm::uvec2 tiles = tilesOf(eye.size_px);
-    const std::size_t count = std::size_t{tiles.x} * tiles.y;
+    const std::size_t count = tileCount(eye.size_px);
     for (const gpu::PastTile& tile : gpu.readBack<gpu::PastTile>(picture.tiles, count)) { read.past.tiles.push_back(tileOf(tile)); }
     if (const WarpBuffers* chosen = frame.chosenTiles(index)) {
         const auto array = [&](gpu::DeviceAddress<gpu::uint> at) {
@@ -70,12 +66,7 @@ struct WalkSettings {
 class PastWalk {
 public:
     PastWalk(Gpu& gpu, const ViewedScene& view, WalkSettings settings = {})
-        : gpu_(gpu),
-          view_(view),
-          settings_(std::move(settings)),
-          scene_(gpu.context(), view.scene),
-          frame_(gpu.context(), scene_),
-          kept_(gpu.context(), frame_) {}
+        : gpu_(gpu), view_(view), settings_(std::move(settings)), scene_(gpu.context(), view.scene), frame_(gpu.context(), scene_) {}
 
     void go(double step, double budget) {
         Eye eye = view_.eye;
@@ -89,10 +80,9 @@ public:
     }
     // What `predicted` makes of the last frame's eyes.
     std::array<Image, 2> predicted(double budget) {
-        StereoFrame frame(gpu_.context(), scene_);
-        const KeptKernels kept(gpu_.context(), frame);
+        KeptFrame frame(gpu_.context(), scene_);
         frame.render(eyes_, settingsOf(Mode::kPredicted, budget));
-        return {frame.readPicture(kLeft), frame.readPicture(kRight)};
+        return picturesOf(frame);
     }
     EyeOnDevice read(int eye) { return readEye(gpu_, frame_, eye, eyes_[static_cast<std::size_t>(eye)]); }
     // Of the left eye.
@@ -115,8 +105,7 @@ private:
     const ViewedScene& view_;
     WalkSettings settings_;
     GpuScene scene_;
-    StereoFrame frame_;
-    KeptKernels kept_;
+    KeptFrame frame_;
     std::array<Eye, 2> eyes_;
 };
 

@@ -1,12 +1,14 @@
-// Facts about which tiles are rendered again, on scenes made so that the cause is known: holes at depth steps, pixels of two
-// depths, and splats that only the affiliated eye sees.
+// Facts about which tiles are rendered again, on scenes made so that the cause is known: holes at depth steps, pixels of two depths, and
+// splats that only the affiliated eye sees; where moving pays, and where it is known where the eye looks.
 #include "engine/picture/metrics.h"
 #include "tests/engine/frame/affiliated_frames.h"
 #include "tests/engine/frame/frame_runs.h"
+#include "tests/engine/passes/stereo_cases.h"
 
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 
 TEST_SUITE_BEGIN("patching");
 
@@ -14,6 +16,7 @@ namespace patching_test {
 
 using namespace binosplat;
 using test::AffiliatedFrame;
+using test::countOf;
 using test::Gpu;
 using test::makeAffiliated;
 using test::Splat;
@@ -38,7 +41,7 @@ struct Outcome {
 class Scenery {
 public:
     Scenery(Gpu& gpu, const Scene& scene, const std::array<Eye, 2>& eyes, Side dominant = kLeft)
-        : scene_(gpu.context(), scene), frame_(gpu.context(), scene_), eyes_(eyes), dominant_(dominant) {
+        : frame_(gpu.context(), scene), eyes_(eyes), dominant_(dominant) {
         full_ = makeAffiliated(frame_, eyes, makeSettings(Mode::kShared, dominant)).pictures[1 - dominant];
     }
 
@@ -49,10 +52,10 @@ public:
         return {std::move(made), psnr_db};
     }
     Outcome render(Mode mode) { return render(makeSettings(mode)); }
+    [[nodiscard]] const Image& full() const { return full_; }
 
 private:
-    GpuScene scene_;
-    StereoFrame frame_;
+    test::KeptFrame frame_;
     std::array<Eye, 2> eyes_;
     Side dominant_;
     Image full_;
@@ -101,39 +104,46 @@ std::size_t countLeft(const AffiliatedFrame& frame, gpu::uint pixel_class, glm::
 }
 
 // How much the third source of error gains at one and the same budget.
-void checkNewcomers(Scenery& scenery, double budget) {
+void checkNewcomers(Gpu& gpu, const std::vector<Splat>& splats, const std::array<Eye, 2>& eyes, Side dominant, double budget) {
+    Scenery scenery(gpu, test::makeScene(splats), eyes, dominant);
     FrameSettings settings = makeSettings(Mode::kPredicted);
     settings.stereo.budget = budget;
     const Outcome with = scenery.render(settings);
     settings.stereo.newcomer_error = 0.0;
     const Outcome without = scenery.render(settings);
-    MESSAGE("newcomers " << with.made.result.counters.named().at("splats_newcomers") << ", tiles "
-                         << with.made.result.counters.named().at("tiles_patched") << " and "
-                         << without.made.result.counters.named().at("tiles_patched") << ": " << without.psnr_db << " dB without, "
-                         << with.psnr_db << " dB with");
-    CHECK(with.made.result.counters.named().at("splats_newcomers") > 0);
+    CHECK(countOf(with.made.result, "splats_newcomers") > 0);
     CHECK(with.psnr_db >= without.psnr_db + 3.0);
 }
 
+// From where an eye looks to the middle of a tile.
+double angleOf(const Eye& eye, std::size_t tile, const Gaze& gaze) {
+    const Intrinsics& lens = eye.intrinsics;
+    const std::size_t columns = (eye.size_px.x + 15) / 16;
+    const glm::dvec2 middle_px = 16.0 * glm::dvec2(tile % columns, tile / columns) + 8.0;
+    const glm::dvec3 ray((middle_px.x - lens.cx) / lens.fx, (middle_px.y - lens.cy) / lens.fy, 1.0);
+    return std::acos(std::clamp(glm::dot(glm::normalize(ray), glm::normalize(gaze.direction)), -1.0, 1.0));
+}
+
+// Of the right eye's tiles that lie where it looks.
+double psnrNear(const Image& made, const Image& full, const Eye& eye, const Gaze& gaze) {
+    std::vector<std::uint32_t> near;
+    for (std::size_t t = 0; t < test::tileCount(eye.size_px); ++t) { near.push_back(angleOf(eye, t, gaze) <= gaze.clear_rad ? 1 : 0); }
+    return compare(test::keepTiles(made, near), test::keepTiles(full, near)).psnrDb();
+}
+
+bool isChosen(const AffiliatedFrame& made, std::size_t tile) { return made.tile_kinds[tile] == gpu::kTilePredicted; }
+
 }  // namespace
 
-TEST_CASE_FIXTURE(Gpu, "near splats beyond the dominant eye's border are found without a hole to show them") {
+TEST_CASE_FIXTURE(Gpu, "splats beyond the dominant eye's border and behind its near plane are found without a hole to show them") {
     // 0.25 before eyes 0.064 apart, 57 px of disparity: what one eye sees in its columns 210 to 238, the other has beyond 256.
     for (const Side dominant : {kLeft, kRight}) {
         CAPTURE(static_cast<int>(dominant));
         std::vector<Splat> splats;
         addWall(splats, 8.0f, 5.6f, 0.07f);
-        if (dominant == kLeft) {
-            addVeil(splats, 0.25f, 0.032f, 214, 239);
-        } else {
-            addVeil(splats, 0.25f, -0.032f, 18, 43);
-        }
-        Scenery scenery(*this, test::makeScene(splats), parallelEyes(0.064), dominant);
-        checkNewcomers(scenery, 0.15);
+        addVeil(splats, 0.25f, dominant == kLeft ? 0.032f : -0.032f, dominant == kLeft ? 214 : 18, dominant == kLeft ? 239 : 43);
+        checkNewcomers(*this, splats, parallelEyes(0.064), dominant, 0.15);
     }
-}
-
-TEST_CASE_FIXTURE(Gpu, "splats that the dominant eye's near plane cuts off are found") {
     // The axes are turned outwards, so that what is to the right of the middle is nearer for the left eye. A sixth of the right
     // eye's picture is beyond the left one's border, too, and is rendered again first.
     std::array<Eye, 2> eyes = parallelEyes(0.064);
@@ -148,19 +158,17 @@ TEST_CASE_FIXTURE(Gpu, "splats that the dominant eye's near plane cuts off are f
     std::erase_if(splats, [&](const Splat& splat) { return depthFor(kLeft, splat) > 0.199 || depthFor(kRight, splat) < 0.201; });
     REQUIRE(splats.size() > 50);
     addWall(splats, 8.0f, 8.4f, 0.07f);
-    Scenery scenery(*this, test::makeScene(splats), eyes);
-    checkNewcomers(scenery, 0.4);
-}
-
-TEST_CASE_FIXTURE(Gpu, "what both eyes see is no newcomer") {
-    std::vector<Splat> splats;
+    checkNewcomers(*this, splats, eyes, kLeft, 0.4);
+    // What both eyes see is no newcomer.
+    splats.clear();
     addWall(splats, 8.0f, 3.5f, 0.07f);
     addVeil(splats, 0.4f, 0.032f, 60, 200);
-    Scenery scenery(*this, test::makeScene(splats), parallelEyes(0.064));
-    CHECK(scenery.render(Mode::kPredicted).made.result.counters.named().at("splats_newcomers") == 0);
+    Scenery both(*this, test::makeScene(splats), parallelEyes(0.064));
+    CHECK(countOf(both.render(Mode::kPredicted).made.result, "splats_newcomers") == 0);
 }
 
-TEST_CASE_FIXTURE(Gpu, "a near edge uncovers holes beside it; centre ROIs render all of them again") {
+TEST_CASE_FIXTURE(
+    Gpu, "a near edge uncovers holes beside it; centre ROIs leave none, and every patch brings the picture nearer to the full render") {
     // A screen 1 from eyes 0.12 apart ends at x = -0.05, 4 before a wall: 26.6 px of disparity against 6.7.
     std::vector<Splat> splats;
     addWall(splats, 4.0f, 3.5f, 0.05f);
@@ -169,63 +177,47 @@ TEST_CASE_FIXTURE(Gpu, "a near edge uncovers holes beside it; centre ROIs render
             splats.push_back({{x, y, 1.0f}, {1, 0, 0, 0}, glm::vec2(0.008f), 0.97f, glm::vec3(0.7f)});
         }
     }
-    for (const Side dominant : {kLeft, kRight}) {
-        CAPTURE(static_cast<int>(dominant));
-        Scenery scenery(*this, test::makeScene(splats), parallelEyes(0.12), dominant);
-        const Outcome filled = scenery.render(Mode::kReproject);
-        // Where the affiliated eye sees the edge that the far wall comes out from: the right one to the right eye, the left to the left.
-        const double edge_px = dominant == kLeft ? 128.0 + 222.0 * (-0.05 - 0.06) : 128.0 + 222.0 * (-0.45 + 0.06);
-        std::size_t beside = 0, elsewhere = 0;
-        for (std::size_t i = 0; i < filled.made.pixel_classes.size(); ++i) {
-            const double x = static_cast<double>(i % 256) + 0.5;
-            if (filled.made.pixel_classes[i] == gpu::kHole && x > 16.0 && x < 240.0) {
-                (std::abs(x - edge_px) < 28.0 ? beside : elsewhere) += 1;
+    const auto fence = test::viewBuiltin("builtin:fence", kSizePx);
+    for (const bool bars : {false, true}) {
+        for (const Side dominant : {kLeft, kRight}) {
+            INFO("bars ", bars, ", dominant ", static_cast<int>(dominant));
+            Scenery scenery(*this, bars ? fence.scene : test::makeScene(splats), bars ? stereoPair(fence.eye, 0.12) : parallelEyes(0.12),
+                            dominant);
+            const Outcome filled = scenery.render(Mode::kReproject);
+            FrameSettings settings = makeSettings(Mode::kPaper);
+            settings.stereo.margin_px = 0;
+            const Outcome edges = scenery.render(settings);
+            settings.stereo.center_rois = true;
+            const Outcome centers = scenery.render(settings);
+            settings.mode = Mode::kPredicted;
+            settings.stereo.budget = 0.25;
+            const Outcome predicted = scenery.render(bars ? makeSettings(Mode::kPredicted) : settings);
+            CHECK(countLeft(centers.made, gpu::kHole, kSizePx) == 0);
+            CHECK(predicted.psnr_db > filled.psnr_db + (bars ? 0.0 : 3.0));
+            if (bars) {
+                CHECK(edges.psnr_db > filled.psnr_db);
+                CHECK(centers.psnr_db > edges.psnr_db);
+                continue;
             }
+            // Where the affiliated eye sees the edge that the far wall comes out from: the right one to the right eye, the left to the
+            // left.
+            const double edge_px = dominant == kLeft ? 128.0 + 222.0 * (-0.05 - 0.06) : 128.0 + 222.0 * (-0.45 + 0.06);
+            std::size_t beside = 0, elsewhere = 0;
+            for (std::size_t i = 0; i < filled.made.pixel_classes.size(); ++i) {
+                const double x = static_cast<double>(i % 256) + 0.5;
+                if (filled.made.pixel_classes[i] == gpu::kHole && x > 16.0 && x < 240.0) {
+                    (std::abs(x - edge_px) < 28.0 ? beside : elsewhere) += 1;
+                }
+            }
+            CHECK(beside >= 256 * 10);
+            CHECK(beside <= 256 * 20);
+            CHECK(elsewhere == 0);
+            CHECK(countKind(edges.made, gpu::kTileCenter) == 0);
+            CHECK(countKind(centers.made, gpu::kTileCenter) > 0);
+            CHECK(countKind(centers.made, gpu::kTileEdge) == countKind(edges.made, gpu::kTileEdge));
+            CHECK(centers.psnr_db >= edges.psnr_db + 3.0);
+            CHECK(countLeft(predicted.made, gpu::kHole, kSizePx) == 0);
         }
-        CHECK(beside >= 256 * 10);
-        CHECK(beside <= 256 * 20);
-        CHECK(elsewhere == 0);
-
-        FrameSettings settings = makeSettings(Mode::kPaper);
-        settings.stereo.margin_px = 0;
-        const Outcome edges = scenery.render(settings);
-        CHECK(countKind(edges.made, gpu::kTileCenter) == 0);
-        settings.stereo.center_rois = true;
-        const Outcome centers = scenery.render(settings);
-        CHECK(countKind(centers.made, gpu::kTileCenter) > 0);
-        CHECK(countKind(centers.made, gpu::kTileEdge) == countKind(edges.made, gpu::kTileEdge));
-        CHECK(countLeft(centers.made, gpu::kHole, kSizePx) == 0);
-        CHECK(centers.psnr_db >= edges.psnr_db + 3.0);
-        settings.mode = Mode::kPredicted;
-        settings.stereo.budget = 0.25;
-        const Outcome predicted = scenery.render(settings);
-        CHECK(countLeft(predicted.made, gpu::kHole, kSizePx) == 0);
-        CHECK(predicted.psnr_db >= filled.psnr_db + 3.0);
-        MESSAGE("screen, dominant " << static_cast<int>(dominant) << ": " << beside << " hole pixels; reproject " << filled.psnr_db
-                                    << ", edges " << edges.psnr_db << ", centres " << centers.psnr_db << " dB with "
-                                    << centers.made.result.counters.named().at("tiles_patched") << " tiles; predicted " << predicted.psnr_db
-                                    << " dB with " << predicted.made.result.counters.named().at("tiles_patched") << " tiles");
-    }
-}
-
-TEST_CASE_FIXTURE(Gpu, "bars of a fence: centre ROIs leave no hole, and every patch brings the picture nearer to the full render") {
-    const auto view = test::viewBuiltin("builtin:fence", kSizePx);
-    for (const Side dominant : {kLeft, kRight}) {
-        CAPTURE(static_cast<int>(dominant));
-        Scenery scenery(*this, view.scene, stereoPair(view.eye, 0.12), dominant);
-        FrameSettings settings = makeSettings(Mode::kPaper);
-        settings.stereo.margin_px = 0;
-        const double filled_db = scenery.render(Mode::kReproject).psnr_db, edges_db = scenery.render(settings).psnr_db;
-        settings.stereo.center_rois = true;
-        const Outcome centers = scenery.render(settings), predicted = scenery.render(Mode::kPredicted);
-        CHECK(countLeft(centers.made, gpu::kHole, kSizePx) == 0);
-        CHECK(edges_db > filled_db);
-        CHECK(centers.psnr_db > edges_db);
-        CHECK(predicted.psnr_db > filled_db);
-        MESSAGE("fence, dominant " << static_cast<int>(dominant) << ": reproject " << filled_db << ", edges " << edges_db << ", centres "
-                                   << centers.psnr_db << " dB with " << centers.made.result.counters.named().at("tiles_patched")
-                                   << " tiles; predicted " << predicted.psnr_db << " dB with "
-                                   << predicted.made.result.counters.named().at("tiles_patched") << " tiles");
     }
 }
 
@@ -236,18 +228,13 @@ TEST_CASE_FIXTURE(Gpu, "pixels that blend two depths are rendered again first") 
     sparse.stereo.budget = 0.1;  // with more, moving would not pay in so thin a scene
     const Outcome moved = scenery.render(Mode::kReproject), predicted = scenery.render(sparse);
     CHECK(countKind(predicted.made, gpu::kTilePredicted) > 0);
-    MESSAGE("two layers: " << moved.psnr_db << " dB, predicted " << predicted.psnr_db << " dB with "
-                           << countKind(predicted.made, gpu::kTilePredicted) << " tiles");
     CHECK(predicted.psnr_db >= moved.psnr_db + 1.0);
     // Whether the pixel's depth is the mean disparity decides how far off the picture is.
     FrameSettings settings = makeSettings(Mode::kReproject);
-    settings.stereo.depth_choice = gpu::kDepthSum;
-    const double sum_db = scenery.render(settings).psnr_db;
-    settings.stereo.depth_choice = gpu::kDepthMean;
-    const double mean_db = scenery.render(settings).psnr_db;
-    MESSAGE("depth as sum " << sum_db << ", mean " << mean_db << ", inverse " << moved.psnr_db << " dB");
-    CHECK(moved.psnr_db >= mean_db);
-    CHECK(moved.psnr_db >= sum_db);
+    for (const gpu::uint choice : {gpu::kDepthSum, gpu::kDepthMean}) {
+        settings.stereo.depth_choice = choice;
+        CHECK(moved.psnr_db >= scenery.render(settings).psnr_db);
+    }
 }
 
 TEST_CASE_FIXTURE(Gpu, "where moving did not pay the next frame leaves it out and loses nothing, until it would pay again") {
@@ -256,7 +243,7 @@ TEST_CASE_FIXTURE(Gpu, "where moving did not pay the next frame leaves it out an
     std::array<Eye, 2> outside = eyes;
     for (Eye& eye : outside) { eye.world_from_camera.position += eye.world_from_camera.orientation * glm::dvec3(0, 0, 1000); }
     const GpuScene scene(context(), view.scene);
-    StereoFrame frame(context(), scene), plain(context(), scene);
+    test::KeptFrame frame(context(), scene), plain(context(), scene);
     const auto render = [&](const std::array<Eye, 2>& of, double budget = 0.22) {
         FrameSettings settings = makeSettings(Mode::kPredicted);
         settings.stereo.budget = budget;
@@ -268,7 +255,7 @@ TEST_CASE_FIXTURE(Gpu, "where moving did not pay the next frame leaves it out an
     const auto isWhole = [&](const AffiliatedFrame& made, const std::array<Eye, 2>& of) {
         const AffiliatedFrame shared = makeAffiliated(plain, of, makeSettings(Mode::kShared));
         CHECK(countKind(made, gpu::kTileCheap) == made.tile_kinds.size());
-        CHECK(made.result.counters.named().at("tiles_patched") == made.tile_kinds.size());
+        CHECK(countOf(made.result, "tiles_patched") == made.tile_kinds.size());
         CHECK(made.result.tiles_rendered == 1.0);
         CHECK(made.result.work_rendered == 1.0);
         return made.pictures[kLeft].values == shared.pictures[kLeft].values &&
@@ -283,11 +270,42 @@ TEST_CASE_FIXTURE(Gpu, "where moving did not pay the next frame leaves it out an
     CHECK_FALSE(reprojects(first));
     CHECK(isWhole(first, eyes));
     CHECK(reprojects(second));
-    CHECK(second.result.counters.named().at("tiles_weighed_as_moved") > 0);
+    CHECK(countOf(second.result, "tiles_weighed_as_moved") > 0);
     CHECK(second.result.work_rendered < 0.5);
     // Whoever asks for something else is answered at once.
     CHECK_FALSE((render(outside), reprojects(render(outside))));
     CHECK(reprojects(render(eyes, 0.1)));
+}
+
+TEST_CASE_FIXTURE(
+    Gpu, "where it is known where the eye looks fewer tiles are rendered again, none less about that place, and it is as good there") {
+    for (const double canting_rad : {0.0, glm::radians(5.0)}) {
+        const auto view = test::viewBuiltin("builtin:atelier", {384, 320}, 40000);
+        const auto eyes = test::headsetEyes(view.eye, canting_rad);
+        Scenery room(*this, view.scene, eyes);
+        FrameSettings settings = makeSettings(Mode::kPredicted);
+        settings.stereo.budget = 0.22;
+        const AffiliatedFrame everywhere = room.render(settings).made;
+        for (const glm::dvec3 direction : {glm::dvec3(0.0, 0.0, 1.0), glm::dvec3(-0.35, 0.2, 1.0)}) {
+            INFO("canting rad ", canting_rad, ", direction.x ", direction.x);
+            const Gaze gaze{direction, glm::radians(10.0)};
+            settings.gazes[kRight] = gaze;
+            const AffiliatedFrame there = room.render(settings).made;
+            for (std::size_t t = 0; t < there.tile_kinds.size(); ++t) {
+                const bool near = angleOf(eyes[kRight], t, gaze) <= gaze.clear_rad;
+                if (isChosen(there, t) != isChosen(everywhere, t)) { CHECK(near == isChosen(there, t)); }
+            }
+            CHECK(countOf(there.result, "tiles_predicted") < countOf(everywhere.result, "tiles_predicted"));
+            CHECK(countOf(there.result, "work_patched") < countOf(everywhere.result, "work_patched"));
+            CHECK(psnrNear(there.pictures[kRight], room.full(), eyes[kRight], gaze) >=
+                  psnrNear(everywhere.pictures[kRight], room.full(), eyes[kRight], gaze));
+        }
+        // One that may look everywhere gets the picture of one of which nothing is known.
+        settings.gazes[kRight] = Gaze{{0.0, 0.0, 1.0}, 1.6};
+        const AffiliatedFrame clear = room.render(settings).made;
+        CHECK(clear.tile_kinds == everywhere.tile_kinds);
+        CHECK(clear.pictures[kRight].values == everywhere.pictures[kRight].values);
+    }
 }
 
 }  // namespace patching_test

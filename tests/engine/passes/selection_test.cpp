@@ -1,13 +1,13 @@
-// Facts about price and select: prices, the dearest errors up to a budget, held to a plain sort, and the lists and masks that patching goes
-// by.
-#include "tests/engine/passes/stereo_cases.h"
-#include "tests/engine/passes/stereo_stages.h"
+// Facts about price and select: the dearest errors up to a budget, of tiles that are moved and of tiles with a past, wherever an eye looks,
+// as the twin has them, and the lists and masks that patching goes by.
+#include "engine/passes/past_passes.h"
+#include "tests/engine/passes/past_stages.h"
 
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <bit>
-#include <numeric>
+#include <array>
+#include <cmath>
 #include <random>
 
 TEST_SUITE_BEGIN("selection");
@@ -17,7 +17,7 @@ namespace selection_test {
 using namespace binosplat;
 using reference::TileKind;
 using test::Gpu;
-using test::StereoOnDevice;
+using test::kErrorSteps;
 
 namespace {
 
@@ -25,33 +25,21 @@ constexpr std::size_t kVisible = 12345;
 // Of a whole picture, so that a budget of any number of pairs is exact in single precision.
 constexpr gpu::uint kPictureCost = 1u << 24;
 
-// Tiles as resample and weigh leave them.
+// What the choice reads of an eye's tiles: errors and costs as resample and weigh leave them, or their past.
 struct Tiles {
     glm::uvec2 size{0, 0};
     std::vector<gpu::uint> kinds, errors, costs;
+    std::vector<gpu::PastTile> past;
 
-    explicit Tiles(glm::uvec2 size_tiles) : size(size_tiles), kinds(count(), 0), errors(count(), 0), costs(count(), 100) {}
-    [[nodiscard]] std::size_t count() const { return std::size_t{size.x} * size.y; }
-    // Above this, newcomers's sums stop growing.
-    [[nodiscard]] gpu::uint errorOf(std::size_t t) const { return kinds[t] == 0 ? std::min(errors[t], 0x7fffffffu) : 0; }
-    // -1: none. Plainly as the device does it: a float's exponent and four bits.
-    [[nodiscard]] int binOf(std::size_t t) const {
-        if (errorOf(t) == 0) { return -1; }
-        const float per_pair = static_cast<float>(errorOf(t)) / static_cast<float>(costs[t]);
-        return std::clamp(static_cast<int>(std::bit_cast<gpu::uint>(per_pair) >> 19) - (104 << 4), 0, 1023);
-    }
-    [[nodiscard]] std::uint64_t costOfErrors() const {
-        std::uint64_t cost = 0;
-        for (std::size_t t = 0; t < count(); ++t) { cost += errorOf(t) > 0 ? costs[t] : 0; }
-        return cost;
-    }
+    explicit Tiles(glm::uvec2 size_tiles)
+        : size(size_tiles), kinds(std::size_t{size.x} * size.y, 0), errors(count(), 0), costs(count(), 100) {}
+    [[nodiscard]] std::size_t count() const { return kinds.size(); }
 };
 
 // Division may be off by a few roundings, so that prices are not as good as on the border of two bins.
-bool isOnBorder(gpu::uint error, gpu::uint cost) {
-    if (error == 0) { return false; }
-    const double per_pair = static_cast<double>(error) / cost;
-    const double sixteenths = std::ldexp(per_pair, 4 - std::ilogb(per_pair));
+bool isOnBorder(double steps, double cost) {
+    if (steps < 1.0) { return false; }
+    const double sixteenths = std::ldexp(steps / cost, 4 - std::ilogb(steps / cost));
     return std::abs(sixteenths - std::round(sixteenths)) < 1e-4;
 }
 
@@ -68,103 +56,245 @@ Tiles drawTiles(glm::uvec2 size, std::mt19937& random, unsigned marked_percent =
     return tiles;
 }
 
-StereoOnDevice toDevice(Gpu& gpu, const Tiles& tiles, std::uint64_t budget_cost, gpu::uint picture_cost = kPictureCost) {
-    gpu::WarpView view{};
-    view.size_px = {16 * tiles.size.x, 1};
-    view.size_tiles = tiles.size;
-    view.budget = static_cast<float>(static_cast<double>(budget_cost) / kPictureCost);
-    StereoOnDevice device(gpu, view, {}, {});
-    device.writeTileKinds(tiles.kinds);
-    device.writeTileErrors(tiles.errors);
-    device.writeTileCosts(tiles.costs);
-    gpu::WarpCounters counters{};
-    counters.moves = 1;
-    counters.picture_cost = picture_cost;
-    device.writeCounters(counters);
-    return device;
+Tiles drawPast(glm::uvec2 size, std::mt19937& random) {
+    Tiles drawn(size);
+    const auto draw = [&] { return static_cast<float>(random() >> 8) / 16777216.0f; };
+    for (gpu::uint& kind : drawn.kinds) {
+        gpu::PastTile tile{};
+        tile.cost = static_cast<gpu::uint>(random() % 3 == 0 ? random() % 5000 : random() % 40);
+        tile.age = static_cast<gpu::uint>(random() % (random() % 4 == 0 ? 500 : 6));
+        const bool is_still = random() % 8 == 0;  // as it is before a still head
+        tile.growth = is_still || random() % 3 == 0 ? 0.0f : 0.02f * draw();
+        for (int q = 0; q < 4; ++q) {
+            tile.errors[q] = is_still || random() % 4 == 0 ? 0.0f : 0.2f * std::pow(draw(), 6.0f);
+            tile.grown[q] = is_still || random() % 4 == 0 ? 0 : static_cast<gpu::uint>(random()) >> (4 + random() % 28);
+        }
+        drawn.past.push_back(tile);
+        kind = random() % 12 == 0 ? gpu::kTileHidden : 0;
+    }
+    return drawn;
 }
 
-// That the lists and the mask say what the kinds say.
-void checkLists(const StereoOnDevice::Selected& selected, const std::vector<gpu::uint>& kinds, glm::uvec2 size) {
+struct How {
+    double budget = 0.0;                    // a share of the cost
+    gpu::uint picture_cost = kPictureCost;  // without a past
+    bool predicted = true, moves = true;
+    Eye seen = {};  // all eyes are like this one, if it is known where they look
+    std::optional<Gaze> gaze = {};
+};
+How withCost(std::uint64_t budget_cost) { return {.budget = static_cast<double>(budget_cost) / kPictureCost}; }
+
+// What the device makes of an eye's tiles, those of the list sorted.
+struct Chosen {
+    std::vector<gpu::uint> kinds, errors, costs, prices, bins, list, mask;
+    std::vector<gpu::PastTile> past;
+    gpu::WarpCounters counters;
+    gpu::ListState masked_tiles, masked_visible;
+};
+
+// price and select, of one eye or of two under one budget.
+std::vector<Chosen> chooseOnDevice(Gpu& gpu, const std::vector<Tiles>& eyes, const How& how) {
+    struct Buffers {
+        Buffer view, kinds, costs, errors, prices, list, mask, lists, counters, past;
+        std::uint32_t groups;
+    };
+    const bool has_past = !eyes[0].past.empty();
+    std::vector<Buffers> buffers;
+    for (const Tiles& eye : eyes) {
+        gpu::WarpView view{};
+        view.size_px = how.gaze ? how.seen.size_px : 16u * eye.size;
+        view.size_tiles = eye.size;
+        view.budget = static_cast<float>(how.budget);
+        gpu::WarpCounters counters{};
+        counters.moves = how.moves && !has_past ? 1 : 0;
+        counters.picture_cost = how.moves && !has_past ? how.picture_cost : 0;
+        const std::vector<gpu::uint> zeros(eye.count(), 0);
+        buffers.push_back({gpu.upload("view", std::vector{view}), gpu.upload("kinds", eye.kinds), gpu.upload("costs", eye.costs),
+                           gpu.upload("errors", eye.errors), gpu.upload("prices", zeros), gpu.upload("list", zeros),
+                           gpu.upload("mask", std::vector<gpu::uint>(std::size_t{(eye.size.x + 31) / 32} * eye.size.y, 0)),
+                           gpu.upload("lists", std::vector{test::makeList(kVisible), gpu::ListState{}, gpu::ListState{}}),
+                           gpu.upload("counters", std::vector{counters}), gpu.upload("past", eye.past),
+                           static_cast<std::uint32_t>((eye.count() + gpu::kWarpGroup - 1) / gpu::kWarpGroup)});
+    }
+    const Buffer bins = gpu.upload("bins", std::vector<gpu::uint>(gpu::kPriceBins, 0));
+    const auto listAt = [](const Buffers& of, std::uint64_t i) { return of.lists.address<gpu::ListState>(i * sizeof(gpu::ListState)); };
+    const Kernel &price = gpu.kernel(PriceKernel{.foveated = how.gaze.has_value(), .past = has_past}),
+                 &select = gpu.kernel(SelectKernel{.predicted = how.predicted, .past = has_past});
+    const auto budget = buffers[0].counters.address<gpu::WarpCounters>();
+    gpu.run([&](Commands& commands) {
+        for (std::size_t e = 0; e < buffers.size() && how.predicted; ++e) {
+            const Buffers& of = buffers[e];
+            const gpu::PricePass pass{.warp = of.view.address<gpu::WarpView>(),
+                                      .tile_kinds = of.kinds.address<gpu::uint>(),
+                                      .tile_costs = of.costs.address<gpu::uint>(),
+                                      .tile_errors = of.errors.address<gpu::uint>(),
+                                      .tile_prices = of.prices.address<gpu::uint>(),
+                                      .price_bins = bins.address<gpu::uint>(),
+                                      .masked_tiles = listAt(of, 1),
+                                      .counters = of.counters.address<gpu::WarpCounters>(),
+                                      .budget = budget,
+                                      .past_tiles = has_past ? of.past.address<gpu::PastTile>() : gpu::DeviceAddress<gpu::PastTile>{},
+                                      .is_last = e + 1 == buffers.size() ? 1u : 0u,
+                                      .area = 1.0f,
+                                      .gaze = how.gaze ? eyeGazeOf(*how.gaze, how.seen.intrinsics) : gpu::EyeGaze{}};
+            commands.dispatch(price, pass, of.groups, 1);
+        }
+        for (const Buffers& of : buffers) {
+            const gpu::SelectPass pass{.warp = of.view.address<gpu::WarpView>(),
+                                       .tile_kinds = of.kinds.address<gpu::uint>(),
+                                       .tile_prices = of.prices.address<gpu::uint>(),
+                                       .tile_list = of.list.address<gpu::uint>(),
+                                       .tile_mask = of.mask.address<gpu::uint>(),
+                                       .tile_costs = of.costs.address<gpu::uint>(),
+                                       .visible = listAt(of, 0),
+                                       .masked_tiles = listAt(of, 1),
+                                       .masked_visible = listAt(of, 2),
+                                       .counters = of.counters.address<gpu::WarpCounters>(),
+                                       .budget = budget};
+            commands.dispatch(select, pass, of.groups, 1);
+        }
+    });
+    std::vector<Chosen> chosen;
+    for (std::size_t e = 0; e < eyes.size(); ++e) {
+        const Buffers& of = buffers[e];
+        const std::size_t count = eyes[e].count();
+        const auto read = [&](const Buffer& buffer) { return gpu.readBack<gpu::uint>(buffer, count); };
+        const auto states = gpu.readBack<gpu::ListState>(of.lists, 3);
+        chosen.push_back({read(of.kinds), read(of.errors), read(of.costs), read(of.prices), gpu.readBack<gpu::uint>(bins, gpu::kPriceBins),
+                          gpu.readBack<gpu::uint>(of.list, std::min<std::size_t>(states[1].count, count)),
+                          gpu.readBack<gpu::uint>(of.mask, std::size_t{(eyes[e].size.x + 31) / 32} * eyes[e].size.y),
+                          gpu.readBack<gpu::PastTile>(of.past, eyes[e].past.size()), gpu.readBack<gpu::WarpCounters>(of.counters, 1)[0],
+                          states[1], states[2]});
+        std::ranges::sort(chosen.back().list);
+    }
+    return chosen;
+}
+
+// That the lists and the mask say what the kinds say, and the counters, if `counts`.
+void checkLists(const Chosen& chosen, glm::uvec2 size, bool counts = true) {
     std::vector<gpu::uint> list;
     std::vector<std::uint8_t> marked;
-    for (std::size_t t = 0; t < kinds.size(); ++t) {
-        marked.push_back(kinds[t] != 0 && kinds[t] != gpu::kTileHidden ? 1 : 0);
-        if (marked.back() != 0) { list.push_back(static_cast<gpu::uint>(t)); }
+    std::uint64_t cost = 0;
+    for (std::size_t t = 0; t < chosen.kinds.size(); ++t) {
+        marked.push_back(chosen.kinds[t] != 0 && chosen.kinds[t] != gpu::kTileHidden ? 1 : 0);
+        if (marked.back() == 0) { continue; }
+        list.push_back(static_cast<gpu::uint>(t));
+        cost += chosen.costs[t];
     }
-    CHECK(selected.tile_list == list);
-    CHECK(selected.tile_mask == test::maskOf(marked, size));
-    CHECK(selected.masked_tiles.needed == list.size());
-    CHECK(selected.masked_tiles.count == list.size());
-    CHECK(selected.masked_tiles.per_item.x * selected.masked_tiles.per_item.y * gpu::kGroupSize >= list.size());
+    CHECK(chosen.list == list);
+    CHECK(chosen.mask == test::maskOf(marked, size));
+    CHECK(chosen.masked_tiles.needed == list.size());
+    CHECK(chosen.masked_tiles.count == list.size());
+    CHECK(chosen.masked_tiles.groups_done == 0);
+    CHECK(chosen.masked_tiles.per_item.x * chosen.masked_tiles.per_item.y * gpu::kGroupSize >= list.size());
     // Where no tile is rendered, no splat is looked at.
-    CHECK(selected.masked_visible.count == (list.empty() ? 0 : kVisible));
-    CHECK(selected.masked_visible.per_item.x == (list.empty() ? 0 : (kVisible + gpu::kGroupSize - 1) / gpu::kGroupSize));
+    CHECK(chosen.masked_visible.count == (list.empty() ? 0 : kVisible));
+    CHECK(chosen.masked_visible.per_item.x == (list.empty() ? 0 : (kVisible + gpu::kGroupSize - 1) / gpu::kGroupSize));
+    if (!counts) { return; }
+    CHECK(chosen.counters.chosen_cost == cost);
+    CHECK(chosen.counters.predicted_tiles == std::ranges::count(chosen.kinds, gpu::kTilePredicted));
+    CHECK(chosen.counters.edge_tiles == std::ranges::count(chosen.kinds, gpu::kTileEdge));
+    CHECK(chosen.counters.cheap_tiles == std::ranges::count(chosen.kinds, gpu::kTileCheap));
 }
 
-void checkPrices(StereoOnDevice& device, const Tiles& tiles) {
-    const auto prices = device.readTilePrices(), bins = device.readBins();
-    std::vector<gpu::uint> expected, expected_bins(gpu::kPriceBins, 0);
-    for (std::size_t t = 0; t < tiles.count(); ++t) {
-        const int bin = tiles.binOf(t);
-        expected.push_back(bin < 0 ? 0 : static_cast<gpu::uint>(bin) << 22 | tiles.costs[t]);
-        if (bin >= 0) { expected_bins[static_cast<std::size_t>(bin)] += tiles.costs[t]; }
+// What the twin expects of an eye's tiles; errors are the device's, if they are the twin's but for rounding.
+struct Expected {
+    std::vector<TileKind> kinds;
+    std::vector<double> errors;
+    std::vector<std::uint64_t> costs;
+};
+Expected expectOf(const Tiles& eye, const Chosen& got) {
+    Expected expected{test::kindsOf(eye.kinds), {}, {eye.costs.begin(), eye.costs.end()}};
+    for (const gpu::uint error : eye.errors) { expected.errors.push_back(error / kErrorSteps); }
+    std::vector<reference::PastTile> twin;
+    for (const gpu::PastTile& tile : eye.past) { twin.push_back(test::tileOf(tile)); }
+    reference::growErrors(twin);
+    std::size_t other = 0;
+    for (std::size_t t = 0; t < twin.size(); ++t) {
+        const bool hidden = expected.kinds[t] == TileKind::kHidden, coarse = got.errors[t] == gpu::kSeenCoarsely;
+        const double error = hidden ? 0.0 : reference::worthOf(twin[t]);
+        expected.costs[t] = hidden ? 0 : reference::costOf(twin[t]);
+        for (std::size_t q = 0; q < 4; ++q) {
+            other += test::isNear(static_cast<double>(got.past[t].errors[static_cast<int>(q)]), twin[t].errors[q], 1e-6, 0.0) ? 0 : 1;
+        }
+        other += coarse || test::isNear(got.errors[t] / kErrorSteps, error, 1e-5, 1.0 / kErrorSteps) ? 0 : 1;
+        other += coarse || (got.errors[t] == 0) == (error == 0.0) ? 0 : 1;
+        other += got.costs[t] == expected.costs[t] ? 0 : 1;
+        expected.errors[t] = coarse ? error : got.errors[t] / kErrorSteps;
     }
-    CHECK(prices == expected);
-    CHECK(bins == expected_bins);
+    CHECK(other == 0);
+    return expected;
 }
 
-// Passes price and select against a sort, and against the twin.
-void checkSelection(Gpu& gpu, const Tiles& tiles, std::uint64_t budget_cost) {
-    CAPTURE(tiles.count());
-    CAPTURE(budget_cost);
-    StereoOnDevice device = toDevice(gpu, tiles, budget_cost);
-    device.price();
-    checkPrices(device, tiles);
-    const auto selected = device.select(true, kVisible);
-
-    std::vector<std::size_t> order(tiles.count());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::ranges::sort(
-        order, [&](std::size_t a, std::size_t b) { return tiles.binOf(a) != tiles.binOf(b) ? tiles.binOf(a) > tiles.binOf(b) : a < b; });
-    std::vector<gpu::uint> expected = tiles.kinds;
-    std::uint64_t spent = 0;
-    for (const std::size_t t : order) {
-        if (tiles.binOf(t) < 0) { break; }
-        spent += tiles.costs[t];
-        if (spent > budget_cost) { break; }
-        expected[t] = gpu::kTilePredicted;
+// The choice among tiles against the twin's.
+void checkChoice(Gpu& gpu, const std::vector<Tiles>& eyes, const How& how) {
+    INFO("budget ", how.budget, ", eyes.size ", eyes.size(), ", eyes[0].count ", eyes[0].count());
+    const std::vector<Chosen> got = chooseOnDevice(gpu, eyes, how);
+    const bool has_past = !eyes[0].past.empty();
+    std::vector<Expected> expected;
+    std::vector<std::vector<std::optional<std::uint32_t>>> prices;
+    std::vector<reference::PricedTiles> priced;
+    std::vector<gpu::uint> bins(gpu::kPriceBins, 0);
+    std::uint64_t picture_cost = 0;
+    std::size_t rough = 0;
+    for (std::size_t e = 0; e < eyes.size(); ++e) {
+        expected.push_back(expectOf(eyes[e], got[e]));
+        const auto& [kinds, errors, costs] = expected[e];
+        std::vector<double> shares;
+        if (how.gaze) { shares = reference::findSeenShares(how.seen, {how.gaze->direction, how.gaze->clear_rad}); }
+        prices.push_back(reference::price(kinds, errors, costs, shares));
+        std::vector<gpu::uint> words;
+        for (std::size_t t = 0; t < costs.size(); ++t) {
+            picture_cost += costs[t];
+            // Of a tile that is as good as on a border of prices either is right, and what is seen of an error is not known to the last
+            // digit.
+            const gpu::uint bin = got[e].prices[t] >> 22, its = prices[e][t].value_or(bin);
+            const bool is_rough = how.gaze || isOnBorder(std::floor(errors[t] * kErrorSteps), static_cast<double>(costs[t]));
+            if (prices[e][t] && is_rough && std::max(bin, its) - std::min(bin, its) == 1) {
+                prices[e][t] = bin;
+                ++rough;
+            }
+            words.push_back(prices[e][t] ? *prices[e][t] << 22 | static_cast<gpu::uint>(costs[t]) : 0);
+            if (prices[e][t]) { bins[*prices[e][t]] += static_cast<gpu::uint>(costs[t]); }
+        }
+        if (!how.gaze) { CHECK(got[e].prices == words); }
     }
-    CHECK(device.readTileKinds() == expected);
-    checkLists(selected, expected, tiles.size);
-    const gpu::WarpCounters counters = device.readCounters();
-    CHECK(counters.predicted_tiles == std::ranges::count(expected, gpu::kTilePredicted));
-    CHECK(counters.edge_tiles == std::ranges::count(expected, gpu::kTileEdge));
-    CHECK(counters.cheap_tiles == std::ranges::count(expected, gpu::kTileCheap));
-    CHECK(selected.masked_tiles.groups_done == 0);
-    std::uint64_t chosen_cost = 0;
-    for (const gpu::uint t : selected.tile_list) { chosen_cost += tiles.costs[t]; }
-    CHECK(counters.chosen_cost == chosen_cost);
+    if (!how.gaze) { CHECK(got[0].bins == bins); }
+    CHECK(rough <= 1 + eyes[0].count() / 50);
+    for (std::size_t e = 0; e < eyes.size(); ++e) { priced.push_back({expected[e].kinds, prices[e], expected[e].costs}); }
+    if (has_past) {
+        CHECK(got[0].counters.picture_cost == picture_cost);
+        reference::selectTogether(priced, static_cast<std::uint64_t>(static_cast<float>(how.budget) * static_cast<float>(picture_cost)));
+    } else {
+        const auto budget_cost = static_cast<std::uint64_t>(how.budget * how.picture_cost);
+        reference::select(expected[0].kinds, prices[0], expected[0].costs, budget_cost);
+    }
+    for (std::size_t e = 0; e < eyes.size(); ++e) {
+        const std::vector<gpu::uint> kinds = test::kindsOf(expected[e].kinds);
+        std::size_t other = 0;
+        for (std::size_t t = 0; t < kinds.size(); ++t) { other += got[e].kinds[t] == kinds[t] ? 0 : 1; }
+        CHECK(other <= (how.gaze ? 1 + kinds.size() / 100 : 0));
+        checkLists(got[e], eyes[e].size);
+    }
+}
 
-    std::vector<double> twin_errors;
-    for (const gpu::uint error : tiles.errors) { twin_errors.push_back(error / static_cast<double>(gpu::kErrorSteps)); }
-    const std::vector<std::uint64_t> twin_costs(tiles.costs.begin(), tiles.costs.end());
-    std::vector<TileKind> twin_kinds = test::kindsOf(tiles.kinds);
-    reference::select(twin_kinds, reference::price(twin_kinds, twin_errors, twin_costs), twin_costs, budget_cost);
-    CHECK(test::kindsOf(twin_kinds) == expected);
+std::uint64_t costOfErrors(const Tiles& tiles) {
+    std::uint64_t cost = 0;
+    for (std::size_t t = 0; t < tiles.count(); ++t) { cost += tiles.kinds[t] == 0 && tiles.errors[t] > 0 ? tiles.costs[t] : 0; }
+    return cost;
 }
 
 }  // namespace
 
-TEST_CASE_FIXTURE(Gpu, "price and select choose as a sort does, over any number of tiles, with budgets of none, one and all") {
+TEST_CASE_FIXTURE(Gpu, "price and select take the twin's tiles, however many there are, with budgets of none, one and all") {
     std::mt19937 random(7);
     for (const glm::uvec2 size : {glm::uvec2(1, 1), glm::uvec2(31, 1), glm::uvec2(127, 1), glm::uvec2(32, 4), glm::uvec2(3, 43),
                                   glm::uvec2(33, 31), glm::uvec2(100, 50)}) {
         const Tiles tiles = drawTiles(size, random);
-        const std::uint64_t all = tiles.costOfErrors();
+        const std::uint64_t all = costOfErrors(tiles);
         for (const std::uint64_t budget :
              {std::uint64_t{0}, std::uint64_t{15}, std::uint64_t{40}, all / 7, all / 2, all - 1, all, all + 1, 2 * all + 1000}) {
-            if (all > 0) { checkSelection(*this, tiles, std::min<std::uint64_t>(budget, kPictureCost - 1)); }
+            if (all > 0) { checkChoice(*this, {tiles}, withCost(std::min<std::uint64_t>(budget, kPictureCost - 1))); }
         }
     }
 }
@@ -172,30 +302,29 @@ TEST_CASE_FIXTURE(Gpu, "price and select choose as a sort does, over any number 
 TEST_CASE_FIXTURE(Gpu, "select takes the first of tiles of one price, to the last pair of the budget, and none without an error") {
     std::mt19937 random(8);
     for (const glm::uvec2 size : {glm::uvec2(20, 1), glm::uvec2(30, 20)}) {
-        for (const unsigned values : {1u, 2u, 5u}) {
+        for (const unsigned values : {1u, 5u}) {
             Tiles tiles(size);
             // A hundred and one steps a pair, however many pairs: all in one bin.
             for (std::size_t t = 0; t < tiles.count(); ++t) {
                 tiles.costs[t] = 16 + static_cast<gpu::uint>(random() % 40);
                 tiles.errors[t] = static_cast<gpu::uint>(random() % (values + 1)) * 101 * tiles.costs[t];
             }
-            const std::uint64_t all = tiles.costOfErrors();
-            for (std::uint64_t budget = 0; budget <= all; budget += 1 + all / 13) { checkSelection(*this, tiles, budget); }
-            // To each side of where one more fits.
+            const std::uint64_t all = costOfErrors(tiles);
             std::uint64_t first_three = 0;
             for (std::size_t t = 0, n = 0; n < 3; ++t) {
                 if (tiles.errors[t] > 0) { first_three += tiles.costs[t], ++n; }
             }
-            for (const std::uint64_t budget : {first_three - 1, first_three, first_three + 1, all - 1, all}) {
-                checkSelection(*this, tiles, budget);
-            }
+            // To each side of where one more fits, too.
+            std::vector<std::uint64_t> budgets{first_three - 1, first_three, first_three + 1, all - 1, all};
+            for (std::uint64_t budget = 0; budget <= all; budget += 1 + all / 7) { budgets.push_back(budget); }
+            for (const std::uint64_t budget : budgets) { checkChoice(*this, {tiles}, withCost(budget)); }
         }
     }
     Tiles none({300, 1});
-    checkSelection(*this, none, 1000);
+    checkChoice(*this, {none}, withCost(1000));
     none.errors.assign(300, 4300);
-    checkSelection(*this, none, 1999);
-    checkSelection(*this, none, 2000);
+    checkChoice(*this, {none}, withCost(1999));
+    checkChoice(*this, {none}, withCost(2000));
 }
 
 TEST_CASE_FIXTURE(Gpu, "price tells prices apart from the least to the greatest, and takes sums that stopped growing for equal") {
@@ -206,61 +335,117 @@ TEST_CASE_FIXTURE(Gpu, "price tells prices apart from the least to the greatest,
         tiles.costs[t] = t / 62 == 0 ? 17 : t / 62 == 1 ? 300 : t / 62 == 2 ? 70001 : gpu::kMaxTileCost - 123456;
         while (isOnBorder(tiles.errors[t], tiles.costs[t])) { ++tiles.errors[t]; }
     }
-    for (const std::uint64_t budget : {std::uint64_t{17}, std::uint64_t{1000}, std::uint64_t{200000}, std::uint64_t{10000000}}) {
-        checkSelection(*this, tiles, budget);
-    }
+    for (const std::uint64_t budget : {17, 1000, 200000, 10000000}) { checkChoice(*this, {tiles}, withCost(budget)); }
     Tiles full({6, 1});
     full.errors = {5, 0x7fffffffu, 0xffffffffu, 0x80000000u, 0x7ffffffeu, 0x90000000u};
-    for (const std::uint64_t budget : {100, 250, 300, 499, 600}) { checkSelection(*this, full, budget); }
+    for (const std::uint64_t budget : {100, 250, 300, 499, 600}) { checkChoice(*this, {full}, withCost(budget)); }
 }
 
 TEST_CASE_FIXTURE(Gpu, "select pays from a share of the picture's cost, rounded down") {
     Tiles tiles({10, 1});
     tiles.errors.assign(10, 1000);
+    // 0.15 in single precision is a little more than that.
     for (const auto& [share, picture_cost, chosen] :
          {std::tuple(0.15, 2000u, 3), std::tuple(0.15, 1999u, 2), std::tuple(0.5, 2000u, 10), std::tuple(1.0, 1000u, 10),
           std::tuple(1.0, 999u, 9), std::tuple(0.0, 2000u, 0), std::tuple(1.0, 4000000000u, 10)}) {
-        CAPTURE(share);
-        CAPTURE(picture_cost);
-        // 0.15 in single precision is a little more than that.
-        StereoOnDevice device = toDevice(*this, tiles, 0, picture_cost);
-        gpu::WarpView view{};
-        view.size_px = {160, 1};
-        view.size_tiles = {10, 1};
-        view.budget = static_cast<float>(share);
-        device.writeView(view);
-        device.price();
-        device.select(true, kVisible);
-        CHECK(device.readCounters().predicted_tiles == static_cast<gpu::uint>(chosen));
+        INFO("share ", share, ", picture cost ", picture_cost);
+        const auto got = chooseOnDevice(*this, {tiles}, {.budget = share, .picture_cost = picture_cost});
+        CHECK(got[0].counters.predicted_tiles == static_cast<gpu::uint>(chosen));
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "select lists the tiles that others have marked, and forgets no kind") {
+TEST_CASE_FIXTURE(Gpu, "select lists the tiles that others have marked, and all that are shown where nothing is worth moving") {
     std::mt19937 random(10);
     for (const glm::uvec2 size : {glm::uvec2(1, 1), glm::uvec2(64, 4), glm::uvec2(65, 40)}) {
         for (const unsigned percent : {0u, 3u, 50u, 100u}) {
             const Tiles tiles = drawTiles(size, random, percent);
-            StereoOnDevice device = toDevice(*this, tiles, kPictureCost);
-            const auto selected = device.select(false, kVisible);
-            CHECK(device.readTileKinds() == tiles.kinds);
-            checkLists(selected, tiles.kinds, size);
+            const Chosen marked = chooseOnDevice(*this, {tiles}, {.budget = 1.0, .predicted = false})[0];
+            CHECK(marked.kinds == tiles.kinds);
+            checkLists(marked, size, /*counts=*/false);
+            const Chosen all = chooseOnDevice(*this, {tiles}, {.moves = false})[0];
+            std::vector<gpu::uint> expected = tiles.kinds;
+            std::ranges::replace(expected, 0u, gpu::kTileCheap);
+            CHECK(all.kinds == expected);
+            checkLists(all, size);
         }
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "select renders everything that is shown where nothing is worth moving") {
-    std::mt19937 random(12);
-    const Tiles tiles = drawTiles({40, 9}, random);
-    StereoOnDevice device = toDevice(*this, tiles, 0);
-    device.writeCounters({});
-    device.price();
-    const auto selected = device.select(true, kVisible);
-    std::vector<gpu::uint> expected = tiles.kinds;
-    std::ranges::replace(expected, 0u, gpu::kTileCheap);
-    CHECK(device.readTileKinds() == expected);
-    checkLists(selected, expected, tiles.size);
-    CHECK(device.readCounters().predicted_tiles == std::ranges::count(expected, gpu::kTilePredicted));
-    CHECK(device.readCounters().cheap_tiles == std::ranges::count(expected, gpu::kTileCheap));
+TEST_CASE_FIXTURE(Gpu, "price counts of an error what the twin's eye sees, wherever it looks") {
+    const Eye eye{Pose{}, intrinsicsFromAngles({-0.9, 0.7, 0.8, -0.85}, {531, 777}), {531, 777}};
+    std::mt19937 random(11);
+    const Tiles tiles = drawTiles(tilesOf(eye.size_px), random);
+    std::vector<double> errors;
+    for (const gpu::uint error : tiles.errors) { errors.push_back(error / kErrorSteps); }
+    const std::vector<std::uint64_t> costs(tiles.costs.begin(), tiles.costs.end());
+    const auto whole = reference::price(test::kindsOf(tiles.kinds), errors, costs);
+    std::vector<gpu::uint> bins(gpu::kPriceBins, 0);
+    for (std::size_t t = 0; t < whole.size(); ++t) {
+        if (whole[t]) { bins[*whole[t]] += tiles.costs[t]; }
+    }
+    for (const Gaze& gaze : {Gaze{{0.0, 0.0, 1.0}, 0.0}, Gaze{{0.0, 0.0, 1.0}, 0.3}, Gaze{{-3.0, 1.0, 4.0}, 0.1},
+                             Gaze{{1.0, 0.0, 0.0}, 0.0}, Gaze{{0.0, 0.1, -1.0}, 0.0}}) {
+        INFO("direction.x ", gaze.direction.x, ", clear ", gaze.clear_rad);
+        const Chosen got = chooseOnDevice(*this, {tiles}, {.seen = eye, .gaze = gaze})[0];
+        const auto shares = reference::findSeenShares(eye, {gaze.direction, gaze.clear_rad});
+        const auto expected = reference::price(test::kindsOf(tiles.kinds), errors, costs, shares);
+        CHECK(got.bins == bins);
+        std::size_t priced = 0, other_bins = 0, unnoticed = 0, coarse = 0;
+        for (std::size_t t = 0; t < expected.size(); ++t) {
+            CHECK((got.prices[t] != 0) == expected[t].has_value());
+            const bool is_coarse = got.errors[t] == gpu::kSeenCoarsely;
+            CHECK((is_coarse || got.errors[t] == tiles.errors[t]));
+            CHECK((is_coarse == (shares[t] <= 0.25) || std::abs(shares[t] - 0.25) < 1e-4));
+            coarse += is_coarse ? 1 : 0;
+            unnoticed += tiles.kinds[t] == 0 && tiles.errors[t] != 0 && got.prices[t] == 0 ? 1 : 0;
+            if (got.prices[t] == 0) { continue; }
+            ++priced;
+            const int off = static_cast<int>(got.prices[t] >> 22) - static_cast<int>(expected[t].value_or(0));
+            CHECK(std::abs(off) <= 1);
+            other_bins += off != 0 ? 1 : 0;
+        }
+        CHECK(priced > 100);
+        CHECK(unnoticed > 100);
+        CHECK(coarse > 5);
+        CHECK(other_bins <= 3);  // a place that rounds to the next bin
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu, "of tiles with a past price and select take the twin's of both eyes, for any budget and wherever these look") {
+    std::mt19937 random(11);
+    for (const auto& [left, right] : {std::pair(glm::uvec2(1, 1), glm::uvec2(1, 1)), std::pair(glm::uvec2(16, 8), glm::uvec2(16, 8)),
+                                      std::pair(glm::uvec2(43, 9), glm::uvec2(43, 9)), std::pair(glm::uvec2(20, 17), glm::uvec2(5, 3))}) {
+        for (const double budget : {0.0, 0.001, 0.1, 0.3, 0.9, 1.0}) {
+            checkChoice(*this, {drawPast(left, random), drawPast(right, random)}, {.budget = budget});
+            checkChoice(*this, {drawPast(left, random)}, {.budget = budget});
+        }
+    }
+    Eye eye = test::makeEye({43 * 16, 20 * 16});
+    eye.intrinsics = intrinsicsFromFovX(glm::radians(90.0), eye.size_px);
+    const Gaze gaze{glm::normalize(glm::dvec3(0.3, -0.1, 1.0)), 0.05};
+    for (const double budget : {0.02, 0.2, 0.6, 1.0}) {
+        checkChoice(*this, {drawPast({43, 20}, random), drawPast({43, 20}, random)}, {.budget = budget, .seen = eye, .gaze = gaze});
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu, "of equal tiles with a past the first eye's are first, and a tile dearer than the budget has its turn") {
+    gpu::PastTile plain{};
+    plain.cost = 84;  // 100 with what a tile costs
+    plain.age = 1;
+    plain.errors = gpu::vec4(0.1f);
+    std::vector<Tiles> equal(2, Tiles({20, 10}));
+    for (Tiles& tiles : equal) { tiles.past.assign(200, plain); }
+    for (const double budget : {0.0, 0.01, 0.4975, 0.51, 0.75, 1.0}) { checkChoice(*this, equal, {.budget = budget}); }
+    const auto half = chooseOnDevice(*this, equal, {.budget = 0.75});
+    CHECK(half[0].list.size() == 200);
+    CHECK(half[1].list.size() == 100);
+    std::vector<Tiles> dear = equal;
+    dear[1].past[150].cost = 10000;
+    dear[1].past[150].age = 60000;
+    checkChoice(*this, dear, {.budget = 0.001});
+    const auto turn = chooseOnDevice(*this, dear, {.budget = 0.001});
+    CHECK(turn[0].list.empty());
+    CHECK(turn[1].list == std::vector<gpu::uint>{150});
 }
 
 }  // namespace selection_test

@@ -1,10 +1,13 @@
-// Facts about the radix sort, held against std::stable_sort at every size that crosses a boundary.
+// Facts about the radix sort, held against std::stable_sort at every size that crosses a boundary, and about sums by the last workgroup:
+// the lists that they state, room, overflow, and the sizes of the dispatches over them.
 #include "engine/passes/sort.h"
 #include "tests/engine/gpu/gpu_fixture.h"
+#include "tests/nightly.h"
 
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <bit>
 #include <numeric>
 #include <random>
 
@@ -14,182 +17,187 @@ namespace sort_test {
 
 using namespace binosplat;
 using test::Gpu;
+using test::nightly;
 
 namespace {
 
-using Keys = std::vector<std::uint32_t>;
+using Values = std::vector<std::uint32_t>;
 
-// What lies in memory that a sort must leave alone.
+// What lies in memory that a pass must leave alone.
 constexpr std::uint32_t kUntouched = 0xdeadbeefu;
 
 std::uint32_t maskOf(unsigned key_bits) { return key_bits == 32 ? UINT32_MAX : (1u << key_bits) - 1; }
 
 // The indices of `keys` by their lowest `key_bits` bits, equal keys in the order they came.
-Keys stableOrder(const Keys& keys, unsigned key_bits) {
-    Keys order(keys.size());
+Values stableOrder(const Values& keys, unsigned key_bits) {
+    Values order(keys.size());
     std::iota(order.begin(), order.end(), 0u);
-    const std::uint32_t mask = maskOf(key_bits);
-    std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return (keys[a] & mask) < (keys[b] & mask); });
+    std::ranges::stable_sort(order, {}, [&](std::uint32_t i) { return keys[i] & maskOf(key_bits); });
     return order;
 }
 
 enum Pattern : int { kRandom, kAllEqual, kFewDistinct, kAscending, kDescending, kExtremes, kPatternCount };
 
-Keys makeKeys(Pattern pattern, std::size_t size, unsigned key_bits, unsigned seed) {
-    std::mt19937 random(seed);
-    Keys keys(size);
-    const auto top = maskOf(key_bits);
+Values makeKeys(int pattern, std::size_t size, unsigned key_bits) {
+    std::mt19937 random(static_cast<unsigned>(size));
+    Values keys(size);
     for (std::size_t i = 0; i < size; ++i) {
-        const double share = (static_cast<double>(i) + 0.5) / static_cast<double>(size);
-        switch (pattern) {
-            case kAllEqual:
-                keys[i] = 0x5a5a5a5au;
-                break;
-            case kFewDistinct:
-                keys[i] = 0x01010101u * static_cast<std::uint32_t>(random() % 5);
-                break;
-            case kAscending:
-                keys[i] = static_cast<std::uint32_t>(share * top);
-                break;
-            case kDescending:
-                keys[i] = static_cast<std::uint32_t>((1.0 - share) * top);
-                break;
-            case kExtremes:
-                keys[i] = random() % 2 == 0 ? 0u : UINT32_MAX;
-                break;
-            // The bits above the key's are there to be ignored.
-            default:
-                keys[i] = static_cast<std::uint32_t>(random());
-        }
+        const double share = (static_cast<double>(i) + 0.5) / static_cast<double>(size), top = maskOf(key_bits);
+        const auto drawn = static_cast<std::uint32_t>(random());
+        const std::array<std::uint32_t, kPatternCount> of_patterns{drawn,  // the bits above the key's are there to be ignored
+                                                                   0x5a5a5a5au,
+                                                                   0x01010101u * (drawn % 5),
+                                                                   static_cast<std::uint32_t>(share * top),
+                                                                   static_cast<std::uint32_t>((1.0 - share) * top),
+                                                                   drawn % 2 == 0 ? 0u : UINT32_MAX};
+        keys[i] = of_patterns[static_cast<std::size_t>(pattern)];
     }
     return keys;
 }
 
-// Several lists in one buffer, each with room for one key more, which the sort must not touch.
-struct Batch {
-    std::vector<Keys> lists;
-    unsigned key_bits;
-
-    // How many lists come out wrong, the first of them told.
-    [[nodiscard]] int countWrong(Gpu& gpu, const Sort& sort) const {
-        Keys keys, values;
-        std::vector<gpu::ListState> states;
-        std::vector<std::size_t> begins;
-        std::size_t longest = 0;
-        for (const Keys& list : lists) {
-            begins.push_back(keys.size());
-            states.push_back(test::makeList(list.size()));
-            keys.insert(keys.end(), list.begin(), list.end());
-            values.resize(keys.size());
-            std::iota(values.end() - static_cast<std::ptrdiff_t>(list.size()), values.end(), 0u);
-            keys.push_back(kUntouched);
-            values.push_back(kUntouched);
-            longest = std::max(longest, list.size());
-        }
-        const Keys blank(keys.size(), kUntouched);
-        const Buffer key_buffer = gpu.upload("keys", keys), value_buffer = gpu.upload("values", values);
-        const Buffer spare_keys = gpu.upload("spare keys", blank), spare_values = gpu.upload("spare values", blank);
-        const Buffer state_buffer = gpu.upload("lists", states);
-        const Buffer histograms(gpu.context(), "histograms", Sort::histogramBytes(longest));
-        bool in_spare = false;
-        gpu.run([&](Commands& commands) {
-            for (std::size_t i = 0; i < lists.size(); ++i) {
-                const auto at = [&](const Buffer& buffer) { return buffer.address<gpu::uint>(begins[i] * sizeof(gpu::uint)); };
-                const KeyValues sorted = sort.record(commands, {at(key_buffer), at(value_buffer)}, {at(spare_keys), at(spare_values)},
-                                                     histograms.address<gpu::uint>(), state_buffer, i * sizeof(gpu::ListState), key_bits);
-                in_spare = sorted.keys.value == at(spare_keys).value;
-            }
-        });
-        const Keys sorted_keys = gpu.readBack<std::uint32_t>(in_spare ? spare_keys : key_buffer, keys.size());
-        const Keys sorted_values = gpu.readBack<std::uint32_t>(in_spare ? spare_values : value_buffer, keys.size());
-        int wrong = 0;
-        for (std::size_t i = 0; i < lists.size(); ++i) {
-            const Keys order = stableOrder(lists[i], key_bits);
-            bool right = sorted_keys[begins[i] + order.size()] == kUntouched && sorted_values[begins[i] + order.size()] == kUntouched;
-            for (std::size_t k = 0; k < order.size(); ++k) {
-                right = right && sorted_values[begins[i] + k] == order[k] && sorted_keys[begins[i] + k] == lists[i][order[k]];
-            }
-            if (!right && wrong++ == 0) { MESSAGE("first wrong list: number " << i << ", of " << order.size() << " keys"); }
-        }
-        return wrong;
+// How many lists come out wrong, the first of them told. They lie in one buffer, each with room for one key more.
+int countWrong(Gpu& gpu, const Sort& sort, const std::vector<Values>& lists, unsigned key_bits) {
+    Values keys, values;
+    std::vector<gpu::ListState> states;
+    std::vector<std::size_t> begins;
+    std::size_t longest = 0;
+    for (const Values& list : lists) {
+        begins.push_back(keys.size());
+        states.push_back(test::makeList(list.size()));
+        keys.insert(keys.end(), list.begin(), list.end());
+        values.resize(keys.size());
+        std::iota(values.end() - static_cast<std::ptrdiff_t>(list.size()), values.end(), 0u);
+        keys.push_back(kUntouched);
+        values.push_back(kUntouched);
+        longest = std::max(longest, list.size());
     }
+    const Values blank(keys.size(), kUntouched);
+    const Buffer key_buffer = gpu.upload("keys", keys), value_buffer = gpu.upload("values", values);
+    const Buffer spare_keys = gpu.upload("spare keys", blank), spare_values = gpu.upload("spare values", blank);
+    const Buffer state_buffer = gpu.upload("lists", states);
+    const Buffer histograms(gpu.context(), "histograms", Sort::histogramBytes(longest));
+    bool in_spare = false;
+    gpu.run([&](Commands& commands) {
+        for (std::size_t i = 0; i < lists.size(); ++i) {
+            const auto at = [&](const Buffer& buffer) { return buffer.address<gpu::uint>(begins[i] * sizeof(gpu::uint)); };
+            const KeyValues sorted = sort.record(commands, {at(key_buffer), at(value_buffer)}, {at(spare_keys), at(spare_values)},
+                                                 histograms.address<gpu::uint>(), state_buffer, i * sizeof(gpu::ListState), key_bits);
+            in_spare = sorted.keys.value == at(spare_keys).value;
+            CHECK(in_spare == Sort::endsInSpare(key_bits));
+        }
+    });
+    const Values sorted_keys = gpu.readBack<std::uint32_t>(in_spare ? spare_keys : key_buffer, keys.size());
+    const Values sorted_values = gpu.readBack<std::uint32_t>(in_spare ? spare_values : value_buffer, keys.size());
+    int wrong = 0;
+    for (std::size_t i = 0; i < lists.size(); ++i) {
+        const Values order = stableOrder(lists[i], key_bits);
+        bool right = sorted_keys[begins[i] + order.size()] == kUntouched && sorted_values[begins[i] + order.size()] == kUntouched;
+        for (std::size_t k = 0; k < order.size(); ++k) {
+            right = right && sorted_values[begins[i] + k] == order[k] && sorted_keys[begins[i] + k] == lists[i][order[k]];
+        }
+        if (!right && wrong++ == 0) { MESSAGE("first wrong list: number " << i << ", of " << order.size() << " keys"); }
+    }
+    return wrong;
+}
+
+// With every way of matching digits that the device can take: real GPUs have wide subgroups and take ballots, software devices compare.
+void checkSorted(Gpu& gpu, unsigned key_bits, const std::vector<std::size_t>& sizes, const std::vector<int>& patterns) {
+    std::vector<DigitMatch> ways{DigitMatch::kBallots};
+    if (Sort::hasNarrowSubgroups(gpu.context())) { ways.push_back(DigitMatch::kComparisons); }
+    std::vector<Values> lists;
+    for (const std::size_t size : sizes) {
+        for (const int pattern : patterns) { lists.push_back(makeKeys(pattern, size, key_bits)); }
+    }
+    for (const DigitMatch match : ways) {
+        INFO("match ", match, ", key bits ", key_bits);
+        CHECK(countWrong(gpu, Sort(gpu.context(), match), lists, key_bits) == 0);
+    }
+}
+
+// As tests/engine/passes/sum_up.comp takes it.
+struct SumUpPass {
+    gpu::DeviceAddress<gpu::uint> values, sums;
+    gpu::DeviceAddress<gpu::ListState> result;
+    gpu::uint count, capacity;
 };
 
-// Every way of matching digits that the device can take: real GPUs have wide subgroups and take ballots, software devices compare.
-std::vector<DigitMatch> matches(const Context& context) {
-    std::vector<DigitMatch> ways{DigitMatch::kBallots};
-    if (Sort::hasNarrowSubgroups(context)) { ways.push_back(DigitMatch::kComparisons); }
-    return ways;
+constexpr std::uint32_t kSumUpWords[] = {
+#include "sum_up.inc"
+};
+
+struct Summed {
+    Values sums;  // and what comes after the last
+    gpu::ListState result;
+};
+
+Summed sumUp(Gpu& gpu, const Values& values, std::uint32_t capacity = UINT32_MAX) {
+    gpu.context().replacedShaders()["sum_up"].assign(std::begin(kSumUpWords), std::end(kSumUpWords));
+    const Kernel& kernel = gpu.kernel("sum_up", sizeof(SumUpPass));
+    const std::size_t count = values.size();
+    const Buffer buffer = gpu.upload("values", values), sums = gpu.upload("sums", Values(count + 1, kUntouched));
+    const Buffer result = gpu.upload("result", std::vector{gpu::ListState{}});
+    const SumUpPass pass{buffer.address<gpu::uint>(), sums.address<gpu::uint>(), result.address<gpu::ListState>(),
+                         static_cast<gpu::uint>(count), capacity};
+    gpu.run([&](Commands& commands) {
+        // Twice, since the last workgroup must leave the count of workgroups as it was.
+        commands.dispatchOver(kernel, pass, count, 1024);
+        commands.dispatchOver(kernel, pass, count, 1024);
+    });
+    return {gpu.readBack<std::uint32_t>(sums, count + 1), gpu.readBack<gpu::ListState>(result, 1)[0]};
+}
+
+auto wordsOf(const gpu::ListState& list) { return std::bit_cast<std::array<std::uint32_t, sizeof(list) / 4>>(list); }
+
+void checkSums(Gpu& gpu, std::size_t count) {
+    CAPTURE(count);
+    std::mt19937 random(static_cast<unsigned>(count));
+    Values values, expected{0};
+    for (std::size_t i = 0; i < count; ++i) {
+        values.push_back(static_cast<std::uint32_t>(random()) % 100);
+        expected.push_back(expected.back() + values.back());
+    }
+    const std::uint32_t total = std::exchange(expected.back(), kUntouched);
+    const Summed summed = sumUp(gpu, values);
+    CHECK(summed.sums == expected);
+    CHECK(wordsOf(summed.result) == wordsOf(test::makeList(total)));
+}
+
+// The list of a sum of values, each at most 2^20.
+gpu::ListState listOfSum(Gpu& gpu, std::uint64_t sum, std::uint32_t capacity) {
+    Values values(sum >> 20, 1u << 20);
+    values.push_back(static_cast<std::uint32_t>(sum & ((1u << 20) - 1)));
+    return sumUp(gpu, values, capacity).result;
 }
 
 }  // namespace
 
-TEST_CASE("the order that sorts are held against is right on a case done by hand") {
-    CHECK(stableOrder({3, 1, 2, 1, 3, 0}, 32) == Keys{5, 1, 3, 2, 0, 4});
-    // By the lowest bit alone: 2, 0 (even), then 3, 1, 1, 3.
-    CHECK(stableOrder({3, 1, 2, 1, 3, 0}, 1) == Keys{2, 5, 0, 1, 3, 4});
-    CHECK(stableOrder({}, 32).empty());
-}
-
-TEST_CASE_FIXTURE(Gpu, "lists of every size from 0 to 600 are sorted, whatever the bits of their keys") {
-    for (const DigitMatch match : matches(context())) {
-        CAPTURE(match);
-        const Sort sort(context(), match);
-        for (const unsigned key_bits : {32u, 14u, 12u, 8u, 1u}) {
-            CAPTURE(key_bits);
-            Batch batch{{}, key_bits};
-            for (unsigned size = 0; size <= 600; ++size) { batch.lists.push_back(makeKeys(kRandom, size, key_bits, size)); }
-            CHECK(batch.countWrong(*this, sort) == 0);
-        }
+TEST_CASE_FIXTURE(Gpu, "lists of sizes round a subgroup, a group and a block are sorted, whatever their keys and the bits of these") {
+    for (const unsigned key_bits : {32u, 14u, 12u, 8u, 1u}) {
+        checkSorted(*this, key_bits, {0, 1, 2, 3, 4, 5, 7, 8, 9, 15, 16, 17, 31, 32, 33, 63, 64, 65, 127, 128, 129, 255, 256, 257, 600},
+                    {kRandom});
+        checkSorted(*this, key_bits, {2, 127, 129, gpu::kSortBlock - 1, gpu::kSortBlock, gpu::kSortBlock + 1, 2 * gpu::kSortBlock + 3},
+                    {kRandom, kAllEqual, kFewDistinct, kAscending, kDescending, kExtremes});
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "equal, few, ascending, descending and extreme keys are sorted at sizes round a block") {
-    for (const DigitMatch match : matches(context())) {
-        CAPTURE(match);
-        const Sort sort(context(), match);
-        for (const unsigned key_bits : {32u, 14u, 12u, 8u, 1u}) {
-            CAPTURE(key_bits);
-            Batch batch{{}, key_bits};
-            for (const unsigned size :
-                 {1u, 2u, 127u, 129u, gpu::kSortBlock - 1, gpu::kSortBlock, gpu::kSortBlock + 1, 2 * gpu::kSortBlock + 3}) {
-                for (int pattern = 0; pattern < kPatternCount; ++pattern) {
-                    batch.lists.push_back(makeKeys(static_cast<Pattern>(pattern), size, key_bits, size));
-                }
-            }
-            CHECK(batch.countWrong(*this, sort) == 0);
-        }
-    }
+TEST_CASE_FIXTURE(Gpu, "lists of more than one run of blocks, and of so many that blocks grow, are sorted") {
+    checkSorted(*this, 32, {gpu::kSortRun * gpu::kSortBlock + 1}, {kRandom, kAllEqual, kFewDistinct, kDescending});
+    checkSorted(*this, 12, {gpu::kMaxSortBlocks * gpu::kSortBlock + 1}, {kRandom});
 }
 
-TEST_CASE_FIXTURE(Gpu, "lists round 2^17 keys are sorted") {
-    for (const DigitMatch match : matches(context())) {
-        CAPTURE(match);
-        const Sort sort(context(), match);
-        Batch batch{{}, 32};
-        for (const std::size_t size : {(1u << 17) - 1, 1u << 17, (1u << 17) + 1}) { batch.lists.push_back(makeKeys(kRandom, size, 32, 7)); }
-        // More blocks than one step of the spine takes.
-        for (const Pattern pattern : {kAllEqual, kFewDistinct, kDescending}) {
-            batch.lists.push_back(makeKeys(pattern, (1u << 17) + 1, 32, 7));
-        }
-        CHECK(batch.countWrong(*this, sort) == 0);
-        batch.key_bits = 14;
-        CHECK(batch.countWrong(*this, sort) == 0);
+TEST_CASE_FIXTURE(Gpu, "lists of every size from 0 to 600, round 2^17 and of 2^21 keys are sorted" * nightly()) {
+    std::vector<std::size_t> sizes(601);
+    std::iota(sizes.begin(), sizes.end(), std::size_t{0});
+    for (const unsigned key_bits : {32u, 14u, 12u, 8u, 1u}) { checkSorted(*this, key_bits, sizes, {kRandom}); }
+    for (const unsigned key_bits : {32u, 14u}) {
+        checkSorted(*this, key_bits, {(1u << 17) - 1, 1u << 17, (1u << 17) + 1}, {kRandom, kAllEqual, kFewDistinct, kDescending});
     }
-}
-
-TEST_CASE_FIXTURE(Gpu, "2^21 keys are sorted") {
-    for (const DigitMatch match : matches(context())) {
-        CAPTURE(match);
-        const Sort sort(context(), match);
-        CHECK(Batch{{makeKeys(kRandom, 1u << 21, 32, 8)}, 32}.countWrong(*this, sort) == 0);
-        CHECK(Batch{{makeKeys(kRandom, 1u << 21, 12, 9)}, 12}.countWrong(*this, sort) == 0);
-    }
+    for (const unsigned key_bits : {32u, 12u}) { checkSorted(*this, key_bits, {1u << 21}, {kRandom}); }
 }
 
 TEST_CASE_FIXTURE(Gpu, "a list without room is as good as empty: its keys stay as they are") {
     const Sort sort(context());
-    const Keys keys{5, 4, 3, 2, 1};
+    const Values keys{5, 4, 3, 2, 1};
     const Buffer key_buffer = upload("keys", keys), values = upload("values", keys), spare_keys = upload("spare keys", keys),
                  spare_values = upload("spare values", keys);
     const Buffer lists = upload("lists", std::vector{test::makeList(5, 4)});
@@ -200,6 +208,51 @@ TEST_CASE_FIXTURE(Gpu, "a list without room is as good as empty: its keys stay a
     });
     CHECK(readBack<std::uint32_t>(key_buffer, 5) == keys);
     CHECK(readBack<std::uint32_t>(spare_keys, 5) == keys);
+}
+
+TEST_CASE_FIXTURE(Gpu, "sums are right at every size across a boundary") {
+    for (const std::size_t count : {1u, 2u, 7u, 8u, 9u, 127u, 128u, 129u, 1023u, 1024u, 1025u, 2049u, (1u << 17) + 1}) {
+        checkSums(*this, count);
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu, "sums of millions are right" * nightly()) { checkSums(*this, 5'000'000); }
+
+TEST_CASE_FIXTURE(Gpu, "a list of sums that does not fit is empty and says what it needs, and one beyond 31 bits is told as such") {
+    for (const std::uint32_t capacity : {60u, 59u}) {
+        const gpu::ListState list = sumUp(*this, {10, 20, 30}, capacity).result;
+        CHECK(wordsOf(list) == wordsOf(test::makeList(60, capacity)));
+        CHECK(list.needed == 60);
+        CHECK(list.count == (capacity == 60 ? 60 : 0));
+        CHECK((list.per_item.x == 0) == (capacity < 60));
+    }
+    // Just beyond what an index may be, and beyond 2^32, where the sum modulo 2^32 is small, and several times that.
+    for (const std::uint64_t total : {std::uint64_t{gpu::kMaxItems} + 1, std::uint64_t{UINT32_MAX} - 3, std::uint64_t{1} << 32,
+                                      (std::uint64_t{1} << 32) + 5, std::uint64_t{5} << 32, (std::uint64_t{9} << 32) + 77}) {
+        CAPTURE(total);
+        const gpu::ListState list = listOfSum(*this, total, UINT32_MAX - 1);
+        CHECK(wordsOf(list) == wordsOf(test::makeList(UINT32_MAX, UINT32_MAX - 1)));
+        CHECK(list.needed == UINT32_MAX);
+        CHECK(list.count == 0);
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu, "dispatches over a list fold into rows beyond the groups of one row") {
+    constexpr std::uint32_t kRow = gpu::kMaxGroupsX * gpu::kGroupSize;
+    for (const std::uint32_t total : {kRow - 1, kRow, kRow + 1, gpu::kMaxGroupsX * gpu::kListBlock, gpu::kMaxGroupsX * gpu::kListBlock + 1,
+                                      2'147'000'000u, gpu::kMaxItems}) {
+        CAPTURE(total);
+        const gpu::ListState list = listOfSum(*this, total, UINT32_MAX);
+        CHECK(wordsOf(list) == wordsOf(test::makeList(total, UINT32_MAX)));
+        for (const auto& [size, items] : {std::pair(list.per_item, gpu::kGroupSize), std::pair(list.per_block, gpu::kListBlock)}) {
+            CHECK(size.x <= gpu::kMaxGroupsX);
+            CHECK(std::uint64_t{size.x} * size.y * items >= total);
+            // No more groups without work than there are rows.
+            CHECK((std::uint64_t{size.x} * size.y - size.y) * items < total);
+        }
+        CHECK(list.per_sort_block.x <= gpu::kMaxSortBlocks);
+        CHECK(list.per_sort_block.y == 1);
+    }
 }
 
 }  // namespace sort_test

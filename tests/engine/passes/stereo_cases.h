@@ -84,6 +84,18 @@ inline void roundToWords(reference::Picture& picture, const reference::StereoSet
     }
 }
 
+// Colours as the device keeps them in half floats, and back.
+inline std::vector<gpu::uvec2> packHalves(const std::vector<gpu::vec4>& colours) {
+    std::vector<gpu::uvec2> halves;
+    for (const gpu::vec4& c : colours) { halves.emplace_back(glm::packHalf2x16({c.x, c.y}), glm::packHalf2x16({c.z, c.w})); }
+    return halves;
+}
+inline std::vector<gpu::vec4> unpackHalves(const std::vector<gpu::uvec2>& halves) {
+    std::vector<gpu::vec4> colours;
+    for (const gpu::uvec2& packed : halves) { colours.emplace_back(glm::unpackHalf2x16(packed.x), glm::unpackHalf2x16(packed.y)); }
+    return colours;
+}
+
 // Likewise where colours are half floats. Depths stay as they are.
 inline void roundToHalves(reference::Picture& picture) {
     for (std::size_t i = 0; i < picture.rgba.size(); ++i) {
@@ -104,23 +116,26 @@ inline StereoCase makeCase(const std::string& name, const Scene& scene, const st
     return c;
 }
 
-// Rectified, asymmetric and canted eyes, either dominant; far and near content, small and odd pictures.
-inline std::vector<StereoCase> makeStereoCases() {
-    std::vector<StereoCase> cases;
-    const auto add = [&](const std::string& name, const ViewedScene& view, const std::array<Eye, 2>& eyes) {
-        for (const Side dominant : {kLeft, kRight}) { cases.push_back(makeCase(name, view.scene, eyes, dominant)); }
-    };
-    const ViewedScene room = viewBuiltin("builtin:atelier", {128, 96}, 20000), small = viewBuiltin("builtin:atelier", {17, 33}, 2000);
-    const ViewedScene fence = viewBuiltin("builtin:fence", {128, 96}), wide = viewBuiltin("builtin:fence", {531, 9});
-    add("room", room, stereoPair(room.eye, 0.063));
-    add("room, asymmetric", room, headsetEyes(room.eye, 0.0));
-    add("room, canted", room, headsetEyes(room.eye, glm::radians(5.0)));
-    add("fence", fence, stereoPair(fence.eye, 0.12));
-    add("fence, canted", fence, headsetEyes(fence.eye, glm::radians(5.0), 0.12));
-    // Rows longer than four workgroups, with holes across their borders.
-    add("wide", wide, stereoPair(wide.eye, 0.25));
-    add("small", small, stereoPair(small.eye, 0.2));
-    add("small, canted", small, headsetEyes(small.eye, glm::radians(5.0), 0.2));
+// Rectified, asymmetric and canted eyes, either dominant; far and near content, small and odd pictures. Made once.
+inline const std::vector<StereoCase>& makeStereoCases() {
+    static const std::vector<StereoCase> cases = [] {
+        std::vector<StereoCase> made;
+        const auto add = [&](const std::string& name, const ViewedScene& view, const std::array<Eye, 2>& eyes) {
+            for (const Side dominant : {kLeft, kRight}) { made.push_back(makeCase(name, view.scene, eyes, dominant)); }
+        };
+        const ViewedScene room = viewBuiltin("builtin:atelier", {128, 96}, 20000), small = viewBuiltin("builtin:atelier", {17, 33}, 2000);
+        const ViewedScene fence = viewBuiltin("builtin:fence", {128, 96}), wide = viewBuiltin("builtin:fence", {531, 9});
+        add("room", room, stereoPair(room.eye, 0.063));
+        add("room, asymmetric", room, headsetEyes(room.eye, 0.0));
+        add("room, canted", room, headsetEyes(room.eye, glm::radians(5.0)));
+        add("fence", fence, stereoPair(fence.eye, 0.12));
+        add("fence, canted", fence, headsetEyes(fence.eye, glm::radians(5.0), 0.12));
+        // Rows longer than four workgroups, with holes across their borders.
+        add("wide", wide, stereoPair(wide.eye, 0.25));
+        add("small", small, stereoPair(small.eye, 0.2));
+        add("small, canted", small, headsetEyes(small.eye, glm::radians(5.0), 0.2));
+        return made;
+    }();
     return cases;
 }
 
@@ -170,6 +185,7 @@ struct Arrived {
     std::vector<reference::Arrival> arrivals;
 };
 
+inline std::size_t tileCount(glm::uvec2 size_px) { return std::size_t{tilesOf(size_px).x} * tilesOf(size_px).y; }
 inline std::size_t tileOf(std::size_t pixel, glm::uvec2 size_px) {
     return pixel / size_px.x / 16 * ((size_px.x + 15) / 16) + pixel % size_px.x / 16;
 }

@@ -4,6 +4,7 @@
 #include "tests/engine/passes/pass_stages.h"
 #include "tests/engine/passes/stereo_cases.h"
 #include "tests/engine/passes/stereo_stages.h"
+#include "tests/nightly.h"
 
 #include <doctest/doctest.h>
 
@@ -43,6 +44,40 @@ struct Differences {
         pixels += expected.size();
     }
 };
+
+struct Way {
+    int gap_px;
+    bool forward;
+    Rows rows;
+};
+
+// All cases in each of these ways. Eyes side by side move along rows, whatever their angles; canted ones do not.
+void checkReproject(Gpu& gpu, const std::vector<Way>& ways) {
+    Differences all;
+    for (StereoCase c : test::makeStereoCases()) {
+        const bool along_rows = c.name.find("canted") == std::string::npos;
+        CHECK(relate(c.eyes.source, c.eyes.target).rectified == along_rows);
+        for (const auto& [gap_px, forward, rows] : ways) {
+            c.settings.gap_px = gap_px;
+            c.settings.forward = forward;
+            StereoOnDevice device = toDevice(gpu, c, rows);
+            device.reproject(/*hidden_tiles=*/false, forward);
+            Differences differences;
+            differences.count(device.readArrivals(), reference::reproject(c.dominant, c.eyes, c.settings));
+            INFO(c.name, ", gap px ", gap_px, ", forward ", forward);
+            CHECK(differences.other <= 3 + differences.pixels / 2000);
+            // Along rows depths are copied, so that only what lies between can be rounded.
+            if (along_rows && (gap_px == 0 || forward)) { CHECK(differences.off_by_step == 0); }
+            // What moves is as it was.
+            CHECK(device.readMoving() == test::movingOf(c.dominant, c.settings));
+            all.pixels += differences.pixels;
+            all.other += differences.other;
+            all.off_by_step += differences.off_by_step;
+        }
+    }
+    CHECK(test::share(all.other, all.pixels) <= 0.0001);
+    CHECK(test::share(all.off_by_step, all.pixels) <= 0.01);
+}
 
 std::vector<std::uint8_t> hideSome(std::size_t tiles) {
     std::vector<std::uint8_t> hidden(tiles, 0);
@@ -89,45 +124,39 @@ Newcomers findNewcomers(Gpu& gpu, const StereoCase& c, const std::vector<TileKin
     return newcomers;
 }
 
-}  // namespace
-
-TEST_CASE_FIXTURE(Gpu, "eyes side by side move along rows, whatever their angles; canted ones do not") {
-    for (const StereoCase& c : test::makeStereoCases()) {
-        CAPTURE(c.name);
-        CHECK(relate(c.eyes.source, c.eyes.target).rectified == (c.name.find("canted") == std::string::npos));
-    }
+// How many newcomers there are among these splats, for an eye and one in its place, and the tiles' errors with what they add.
+std::pair<gpu::uint, std::vector<gpu::uint>> addTo(Gpu& gpu, glm::uvec2 size_px, const std::vector<test::Splat>& splats,
+                                                   const std::vector<gpu::uint>& depths, const std::vector<gpu::uint>& kinds,
+                                                   const std::vector<gpu::uint>& errors) {
+    const Eye eye = test::makeEye(size_px);
+    StereoCase c{"splats", test::makeScene(splats), {eye, eye}, {size_px, {}, {}, {}, {}}, {}};
+    c.dominant.rgba.resize(std::size_t{size_px.x} * size_px.y);
+    std::vector<std::uint32_t> order(splats.size());
+    std::iota(order.begin(), order.end(), 0u);
+    StereoOnDevice device = toDevice(gpu, c);
+    device.writeTileDepths(depths);
+    device.writeTileKinds(kinds);
+    device.writeTileErrors(errors);
+    device.addNewcomers(test::SceneOnDevice(gpu, c.scene, {eye, eye}, 0.2), order, std::vector<gpu::uint>(splats.size(), 0));
+    return {device.readCounters().newcomers, device.readTileErrors()};
 }
 
+}  // namespace
+
 TEST_CASE_FIXTURE(Gpu, "reproject brings to each pixel what the twin brings there, wherever the words lie") {
-    Differences all;
-    for (StereoCase c : test::makeStereoCases()) {
-        for (const auto& [gap_px, forward] :
-             {std::pair(0, false), std::pair(2, false), std::pair(5, false), std::pair(20, false), std::pair(2, true)}) {
-            for (const Rows rows : {Rows::kOwn, Rows::kShared, Rows::kSharedHalves}) {
-                c.settings.gap_px = gap_px;
-                c.settings.forward = forward;
-                StereoOnDevice device = toDevice(*this, c, rows);
-                device.reproject(/*hidden_tiles=*/false, forward);
-                Differences differences;
-                differences.count(device.readArrivals(), reference::reproject(c.dominant, c.eyes, c.settings));
-                CAPTURE(c.name);
-                CAPTURE(gap_px);
-                CAPTURE(forward);
-                CHECK(differences.other <= 3 + differences.pixels / 2000);
-                // Along rows depths are copied, so that only what lies between can be rounded.
-                const bool keeps_depths = c.name.find("canted") == std::string::npos;
-                if (keeps_depths && (gap_px == 0 || forward)) { CHECK(differences.off_by_step == 0); }
-                // What moves is as it was.
-                CHECK(device.readMoving() == test::movingOf(c.dominant, c.settings));
-                all.pixels += differences.pixels;
-                all.other += differences.other;
-                all.off_by_step += differences.off_by_step;
-            }
-        }
+    checkReproject(*this, {{0, false, Rows::kOwn},
+                           {2, false, Rows::kShared},
+                           {5, false, Rows::kSharedHalves},
+                           {20, false, Rows::kOwn},
+                           {2, true, Rows::kShared}});
+}
+TEST_CASE_FIXTURE(Gpu, "reproject does so with any gap, forward or not, in rows of any kind" * test::nightly()) {
+    std::vector<Way> ways;
+    for (const Rows rows : {Rows::kOwn, Rows::kShared, Rows::kSharedHalves}) {
+        for (const int gap_px : {0, 2, 5, 20}) { ways.push_back({gap_px, false, rows}); }
+        ways.push_back({2, true, rows});
     }
-    MESSAGE(all.other << " of " << all.pixels << " pixels differ, " << all.off_by_step << " by a step");
-    CHECK(test::share(all.other, all.pixels) <= 0.0001);
-    CHECK(test::share(all.off_by_step, all.pixels) <= 0.01);
+    checkReproject(*this, ways);
 }
 
 TEST_CASE_FIXTURE(Gpu, "reproject moves nothing from beside what a lens hides") {
@@ -181,31 +210,23 @@ TEST_CASE_FIXTURE(Gpu, "reproject fills a stretch that begins beyond the border"
 }
 
 TEST_CASE_FIXTURE(Gpu, "newcomers finds the twin's splats and adds the twin's errors") {
-    struct Setting {
-        test::ViewedScene view;
-        std::array<Eye, 2> eyes;
-    };
     const test::ViewedScene room = test::viewBuiltin("builtin:atelier", {128, 96}, 20000), cloud = test::viewCloud({128, 96});
     const test::ViewedScene gaussians = test::viewGaussians({128, 96}, false), dimmed = test::viewGaussians({128, 96}, true);
-    for (const Setting& setting :
-         {Setting{room, test::headsetEyes(room.eye, 0.0)}, Setting{room, test::headsetEyes(room.eye, glm::radians(5.0))},
-          Setting{cloud, stereoPair(cloud.eye, 0.2)}, Setting{gaussians, stereoPair(gaussians.eye, 0.2)},
-          Setting{dimmed, stereoPair(dimmed.eye, 0.2)}}) {
+    for (const auto& [view, eyes] :
+         {std::pair(&room, test::headsetEyes(room.eye, 0.0)), std::pair(&room, test::headsetEyes(room.eye, glm::radians(5.0))),
+          std::pair(&cloud, stereoPair(cloud.eye, 0.2)), std::pair(&gaussians, stereoPair(gaussians.eye, 0.2)),
+          std::pair(&dimmed, stereoPair(dimmed.eye, 0.2))}) {
         for (const Side dominant : {kLeft, kRight}) {
             for (const bool whole : {false, true}) {
-                Scene scene = setting.view.scene;
-                if (!whole) { test::hideWhatMeetsTheNearPlane(scene, setting.eyes); }
-                const StereoCase c = test::makeCase(setting.view.name, scene, setting.eyes, dominant);
-                CAPTURE(c.name);
-                CAPTURE(whole);
-                const std::size_t tiles = std::size_t{(c.sizePx().x + 15) / 16} * ((c.sizePx().y + 15) / 16);
+                Scene scene = view->scene;
+                if (!whole) { test::hideWhatMeetsTheNearPlane(scene, eyes); }
+                const StereoCase c = test::makeCase(view->name, scene, eyes, dominant);
+                INFO(c.name, ", whole ", whole);
+                const std::size_t tiles = test::tileCount(c.sizePx());
                 const auto kinds = whole ? test::markSome(tiles) : std::vector(tiles, TileKind::kNone);
                 const Newcomers newcomers = findNewcomers(*this, c, kinds);
                 CHECK(newcomers.expected > 2);
                 CHECK(newcomers.in_marked == 0);
-                MESSAGE(std::string(whole ? "whole " : "")
-                        << c.name << ": " << newcomers.found << " of " << newcomers.expected << ", error " << newcomers.error << " of "
-                        << newcomers.expected_error << ", off by " << newcomers.difference);
                 // None is lost. The device's outlines are wider by a hair and it does not ask pixel by pixel: splats that just miss
                 // the picture or fall between its pixels count, and boxes of discs that meet the near plane are rough (measured: 5 %;
                 // with such discs 1.3 times the twin's error in the room, 30 times in the cloud).
@@ -237,8 +258,7 @@ TEST_CASE_FIXTURE(Gpu, "newcomers adds what a large splat near a canted eye brin
     // About as many tiles as one thread still looks after, and nearly all.
     for (const Large& large : {Large{0.004f, 1, 0.3, 30, 64}, Large{0.006f, 2, 0.3, 65, 150}, Large{0.03f, 1, 0.3, 1025, 1400},
                                Large{0.03f, 1, 8.0, 1025, 1400}, Large{0.03f, 3, 8.0, 1025, 1400}}) {
-        CAPTURE(large.scale);
-        CAPTURE(large.newcomer_error);
+        INFO("large.scale ", large.scale, ", large.newcomer error ", large.newcomer_error);
         const test::Splat splat{glm::vec3(turnBy(12.0) * glm::dvec3(0.0, 0.0, 0.5) + glm::dvec3(0.03, 0.0, 0.0)), glm::quat(turnBy(12.0)),
                                 glm::vec2(large.scale), 0.9f, glm::vec3(0.5f)};
         StereoCase c = test::makeCase("large", test::makeScene(std::vector(large.splats, splat)), eyes, kLeft);
@@ -256,29 +276,19 @@ TEST_CASE_FIXTURE(Gpu, "newcomers adds what a large splat near a canted eye brin
 }
 
 TEST_CASE_FIXTURE(Gpu, "newcomers holds a splat against the middle of its tile, and against nothing where nothing is moved") {
-    // Small discs of inverse depth 1/3 along the middle row.
+    // Small discs of inverse depth 1/3 along the middle row. The first two share a tile, and the second reaches beyond it.
     const glm::uvec2 size_px(64, 16);
-    const Eye eye = test::makeEye(size_px);
-    const std::array<double, 5> columns{6.5, 14.5, 24.5, 33.5, 56.5};
     std::vector<test::Splat> splats;
-    for (const double column : columns) {
+    for (const double column : {6.5, 14.5, 24.5, 33.5, 56.5}) {
         splats.push_back({{(column - 32.0) * 3.0 / 100.0, 0.0f, 3.0f}, {1, 0, 0, 0}, glm::vec2(0.02f), 0.9f, glm::vec3(0.5f)});
     }
-    StereoCase c{"beside", test::makeScene(splats), {eye, eye}, {size_px, {}, {}, {}, {}}, {}};
-    c.dominant.rgba.resize(64 * 16);
-    const test::SceneOnDevice scene(*this, c.scene, {eye, eye}, 0.2);
     const gpu::uint near = test::packMoving(0.5, true, 0), far = test::packMoving(0.25, true, 0), nothing = 0;
     const auto found = [&](const std::vector<gpu::uint>& depths, const std::vector<gpu::uint>& kinds) {
-        StereoOnDevice device = toDevice(*this, c);
-        device.writeTileDepths(depths);
-        device.writeTileKinds(kinds);
-        device.addNewcomers(scene, {0, 1, 2, 3, 4}, {0, 0, 0, 0, 0});
-        const auto errors = device.readTileErrors();
-        std::string tiles;
+        const auto [count, errors] = addTo(*this, size_px, splats, depths, kinds, std::vector<gpu::uint>(4, 0));
+        std::string tiles = std::to_string(count);
         for (const gpu::uint error : errors) { tiles += error > 0 ? 'x' : '.'; }
-        return std::to_string(device.readCounters().newcomers) + tiles;
+        return tiles;
     };
-    // The first two share a tile, and the second reaches beyond it.
     CHECK(found({near, far, far, far}, {0, 0, 0, 0}) == "3.xxx");
     CHECK(found({near, near, near, near}, {0, 0, 0, 0}) == "0....");
     CHECK(found({near, near, near, near}, {gpu::kTileCheap, 0, gpu::kTileEdge, 0}) == "3.x..");
@@ -287,21 +297,11 @@ TEST_CASE_FIXTURE(Gpu, "newcomers holds a splat against the middle of its tile, 
 
 TEST_CASE_FIXTURE(Gpu, "newcomers stops a tile's error at what half a word holds, however many splats add to it") {
     // A thousand discs before one tile, of which each alone adds more than is left.
-    const glm::uvec2 size_px(16, 16);
-    const Eye eye = test::makeEye(size_px);
-    std::vector<test::Splat> splats(1000, {{0.0f, 0.0f, 3.0f}, {1, 0, 0, 0}, glm::vec2(0.2f), 0.9f, glm::vec3(0.5f)});
-    std::vector<std::uint32_t> order(splats.size());
-    std::iota(order.begin(), order.end(), 0u);
-    StereoCase c{"crowd", test::makeScene(splats), {eye, eye}, {size_px, {}, {}, {}, {}}, {}};
-    c.dominant.rgba.resize(16 * 16);
-    const test::SceneOnDevice scene(*this, c.scene, {eye, eye}, 0.2);
+    const std::vector<test::Splat> splats(1000, {{0.0f, 0.0f, 3.0f}, {1, 0, 0, 0}, glm::vec2(0.2f), 0.9f, glm::vec3(0.5f)});
     for (const gpu::uint before : {0x7ffffff0u, 0x7fffffffu, 0x7fff0000u}) {
-        StereoOnDevice device = toDevice(*this, c);
-        device.writeTileDepths({0});
-        device.writeTileErrors({before});
-        device.addNewcomers(scene, order, std::vector<gpu::uint>(splats.size(), 0));
-        CHECK(device.readCounters().newcomers == splats.size());
-        CHECK(device.readTileErrors() == std::vector{0x7fffffffu});
+        const auto [count, errors] = addTo(*this, {16, 16}, splats, {0}, {0}, {before});
+        CHECK(count == splats.size());
+        CHECK(errors == std::vector{0x7fffffffu});
     }
 }
 

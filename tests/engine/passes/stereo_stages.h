@@ -8,8 +8,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <numeric>
-#include <optional>
 #include <vector>
 
 namespace binosplat::test {
@@ -36,7 +34,7 @@ public:
           view_(withRows(view, rows)),
           view_buffer_(gpu.upload("stereo view", std::vector{view_})),
           counters_(gpu.upload("stereo counters", std::vector{movingAll()})),
-          colours_(areHalves(rows) ? gpu.upload("dominant colours", halvesOf(colours)) : gpu.upload("dominant colours", colours)),
+          colours_(areHalves(rows) ? gpu.upload("dominant colours", packHalves(colours)) : gpu.upload("dominant colours", colours)),
           affiliated_(gpu.upload("affiliated colours", std::vector<gpu::uint>(wordsPerPixel() * pixelCount(), kUnwritten))),
           depths_(gpu.upload("affiliated depths", std::vector<gpu::uint>(pixelCount(), kUnwritten))),
           classes_(gpu.upload("classes", std::vector<gpu::uint>(std::size_t{view.size_tiles.x} * view.size_px.y, kUnwritten))),
@@ -44,8 +42,6 @@ public:
           tile_costs_(gpu.upload("tile costs", std::vector<gpu::uint>(tileCount(), kUnwritten))),
           tile_errors_(gpu.upload("tile errors", std::vector<gpu::uint>(tileCount(), 0))),
           tile_depths_(gpu.upload("tile depths", std::vector<gpu::uint>(tileCount(), kUnwritten))),
-          tile_prices_(gpu.upload("tile prices", std::vector<gpu::uint>(tileCount(), kUnwritten))),
-          tile_list_(gpu.upload("tile list", std::vector<gpu::uint>(tileCount(), kUnwritten))),
           tile_mask_(gpu.upload("tile mask", std::vector<gpu::uint>(maskWords(), 0))),
           shown_mask_(gpu.upload("shown mask", std::vector<gpu::uint>(maskWords(), ~0u))),
           bins_(gpu.upload("bins", std::vector<gpu::uint>(std::max(gpu::kDepthBins, gpu::kPriceBins), 0))),
@@ -62,7 +58,7 @@ public:
 
     // `ranges`: of the dominant eye's pairs. Arrays that the pass is to clear are not clear before.
     // `may_move`: the dominant eye left what moving needs.
-    void weigh(const std::vector<glm::uvec2>& ranges, bool hidden_tiles, std::size_t visible_count = 0, bool may_move = true) {
+    void weigh(const std::vector<reference::TileRange>& ranges, bool hidden_tiles, std::size_t visible_count = 0, bool may_move = true) {
         const Buffer range_buffer = gpu_.upload("ranges", ranges),
                      lists = gpu_.upload("lists", std::vector{makeList(visible_count), gpu::ListState{}});
         gpu_.upload(counters_, std::vector{gpu::WarpCounters{}});
@@ -187,49 +183,6 @@ public:
         }
         dispatch(ComponentsKernel{.step = 3, .half_colours = areHalves(rows_)}, pass, {3, 1});
     }
-    void price(const Eye& eye = {}, const std::optional<Gaze>& gaze = {}) {
-        const Buffer lists = gpu_.upload("lists", std::vector{gpu::ListState{}});
-        const gpu::PricePass pass{.warp = view(),
-                                  .tile_kinds = words(tile_kinds_),
-                                  .tile_costs = words(tile_costs_),
-                                  .tile_errors = words(tile_errors_),
-                                  .tile_prices = words(tile_prices_),
-                                  .price_bins = words(bins_),
-                                  .masked_tiles = lists.address<gpu::ListState>(),
-                                  .counters = counters(),
-                                  .budget = counters(),
-                                  .past_tiles = {},
-                                  .is_last = 1,
-                                  .area = 1.0f,
-                                  .gaze = gaze ? eyeGazeOf(*gaze, eye.intrinsics) : gpu::EyeGaze{}};
-        dispatch(PriceKernel{.foveated = gaze.has_value()}, pass, tileGroups());
-    }
-    // `visible_count` splats are in the list that patching would go over; returns the lists it will go over instead, the tiles sorted.
-    struct Selected {
-        gpu::ListState masked_tiles, masked_visible;
-        std::vector<gpu::uint> tile_list, tile_mask;
-    };
-    Selected select(bool predicted, std::size_t visible_count) {
-        const Buffer lists = gpu_.upload("lists", std::vector{makeList(visible_count), gpu::ListState{}, gpu::ListState{}});
-        const auto list = [&](std::uint64_t i) { return lists.address<gpu::ListState>(i * sizeof(gpu::ListState)); };
-        dispatch(SelectKernel{.predicted = predicted},
-                 gpu::SelectPass{.warp = view(),
-                                 .tile_kinds = words(tile_kinds_),
-                                 .tile_prices = words(tile_prices_),
-                                 .tile_list = words(tile_list_),
-                                 .tile_mask = words(tile_mask_),
-                                 .tile_costs = words(tile_costs_),
-                                 .visible = list(0),
-                                 .masked_tiles = list(1),
-                                 .masked_visible = list(2),
-                                 .counters = counters(),
-                                 .budget = counters()},
-                 tileGroups());
-        const auto states = gpu_.readBack<gpu::ListState>(lists, 3);
-        auto tile_list = gpu_.readBack<gpu::uint>(tile_list_, std::min<std::size_t>(states[1].count, tileCount()));
-        std::ranges::sort(tile_list);
-        return {states[1], states[2], std::move(tile_list), readTileMask()};
-    }
 
     [[nodiscard]] std::vector<gpu::uint> readArrivals() {
         return !isShared(rows_) ? gpu_.readBack<gpu::uint>(arrivals_, pixelCount()) : readRows(0);
@@ -239,9 +192,7 @@ public:
     }
     [[nodiscard]] std::vector<gpu::vec4> readAffiliated() {
         if (!areHalves(rows_)) { return gpu_.readBack<gpu::vec4>(affiliated_, pixelCount()); }
-        std::vector<gpu::vec4> colours;
-        for (const gpu::uvec2& packed : gpu_.readBack<gpu::uvec2>(affiliated_, pixelCount())) { colours.push_back(colourOf(packed)); }
-        return colours;
+        return unpackHalves(gpu_.readBack<gpu::uvec2>(affiliated_, pixelCount()));
     }
     [[nodiscard]] std::vector<gpu::uint> readAffiliatedWords() {
         return gpu_.readBack<gpu::uint>(affiliated_, wordsPerPixel() * pixelCount());
@@ -254,7 +205,6 @@ public:
     [[nodiscard]] std::vector<gpu::uint> readTileDepths() { return gpu_.readBack<gpu::uint>(tile_depths_, tileCount()); }
     [[nodiscard]] std::vector<gpu::uint> readTileKinds() { return gpu_.readBack<gpu::uint>(tile_kinds_, tileCount()); }
     [[nodiscard]] std::vector<gpu::uint> readTileCosts() { return gpu_.readBack<gpu::uint>(tile_costs_, tileCount()); }
-    [[nodiscard]] std::vector<gpu::uint> readTilePrices() { return gpu_.readBack<gpu::uint>(tile_prices_, tileCount()); }
     [[nodiscard]] std::vector<gpu::uint> readTileMask() { return gpu_.readBack<gpu::uint>(tile_mask_, maskWords()); }
     // Of depths or of prices.
     [[nodiscard]] std::vector<gpu::uint> readBins() { return gpu_.readBack<gpu::uint>(bins_, gpu::kDepthBins); }
@@ -270,7 +220,6 @@ public:
         return classes;
     }
 
-    void writeView(const gpu::WarpView& view) { gpu_.upload(view_buffer_, std::vector{withRows(view, rows_)}); }
     void writeArrivals(const std::vector<gpu::uint>& arrivals) {
         if (!isShared(rows_)) {
             gpu_.upload(arrivals_, arrivals);
@@ -290,7 +239,6 @@ public:
     void writeAffiliatedWords(const std::vector<gpu::uint>& values) { gpu_.upload(affiliated_, values); }
     void writeCounters(const gpu::WarpCounters& counters) { gpu_.upload(counters_, std::vector{counters}); }
     void writeTileKinds(const std::vector<gpu::uint>& kinds) { gpu_.upload(tile_kinds_, kinds); }
-    void writeTileCosts(const std::vector<gpu::uint>& costs) { gpu_.upload(tile_costs_, costs); }
     void writeTileErrors(const std::vector<gpu::uint>& errors) { gpu_.upload(tile_errors_, errors); }
     void writeTileDepths(const std::vector<gpu::uint>& depths) { gpu_.upload(tile_depths_, depths); }
     void writeBins(const std::vector<gpu::uint>& bins) { gpu_.upload(bins_, bins); }
@@ -313,12 +261,6 @@ public:
     [[nodiscard]] std::size_t tileCount() const { return std::size_t{view_.size_tiles.x} * view_.size_tiles.y; }
 
 private:
-    static gpu::vec4 colourOf(const gpu::uvec2& packed) { return gpu::vec4(glm::unpackHalf2x16(packed.x), glm::unpackHalf2x16(packed.y)); }
-    static std::vector<gpu::uvec2> halvesOf(const std::vector<gpu::vec4>& colours) {
-        std::vector<gpu::uvec2> halves;
-        for (const gpu::vec4& c : colours) { halves.emplace_back(glm::packHalf2x16({c.x, c.y}), glm::packHalf2x16({c.z, c.w})); }
-        return halves;
-    }
     static gpu::WarpView withRows(gpu::WarpView view, Rows rows) {
         view.row_words = (!isShared(rows) ? 1 : areHalves(rows) ? 2 : 4) * view.size_px.x;
         return view;
@@ -371,7 +313,7 @@ private:
     Rows rows_;
     gpu::WarpView view_;
     Buffer view_buffer_, counters_, colours_, affiliated_, depths_, classes_;
-    Buffer tile_kinds_, tile_costs_, tile_errors_, tile_depths_, tile_prices_, tile_list_, tile_mask_, shown_mask_, bins_, boxes_;
+    Buffer tile_kinds_, tile_costs_, tile_errors_, tile_depths_, tile_mask_, shown_mask_, bins_, boxes_;
     Buffer moving_, arrivals_;  // where rows are their own
     std::uint32_t box_capacity_;
 };

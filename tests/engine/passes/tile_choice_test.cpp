@@ -9,6 +9,7 @@
 #include <array>
 #include <numeric>
 #include <random>
+#include <tuple>
 
 TEST_SUITE_BEGIN("tile_choice");
 
@@ -50,34 +51,8 @@ Mask drawMask(glm::uvec2 size_px, const auto& isHole) {
     return mask;
 }
 
-// A path one pixel wide that winds inwards, two pixels apart from itself: the longest way a component can take.
-Mask drawSpiral(glm::uvec2 size_px) {
-    Mask mask(std::size_t{size_px.x} * size_px.y, 0);
-    glm::ivec2 at(0), step(1, 0);
-    const auto filled = [&](const glm::ivec2& p) {
-        return p.x < 0 || p.y < 0 || p.x >= static_cast<int>(size_px.x) || p.y >= static_cast<int>(size_px.y) ||
-               mask[static_cast<std::size_t>(p.y) * size_px.x + static_cast<std::size_t>(p.x)] != 0;
-    };
-    mask[0] = 1;
-    for (int turns = 0; turns < 2;) {
-        const glm::ivec2 next = at + step, after = at + 2 * step;
-        const bool border = next.x < 0 || next.y < 0 || next.x >= static_cast<int>(size_px.x) || next.y >= static_cast<int>(size_px.y);
-        const bool near_own =
-            after.x >= 0 && after.y >= 0 && after.x < static_cast<int>(size_px.x) && after.y < static_cast<int>(size_px.y) && filled(after);
-        if (border || near_own) {
-            step = {-step.y, step.x};
-            ++turns;
-            continue;
-        }
-        at = next;
-        mask[static_cast<std::size_t>(at.y) * size_px.x + static_cast<std::size_t>(at.x)] = 1;
-        turns = 0;
-    }
-    return mask;
-}
-
-// components on a mask of holes, none of them in the tiles that are marked before; against the twin's flood fill.
-void checkComponents(Gpu& gpu, glm::uvec2 size_px, const Mask& mask, int margin_px, std::uint32_t boxes, bool edges) {
+// components on a mask of holes, none of them in the tiles that are marked before; against the twin's flood fill. How many.
+std::size_t checkComponents(Gpu& gpu, glm::uvec2 size_px, const Mask& mask, int margin_px, std::uint32_t boxes, bool edges) {
     // Of half floats and of floats in turn.
     const test::Rows rows = margin_px % 2 == 0 ? test::Rows::kSharedHalves : test::Rows::kShared;
     const std::size_t words_per_pixel = areHalves(rows) ? 2 : 4;
@@ -106,40 +81,16 @@ void checkComponents(Gpu& gpu, glm::uvec2 size_px, const Mask& mask, int margin_
     CHECK(device.readTileKinds() == test::kindsOf(kinds));
     CHECK(counters.center_tiles == std::count(kinds.begin(), kinds.end(), TileKind::kCenter));
     CHECK(device.readClasses() == classes);
-    const auto after = device.readAffiliatedWords();
-    std::size_t changed = 0;
-    for (std::size_t i = 0; i < mask.size(); ++i) {
-        if (classes[i] != static_cast<std::uint8_t>(PixelClass::kHole)) {
-            const std::size_t at = words_per_pixel * i;
-            changed += std::equal(&after[at], &after[at] + words_per_pixel, &words[at]) ? 0 : 1;
-        }
+    // But for the holes all is as it was.
+    auto after = device.readAffiliatedWords();
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        if (classes[i / words_per_pixel] == static_cast<std::uint8_t>(PixelClass::kHole)) { after[i] = words[i]; }
     }
-    CHECK(changed == 0);
+    CHECK(after == words);
+    return components;
 }
 
 }  // namespace
-
-TEST_CASE_FIXTURE(Gpu, "depth_bounds counts the twin's depths") {
-    std::uint32_t all_flips = 0;
-    for (StereoCase c : test::makeStereoCases()) {
-        for (const test::Rows rows : {test::Rows::kOwn, test::Rows::kShared, test::Rows::kSharedHalves}) {
-            CAPTURE(c.name);
-            if (areHalves(rows)) { test::roundToHalves(c.dominant); }
-            StereoOnDevice device = toDevice(*this, c, rows);
-            device.boundDepths();
-            const auto bins = device.readBins(), expected = reference::boundDepths(c.dominant, c.settings.depth_choice);
-            std::uint32_t flips = 0;
-            for (std::size_t b = 0; b < bins.size(); ++b) {
-                flips += static_cast<std::uint32_t>(std::abs(static_cast<int>(bins[b]) - static_cast<int>(expected[b])));
-            }
-            CHECK(std::accumulate(bins.begin(), bins.end(), 0u) == std::accumulate(expected.begin(), expected.end(), 0u));
-            CHECK(flips <= 2);
-            all_flips += flips;
-        }
-    }
-    MESSAGE(all_flips << " flips");
-    CHECK(all_flips <= 4);  // measured: none
-}
 
 TEST_CASE_FIXTURE(Gpu, "depth_bounds counts depths beyond its range as the last, and pixels of little weight or no depth not at all") {
     StereoCase c = makePlainCase({20, 10});
@@ -202,32 +153,37 @@ TEST_CASE("edge ROIs of parallel eyes, by hand") {
     CHECK(columns({0, 1, 0, 16}, {16, 64}) == "e..e");
 }
 
-TEST_CASE_FIXTURE(Gpu, "edge_rois finds the twin's borders and tiles") {
+TEST_CASE_FIXTURE(Gpu, "depth_bounds counts the twin's depths, and of these edge_rois finds the twin's borders and tiles") {
+    std::uint32_t all_flips = 0;
     for (StereoCase c : test::makeStereoCases()) {
-        const auto bins = reference::boundDepths(c.dominant, c.settings.depth_choice);
-        for (const int margin_px : {0, 32}) {
-            for (const int samples : {1, 64, 300}) {
-                for (const bool tight : {false, true}) {
-                    c.settings.margin_px = margin_px;
-                    c.settings.edge_samples = samples;
-                    c.settings.tight_edges = tight;
-                    CAPTURE(c.name);
-                    CAPTURE(margin_px);
-                    CAPTURE(samples);
-                    CAPTURE(tight);
-                    StereoOnDevice device = toDevice(*this, c);
-                    device.writeBins(bins);
-                    device.findEdgeRois();
-                    const Borders expected = reference::findBorders(reference::findInverseDepthBounds(bins), c.eyes, c.settings);
-                    const auto kinds = test::kindsOf(reference::markEdges(expected, c.sizePx()));
-                    const gpu::WarpCounters counters = device.readCounters();
-                    CHECK(counters.borders_px == glm::uvec4(expected.left, expected.top, expected.right, expected.bottom));
-                    CHECK(device.readTileKinds() == kinds);
-                    CHECK(counters.edge_tiles == std::count(kinds.begin(), kinds.end(), gpu::kTileEdge));
-                }
+        for (const auto& [rows, margin_px, samples, tight] :
+             {std::tuple(test::Rows::kOwn, 0, 1, false), std::tuple(test::Rows::kShared, 32, 64, false),
+              std::tuple(test::Rows::kShared, 0, 300, true), std::tuple(test::Rows::kSharedHalves, 32, 64, true)}) {
+            if (areHalves(rows)) { test::roundToHalves(c.dominant); }
+            c.settings.margin_px = margin_px;
+            c.settings.edge_samples = samples;
+            c.settings.tight_edges = tight;
+            INFO(c.name, ", samples ", samples);
+            StereoOnDevice device = toDevice(*this, c, rows);
+            device.boundDepths();
+            const auto bins = device.readBins(), expected_bins = reference::boundDepths(c.dominant, c.settings.depth_choice);
+            std::uint32_t flips = 0;
+            for (std::size_t b = 0; b < bins.size(); ++b) {
+                flips += std::max(bins[b], expected_bins[b]) - std::min(bins[b], expected_bins[b]);
             }
+            CHECK(std::accumulate(bins.begin(), bins.end(), 0u) == std::accumulate(expected_bins.begin(), expected_bins.end(), 0u));
+            CHECK(flips <= 2);
+            all_flips += flips;
+            device.findEdgeRois();
+            const Borders expected = reference::findBorders(reference::findInverseDepthBounds(bins), c.eyes, c.settings);
+            const auto kinds = test::kindsOf(reference::markEdges(expected, c.sizePx()));
+            const gpu::WarpCounters counters = device.readCounters();
+            CHECK(counters.borders_px == glm::uvec4(expected.left, expected.top, expected.right, expected.bottom));
+            CHECK(device.readTileKinds() == kinds);
+            CHECK(counters.edge_tiles == std::count(kinds.begin(), kinds.end(), gpu::kTileEdge));
         }
     }
+    CHECK(all_flips <= 4);  // measured: none
 }
 
 TEST_CASE_FIXTURE(Gpu, "edge_rois marks what the dominant lens hides and leaves hidden tiles as they are, over many workgroups of tiles") {
@@ -264,28 +220,24 @@ TEST_CASE_FIXTURE(Gpu, "components groups holes as a flood fill does, whatever t
     std::mt19937 random(1);
     for (const glm::uvec2 size_px : {glm::uvec2(1, 1), glm::uvec2(17, 33), glm::uvec2(128, 96)}) {
         CAPTURE(size_px.x);
+        // A path that winds from row to row, two pixels apart from itself: the longest way a component can take.
+        const Mask winding = drawMask(size_px, [&](auto x, auto y) { return y % 2 == 0 || x == (y % 4 == 1 ? size_px.x - 1 : 0); });
         std::vector<Mask> masks{drawMask(size_px, [](auto, auto) { return false; }),
                                 drawMask(size_px, [](auto, auto) { return true; }),
                                 drawMask(size_px, [](auto x, auto y) { return (x + y) % 2 == 0; }),
                                 drawMask(size_px, [&](auto x, auto y) { return x == size_px.x - 1 && y == size_px.y - 1; }),
                                 drawMask(size_px, [](auto x, auto) { return x % 2 == 0; }),
                                 drawMask(size_px, [](auto x, auto y) { return x % 3 == 0 && y % 3 == 0; }),
-                                drawSpiral(size_px)};
+                                winding};
         for (const unsigned share : {2u, 20u, 45u, 70u}) {
             masks.push_back(drawMask(size_px, [&](auto, auto) { return random() % 100 < share; }));
         }
         for (std::size_t m = 0; m < masks.size(); ++m) {
             CAPTURE(m);
-            for (const int margin_px : {0, 5, 32}) {
-                CAPTURE(margin_px);
-                checkComponents(*this, size_px, masks[m], margin_px, 4096, m % 2 == 1);
-            }
+            checkComponents(*this, size_px, masks[m], m % 3 == 0 ? 5 : 32, 4096, m % 2 == 1);
+            const std::size_t components = checkComponents(*this, size_px, masks[m], 0, 4096, false);
+            if (m == 1 || m == 6) { CHECK(components == 1); }
         }
-        // A spiral is one component.
-        std::vector<Resolved> resolved;
-        for (const std::uint8_t hole : masks[6]) { resolved.push_back({hole != 0 ? PixelClass::kHole : PixelClass::kCovered, 0, 0.0, 0}); }
-        std::vector<TileKind> kinds = reference::markEdges({}, size_px);
-        CHECK(reference::markComponents(resolved, kinds, size_px, 0) == 1);
     }
 }
 
@@ -299,7 +251,7 @@ TEST_CASE_FIXTURE(Gpu, "components with more groups than boxes marks the tiles o
     for (const Mask& mask : {scattered, corner}) {
         for (const std::uint32_t boxes : {1u, 2u, 3u, 8u}) {
             CAPTURE(boxes);
-            for (int run = 0; run < 3; ++run) { checkComponents(*this, size_px, mask, 4, boxes, false); }
+            for (int run = 0; run < 2; ++run) { checkComponents(*this, size_px, mask, 4, boxes, false); }
         }
     }
 }

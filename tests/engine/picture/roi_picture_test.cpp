@@ -2,6 +2,7 @@
 #include "engine/picture/roi_picture.h"
 #include "engine/error.h"
 #include "shaders/shared/constants.h"
+#include "tests/engine/picture/pictures.h"
 
 #include <doctest/doctest.h>
 
@@ -12,46 +13,40 @@ TEST_SUITE_BEGIN("roi_picture");
 namespace roi_picture_test {
 
 using namespace binosplat;
+using namespace binosplat::test;
 
 namespace {
 
-Image makeGrey(glm::uvec2 size_px, int channels, float value) {
-    Image image{size_px, channels, {}};
-    image.values.assign(image.pixelCount() * static_cast<std::size_t>(channels), value);
-    return image;
-}
-
-glm::vec3 pixelOf(const Image& image, std::uint32_t x, std::uint32_t y) {
-    const float* values = image.values.data() + (std::size_t{y} * image.size_px.x + x) * static_cast<std::size_t>(image.channels);
-    return {values[0], values[1], values[2]};
-}
-
 glm::vec3 tinted(PixelOrigin origin, float grey) { return (1.0f - kTintShare) * glm::vec3(grey) + kTintShare * tintOf(origin); }
 
-bool near(const glm::vec3& a, const glm::vec3& b) { return glm::length(a - b) < 1e-6f; }
+bool isAt(const Image& image, std::uint32_t x, std::uint32_t y, const glm::vec3& colour) {
+    return glm::length(colourOf(image, x, y) - colour) < 1e-6f;
+}
 
 constexpr PixelOrigin kTintedOrigins[]{PixelOrigin::kGap, PixelOrigin::kHole, PixelOrigin::kEdgeRoi, PixelOrigin::kCenterRoi,
                                        PixelOrigin::kPredictedRoi};
 
 }  // namespace
 
-TEST_CASE("tilesAreTintedUpToTheirLastPixel") {
+TEST_CASE("tiles are tinted up to their last pixel, and what is reprojected stays as it is") {
     // 3 x 2 tiles over 33 x 17 pixels: the last column and the last row of tiles are one pixel wide.
     const std::vector<std::uint32_t> kinds{gpu::kTileEdge, 0, gpu::kTileCenter, gpu::kTilePredicted, 0, 0};
     const Image picture = makeRoiPicture(makeGrey({33, 17}, 4, 0.5f), kinds, {});
     CHECK(picture.channels == 3);
     CHECK(picture.size_px == glm::uvec2(33, 17));
-    CHECK(near(pixelOf(picture, 0, 0), tinted(PixelOrigin::kEdgeRoi, 0.5f)));
-    CHECK(near(pixelOf(picture, 15, 15), tinted(PixelOrigin::kEdgeRoi, 0.5f)));
-    CHECK(near(pixelOf(picture, 16, 15), glm::vec3(0.5f)));
-    CHECK(near(pixelOf(picture, 31, 0), glm::vec3(0.5f)));
-    CHECK(near(pixelOf(picture, 32, 15), tinted(PixelOrigin::kCenterRoi, 0.5f)));
-    CHECK(near(pixelOf(picture, 15, 16), tinted(PixelOrigin::kPredictedRoi, 0.5f)));
-    CHECK(near(pixelOf(picture, 32, 16), glm::vec3(0.5f)));
+    CHECK(isAt(picture, 0, 0, tinted(PixelOrigin::kEdgeRoi, 0.5f)));
+    CHECK(isAt(picture, 15, 15, tinted(PixelOrigin::kEdgeRoi, 0.5f)));
+    CHECK(isAt(picture, 16, 15, glm::vec3(0.5f)));
+    CHECK(isAt(picture, 31, 0, glm::vec3(0.5f)));
+    CHECK(isAt(picture, 32, 15, tinted(PixelOrigin::kCenterRoi, 0.5f)));
+    CHECK(isAt(picture, 15, 16, tinted(PixelOrigin::kPredictedRoi, 0.5f)));
+    CHECK(isAt(picture, 32, 16, glm::vec3(0.5f)));
+    const Image waves = makeWaves({5, 4}, 0.0);
+    CHECK(isAt(makeRoiPicture(waves, {}, {}), 4, 3, colourOf(waves, 4, 3)));
 }
 
-TEST_CASE("interpolatedPixelsAreTintedWhereNoTileWasRenderedAgain") {
-    std::vector<std::uint32_t> kinds{0, gpu::kTilePredicted};
+TEST_CASE("interpolated pixels are tinted where no tile was rendered again") {
+    const std::vector<std::uint32_t> kinds{0, gpu::kTilePredicted};
     std::vector<std::uint8_t> classes(32 * 16, gpu::kCovered);
     classes[0] = gpu::kGap;
     classes[1] = gpu::kHole;
@@ -63,20 +58,11 @@ TEST_CASE("interpolatedPixelsAreTintedWhereNoTileWasRenderedAgain") {
     CHECK(origins[20] == static_cast<std::uint8_t>(PixelOrigin::kPredictedRoi));
     CHECK(std::ranges::count(origins, static_cast<std::uint8_t>(PixelOrigin::kPredictedRoi)) == 256);
     const Image picture = makeRoiPicture(makeGrey({32, 16}, 3, 0.25f), kinds, classes);
-    CHECK(near(pixelOf(picture, 0, 0), tinted(PixelOrigin::kGap, 0.25f)));
-    CHECK(near(pixelOf(picture, 1, 0), tinted(PixelOrigin::kHole, 0.25f)));
+    CHECK(isAt(picture, 0, 0, tinted(PixelOrigin::kGap, 0.25f)));
+    CHECK(isAt(picture, 1, 0, tinted(PixelOrigin::kHole, 0.25f)));
 }
 
-TEST_CASE("reprojectedPixelsStayAsTheyAre") {
-    Image image = makeGrey({5, 4}, 4, 0.0f);
-    for (std::size_t i = 0; i < image.values.size(); ++i) { image.values[i] = static_cast<float>(i) / 100.0f; }
-    const Image picture = makeRoiPicture(image, {}, {});
-    CHECK(near(pixelOf(picture, 0, 0), pixelOf(image, 0, 0)));
-    CHECK(near(pixelOf(picture, 4, 3), pixelOf(image, 4, 3)));
-}
-
-TEST_CASE("tintsCanBeToldApartOnAnyPicture") {
-    // Whatever grey is below, the tints differ by more than an eye needs; and a picture brighter than the display keeps them.
+TEST_CASE("tints can be told apart on any picture, even one brighter than the display") {
     for (const PixelOrigin a : kTintedOrigins) {
         for (const PixelOrigin b : kTintedOrigins) {
             if (a != b) { CHECK(kTintShare * glm::length(tintOf(a) - tintOf(b)) > 0.2f); }
@@ -86,10 +72,10 @@ TEST_CASE("tintsCanBeToldApartOnAnyPicture") {
         CHECK(std::max({tint.r, tint.g, tint.b}) - std::min({tint.r, tint.g, tint.b}) > 0.7f);
     }
     const std::vector<std::uint32_t> kinds{gpu::kTileEdge};
-    CHECK(near(pixelOf(makeRoiPicture(makeGrey({1, 1}, 3, 7.0f), kinds, {}), 0, 0), tinted(PixelOrigin::kEdgeRoi, 1.0f)));
+    CHECK(isAt(makeRoiPicture(makeGrey({1, 1}, 3, 7.0f), kinds, {}), 0, 0, tinted(PixelOrigin::kEdgeRoi, 1.0f)));
 }
 
-TEST_CASE("listsThatDoNotFitAreRefused") {
+TEST_CASE("lists that do not fit are refused") {
     const std::vector<std::uint32_t> one_kind{0}, unknown_kind{6};
     const std::vector<std::uint8_t> one_class{gpu::kHole}, unknown_class{3};
     CHECK_THROWS_AS(pixelOrigins({17, 1}, one_kind, {}), Error);

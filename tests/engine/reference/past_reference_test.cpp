@@ -225,20 +225,26 @@ TEST_CASE("a tile is worth its squared error for each frame that it has waited")
 }
 
 TEST_CASE("two pictures share one budget, and the tile that it ends in has its turn, however dear") {
-    const auto chosen = [](std::uint64_t budget, std::vector<std::uint64_t> left_costs, std::vector<std::uint64_t> right_costs) {
+    using Costs = std::vector<std::uint64_t>;
+    const auto chosen = [](std::uint64_t budget, const Costs& left_costs, const Costs& right_costs) {
         Kinds left(3, kNone), right(2, kNone);
         const std::vector<std::optional<std::uint32_t>> left_prices{5, std::nullopt, 7}, right_prices{7, 6};
         selectTogether(std::array{PricedTiles{left, left_prices, left_costs}, PricedTiles{right, right_prices, right_costs}}, budget);
-        return std::pair(left, right);
+        std::string row;
+        for (const Kinds& kinds : {left, right}) {
+            for (const TileKind kind : kinds) { row += kind == kChosen ? 'p' : '.'; }
+        }
+        return row;
     };
     // 7 in both, then 6, then 5; nothing for a budget of nothing.
-    CHECK(chosen(0, {10, 10, 10}, {10, 10}) == std::pair(Kinds{kNone, kNone, kNone}, Kinds{kNone, kNone}));
-    CHECK(chosen(10, {10, 10, 10}, {10, 10}) == std::pair(Kinds{kNone, kNone, kChosen}, Kinds{kNone, kNone}));
-    CHECK(chosen(11, {10, 10, 10}, {10, 10}) == std::pair(Kinds{kNone, kNone, kChosen}, Kinds{kChosen, kNone}));
-    CHECK(chosen(20, {10, 10, 10}, {10, 10}) == std::pair(Kinds{kNone, kNone, kChosen}, Kinds{kChosen, kNone}));
-    CHECK(chosen(40, {10, 10, 10}, {10, 10}) == std::pair(Kinds{kChosen, kNone, kChosen}, Kinds{kChosen, kChosen}));
-    CHECK(chosen(1, {10, 10, 10000}, {10, 10}) == std::pair(Kinds{kNone, kNone, kChosen}, Kinds{kNone, kNone}));
-    CHECK(chosen(21, {10, 10, 10}, {10, 10000}) == std::pair(Kinds{kNone, kNone, kChosen}, Kinds{kChosen, kChosen}));
+    const Costs three{10, 10, 10}, two{10, 10};
+    CHECK(chosen(0, three, two) == ".....");
+    CHECK(chosen(10, three, two) == "..p..");
+    CHECK(chosen(11, three, two) == "..pp.");
+    CHECK(chosen(20, three, two) == "..pp.");
+    CHECK(chosen(40, three, two) == "p.ppp");
+    CHECK(chosen(1, {10, 10, 10000}, two) == "..p..");
+    CHECK(chosen(21, three, {10, 10000}) == "..ppp");
 }
 
 TEST_CASE("a tile that is rendered again says how far off it was, for each frame that it waited") {

@@ -29,6 +29,12 @@ Picture makePicture(glm::uvec2 size_px, double inverse_depth) {
     return {size_px, std::vector(pixels, glm::dvec4(0.0, 0.0, 0.0, 1.0)), std::vector(pixels, 1.0 / inverse_depth),
             std::vector(pixels, inverse_depth), std::vector(pixels, inverse_depth * inverse_depth)};
 }
+// A ramp of 1/100 a pixel in green.
+Picture makeRamp(glm::uvec2 size_px) {
+    Picture picture = makePicture(size_px, 0.2);
+    for (std::size_t i = 0; i < picture.rgba.size(); ++i) { picture.rgba[i].y = 0.01 * static_cast<double>(i % size_px.x); }
+    return picture;
+}
 // Lets a pixel's depths differ by as much as `code` says.
 void spread(Picture& picture, std::size_t pixel, std::uint32_t code) {
     const double w = picture.inverse_depth[pixel] / picture.rgba[pixel].w;
@@ -195,13 +201,10 @@ TEST_CASE("a tile's pairs are those where its middle comes from") {
 }
 
 TEST_CASE("expected errors of blended depths: half the spread in pixels times the gradient, squared, on every other row for two") {
-    // A ramp of 1/100 a pixel in green; 2 px of disparity at inverse depth 0.2, a spread of 1/4 of it.
+    // 2 px of disparity at inverse depth 0.2, a spread of 1/4 of it.
     const glm::uvec2 size_px(48, 16);
-    Picture picture = makePicture(size_px, 0.2);
-    for (std::size_t i = 0; i < picture.rgba.size(); ++i) {
-        picture.rgba[i].y = 0.01 * static_cast<double>(i % 48);
-        spread(picture, i, spreadCode(0.25));
-    }
+    Picture picture = makeRamp(size_px);
+    for (std::size_t i = 0; i < picture.rgba.size(); ++i) { spread(picture, i, spreadCode(0.25)); }
     const EyePair eyes = parallelEyes(size_px);
     const StereoSettings settings{.hole_error = 0.0};
     const auto arrivals = reproject(picture, eyes, settings);
@@ -225,10 +228,9 @@ TEST_CASE("expected errors of blended depths: half the spread in pixels times th
 }
 
 TEST_CASE("expected errors of steps in depth: the greater of both, in pixels, times the gradient, on both sides of it") {
-    // A ramp of 1/100 a pixel in green; 10 px of disparity at inverse depth 1, so that a step of 0.1 is one pixel.
+    // 10 px of disparity at inverse depth 1, so that a step of 0.1 is one pixel.
     const glm::uvec2 size_px(48, 16);
-    Picture picture = makePicture(size_px, 0.2);
-    for (std::size_t i = 0; i < picture.rgba.size(); ++i) { picture.rgba[i].y = 0.01 * static_cast<double>(i % 48); }
+    const Picture picture = makeRamp(size_px);
     const EyePair eyes = parallelEyes(size_px);
     const auto arrivals = reproject(picture, eyes, {});
     const auto resolved = resolve(arrivals, eyes, {});
@@ -315,29 +317,23 @@ TEST_CASE("an error is worth what is seen of it, and beside where the eye looks 
           price(kinds, std::vector{0.4, 0.4, 0.1, 1e-4}, costs));
 }
 
+using Prices = std::vector<std::optional<std::uint32_t>>;
+
 TEST_CASE("the dearest errors are mended first, in the order of tiles where they are alike, up to what the budget pays for") {
-    using Prices = std::vector<std::optional<std::uint32_t>>;
     const Prices prices{5, 9, std::nullopt, 5, 9, 1};
     const std::vector<std::uint64_t> costs{20, 30, 10, 20, 40, 1};
-    const auto chosen = [&](std::uint64_t budget) {
+    // What is too dear lets nothing behind it through.
+    for (const auto& [budget, expected] :
+         {std::pair(0u, "..e..."), std::pair(29u, "..e..."), std::pair(30u, ".pe..."), std::pair(69u, ".pe..."), std::pair(70u, ".pe.p."),
+          std::pair(90u, "ppe.p."), std::pair(110u, "ppepp."), std::pair(111u, "ppeppp")}) {
         std::vector<TileKind> kinds(6, TileKind::kNone);
         kinds[2] = TileKind::kEdge;
         select(kinds, prices, costs, budget);
-        return letters(kinds);
-    };
-    CHECK(chosen(0) == "..e...");
-    CHECK(chosen(29) == "..e...");
-    CHECK(chosen(30) == ".pe...");
-    // What is too dear lets nothing behind it through.
-    CHECK(chosen(69) == ".pe...");
-    CHECK(chosen(70) == ".pe.p.");
-    CHECK(chosen(90) == "ppe.p.");
-    CHECK(chosen(110) == "ppepp.");
-    CHECK(chosen(111) == "ppeppp");
+        CHECK(letters(kinds) == expected);
+    }
 }
 
 TEST_CASE("the budget ends where it would if all errors were seen whole, and what is seen of an error must be worth that") {
-    using Prices = std::vector<std::optional<std::uint32_t>>;
     const Prices whole{9, 8, 8, 5, 5, 1};
     const std::vector<std::uint64_t> costs{20, 20, 20, 20, 20, 20};
     const auto chosen = [&](const Prices& seen, std::uint64_t budget) {
@@ -351,43 +347,6 @@ TEST_CASE("the budget ends where it would if all errors were seen whole, and wha
     CHECK(chosen({4, std::nullopt, 4, 5, 4, 1}, 80) == "...p..");
     CHECK(chosen({1, std::nullopt, 1, 1, 1, 1}, 120) == "p.pppp");
     CHECK(chosen({9, 8, 8, 5, 5, 1}, 0) == "......");
-}
-
-TEST_CASE("a newcomer stands in front of what the middle of its tile shows, and wherever nothing is moved") {
-    // Three tiles whose middles are at a depth of 2, of none and of 4; all other pixels are nearer. One splat each, in its own tile.
-    const glm::uvec2 size_px(48, 1);
-    Picture dominant{size_px, std::vector(48, glm::dvec4(0.5)), std::vector(48, 0.5), std::vector(48, 0.5), std::vector(48, 0.5)};
-    dominant.inverse_depth[8] = 0.5 / 2.0;
-    dominant.inverse_depth[24] = -1.0;
-    dominant.inverse_depth[40] = 0.5 / 4.0;
-    const auto found = [&](double x, double depth, TileKind kind) {
-        reference::ProjectedSplat splat{};
-        splat.reference_px = {x, 0.5};
-        splat.low_pass = true;
-        splat.depth = depth;
-        splat.opacity = 0.5;
-        const int tile = static_cast<int>(x) / 16;
-        splat.box_px = {16 * tile, 0, 16 * tile + 16, 1};
-        std::vector<TileKind> kinds(3, TileKind::kNone);
-        kinds[static_cast<std::size_t>(tile)] = kind;
-        std::vector<double> errors(3, 0.0);
-        const std::vector<TilePair> pairs{{static_cast<std::uint32_t>(tile), 0}};
-        reference::StereoSettings settings;
-        settings.newcomer_error = 1.0;
-        const std::size_t count = addNewcomers(errors, {&splat, 1}, pairs, {}, dominant, kinds, settings);
-        return std::pair(count, errors[static_cast<std::size_t>(tile)]);
-    };
-    const double error = 0.25 * 3.14159265358979 / 2.0;
-    CHECK(found(4.5, 1.97, TileKind::kNone).second == doctest::Approx(error));
-    CHECK(found(4.5, 1.97, TileKind::kNone).first == 1);
-    CHECK(found(4.5, 1.99, TileKind::kNone).first == 0);
-    CHECK(found(20.5, 100.0, TileKind::kNone).first == 1);
-    CHECK(found(44.5, 3.95, TileKind::kNone).first == 1);
-    CHECK(found(44.5, 3.97, TileKind::kNone).first == 0);
-    CHECK(found(44.5, 100.0, TileKind::kCheap) == std::pair(std::size_t{1}, 0.0));
-    // What is infinitely far is moved, too.
-    dominant.rgba[40].w = 0.0;
-    CHECK(found(44.5, 100.0, TileKind::kNone).first == 1);
 }
 
 }  // namespace stereo_reference_test

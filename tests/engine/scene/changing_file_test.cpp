@@ -34,7 +34,6 @@ std::string load(const std::string& path, const std::function<void()>& change, S
         if (scene != nullptr) { *scene = std::move(loaded); }
     } catch (const Error& error) {
         CHECK(error.code() == ExitCode::kBadInput);
-        CHECK(std::string(error.what()).find('\n') == std::string::npos);
         return error.what();
     }
     CHECK(changed);
@@ -55,39 +54,34 @@ std::vector<std::string> writeFiles(const Folder& folder) {
 
 }  // namespace
 
-TEST_CASE("a file that is cut off, grows or is written to while it is read is refused in one line") {
+TEST_CASE("a file that is cut off, grows or is written to while it is read is refused; one that is removed or replaced is read as it was") {
     const Folder folder;
-    for (const char* change : {"cut", "grow", "write"}) {
-        for (const std::string& path : writeFiles(folder)) {
-            CAPTURE(change);
-            CAPTURE(path);
-            const std::string message = load(path, [&] {
-                const std::uintmax_t bytes = fs::file_size(path);
-                if (change[0] != 'w') { fs::resize_file(path, change[0] == 'c' ? bytes / 2 : bytes + 1); }
-                std::fstream(path, std::ios::binary | std::ios::in | std::ios::out).put('p');
-            });
-            CHECK(message == path + ": was changed while it was read, must stay as it is until then");
-        }
-    }
-}
-
-#ifndef _WIN32  // where a file that is open stays where it is
-TEST_CASE("a file that is removed or replaced while it is read is read as it was") {
-    const Folder folder;
-    for (const char* change : {"remove", "replace"}) {
+    for (const std::string change : {"cut", "grow", "write", "remove", "replace"}) {
+#ifdef _WIN32  // where a file that is open stays where it is
+        if (change.starts_with("re")) { continue; }
+#endif
         for (const std::string& path : writeFiles(folder)) {
             CAPTURE(change);
             CAPTURE(path);
             const std::size_t splats = loadScene(path).size();
             const std::string other = folder.write("other", "not a scene");
             Scene scene;
-            CHECK(load(
-                      path, [&] { change[2] == 'm' ? (void)fs::remove(path) : fs::rename(other, path); }, &scene) == "read");
-            CHECK(scene.size() == splats);
+            const std::string message = load(
+                path,
+                [&] {
+                    if (change == "remove") { return (void)fs::remove(path); }
+                    if (change == "replace") { return fs::rename(other, path); }
+                    const std::uintmax_t bytes = fs::file_size(path);
+                    if (change != "write") { fs::resize_file(path, change == "cut" ? bytes / 2 : bytes + 1); }
+                    std::fstream(path, std::ios::binary | std::ios::in | std::ios::out).put('p');
+                },
+                &scene);
+            const bool is_read = change.starts_with("re");
+            CHECK(message == (is_read ? "read" : path + ": was changed while it was read, must stay as it is until then"));
+            CHECK(scene.size() == (is_read ? splats : 0));
         }
     }
 }
-#endif
 
 #ifdef BINOSPLAT_SOG
 TEST_CASE("a SOG folder that loses a picture while it is read is refused in one line") {

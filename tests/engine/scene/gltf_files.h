@@ -1,11 +1,10 @@
 // glTF files made to measure.
 #pragma once
 
+#include "tests/engine/scene/packed_bytes.h"
 #include "tests/engine/scene/ply_files.h"
 
-#include <map>
-#include <string>
-#include <vector>
+#include <fmt/ranges.h>
 
 namespace binosplat::test {
 
@@ -38,16 +37,14 @@ public:
     [[nodiscard]] const std::string& binary() const { return binary_; }
     // `buffer` is the only one, without its length.
     [[nodiscard]] std::string json(const std::string& buffer) const {
-        std::string attributes;
-        for (const auto& [name, index] : attributes_) {
-            attributes += fmt::format("{}\"{}\":{}", attributes.empty() ? "" : ",", name, index);
-        }
+        std::vector<std::string> attributes;
+        for (const auto& [name, index] : attributes_) { attributes.push_back(fmt::format("\"{}\":{}", name, index)); }
         return fmt::format(
             R"({{"asset":{{"version":"2.0"}},"extensionsUsed":["KHR_gaussian_splatting"],"scene":0,"scenes":[{{"nodes":{}}}],"nodes":{},)"
             R"("meshes":[{{"primitives":[{{"mode":{},"attributes":{{{}}},"extensions":{{"KHR_gaussian_splatting":{}}}}}{}]}}],)"
             R"("buffers":[{{"byteLength":{}{}}}],"bufferViews":[{}],"accessors":[{}]{}}})",
-            roots, nodes, mode, attributes, extension, other_primitives, binary_.size(), buffer, joined(views_), joined(accessors_),
-            other_keys);
+            roots, nodes, mode, fmt::join(attributes, ","), extension, other_primitives, binary_.size(), buffer, fmt::join(views_, ","),
+            fmt::join(accessors_, ","), other_keys);
     }
     [[nodiscard]] std::string glb() const { return makeGlb(json(""), binary_); }
     [[nodiscard]] std::string embedded() const { return json(R"(,"uri":"data:application/octet-stream;base64,)" + base64(binary_) + "\""); }
@@ -55,20 +52,11 @@ public:
     static std::string makeGlb(std::string text, std::string binary) {
         while (text.size() % 4 != 0) { text += ' '; }
         while (binary.size() % 4 != 0) { binary += '\0'; }
-        std::string glb = "glTF";
-        const auto word = [&](std::size_t value) { appendTyped(glb, "uint", static_cast<double>(value), Encoding::kLittle); };
-        word(2), word(28 + text.size() + binary.size());
-        word(text.size()), glb += "JSON" + text;
-        word(binary.size()), glb += std::string("BIN\0", 4) + binary;
-        return glb;
+        return "glTF" + littleWord(2) + littleWord(28 + text.size() + binary.size()) + littleWord(text.size()) + "JSON" + text +
+               littleWord(binary.size()) + std::string("BIN\0", 4) + binary;
     }
 
 private:
-    static std::string joined(const std::vector<std::string>& parts) {
-        std::string text;
-        for (const std::string& part : parts) { text += (text.empty() ? "" : ",") + part; }
-        return text;
-    }
     static std::string base64(const std::string& bytes) {
         static constexpr char kLetters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
         std::string text;

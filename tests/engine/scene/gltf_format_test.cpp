@@ -1,13 +1,13 @@
 // glTF with KHR_gaussian_splatting: values, nodes, buffers, what is left out and what is refused.
+#include "engine/reference/harmonics.h"
 #include "engine/scene/ply.h"
-#include "engine/scene/sh_basis.h"
 #include "engine/scene/spz.h"
 #include "tests/engine/scene/gltf_files.h"
+#include "tests/engine/scene/scene_measures.h"
 #include "tests/shared_data.h"
 
+#include <glm/gtc/matrix_transform.hpp>
 #include <nlohmann/json.hpp>
-
-#include <numbers>
 
 TEST_SUITE_BEGIN("gltf_format");
 
@@ -18,47 +18,30 @@ using namespace binosplat::test;
 
 namespace {
 
-// Rotation, scales and thickness as one matrix, which does not depend on how axes are named.
-glm::dmat3 covarianceOf(const Scene& scene, std::size_t i) {
-    glm::dmat3 axes(glm::mat3_cast(glm::dquat(scene.rotations[i])));
-    const glm::dvec3 scales(scene.scales[i].x, scene.scales[i].y, scene.thicknesses[i]);
-    for (int axis = 0; axis < 3; ++axis) { axes[axis] *= scales[axis]; }
-    return axes * glm::transpose(axes);
-}
-
-double largest(const glm::dmat3& matrix) {
-    double most = 0.0;
-    for (int i = 0; i < 9; ++i) { most = std::max(most, std::abs(matrix[i / 3][i % 3])); }
-    return most;
-}
-
-glm::dvec3 colourOf(const Scene& scene, std::size_t i, const glm::dvec3& direction) {
-    const std::array<double, 16> basis = shBasis(glm::normalize(direction));
-    const auto width = static_cast<std::size_t>(shCoefficientCount(scene.sh_degree));
-    glm::dvec3 colour(0.0);
-    for (std::size_t k = 0; k < width; ++k) {
-        for (std::size_t channel = 0; channel < 3; ++channel) {
-            colour[static_cast<int>(channel)] += basis[k] * scene.sh[3 * (i * width + k) + channel];
-        }
-    }
-    return colour;
-}
-
-void checkAlike(const Scene& a, const Scene& b) {
-    REQUIRE(a.size() == b.size());
-    CHECK(a.sh_degree == b.sh_degree);
-    CHECK(a.positions == b.positions);
-    for (std::size_t i = 0; i < a.sh.size(); ++i) { CHECK(a.sh[i] == doctest::Approx(b.sh[i]).epsilon(1e-5)); }
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        CHECK(largest(covarianceOf(a, i) - covarianceOf(b, i)) < 1e-6 * largest(covarianceOf(b, i)));
-        CHECK(a.opacities[i] == doctest::Approx(b.opacities[i]).epsilon(1e-6));
-    }
-}
-
 std::string quoted(const glm::dmat4& matrix) {
     std::string text;
     for (int i = 0; i < 16; ++i) { text += fmt::format("{}{:.17g}", i == 0 ? "[" : ",", matrix[i / 4][i % 4]); }
     return text + "]";
+}
+
+// The splats of `scene` are those of `plain`, placed by `world_from_node`.
+void checkPlaced(const Scene& scene, const Scene& plain, const glm::dmat4& world_from_node, double epsilon) {
+    REQUIRE(scene.size() == plain.size());
+    const glm::dmat3 linear(world_from_node);
+    for (std::size_t i = 0; i < plain.size(); ++i) {
+        const glm::dvec3 position(world_from_node * glm::dvec4(glm::dvec3(plain.positions[i]), 1.0));
+        CHECK(glm::length(position - glm::dvec3(scene.positions[i])) < epsilon);
+        const glm::dmat3 covariance = linear * covarianceOf(plain, i) * glm::transpose(linear);
+        CHECK(largest(covariance - covarianceOf(scene, i)) < epsilon * largest(covariance));
+    }
+}
+
+void checkAlike(const Scene& a, const Scene& b) {
+    CHECK(a.sh_degree == b.sh_degree);
+    checkPlaced(a, b, glm::dmat4(1.0), 1e-6);
+    CHECK(a.positions == b.positions);
+    for (std::size_t i = 0; i < a.sh.size(); ++i) { CHECK(a.sh[i] == doctest::Approx(b.sh[i]).epsilon(1e-5)); }
+    for (std::size_t i = 0; i < a.size(); ++i) { CHECK(a.opacities[i] == doctest::Approx(b.opacities[i]).epsilon(1e-6)); }
 }
 
 }  // namespace
@@ -119,8 +102,8 @@ TEST_CASE("nodes place their splats: positions, shapes and colours go along, mir
     const Folder folder;
     const Scene plain = loadScene(folder.write("plain.glb", makeGltf(45).glb()));
     const glm::dmat4 turned = glm::mat4_cast(glm::angleAxis(0.9, glm::normalize(glm::dvec3(1.0, -2.0, 0.5))));
-    const glm::dmat4 moved(glm::dvec4(1, 0, 0, 0), glm::dvec4(0, 1, 0, 0), glm::dvec4(0, 0, 1, 0), glm::dvec4(3, -4, 5, 1));
-    const auto scaled = [](double x, double y, double z) { return glm::dmat4(glm::dmat3(x, 0, 0, 0, y, 0, 0, 0, z)); };
+    const glm::dmat4 moved = glm::translate(glm::dmat4(1.0), {3, -4, 5});
+    const auto scaled = [](double x, double y, double z) { return glm::scale(glm::dmat4(1.0), {x, y, z}); };
     for (const glm::dmat4& placed : {moved, turned, moved * scaled(2.5, 2.5, 2.5), turned * scaled(-1, 1, 1), scaled(-3, -3, -3) * turned,
                                      moved * turned * scaled(0.5, -0.5, 0.5)}) {
         GltfText gltf = makeGltf(45);
@@ -128,17 +111,15 @@ TEST_CASE("nodes place their splats: positions, shapes and colours go along, mir
         LoadNotes notes;
         const Scene scene = loadScene(folder.write("placed.glb", gltf.glb()), 0, &notes);
         CHECK(notes.lines.empty());
-        REQUIRE(scene.size() == 3);
-        const glm::dmat3 linear(placed);
+        checkPlaced(scene, plain, placed, 1e-5);
         for (std::size_t i = 0; i < 3; ++i) {
-            const glm::dvec3 position(placed * glm::dvec4(glm::dvec3(plain.positions[i]), 1.0));
-            CHECK(glm::length(position - glm::dvec3(scene.positions[i])) < 1e-5);
-            const glm::dmat3 covariance = linear * covarianceOf(plain, i) * glm::transpose(linear);
-            CHECK(largest(covariance - covarianceOf(scene, i)) < 1e-5 * largest(covariance));
             for (const glm::dvec3 direction :
                  {glm::dvec3(1, 0, 0), glm::dvec3(0.2, -0.7, 0.4), glm::dvec3(-1, 2, 3), glm::dvec3(0, 0, -1)}) {
-                const glm::dvec3 colour = colourOf(plain, i, direction);
-                CHECK(glm::length(colour - colourOf(scene, i, linear * direction)) < 1e-5 * glm::length(colour));
+                const auto colourOf = [&](const Scene& of, const glm::dvec3& seen_along) {
+                    return reference::evaluateHarmonics(of.sh.data() + 48 * i, 3, glm::normalize(seen_along));
+                };
+                const glm::dvec3 colour = colourOf(plain, direction);
+                CHECK(glm::length(colour - colourOf(scene, glm::dmat3(placed) * direction)) < 1e-5 * glm::length(colour));
             }
         }
     }
@@ -149,13 +130,8 @@ TEST_CASE("nodes place their splats: positions, shapes and colours go along, mir
     const Scene scene = loadScene(folder.write("stretched.glb", gltf.glb()), 0, &notes);
     REQUIRE(notes.lines.size() == 1);
     CHECK(contains(notes.lines[0], "unevenly"));
-    const glm::dmat3 linear = glm::dmat3(2, 0, 0, 0, 1, 0, 0, 0, -0.25) * glm::mat3_cast(glm::dquat(0.5, 0.5, 0.5, 0.5));
-    for (std::size_t i = 0; i < 3; ++i) {
-        const glm::dvec3 position = linear * glm::dvec3(plain.positions[i]) + glm::dvec3(2.0, 2.0, -0.75);
-        CHECK(glm::length(position - glm::dvec3(scene.positions[i])) < 1e-5);
-        const glm::dmat3 covariance = linear * covarianceOf(plain, i) * glm::transpose(linear);
-        CHECK(largest(covariance - covarianceOf(scene, i)) < 1e-5 * largest(covariance));
-    }
+    const glm::dmat4 inner = glm::translate(glm::dmat4(1.0), {1, 2, 3}) * glm::mat4_cast(glm::dquat(0.5, 0.5, 0.5, 0.5));
+    checkPlaced(scene, plain, scaled(2, 1, -0.25) * inner, 1e-5);
 }
 
 TEST_CASE("several primitives and nodes are one scene, of the highest degree among them") {
@@ -179,13 +155,24 @@ TEST_CASE("several primitives and nodes are one scene, of the highest degree amo
 
 TEST_CASE("what the extension's keys say is kept, and what they say that is not known is told") {
     const Folder folder;
-    const auto loadWith = [&](const std::string& extension, LoadNotes& notes) {
+    LoadNotes notes;
+    const auto loadWith = [&](const std::string& keys) {
         GltfText gltf = makeGltf(0);
-        gltf.extension = extension;
+        gltf.extension = "{" + keys + "}";
         return loadScene(folder.write("keys.glb", gltf.glb()), 0, &notes);
     };
-    LoadNotes notes;
-    const Scene light = loadWith(R"({"kernel":"ellipse","colorSpace":"lin_rec709_display"})", notes);
+    const std::string usual = R"("kernel":"ellipse","colorSpace":"srgb_rec709_display")";
+    CHECK(loadWith(usual + R"(,"sortingMethod":"cameraDistance","projection":"perspective")").by_distance);
+    CHECK(notes.axes == "x left, y up, z front; right-handed (glTF's own)");
+    CHECK(notes.colour_space == "srgb_rec709_display (named by the file)");
+    CHECK(notes.lines.empty());
+    CHECK_FALSE(loadWith(usual + R"(,"sortingMethod":"zDepth")").by_distance);
+    CHECK(notes.lines.empty());
+    CHECK(loadWith(R"("kernel":"cube","colorSpace":"p3","sortingMethod":"none","projection":"fisheye")").by_distance);
+    CHECK(notes.lines.size() == 4);
+    CHECK(loadWith("").size() == 3);
+    CHECK(notes.lines.empty());
+    const Scene light = loadWith(R"("kernel":"ellipse","colorSpace":"lin_rec709_display")");
     CHECK(light.is_linear);
     REQUIRE(notes.lines.size() == 1);
     CHECK(contains(notes.lines[0], "linear light"));
@@ -194,20 +181,6 @@ TEST_CASE("what the extension's keys say is kept, and what they say that is not 
                              doctest::Contains("cannot hold colours of linear light"), Error);
     }
     CHECK(folder.fileCount() == 1);
-    CHECK(loadWith(R"({"kernel":"ellipse","colorSpace":"srgb_rec709_display","sortingMethod":"cameraDistance","projection":"perspective"})",
-                   notes)
-              .by_distance);
-    CHECK(notes.lines.empty());
-    CHECK_FALSE(loadWith(R"({"kernel":"ellipse","colorSpace":"srgb_rec709_display","sortingMethod":"zDepth"})", notes).by_distance);
-    CHECK(notes.lines.empty());
-    CHECK(loadWith(R"({"kernel":"cube","colorSpace":"p3","sortingMethod":"none","projection":"fisheye"})", notes).by_distance);
-    CHECK(notes.lines.size() == 4);
-    CHECK(loadWith("{}", notes).size() == 3);
-    CHECK(notes.lines.empty());
-    GltfText compressed = makeGltf(0);
-    compressed.extension =
-        R"({"kernel":"ellipse","colorSpace":"srgb_rec709_display","extensions":{"KHR_gaussian_splatting_compression_spz_2":{"bufferView":0}}})";
-    CHECK(contains(loadError(folder.write("spz.glb", compressed.glb())), "compressed by KHR_gaussian_splatting_compression_spz_2"));
 }
 
 TEST_CASE("the fifteen cases of the conformance matrix give the values that they hold" * needsSharedData()) {
@@ -216,8 +189,7 @@ TEST_CASE("the fifteen cases of the conformance matrix give the values that they
     const Folder folder;
     const std::string path = (*data / "formats/khr_conformance_matrix.glb").string();
     CHECK(contains(loadError(path), "lin_rec709_display and others of srgb_rec709_display"));
-    std::ifstream stream(path, std::ios::binary);
-    const std::string glb{std::istreambuf_iterator<char>(stream), {}};
+    const std::string glb = textOf(path);
     std::uint32_t text_bytes = 0;
     std::memcpy(&text_bytes, glb.data() + 12, 4);
     nlohmann::json document = nlohmann::json::parse(glb.substr(20, text_bytes));
@@ -276,54 +248,58 @@ TEST_CASE("an unknown kernel and colour space are drawn as what is known, and CO
 
 TEST_CASE("a glTF that does not fit is named with its place") {
     const Folder folder;
-    const auto errorOf = [&](const std::string& bytes) { return loadError(folder.write("broken.glb", bytes)); };
-    const auto errorWith = [&](auto&& change) {
+    const auto glbError = [&](const std::string& bytes) { return loadError(folder.write("broken.glb", bytes)); };
+    const std::string prefix = "KHR_gaussian_splatting:";
+    for (const auto& [left_out, message] : {std::pair("SCALE", "has no attribute KHR_gaussian_splatting:SCALE"),
+                                            std::pair("SH_DEGREE_1_COEF_1", "expected all of its degree"),
+                                            std::pair("SH_DEGREE_0_COEF_0", "degree 1, but none of degree 0")}) {
         GltfText gltf = makeGltf(9);
-        change(gltf);
-        return errorOf(gltf.glb());
+        gltf.remove(prefix + left_out);
+        CHECK(contains(glbError(gltf.glb()), message));
+    }
+    const auto errorWithOpacity = [&](const char* type, const std::vector<double>& values, int component = kGltfFloat) {
+        GltfText gltf = makeGltf(9);
+        gltf.add("OPACITY", type, values, component);
+        return glbError(gltf.glb());
     };
-    CHECK(contains(errorWith([](GltfText& g) { g.mode = 4; }), "meshes[0].primitives[0]: its mode is another, expected 0"));
-    CHECK(contains(errorWith([](GltfText& g) { g.remove("KHR_gaussian_splatting:SCALE"); }),
-                   "has no attribute KHR_gaussian_splatting:SCALE"));
-    CHECK(contains(errorWith([](GltfText& g) { g.remove("KHR_gaussian_splatting:SH_DEGREE_1_COEF_1"); }), "expected all of its degree"));
-    CHECK(
-        contains(errorWith([](GltfText& g) { g.remove("KHR_gaussian_splatting:SH_DEGREE_0_COEF_0"); }), "degree 1, but none of degree 0"));
-    CHECK(contains(errorWith([](GltfText& g) {
-                       g.add("OPACITY", "SCALAR", {1, 2, 3}, kGltfUint8);
-                   }),
-                   "holds integers, expected floats or normalized"));
-    CHECK(contains(errorWith([](GltfText& g) { g.add("OPACITY", "VEC3", {1, 2, 3}); }), "has 3 components a splat, expected 1"));
-    CHECK(contains(errorWith([](GltfText& g) { g.add("OPACITY", "SCALAR", {1, 2}); }), "has 3 positions and 2 values"));
-    CHECK(contains(errorWith([](GltfText& g) { g.extension = "[]"; }), "a glTF without splats"));
-    CHECK(contains(errorWith([](GltfText& g) { g.nodes = R"([{"children":[1]},{"children":[0]}])"; }), "is a child twice"));
-    CHECK(contains(errorWith([](GltfText& g) { g.nodes = R"([{"mesh":1}])"; }), "nodes[0]: names mesh 1 of 1"));
-    CHECK(contains(errorWith([](GltfText& g) { g.nodes = R"([{"mesh":0,"scale":[1,1,0]}])"; }), "has no inverse"));
-    CHECK(contains(errorWith([](GltfText& g) { g.nodes = R"([{"mesh":0,"matrix":[1,2]}])"; }), "matrix has 2 numbers, expected 16"));
-    CHECK(contains(errorWith([](GltfText& g) { g.nodes = "[{}]"; }), "a glTF without splats"));
-    CHECK(contains(errorWith([](GltfText& g) { g.other_keys = R"(,"extensionsRequired":["EXT_meshopt_compression"])"; }),
-                   "requires the extension EXT_meshopt_compression"));
+    CHECK(contains(errorWithOpacity("SCALAR", {1, 2, 3}, kGltfUint8), "holds integers, expected floats or normalized"));
+    CHECK(contains(errorWithOpacity("VEC3", {1, 2, 3}), "has 3 components a splat, expected 1"));
+    CHECK(contains(errorWithOpacity("SCALAR", {1, 2}), "has 3 positions and 2 values"));
 
     const GltfText gltf = makeGltf(9);
-    const std::string json = gltf.json("");
-    const auto errorOfText = [&](const std::string& from, const std::string& to) {
-        return errorOf(GltfText::makeGlb(replaced(json, from, to), gltf.binary()));
-    };
-    CHECK(contains(errorOfText("\"byteOffset\":0", "\"byteOffset\":-4"), "bufferViews[0].byteOffset: is -4, expected a whole number"));
-    CHECK(contains(errorOfText("\"byteOffset\":36", "\"byteOffset\":99999"), "ends beyond its buffer"));
-    CHECK(contains(errorOfText("\"count\":3", "\"count\":4"), "do not fit"));
-    CHECK(contains(errorOfText("\"count\":3", "\"count\":18446744073709551615"), "do not fit"));
-    CHECK(contains(errorOfText("\"bufferView\":0,", ""), "has no bufferView"));
-    CHECK(contains(errorOfText("\"buffers\":[{\"byteLength\":", "\"buffers\":[{\"byteLength\":9"), "bytes are there"));
-    CHECK(contains(errorOfText("\"version\":\"2.0\"", "\"version\":2"), "not a whole glTF"));
-    CHECK(contains(errorOf(gltf.glb().substr(0, 15)), "expected a GLB's header of 20"));
-    CHECK(contains(errorOf(replaced(gltf.glb(), std::string("glTF\2", 5), std::string("glTF\1", 5))), "version 1, expected 2"));
+    const std::string json = gltf.json(""), nodes = R"("nodes":[{"mesh":0}])", extension = R"("extensions":{"KHR_gaussian_splatting":)";
+    const std::vector<Fault> faults{
+        {R"("mode":0)", R"("mode":4)", "meshes[0].primitives[0]: its mode is another, expected 0"},
+        {extension + gltf.extension, extension + "[]", "a glTF without splats"},
+        {nodes, R"("nodes":[{}])", "a glTF without splats"},
+        {nodes, R"("nodes":[{"children":[1]},{"children":[0]}])", "is a child twice"},
+        {nodes, R"("nodes":[{"mesh":1}])", "nodes[0]: names mesh 1 of 1"},
+        {nodes, R"("nodes":[{"mesh":0,"scale":[1,1,0]}])", "has no inverse"},
+        {nodes, R"("nodes":[{"mesh":0,"matrix":[1,2]}])", "matrix has 2 numbers, expected 16"},
+        {R"("extensionsUsed")", R"("extensionsRequired":["EXT_meshopt_compression"],"extensionsUsed")",
+         "requires the extension EXT_meshopt_compression"},
+        {extension + "{", extension + R"({"extensions":{"KHR_gaussian_splatting_compression_spz_2":{"bufferView":0}},)",
+         "compressed by KHR_gaussian_splatting_compression_spz_2"},
+        {R"("byteOffset":0)", R"("byteOffset":-4)", "bufferViews[0].byteOffset: is -4, expected a whole number"},
+        {R"("byteOffset":36)", R"("byteOffset":99999)", "ends beyond its buffer"},
+        {R"("count":3)", R"("count":4)", "do not fit"},
+        {R"("count":3)", R"("count":18446744073709551615)", "do not fit"},
+        {R"("bufferView":0,)", "", "has no bufferView"},
+        {R"("buffers":[{"byteLength":)", R"("buffers":[{"byteLength":9)", "bytes are there"},
+        {R"("version":"2.0")", R"("version":2)", "not a whole glTF"}};
+    checkFaults(faults,
+                [&](const Fault& fault) { return glbError(GltfText::makeGlb(replaced(json, fault.from, fault.to), gltf.binary())); });
+    CHECK(contains(glbError(gltf.glb().substr(0, 15)), "expected a GLB's header of 20"));
+    CHECK(contains(glbError(replaced(gltf.glb(), std::string("glTF\2", 5), std::string("glTF\1", 5))), "version 1, expected 2"));
+    std::vector<std::pair<std::string, std::string>> uris{{"gone.bin", "gone.bin: no such file"},
+                                                          {"data:x,y", "buffers[0]: uri begins with 'data:x,y'"}};
     for (const char* uri : {"../x.bin", "/etc/passwd", "a%2", "http://a/b", ""}) {
-        CHECK(contains(loadError(folder.write("out.gltf", gltf.json(fmt::format(",\"uri\":\"{}\"", uri)))),
-                       "expected a path within the folder"));
+        uris.emplace_back(uri, "expected a path within the folder");
     }
-    CHECK(contains(loadError(folder.write("out.gltf", gltf.json(R"(,"uri":"gone.bin")"))), "gone.bin: no such file"));
-    CHECK(contains(loadError(folder.write("out.gltf", gltf.json(R"(,"uri":"data:x,y")"))), "buffers[0]: uri begins with 'data:x,y'"));
-    CHECK(contains(loadError(folder.write("out.gltf", gltf.json(""))), "buffers[0]: has no uri"));
+    for (const auto& [uri, message] : uris) {
+        CHECK(contains(loadError(folder.write("out.gltf", gltf.json(fmt::format(",\"uri\":\"{}\"", uri)))), message));
+    }
+    CHECK(contains(loadError(folder.write("out.gltf", json)), "buffers[0]: has no uri"));
     // A thousand nodes that show a million splats each would fill the memory.
     GltfText many = makeGltf(0);
     many.nodes = "[";

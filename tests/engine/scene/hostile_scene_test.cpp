@@ -1,8 +1,15 @@
-// Broken scene files of every format but SOG: each loads into a whole scene or is refused in one line.
+// Broken scene files of every format: each loads into a whole scene or is refused in one line.
+#include "engine/scene/sog.h"
 #include "tests/engine/scene/gltf_files.h"
 #include "tests/engine/scene/hostile_scenes.h"
 #include "tests/engine/scene/ksplat_files.h"
 #include "tests/hostile.h"
+#include "tests/nightly.h"
+#ifdef BINOSPLAT_SOG
+#include "tests/engine/scene/streamed_scenes.h"
+#endif
+
+#include <cstdlib>
 
 TEST_SUITE_BEGIN("hostile_scene");
 
@@ -13,183 +20,226 @@ using namespace binosplat::test;
 
 namespace {
 
-// Loads from one file, overwritten for each input.
-class SceneAttempts {
-public:
-    explicit SceneAttempts(std::string name) : name_(std::move(name)) {}
-    ~SceneAttempts() {
-        MESSAGE(fmt::format("{}: {} broken files, {} loaded, {} refused", name_, tally_.inputs, tally_.read, tally_.refused));
-        CHECK(tally_.refused > tally_.inputs / 4);
-        CHECK(peakMebibytes() < 512);
-    }
-    SceneAttempts(const SceneAttempts&) = delete;
-    SceneAttempts& operator=(const SceneAttempts&) = delete;
-
-    Attempt attempt() {
-        return [this](const std::string& what, const std::string& bytes) {
-            const std::string path = folder_.write("broken", bytes);
-            tally_.attempt(name_ + ", " + what, [&] { checkWhole(loadScene(path)); });
-        };
-    }
-
-private:
-    static void checkWhole(const Scene& scene) {
-        const std::size_t splats = scene.size();
-        bool whole = scene.rotations.size() == splats && scene.scales.size() == splats && scene.opacities.size() == splats &&
-                     scene.sh.size() == splats * 3 * static_cast<std::size_t>(shCoefficientCount(scene.sh_degree));
-        for (std::size_t i = 0; whole && i < splats; ++i) {
-            const glm::vec3& p = scene.positions[i];
-            whole = std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z) && std::isfinite(scene.scales[i].x) &&
-                    std::isfinite(scene.scales[i].y) && scene.scales[i].x >= 0.0f && scene.scales[i].y >= 0.0f &&
-                    std::abs(glm::length(scene.rotations[i]) - 1.0f) < 1e-4f && scene.opacities[i] >= 0.0f && scene.opacities[i] <= 1.0f;
-        }
-        for (const float value : scene.sh) { whole = whole && std::isfinite(value); }
-        if (!whole) { FAIL_CHECK("a scene with values that are not to be"); }
-    }
-
-    std::string name_;
-    Folder folder_;
-    Tally tally_;
+// A good file, or a part of one, that is broken, and how.
+struct Target {
+    std::string name, good;
+    int changes = 1000;                  // bits are flipped so many times, and bytes are spliced as often
+    std::size_t numbers = 0, lines = 0;  // of so many bytes the numbers are replaced and the lines shuffled
+    bool must_be_whole = true;           // cut off at any length it is refused
+    std::function<std::string(const std::string&)> wrap = [](const std::string& bytes) { return bytes; };
+    std::string file = "broken", source = "broken";  // what is written, and what is loaded then
+    std::size_t most_splats = 1000;
+    std::vector<std::string> more{};
 };
 
-}  // namespace
+Target partOf(Target target, std::size_t begin, std::size_t end = std::string::npos) {
+    const std::string before = target.good.substr(0, begin), behind = target.good.substr(std::min(end, target.good.size()));
+    target.good = target.good.substr(begin, end - begin);
+    target.wrap = [before, behind](const std::string& bytes) { return before + bytes + behind; };
+    target.must_be_whole = target.must_be_whole && behind.empty();
+    return target;
+}
 
-TEST_CASE("broken PLY files") {
+void checkWhole(const Scene& scene, std::size_t most_splats) {
+    const std::size_t splats = scene.size();
+    bool whole = splats <= most_splats && scene.rotations.size() == splats && scene.scales.size() == splats &&
+                 scene.opacities.size() == splats &&
+                 scene.sh.size() == splats * 3 * static_cast<std::size_t>(shCoefficientCount(scene.sh_degree));
+    for (std::size_t i = 0; whole && i < splats; ++i) {
+        const glm::vec3& p = scene.positions[i];
+        whole = std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z) && std::isfinite(scene.scales[i].x) &&
+                std::isfinite(scene.scales[i].y) && scene.scales[i].x >= 0.0f && scene.scales[i].y >= 0.0f &&
+                std::abs(glm::length(scene.rotations[i]) - 1.0f) < 1e-4f && scene.opacities[i] >= 0.0f && scene.opacities[i] <= 1.0f;
+    }
+    for (const float value : scene.sh) { whole = whole && std::isfinite(value); }
+    if (!whole) { FAIL_CHECK("a scene with values that are not to be"); }
+}
+
+// Of what could be broken one in `stride` is; of all more than one in `share` is to be refused.
+void attack(const Folder& folder, const std::vector<Target>& targets, std::size_t stride, std::size_t share, long most_mebibytes) {
+    std::size_t inputs = 0, refused = 0;
+    for (const Target& target : targets) {
+        (void)folder.write(target.file, target.wrap(target.good));
+        CHECK_MESSAGE(loadError(folder.file(target.source)).empty(), target.name);
+        if (const char* const seeds = std::getenv("BINOSPLAT_WRITE_SEEDS")) {  // a folder, for tests/fuzz/run.sh --keep
+            std::ofstream(std::filesystem::path(seeds) / target.name, std::ios::binary) << target.wrap(target.good);
+        }
+        Tally tally;
+        std::size_t count = 0;
+        const Attempt attempt = [&](const std::string& what, const std::string& bytes) {
+            if (count++ % stride != 0) { return; }
+            (void)folder.write(target.file, target.wrap(bytes));
+            tally.attempt(target.name + ", " + what, [&] { checkWhole(loadScene(folder.file(target.source)), target.most_splats); });
+        };
+        truncate(target.good, attempt);
+        if (target.must_be_whole) { CHECK_MESSAGE(tally.read == 0, target.name); }
+        flipBits(target.good, target.changes, attempt);
+        spliceBytes(target.good, target.changes, attempt);
+        replaceNumbers(target.good, target.numbers, attempt);
+        shuffleLines(target.good, target.lines, attempt);
+        for (const std::string& bytes : target.more) { count = 0, attempt("one more", bytes); }
+        MESSAGE(fmt::format("{}: {} broken files, {} loaded, {} refused", target.name, tally.inputs, tally.read, tally.refused));
+        inputs += tally.inputs, refused += tally.refused;
+    }
+    CHECK(refused > inputs / share);
+    CHECK(peakMebibytes() < most_mebibytes);
+}
+
+std::vector<Target> sceneTargets() {
+    std::vector<Target> targets;
     for (const Encoding encoding : kEncodings) {
         PlyText ply = makePly(9, encoding == Encoding::kLittle);
         ply.encoding = encoding;
         ply.header_before = "element strip 1\nproperty list uchar short index\n";
-        appendTyped(ply.data_before, "uchar", 2.0, encoding);
-        appendTyped(ply.data_before, "short", 1.0, encoding);
-        appendTyped(ply.data_before, "short", 2.0, encoding);
+        for (const auto& [type, value] : {std::pair("uchar", 2.0), std::pair("short", 1.0), std::pair("short", 2.0)}) {
+            appendTyped(ply.data_before, type, value, encoding);
+        }
         if (encoding == Encoding::kAscii) { ply.data_before += "\n"; }
         const std::string good = ply.bytes();
-        SceneAttempts attempts(fmt::format("PLY {}", static_cast<int>(encoding)));
-        truncate(good, attempts.attempt());
-        flipBits(good, 1000, attempts.attempt());
-        spliceBytes(good, 1000, attempts.attempt());
-        replaceNumbers(good, good.find("end_header") + 200, attempts.attempt());
-        shuffleLines(good, good.find("end_header") + 12, attempts.attempt());
+        const std::size_t end = good.find("end_header");
+        targets.push_back({fmt::format("PLY {}", static_cast<int>(encoding)), good, 1000, end + 200, end + 12});
     }
-}
-
-TEST_CASE("broken compressed PLY files") {
-    const std::string good = makeCompressedPly();
-    SceneAttempts attempts("compressed PLY");
-    truncate(good, attempts.attempt());
-    flipBits(good, 1500, attempts.attempt());
-    spliceBytes(good, 1500, attempts.attempt());
-    replaceNumbers(good, good.find("end_header"), attempts.attempt());
-    shuffleLines(good, good.find("end_header") + 12, attempts.attempt());
-}
-
-TEST_CASE("broken .splat files") {
-    const std::string good = makeSplatFile();
-    SceneAttempts attempts(".splat");
-    truncate(good, attempts.attempt());
-    flipBits(good, 1000, attempts.attempt());
-    spliceBytes(good, 1000, attempts.attempt());
-}
-
-TEST_CASE("broken .ksplat files") {
+    const std::string packed = makeCompressedPly();
+    targets.push_back({"compressed PLY", packed, 1500, packed.find("end_header"), packed.find("end_header") + 12});
+    targets.push_back({.name = ".splat", .good = makeSplatFile(), .must_be_whole = false});
     for (const int level : {0, 1, 2}) {
         KsplatText text;
         text.level = level;
         text.degrees = {1, 2};
-        const std::string good = text.bytes();
         // Most of the headers is empty: what is not is attacked.
-        const std::size_t first = 4096 + 1024, sections = 4096;
-        SceneAttempts attempts(fmt::format(".ksplat {}", level));
-        const Attempt attempt = attempts.attempt();
-        const auto around = [&](std::size_t begin, std::size_t end) {
-            return Attempt([&, begin, end](const std::string& what, const std::string& bytes) {
-                attempt(fmt::format("{} to {}, {}", begin, end, what), good.substr(0, begin) + bytes + good.substr(end));
-            });
-        };
-        for (const auto& [begin, end] :
-             {std::pair(std::size_t{0}, std::size_t{44}), std::pair(sections, sections + 44), std::pair(first, first + 44)}) {
-            flipBits(good.substr(begin, end - begin), 1000, around(begin, end));
-            spliceBytes(good.substr(begin, end - begin), 500, around(begin, end));
-        }
-        flipBits(good.substr(first + 1024), 200, around(first + 1024, good.size()));
-        for (std::size_t length = 0; length < good.size(); length += 7 * kStep) {
-            attempt(fmt::format("the first {} bytes", length), good.substr(0, length));
-        }
+        const Target whole{.name = fmt::format(".ksplat {}", level), .good = text.bytes()};
+        for (const std::size_t begin : {0, 4096, 4096 + 1024}) { targets.push_back(partOf(whole, begin, begin + 44)); }
+        targets.push_back(partOf(whole, 4096 + 2048));
+        targets.back().changes = 200;
     }
-}
-
-TEST_CASE("broken SPZ containers") {
+    for (const std::uint32_t version : {2u, 3u}) {
+        const std::string plain = makeSpz(version).bytes(), name = fmt::format("SPZ {}", version);
+        targets.push_back({name + " in gzip", gzip(plain), 500});
+        targets.push_back({.name = name + " within gzip", .good = plain, .wrap = gzip});
+        targets.push_back({name, plain, 500});
+    }
     SpzText spz = makeSpz(3);
     spz.version = 4;
-    const std::string good = makeSpzContainer(spz);
-    SceneAttempts attempts("SPZ 4");
-    truncate(good, attempts.attempt());
-    flipBits(good, 1000, attempts.attempt());
-    spliceBytes(good, 1000, attempts.attempt());
-    // Records of extensions, alone.
+    targets.push_back({"SPZ 4", makeSpzContainer(spz)});
     spz.flags = 2;
-    const std::string records = spzRecord(7, "another's") + spzAxesRecord(10);
-    const Attempt around = [&](const std::string& what, const std::string& bytes) {
-        attempts.attempt()("records, " + what, makeSpzContainer(spz, bytes));
-    };
-    truncate(records, around);
-    flipBits(records, 400, around);
-    spliceBytes(records, 400, around);
-}
-
-TEST_CASE("broken SPZ files") {
-    for (const std::uint32_t version : {2u, 3u}) {
-        const std::string plain = makeSpz(version).bytes(), good = gzip(plain);
-        SceneAttempts attempts(fmt::format("SPZ {}", version));
-        const Attempt attempt = attempts.attempt();
-        truncate(good, attempt);
-        flipBits(good, 500, attempt);
-        spliceBytes(good, 500, attempt);
-        // Broken within a stream that is whole.
-        const Attempt within = [&](const std::string& what, const std::string& bytes) { attempt("within gzip, " + what, gzip(bytes)); };
-        truncate(plain, within);
-        flipBits(plain, 1000, within);
-        spliceBytes(plain, 1000, within);
-        // And bare.
-        truncate(plain, attempt);
-        flipBits(plain, 500, attempt);
-        spliceBytes(plain, 500, attempt);
-    }
-}
-
+    targets.push_back({.name = "records of SPZ 4",
+                       .good = spzRecord(7, "another's") + spzAxesRecord(10),
+                       .changes = 400,
+                       .must_be_whole = false,
+                       .wrap = [spz](const std::string& records) { return makeSpzContainer(spz, records); }});
 #ifdef BINOSPLAT_GLTF
-TEST_CASE("broken glTF files") {
     GltfText gltf = makeGltf(9);
     gltf.nodes = R"([{"children":[1,2]},{"mesh":0,"rotation":[0.5,0.5,0.5,0.5],"scale":[1,2,-3]},{"mesh":0,"translation":[1,2,3]}])";
     gltf.other_primitives = R"(,{"mode":4,"attributes":{"POSITION":0}})";
-    {
-        const std::string good = gltf.glb();
-        SceneAttempts attempts("GLB");
-        truncate(good, attempts.attempt());
-        flipBits(good, 2000, attempts.attempt());
-        spliceBytes(good, 2000, attempts.attempt());
-    }
-    const std::string json = gltf.json("");
-    {
-        // Broken JSON within a GLB that is whole.
-        SceneAttempts attempts("JSON of a GLB");
-        const Attempt attempt = attempts.attempt();
-        const Attempt within = [&](const std::string& what, const std::string& bytes) {
-            attempt(what, GltfText::makeGlb(bytes, gltf.binary()));
-        };
-        flipBits(json, 1000, within);
-        spliceBytes(json, 1000, within);
-        replaceNumbers(json, json.size(), within);
-    }
-    const std::string embedded = gltf.embedded();
-    SceneAttempts attempts("glTF");
-    truncate(embedded, attempts.attempt());
-    flipBits(embedded, 1000, attempts.attempt());
-    spliceBytes(embedded, 1000, attempts.attempt());
-    attempts.attempt()("deep", std::string(R"({"asset":)") + std::string(100'000, '['));
-    attempts.attempt()("deep extras",
-                       replaced(embedded, R"("nodes":[)", R"("extras":)" + std::string(60, '[') + std::string(60, ']') + R"(,"nodes":[)"));
+    const std::string json = gltf.json(""), embedded = gltf.embedded();
+    targets.push_back({"GLB", gltf.glb(), 2000});
+    targets.push_back({.name = "JSON of a GLB", .good = json, .numbers = json.size(), .wrap = [gltf](const std::string& text) {
+                           return GltfText::makeGlb(text, gltf.binary());
+                       }});
+    targets.push_back({.name = "glTF", .good = embedded});
+    targets.back().more = {
+        R"({"asset":)" + std::string(100'000, '['),
+        replaced(embedded, R"("nodes":[)", R"("extras":)" + std::string(60, '[') + std::string(60, ']') + R"(,"nodes":[)")};
+#endif
+    return targets;
 }
+
+constexpr std::size_t kFew = kSanitized ? 1 : 7;  // no divisor of what there is of each kind
+
+}  // namespace
+
+TEST_CASE("broken files of every format but SOG, some of them") { attack(Folder(), sceneTargets(), kFew, 4, 512); }
+TEST_CASE("broken files of every format but SOG" * nightly()) { attack(Folder(), sceneTargets(), 1, 4, 512); }
+
+#ifdef BINOSPLAT_SOG
+namespace {
+
+// With codebooks of two entries, which keep the text short.
+SogText withShortText(SogText files) {
+    std::string& meta = files["meta.json"];
+    for (std::size_t at = 0; (at = meta.find("\"codebook\":[", at)) != std::string::npos; ++at) {
+        meta.replace(at + 12, meta.find(']', at) - at - 12, "-3,1");
+    }
+    return files;
+}
+
+std::vector<Target> sogTargets(const Folder& folder) {
+    std::vector<Target> targets;
+    for (const int version : {1, 2}) {
+        const SogText files = withShortText(makeSog(version));
+        const std::string good = files.at("meta.json"), name = fmt::format("sog{}", version);
+        (void)writeSogFolder(folder, name, files);
+        targets.push_back({.name = fmt::format("meta.json of version {}", version),
+                           .good = good,
+                           .changes = 800,
+                           .numbers = good.size(),
+                           .file = name + "/meta.json",
+                           .source = name,
+                           .most_splats = 9,
+                           .more = {std::string(1'000'000, '['),
+                                    R"({"version":2,"count":)" + std::string(100'000, '[') + std::string(100'000, ']') + "}"}});
+    }
+    const std::string levels = makeLodMeta();
+    (void)writeStreamed(folder, "streamed", levels);
+    targets.push_back(
+        {.name = "lod-meta.json",
+         .good = levels,
+         .changes = 800,
+         .numbers = levels.size(),
+         .file = "streamed/lod-meta.json",
+         .source = "streamed",
+         .most_splats = 32,  // of four chunks
+         .more = {std::string(1'000'000, '['), R"({"lodLevels":1,"tree":)" + std::string(100'000, '[') + std::string(100'000, ']') + "}"}});
+    for (const std::string picture : {"l.webp", "q.webp", "p.webp"}) {
+        (void)writeSogFolder(folder, picture, makeSog());
+        const Target whole{.name = picture,
+                           .good = makeSog().at(picture),
+                           .changes = 400,
+                           .must_be_whole = false,  // its last byte may be there to make an even number
+                           .file = picture + "/" + picture,
+                           .source = picture,
+                           .most_splats = 9};
+        targets.push_back(whole);
+        targets.push_back(partOf(whole, 0, 60));
+    }
+    for (const bool are_deflated : {false, true}) {
+        const Target whole{.name = are_deflated ? "deflated bundle" : "stored bundle",
+                           .good = makeZip(withShortText(makeSog(2, false)), are_deflated),
+                           .most_splats = 9};
+        targets.push_back(whole);
+        targets.push_back(partOf(whole, whole.good.find("PK\x01\x02")));  // most of the harm is done in the directory at the end
+        targets.back().changes = 800;
+    }
+    // As `convert` writes them, alone and as chunks.
+    writeSog(loadScene(writeSogFolder(folder, "sog", makeSog())), folder.file("a.sog"));
+    const std::string written = textOf(folder.file("a.sog"));
+    targets.push_back({.name = "written bundle", .good = written, .changes = 600, .most_splats = 40});
+    std::filesystem::create_directories(folder.file("bundles"));
+    std::string of_bundles = levels;
+    for (const char* chunk : {"a", "b", "c", "env"}) {
+        of_bundles = replaced(of_bundles, fmt::format("\"{}/meta.json\"", chunk), fmt::format("\"{}.sog\"", chunk));
+        (void)folder.write(fmt::format("bundles/{}.sog", chunk), written);
+    }
+    (void)folder.write("bundles/lod-meta.json", of_bundles);
+    CHECK(loadScene(folder.file("bundles")).size() == 24);
+    targets.push_back({.name = "a written bundle as a chunk",
+                       .good = written,
+                       .changes = 300,
+                       .file = "bundles/b.sog",
+                       .source = "bundles",
+                       .most_splats = 40});
+    return targets;
+}
+
+void attackSog(std::size_t stride) {
+    const Folder folder;
+    attack(folder, sogTargets(folder), stride, 8, 768);
+}
+
+}  // namespace
+
+TEST_CASE("broken SOG scenes, some of them") { attackSog(kFew); }
+TEST_CASE("broken SOG scenes" * nightly()) { attackSog(1); }
 #endif
 
 }  // namespace hostile_scene_test

@@ -5,9 +5,6 @@
 
 #include <glm/gtc/packing.hpp>
 
-#include <string>
-#include <vector>
-
 namespace binosplat::test {
 
 // Sections of five splats each, in buckets of two: two full ones and one that is not.

@@ -15,8 +15,10 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <iterator>
 #include <limits>
-#include <sstream>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -65,26 +67,17 @@ void appendValue(std::string& bytes, double value, bool big) {
 }
 
 inline void appendTyped(std::string& bytes, const std::string& type, double value, Encoding encoding) {
-    const bool big = encoding == Encoding::kBig;
+    static const std::map<std::string, void (*)(std::string&, double, bool)> kTypes{
+        {"char", appendValue<std::int8_t>},     {"int8", appendValue<std::int8_t>},     {"uchar", appendValue<std::uint8_t>},
+        {"uint8", appendValue<std::uint8_t>},   {"short", appendValue<std::int16_t>},   {"int16", appendValue<std::int16_t>},
+        {"ushort", appendValue<std::uint16_t>}, {"uint16", appendValue<std::uint16_t>}, {"int", appendValue<std::int32_t>},
+        {"int32", appendValue<std::int32_t>},   {"uint", appendValue<std::uint32_t>},   {"uint32", appendValue<std::uint32_t>},
+        {"float", appendValue<float>},          {"float32", appendValue<float>},        {"double", appendValue<double>},
+        {"float64", appendValue<double>}};
     if (encoding == Encoding::kAscii) {
         bytes += fmt::format("{} ", value);
-    } else if (type == "char" || type == "int8") {
-        appendValue<std::int8_t>(bytes, value, big);
-    } else if (type == "uchar" || type == "uint8") {
-        appendValue<std::uint8_t>(bytes, value, big);
-    } else if (type == "short" || type == "int16") {
-        appendValue<std::int16_t>(bytes, value, big);
-    } else if (type == "ushort" || type == "uint16") {
-        appendValue<std::uint16_t>(bytes, value, big);
-    } else if (type == "int" || type == "int32") {
-        appendValue<std::int32_t>(bytes, value, big);
-    } else if (type == "uint" || type == "uint32") {
-        appendValue<std::uint32_t>(bytes, value, big);
-    } else if (type == "float" || type == "float32") {
-        appendValue<float>(bytes, value, big);
     } else {
-        REQUIRE((type == "double" || type == "float64"));
-        appendValue<double>(bytes, value, big);
+        kTypes.at(type)(bytes, value, encoding == Encoding::kBig);
     }
 }
 
@@ -103,9 +96,9 @@ struct PlyText {
         for (const Column& column : columns) { text += "property " + column.type + " " + column.name + "\n"; }
         text += header_after + "end_header\n";
         if (line_break != "\n") {
-            std::string broken;
-            for (const char letter : text) { broken += letter == '\n' ? line_break : std::string(1, letter); }
-            text = broken;
+            for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += line_break.size()) {
+                text.replace(at, 1, line_break);
+            }
         }
         text += data_before;
         for (std::size_t row = 0; row < rows; ++row) {
@@ -124,7 +117,7 @@ struct PlyText {
     }
 };
 
-// Three splats with numbers that are exact in float32; value = 1000 * splat + column would also do, but these are plausible.
+// Three plausible splats with numbers that are exact in float32.
 inline PlyText makePly(int rest_count = 0, bool three_scales = false) {
     PlyText ply;
     const auto add = [&](const std::string& name, double a, double b, double c) { ply.columns.push_back({name, "float", {a, b, c}}); };
@@ -145,14 +138,22 @@ inline PlyText makePly(int rest_count = 0, bool three_scales = false) {
     return ply;
 }
 
-// The message of the Error that loading gives; empty if there is none.
-inline std::string loadError(const std::string& source, std::uint64_t splats = 0) {
+// The message of the Error that `action` throws; empty if it throws none.
+inline std::string errorOf(const std::function<void()>& action) {
     try {
-        (void)loadScene(source, splats);
+        action();
     } catch (const Error& error) { return error.what(); }
     return {};
 }
+inline std::string loadError(const std::string& source, std::uint64_t splats = 0) {
+    return errorOf([&] { (void)loadScene(source, splats); });
+}
 inline std::string loadError(const Folder& folder, const std::string& bytes) { return loadError(folder.write("broken.ply", bytes)); }
+
+inline std::string textOf(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
 
 // A message, with the slashes in its paths that Windows writes the other way.
 inline std::string withSlashes(std::string text) {
@@ -179,6 +180,17 @@ inline std::string replaced(std::string text, const std::string& from, const std
     const std::size_t at = text.find(from);
     REQUIRE(at != std::string::npos);
     return text.replace(at, from.size(), to);
+}
+
+// Of a good file `from` is replaced by `to`; what reading it then says holds `message`.
+struct Fault {
+    std::string from, to, message;
+};
+inline void checkFaults(const std::vector<Fault>& faults, const std::function<std::string(const Fault&)>& error_with) {
+    for (const Fault& fault : faults) {
+        const std::string message = error_with(fault);
+        CHECK_MESSAGE(contains(message, fault.message), fault.from, " -> ", fault.to, ": ", message);
+    }
 }
 
 }  // namespace binosplat::test

@@ -1,8 +1,8 @@
-// What a PLY file means: values, encodings, orders, types, and what is written reads back.
+// What a PLY file means: values, encodings, orders, types; what is written reads back; and what is said of a broken one.
 #include "engine/scene/ply.h"
 #include "engine/scene/describe.h"
 #include "engine/scene/procedural.h"
-#include "tests/engine/scene/ply_files.h"
+#include "tests/engine/scene/scene_measures.h"
 
 TEST_SUITE_BEGIN("ply");
 
@@ -11,13 +11,30 @@ namespace ply_test {
 using namespace binosplat;
 using namespace binosplat::test;
 
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN(), kInfinity = std::numeric_limits<double>::infinity();
+
+PlyText makeIn(Encoding encoding, int rest_count = 0, bool three_scales = false) {
+    PlyText ply = makePly(rest_count, three_scales);
+    ply.encoding = encoding;
+    return ply;
+}
+
+void setAll(PlyText& ply, const std::string& name, double value) { std::ranges::fill(ply[name].values, value); }
+
+Scene writtenAndRead(const Folder& folder, const Scene& scene) {
+    writePly(scene, folder.file("again.ply"));
+    return loadScene(folder.file("again.ply"));
+}
+
+}  // namespace
+
 TEST_CASE("a PLY's numbers arrive activated, in every encoding") {
     const Folder folder;
     for (const Encoding encoding : kEncodings) {
-        PlyText ply = makePly();
-        ply.encoding = encoding;
         LoadNotes notes;
-        const Scene scene = loadScene(folder.write("known.ply", ply.bytes()), 0, &notes);
+        const Scene scene = loadScene(folder.write("known.ply", makeIn(encoding).bytes()), 0, &notes);
         REQUIRE(scene.size() == 3);
         CHECK(scene.sh_degree == 0);
         CHECK(scene.positions[2] == glm::vec3(-3.0f, 0.125f, 6.0f));
@@ -32,6 +49,11 @@ TEST_CASE("a PLY's numbers arrive activated, in every encoding") {
         CHECK(notes.splats_in_file == 3);
         CHECK_FALSE(notes.three_scales);
         CHECK(notes.lines.empty());
+    }
+    for (const double length : {1e-30, 1e30}) {
+        PlyText ply = makePly();
+        for (const char* name : {"rot_0", "rot_1", "rot_2", "rot_3"}) { ply[name].values[0] = length; }
+        CHECK(loadScene(folder.write("length.ply", ply.bytes())).rotations[0] == glm::quat(0.5f, 0.5f, 0.5f, 0.5f));
     }
 }
 
@@ -53,9 +75,7 @@ TEST_CASE("f_rest is channel-major in the file and coefficient-major in the scen
 TEST_CASE("SH bands that are all zero are left out, even if a band below is used late") {
     const Folder folder;
     PlyText ply = makePly(45);
-    for (int i = 0; i < 45; ++i) {
-        for (double& value : ply[fmt::format("f_rest_{}", i)].values) { value = 0.0; }
-    }
+    for (int i = 0; i < 45; ++i) { setAll(ply, fmt::format("f_rest_{}", i), 0.0); }
     LoadNotes notes;
     CHECK(loadScene(folder.write("flat.ply", ply.bytes()), 0, &notes).sh_degree == 0);
     CHECK(notes.sh_degree_in_file == 3);
@@ -74,79 +94,102 @@ TEST_CASE("SH bands that are all zero are left out, even if a band below is used
     CHECK(std::count(scene.sh.begin(), scene.sh.end(), 0.0f) == 700 * 25 - 2 + 0);  // f_dc_1 and f_dc_2 are not zero
 }
 
+TEST_CASE("blocks that are read ahead on a thread of their own come all and in order, and what goes wrong in one is said") {
+    const Folder folder;
+    LoadNotes notes;
+    // Around one block, one batch of eight, and the two from which on there is a thread.
+    for (const std::size_t splats : {1u, 255u, 256u, 257u, 2048u, 2049u, 4096u, 4097u, 6145u, 20'000u}) {
+        for (const std::size_t without_sh : {splats / 5, splats - 1, splats}) {
+            CAPTURE(splats);
+            CAPTURE(without_sh);
+            Scene scene = randomScene(3, splats, false);
+            for (std::size_t i = 0; i < 48 * without_sh; ++i) { scene.sh[i] = i % 48 < 3 ? scene.sh[i] : 0.0f; }
+            if (without_sh == splats) { limitShDegree(scene, 0, notes); }
+            const Scene loaded = writtenAndRead(folder, scene);
+            REQUIRE(loaded.sh_degree == scene.sh_degree);
+            CHECK(loaded.positions == scene.positions);
+            CHECK(loaded.sh == scene.sh);
+        }
+    }
+    const std::string row = "0 0 1 0 0 0 0 0 0 0 0 0 1 0 0 0\n", middle = "element vertex 20000\n";
+    std::string rows;
+    for (int i = 0; i < 20'000; ++i) { rows += row; }
+    PlyText ply = makeIn(Encoding::kAscii);
+    for (Column& column : ply.columns) { column.values.clear(); }
+    const std::string header = replaced(ply.bytes(), "element vertex 0\n", middle);
+    for (const std::size_t broken : {0u, 255u, 256u, 2048u, 9000u, 19'999u}) {
+        rows[broken * row.size()] = 'x';
+        CHECK(contains(loadError(folder, header + rows), fmt::format("splat {} of 20000: property x is 'x'", broken)));
+        rows[broken * row.size()] = '0';
+    }
+    // Whoever stops taking waits for nothing.
+    struct Enough {};
+    for (const double limit : {-1.0, 0.0, 0.5}) {
+        const auto stop = [&](double share) {
+            if (share > limit) { throw Enough(); }
+        };
+        CHECK_THROWS_AS(loadScene(folder.write("whole.ply", header + rows), 0, nullptr, stop), Enough);
+    }
+}
+
 TEST_CASE("properties come in any order, of any type, among others") {
     const Folder folder;
     const Scene expected = loadScene(folder.write("plain.ply", makePly(9).bytes()));
     std::uint32_t state = 1;
     for (int round = 0; round < 12; ++round) {
-        PlyText ply = makePly(9);
-        ply.encoding = kEncodings[round % 3];
+        PlyText ply = makeIn(kEncodings[round % 3], 9);
         for (std::size_t i = ply.columns.size(); i > 1; --i) {
             state = state * 1664525u + 1013904223u;
             std::swap(ply.columns[i - 1], ply.columns[state % i]);
         }
         for (const char* name : {"x", "f_rest_3", "rot_1", "opacity"}) { ply[name].type = round % 2 == 0 ? "double" : "float64"; }
-        ply["f_rest_0"].type = "short";
-        ply["f_rest_1"].type = "uint16";
-        ply["f_rest_2"].type = "int32";
-        ply["z"].type = "uchar";
-        ply["scale_0"].type = "int8";
-        ply["rot_2"].type = "char";
-        ply["rot_0"].type = "uint";
+        for (const auto& [name, type] :
+             {std::pair("f_rest_0", "short"), std::pair("f_rest_1", "uint16"), std::pair("f_rest_2", "int32"), std::pair("z", "uchar"),
+              std::pair("scale_0", "int8"), std::pair("rot_2", "char"), std::pair("rot_0", "uint")}) {
+            ply[name].type = type;
+        }
         ply.columns.insert(ply.columns.begin() + round, {"red", "uchar", {255.0, 0.0, 17.0}});
         ply.columns.push_back({"confidence", "ushort", {1.0, 2.0, 3.0}});
         checkSameScene(loadScene(folder.write("shuffled.ply", ply.bytes())), expected);
     }
 }
 
-TEST_CASE("other elements are passed over, with and without lists, before and after the splats") {
+TEST_CASE("other elements are passed over, with and without lists, before and after the splats, as are line breaks of Windows") {
     const Folder folder;
     const Scene expected = loadScene(folder.write("plain.ply", makePly().bytes()));
     for (const Encoding encoding : kEncodings) {
-        PlyText ply = makePly();
-        ply.encoding = encoding;
+        PlyText ply = makeIn(encoding);
+        ply.line_break = "\r\n";
+        checkSameScene(loadScene(folder.write("windows.ply", ply.bytes())), expected);
+        ply.line_break = "\n";
         ply.header_before =
             "element camera 2\nproperty float a\nproperty uchar b\nelement strip 2\nproperty list uchar int index\nproperty double "
             "w\nelement none 5\n";
         ply.header_after = "element face 1\nproperty list uchar int vertex_indices\n";
+        const std::string line_end = encoding == Encoding::kAscii ? "\n" : "";
         for (const double row : {1.0, 2.0}) {
             appendTyped(ply.data_before, "float", row, encoding);
             appendTyped(ply.data_before, "uchar", 3.0, encoding);
-            if (encoding == Encoding::kAscii) { ply.data_before += "\n"; }
+            ply.data_before += line_end;
         }
         for (const int count : {3, 0}) {
             appendTyped(ply.data_before, "uchar", count, encoding);
             for (int i = 0; i < count; ++i) { appendTyped(ply.data_before, "int", i, encoding); }
             appendTyped(ply.data_before, "double", 0.5, encoding);
-            if (encoding == Encoding::kAscii) { ply.data_before += "\n"; }
+            ply.data_before += line_end;
         }
         ply.data_after = "whatever follows";
         checkSameScene(loadScene(folder.write("more.ply", ply.bytes())), expected);
     }
 }
 
-TEST_CASE("line breaks of Windows are read") {
-    const Folder folder;
-    PlyText ply = makePly();
-    const Scene expected = loadScene(folder.write("plain.ply", ply.bytes()));
-    ply.line_break = "\r\n";
-    checkSameScene(loadScene(folder.write("windows.ply", ply.bytes())), expected);
-    ply.encoding = Encoding::kAscii;
-    checkSameScene(loadScene(folder.write("windows.ply", replaced(ply.bytes(), "\n", "\n"))), expected);
-}
-
 TEST_CASE("of three scales the shortest becomes the last, the frame stays right-handed, and flattening drops it") {
     const Folder folder;
     for (std::size_t shortest = 0; shortest < 3; ++shortest) {
         PlyText ply = makePly(0, true);
-        const double logs[] = {-1.0, -2.0, -0.5};
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            for (double& value : ply[fmt::format("scale_{}", axis)].values) { value = axis == shortest ? -7.0 : logs[axis]; }
-        }
-        const double rotation[] = {0.3, -0.5, 0.7, 0.2};
-        for (std::size_t i = 0; i < 4; ++i) {
-            for (double& value : ply[fmt::format("rot_{}", i)].values) { value = rotation[i]; }
-        }
+        const double logs[] = {-1.0, -2.0, -0.5}, rotation[] = {0.3, -0.5, 0.7, 0.2};
+        for (std::size_t axis = 0; axis < 3; ++axis) { setAll(ply, fmt::format("scale_{}", axis), axis == shortest ? -7.0 : logs[axis]); }
+        for (std::size_t i = 0; i < 4; ++i) { setAll(ply, fmt::format("rot_{}", i), rotation[i]); }
         LoadNotes notes;
         Scene scene = loadScene(folder.write("three.ply", ply.bytes()), 0, &notes);
         const glm::mat3 trained = glm::mat3_cast(glm::normalize(glm::quat(0.3f, -0.5f, 0.7f, 0.2f)));
@@ -162,8 +205,7 @@ TEST_CASE("of three scales the shortest becomes the last, the frame stays right-
         CHECK(notes.median_flatness == doctest::Approx(std::exp(-7.0 - std::min(logs[u], logs[v]))));
         REQUIRE(scene.isGaussian3d());
         CHECK(scene.thicknesses[0] == doctest::Approx(std::exp(-7.0)));
-        writePly(scene, folder.file("again.ply"));
-        checkSameScene(loadScene(folder.file("again.ply")), scene);
+        checkSameScene(writtenAndRead(folder, scene), scene);
         CHECK(notes.lines.empty());
         flatten(scene, notes);
         CHECK_FALSE(scene.isGaussian3d());
@@ -174,13 +216,11 @@ TEST_CASE("of three scales the shortest becomes the last, the frame stays right-
 
 TEST_CASE("splats with NaN, infinity, overflow or no rotation are skipped and counted") {
     const Folder folder;
-    const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
     for (const Encoding encoding : kEncodings) {
-        for (const char* name : {"x", "z", "f_dc_1", "f_rest_8", "opacity", "scale_1", "rot_3"}) {
-            for (const double bad : {nan, infinity, -infinity}) {
-                if (name == std::string_view("opacity") && bad == infinity) { continue; }  // is opacity 1
-                PlyText ply = makePly(9);
-                ply.encoding = encoding;
+        for (const std::string name : {"x", "z", "f_dc_1", "f_rest_8", "opacity", "scale_1", "rot_3"}) {
+            for (const double bad : {kNan, kInfinity, -kInfinity}) {
+                if (name == "opacity" && bad == kInfinity) { continue; }  // is opacity 1
+                PlyText ply = makeIn(encoding, 9);
                 ply[name].values[1] = bad;
                 LoadNotes notes;
                 const Scene scene = loadScene(folder.write("nan.ply", ply.bytes()), 0, &notes);
@@ -197,7 +237,7 @@ TEST_CASE("splats with NaN, infinity, overflow or no rotation are skipped and co
     PlyText ply = makePly(9);
     ply["scale_0"].values[0] = 89.0;  // exp(89) is beyond float32
     ply["rot_2"].values[2] = 0.0;
-    ply["nx"].values[1] = nan;  // of no interest
+    ply["nx"].values[1] = kNan;  // of no interest
     LoadNotes notes;
     CHECK(loadScene(folder.write("bad.ply", ply.bytes()), 0, &notes).size() == 1);
     CHECK(notes.skipped_not_finite == 1);
@@ -205,33 +245,22 @@ TEST_CASE("splats with NaN, infinity, overflow or no rotation are skipped and co
     CHECK(notes.lines.size() == 2);
 }
 
-TEST_CASE("a logit of infinity is opacity 1") {
+TEST_CASE("a logit of infinity is opacity 1; the shortest of three axes may have no extent, any other may not") {
     const Folder folder;
     for (const Encoding encoding : kEncodings) {
         for (const bool three_scales : {false, true}) {
-            PlyText ply = makePly(9, three_scales);
-            ply.encoding = encoding;
-            ply["opacity"].values[1] = std::numeric_limits<double>::infinity();
+            PlyText ply = makeIn(encoding, 9, three_scales);
+            ply["opacity"].values[1] = kInfinity;
             LoadNotes notes;
             const Scene scene = loadScene(folder.write("opaque.ply", ply.bytes()), 0, &notes);
             REQUIRE(scene.size() == 3);
             CHECK(scene.opacities[1] == 1.0f);
             CHECK(notes.lines.empty());
-            writePly(scene, folder.file("again.ply"));
-            CHECK(loadScene(folder.file("again.ply")).opacities[1] == 1.0f);
         }
-    }
-}
-
-TEST_CASE("the shortest of three axes may have no extent, any other may not") {
-    const Folder folder;
-    const double none = -std::numeric_limits<double>::infinity();
-    for (const Encoding encoding : kEncodings) {
         for (int axis = 0; axis < 3; ++axis) {
             CAPTURE(axis);
-            PlyText ply = makePly(0, true);
-            ply.encoding = encoding;
-            ply[fmt::format("scale_{}", axis)].values[0] = none;
+            PlyText ply = makeIn(encoding, 0, true);
+            ply[fmt::format("scale_{}", axis)].values[0] = -kInfinity;
             LoadNotes notes;
             const Scene disc = loadScene(folder.write("disc.ply", ply.bytes()), 0, &notes);
             REQUIRE(disc.size() == 3);
@@ -239,16 +268,14 @@ TEST_CASE("the shortest of three axes may have no extent, any other may not") {
             const double kept = axis == 0 ? -3.0 : axis == 1 ? -5.0 : 0.0;  // the one that follows in cyclic order
             CHECK(disc.scales[0].x == doctest::Approx(std::exp(kept)));
             CHECK(notes.lines.empty());
-            writePly(disc, folder.file("again.ply"));
-            CHECK(loadScene(folder.file("again.ply")).thicknesses[0] == 0.0f);
+            CHECK(writtenAndRead(folder, disc).thicknesses[0] == 0.0f);
 
-            ply[fmt::format("scale_{}", (axis + 1) % 3)].values[0] = none;  // a needle without width
+            ply[fmt::format("scale_{}", (axis + 1) % 3)].values[0] = -kInfinity;  // a needle without width
             CHECK(loadScene(folder.write("needle.ply", ply.bytes()), 0, &notes).size() == 2);
             CHECK(notes.skipped_not_finite == 1);
         }
-        PlyText flat = makePly();
-        flat.encoding = encoding;
-        flat["scale_1"].values[0] = none;
+        PlyText flat = makeIn(encoding);
+        flat["scale_1"].values[0] = -kInfinity;
         LoadNotes notes;
         CHECK(loadScene(folder.write("flat.ply", flat.bytes()), 0, &notes).size() == 2);
         CHECK(notes.skipped_not_finite == 1);
@@ -260,23 +287,22 @@ TEST_CASE("a comment asks for antialiasing, the last one counts, and writing kee
     const auto loadWith = [&](const std::string& comments, bool three_scales = true) {
         return loadScene(folder.write("said.ply", replaced(makePly(0, three_scales).bytes(), "comment made for a test\n", comments)));
     };
-    CHECK_FALSE(loadWith("comment made for a test\n").antialiased);
-    for (const char* comment : {"comment SplatRenderMode: mip\n", "comment  splatrendermode:  MIP \r\n", "comment antialiased 1\n",
-                                "comment postshot.anti_aliasing=1\n", "comment SplatRenderMode: default\ncomment antialiased 1\n"}) {
-        CAPTURE(comment);
-        const Scene scene = loadWith(comment);
-        CHECK(scene.antialiased);
-        writePly(scene, folder.file("again.ply"));
-        CHECK(loadScene(folder.file("again.ply")).antialiased);
-    }
-    for (const char* comment :
-         {"comment SplatRenderMode: default\n", "comment SplatRenderMode:\n", "comment SplatRenderMode: mip or not\n",
-          "comment antialiased 0\n", "comment antialiased 1\ncomment SplatRenderMode: default\n", "obj_info SplatRenderMode: mip\n"}) {
-        CAPTURE(comment);
-        const Scene scene = loadWith(comment);
-        CHECK_FALSE(scene.antialiased);
-        writePly(scene, folder.file("again.ply"));
-        CHECK_FALSE(loadScene(folder.file("again.ply")).antialiased);
+    for (const auto& [comments, asks] : {std::pair("comment SplatRenderMode: mip\n", true),
+                                         {"comment  splatrendermode:  MIP \r\n", true},
+                                         {"comment antialiased 1\n", true},
+                                         {"comment postshot.anti_aliasing=1\n", true},
+                                         {"comment SplatRenderMode: default\ncomment antialiased 1\n", true},
+                                         {"comment made for a test\n", false},
+                                         {"comment SplatRenderMode: default\n", false},
+                                         {"comment SplatRenderMode:\n", false},
+                                         {"comment SplatRenderMode: mip or not\n", false},
+                                         {"comment antialiased 0\n", false},
+                                         {"comment antialiased 1\ncomment SplatRenderMode: default\n", false},
+                                         {"obj_info SplatRenderMode: mip\n", false}}) {
+        CAPTURE(comments);
+        const Scene scene = loadWith(comments);
+        CHECK(scene.antialiased == asks);
+        CHECK(writtenAndRead(folder, scene).antialiased == asks);
     }
     CHECK_FALSE(loadWith("comment SplatRenderMode: mip\n", false).antialiased);  // discs are not dimmed
 }
@@ -298,105 +324,73 @@ TEST_CASE("a PLY that looks as if its activations had been applied is loaded as 
         CHECK(linesOf() == 1);
         CHECK(loadScene(folder.file("applied.ply")).opacities[1] == doctest::Approx(1.0 / (1.0 + std::exp(-1.0))));
         for (const auto& [name, usual] : {std::pair("opacity", 1.01), std::pair("opacity", -0.01), std::pair("scale_1", 0.0)}) {
-            PlyText kept = ply;
-            ply[name].values[650] = usual;  // one splat in the last block
+            const double before = std::exchange(ply[name].values[650], usual);  // one splat in the last block
             CHECK(linesOf() == 0);
-            ply = kept;
+            ply[name].values[650] = before;
         }
-    }
-    LoadNotes notes;
-    PlyText empty = makePly();
-    for (Column& column : empty.columns) { column.values.clear(); }
-    (void)loadScene(folder.write("empty.ply", empty.bytes()), 0, &notes);
-    CHECK(notes.lines.empty());
-}
-
-TEST_CASE("tiny and huge quaternions are normalised") {
-    const Folder folder;
-    for (const double length : {1e-30, 1e30}) {
-        PlyText ply = makePly();
-        for (const char* name : {"rot_0", "rot_1", "rot_2", "rot_3"}) { ply[name].values[0] = length; }
-        CHECK(loadScene(folder.write("length.ply", ply.bytes())).rotations[0] == glm::quat(0.5f, 0.5f, 0.5f, 0.5f));
     }
 }
 
 TEST_CASE("an empty scene is a scene") {
     const Folder folder;
     for (const Encoding encoding : kEncodings) {
-        PlyText ply = makePly(9, true);
-        ply.encoding = encoding;
+        PlyText ply = makeIn(encoding, 9, true);
         for (Column& column : ply.columns) { column.values.clear(); }
         LoadNotes notes;
         const Scene scene = loadScene(folder.write("empty.ply", ply.bytes()), 0, &notes);
         CHECK(scene.size() == 0);
         CHECK(notes.median_flatness == 0.0);
         CHECK(describeScene(scene, &notes).splats == 0);
-        writePly(scene, folder.file("again.ply"));
-        CHECK(loadScene(folder.file("again.ply")).size() == 0);
+        CHECK(writtenAndRead(folder, scene).size() == 0);
     }
 }
 
-TEST_CASE("what is written reads back the same") {
+TEST_CASE("what is written reads back the same, opacity 0 and 1 and scale 0 exactly") {
     const Folder folder;
     for (const int rest_count : {0, 9, 24, 45}) {
-        const Scene scene = loadScene(folder.write("in.ply", makePly(rest_count).bytes()));
-        double last = -1.0;
-        writePly(scene, folder.file("out.ply"), [&](double share) {
-            CHECK(share > last);
-            last = share;
-        });
-        CHECK(last == 1.0);
-        const Scene again = loadScene(folder.file("out.ply"));
+        Scene scene = loadScene(folder.write("in.ply", makePly(rest_count).bytes()));
+        scene.opacities = {0.0f, 1.0f, 0.999999f};
+        scene.scales = {{0.0f, 1e-6f}, {1.0f, 2.0f}, {3.0f, 1e6f}};
+        const Scene again = writtenAndRead(folder, scene);
         CHECK(again.positions == scene.positions);
         CHECK(again.sh == scene.sh);
+        CHECK(again.opacities[0] == 0.0f);
+        CHECK(again.opacities[1] == 1.0f);
+        CHECK(again.opacities[2] == doctest::Approx(0.999999).epsilon(1e-6));
+        CHECK(again.scales[0].x == 0.0f);
+        CHECK(again.scales[0].y == doctest::Approx(1e-6).epsilon(1e-5));
         for (std::size_t i = 0; i < scene.size(); ++i) {
             CHECK(glm::length(again.rotations[i] - scene.rotations[i]) < 1e-6f);
-            CHECK(glm::length(again.scales[i] / scene.scales[i] - 1.0f) < 1e-6f);
-            CHECK(again.opacities[i] == doctest::Approx(scene.opacities[i]).epsilon(1e-6));
+            if (i > 0) { CHECK(glm::length(again.scales[i] / scene.scales[i] - 1.0f) < 1e-6f); }
         }
+        scene.opacities.assign(3, 1e-6f);
+        CHECK(writtenAndRead(folder, scene).opacities[0] == doctest::Approx(1e-6).epsilon(1e-5));
     }
 }
 
-TEST_CASE("opacity 0 and 1 and scale 0 survive writing exactly") {
+TEST_CASE("loading and writing report progress from 0 to 1, and writing leaves nothing half-written") {
     const Folder folder;
-    Scene scene;
-    for (const float opacity : {0.0f, 1.0f, 1e-6f, 0.999999f}) {
-        scene.positions.emplace_back(0.0f);
-        scene.rotations.push_back(glm::identity<glm::quat>());
-        scene.scales.emplace_back(0.0f, 1e-6f);
-        scene.opacities.push_back(opacity);
-        scene.sh.insert(scene.sh.end(), {0.0f, 0.0f, 0.0f});
-    }
-    writePly(scene, folder.file("ends.ply"));
-    const Scene again = loadScene(folder.file("ends.ply"));
-    REQUIRE(again.size() == 4);
-    CHECK(again.opacities[0] == 0.0f);
-    CHECK(again.opacities[1] == 1.0f);
-    CHECK(again.opacities[2] == doctest::Approx(1e-6).epsilon(1e-5));
-    CHECK(again.opacities[3] == doctest::Approx(0.999999).epsilon(1e-6));
-    CHECK(again.scales[0].x == 0.0f);
-    CHECK(again.scales[0].y == doctest::Approx(1e-6).epsilon(1e-5));
-}
-
-TEST_CASE("writing leaves nothing half-written") {
-    const Folder folder;
-    const Scene scene = makeBuiltin("builtin:one-splat");
-    const auto errorOf = [&](const std::string& path) -> std::string {
-        try {
-            writePly(scene, path);
-        } catch (const Error& error) { return error.what(); }
-        return {};
-    };
-    CHECK(contains(errorOf(folder.file("absent/scene.ply")), "cannot be written"));
-    CHECK(contains(errorOf(folder.file(".")), "is a directory"));
+    const Scene scene = makeBuiltin("builtin:one-splat"), large = randomScene(0, 100'000);
+    const auto errorTo = [&](const std::string& path) { return errorOf([&] { writePly(scene, path); }); };
+    CHECK(contains(errorTo(folder.file("absent/scene.ply")), "cannot be written"));
+    CHECK(contains(errorTo(folder.file(".")), "is a directory"));
 #ifndef _WIN32
     std::filesystem::create_symlink("/dev/null", folder.file("device.ply"));
-    CHECK(contains(errorOf(folder.file("device.ply")), "not a regular file"));
+    CHECK(contains(errorTo(folder.file("device.ply")), "not a regular file"));
     std::filesystem::remove(folder.file("device.ply"));
 #endif
+    for (const bool writes : {true, false}) {
+        std::vector<double> shares;
+        const auto show = [&](double share) { shares.push_back(share); };
+        writes ? writePly(large, folder.file("kept.ply"), show) : (void)loadScene(folder.file("kept.ply"), 0, nullptr, show);
+        CHECK(shares.size() > 3);
+        CHECK(std::ranges::is_sorted(shares));
+        CHECK(shares.front() == 0.0);
+        CHECK(shares.back() == 1.0);
+    }
     // An old file stays as it was if the new one does not come to its end.
     writePly(scene, folder.file("kept.ply"));
-    CHECK_THROWS_AS(writePly(makeBuiltin("builtin:atelier", 10'000), folder.file("kept.ply"),
+    CHECK_THROWS_AS(writePly(large, folder.file("kept.ply"),
                              [](double share) {
                                  if (share > 0.5) { fail("stopped"); }
                              }),
@@ -405,15 +399,101 @@ TEST_CASE("writing leaves nothing half-written") {
     CHECK(folder.fileCount() == 1);
 }
 
-TEST_CASE("loading reports progress from 0 to 1") {
+TEST_CASE("errors of the source itself say what it is") {
     const Folder folder;
-    writePly(makeBuiltin("builtin:atelier", 100'000), folder.file("large.ply"));
-    std::vector<double> shares;
-    (void)loadScene(folder.file("large.ply"), 0, nullptr, [&](double share) { shares.push_back(share); });
-    CHECK(shares.size() > 3);
-    CHECK(std::is_sorted(shares.begin(), shares.end()));
-    CHECK(shares.front() == 0.0);
-    CHECK(shares.back() == 1.0);
+    CHECK(contains(loadError(folder.file("absent.ply")), "absent.ply: no such file"));
+    CHECK(contains(loadError(folder.write("zero.ply", "")), "is empty"));
+#ifndef _WIN32
+    CHECK(contains(loadError("/dev/null"), "not a regular file"));
+    CHECK(contains(loadError(std::string(5000, 'x')), "cannot be read"));
+#endif
+    CHECK(contains(loadError(folder.write("picture.ply", "P6 not a scene")), "not a scene file"));
+    CHECK(loadScene(folder.write("named_otherwise.txt", makePly().bytes())).size() == 3);
+
+    const std::string pointer = "version https://git-lfs.github.com/spec/v1\noid sha256:" + std::string(64, 'a') + "\nsize 12345\n";
+    for (const char* name : {"scene.ply", "scene.splat", "scene.spz", "scene.sog", "meta.json", "lod-meta.json"}) {
+        CHECK(contains(loadError(folder.write(name, pointer)), std::string(name) + ": is a Git LFS pointer"));
+    }
+    CHECK(contains(loadError(folder.write("short", pointer.substr(0, 30))), "not a scene file"));
+    CHECK(contains(loadError(folder.write("long", pointer + std::string(2000, 'x'))), "not a scene file"));
+}
+
+TEST_CASE("a point cloud or a mesh is named as what it is, with the place where a training leaves its splats") {
+    const Folder folder;
+    for (const Encoding encoding : kEncodings) {
+        PlyText ply;
+        ply.encoding = encoding;
+        for (const char* name : {"x", "y", "z"}) { ply.columns.push_back({name, "float", {1.0, 2.0}}); }
+        const auto error = [&] { return loadError(folder.write("points3D.ply", ply.bytes())); };
+        CHECK(contains(error(), "points3D.ply: a point cloud (2 points), not a splat scene"));
+        for (const char* name : {"nx", "ny", "nz"}) { ply.columns.push_back({name, "float", {0.0, 1.0}}); }
+        for (const char* name : {"red", "green", "blue"}) { ply.columns.push_back({name, "uchar", {0.0, 255.0}}); }
+        CHECK(contains(error(), "a point cloud (2 points, with colours, with normals)"));
+        CHECK(contains(error(), "point_cloud/iteration_N/point_cloud.ply"));
+        ply.header_after = "element face 1\nproperty list uchar int vertex_indices\n";
+        CHECK(contains(error(), "a mesh (2 vertices, with colours, with normals)"));
+        ply.columns.push_back({"opacity", "float", {0.0, 1.0}});  // a splat scene that lacks the rest
+        CHECK(contains(error(), "no property f_dc_0"));
+    }
+}
+
+TEST_CASE("errors in a header name the file, the line and what was expected") {
+    const Folder folder;
+    const std::string good = makePly(9).bytes(), magic = "format binary_little_endian 1.0\n";
+    const std::vector<Fault> faults{{"end_header\n", "comment x\n", "end_header"},
+                                    {"property float x", "property half x", " line 5: unknown type 'half'"},
+                                    {"property float x", "property float", "expected 'property TYPE NAME'"},
+                                    {"property float x", "property list float int x", "counted by 'float'"},
+                                    {"property float nx", "property list uchar int nx", "nx of element vertex is a list"},
+                                    {"property float nx", "property float x", "property x of element vertex twice"},
+                                    {"property float opacity", "property float opaque", "no property opacity"},
+                                    {"property float scale_1", "property float scale", "no property scale_1"},
+                                    {"property float f_rest_8", "property float other", "8 f_rest properties, expected 0, 9, 24 or 45"},
+                                    {"property float f_rest_8", "property float f_rest_9", "no f_rest_8"},
+                                    {"element vertex 3", "element vertex -3", "count of element vertex is '-3'"},
+                                    {"element vertex 3", "element vertex many", "count of element vertex is 'many'"},
+                                    {"element vertex 3", "element vertex 99999999999999999999999", "count of element vertex"},
+                                    {"element vertex 3", "element vertex", "expected 'element NAME COUNT'"},
+                                    {"element vertex 3", "element points 3", "no element vertex"},
+                                    {"element vertex 3", "element vertex 0\nelement vertex 3", "element vertex twice"},
+                                    {"element vertex 3", "vertices 3", "unknown keyword 'vertices'"},
+                                    {"comment made for a test", "property float x", "a property before any element"},
+                                    {"binary_little_endian", "binary_middle_endian", "unknown encoding"},
+                                    {"1.0", "2.0", "version is '2.0'"},
+                                    {magic, "", "no format line"},
+                                    {"comment made for a test", "format ascii 1.0", "second format line"}};
+    checkFaults(faults, [&](const Fault& fault) {
+        const std::string message = loadError(folder, replaced(good, fault.from, fault.to));
+        CHECK(contains(message, "broken.ply: header"));
+        return message;
+    });
+}
+
+TEST_CASE("absurd counts are refused before anything is allocated") {
+    const Folder folder;
+    for (const Encoding encoding : kEncodings) {
+        PlyText ply = makeIn(encoding);
+        for (const char* count : {"4", "1000000000", "18446744073709551615"}) {
+            const std::string message =
+                loadError(folder, replaced(ply.bytes(), "element vertex 3", fmt::format("element vertex {}", count)));
+            CHECK(contains(message, "broken.ply: data: ends"));
+            CHECK(contains(message, fmt::format("of {}", count)));
+        }
+        ply.header_before = "element list 18446744073709551615\nproperty list uint int values\n";
+        CHECK_FALSE(loadError(folder, ply.bytes()).empty());
+        ply.header_before = "element pair 18446744073709551615\nproperty double a\nproperty double b\n";
+        CHECK_FALSE(loadError(folder, ply.bytes()).empty());
+    }
+}
+
+TEST_CASE("ascii values that are no numbers are named, with their splat, and a file that ends in a splat says in which") {
+    const Folder folder;
+    const std::string good = makeIn(Encoding::kAscii).bytes(), binary = makePly().bytes();
+    CHECK(contains(loadError(folder, replaced(good, "\n2 0.25", "\n2 zwei")), "splat 1 of 3: property y is 'zwei'"));
+    CHECK(contains(loadError(folder, replaced(good, "\n2 0.25", "\n2")), "splat 1 of 3: property rot_3 is ''"));
+    CHECK(contains(loadError(folder, replaced(good, "\n2 0.25", "\n2 0.25 1")), "splat 1 of 3: more than the expected 16 values"));
+    CHECK(loadError(folder, replaced(good, "\n2 0.25", "\n\n+2 \t 2.5e-1")).empty());
+    CHECK(contains(loadError(folder, binary.substr(0, binary.size() - 1)), "ends in splat 2 of 3"));
 }
 
 }  // namespace ply_test

@@ -1,15 +1,11 @@
 // SOG scenes made to measure, as a directory or a bundle.
 #pragma once
 
+#include "engine/picture/webp.h"
+#include "tests/engine/scene/packed_bytes.h"
 #include "tests/engine/scene/ply_files.h"
-#include "tests/engine/scene/webp_bytes.h"
 
-#include <zlib.h>
-
-#include <map>
-#include <string>
-#include <utility>
-#include <vector>
+#include <array>
 
 namespace binosplat::test {
 
@@ -22,44 +18,42 @@ inline std::string codebook(double first, double step, int entries = 256) {
     return text + "]";
 }
 
+// Four bytes per pixel.
+inline std::string makeWebp(std::uint32_t width, std::uint32_t height, const std::vector<std::uint8_t>& rgba) {
+    const std::vector<std::byte> file = encodeWebp({{width, height}, rgba}, "a test's picture");
+    return {reinterpret_cast<const char*>(file.data()), file.size()};
+}
+
+// A picture of 3 x 3 pixels, of which `pixel` gives the first eight.
+inline std::string makeNine(const std::function<std::array<int, 4>(int)>& pixel) {
+    std::vector<std::uint8_t> rgba;
+    for (int i = 0; i < 8; ++i) {
+        for (const int value : pixel(i)) { rgba.push_back(static_cast<std::uint8_t>(value)); }
+    }
+    rgba.resize(36);
+    return makeWebp(3, 3, rgba);
+}
+
 // Eight splats in pictures of 3 x 3. Splat i lies at the share i/8 between the bounds on x (bytes 32 i above, 0 below), 0 on y, 1 on z;
 // its scales are the codebook's entries 10 i, 10 i + 1, 10 i + 2 and its colour 20 i, 20 i + 1, 20 i + 2; opacity i/8 of 255.
 inline SogText makeSog(int version = 2, bool with_palette = true) {
-    std::vector<std::uint8_t> low(36, 0), high(36, 0), scales(36, 0), quats(36, 0), sh0(36, 0), labels(36, 0);
-    for (std::uint8_t i = 0; i < 8; ++i) {
-        std::uint8_t* at = low.data() + 4 * i;
-        at[2] = 255;
-        at = high.data() + 4 * i;
-        at[0] = static_cast<std::uint8_t>(32 * i), at[2] = 255;
-        at = scales.data() + 4 * i;
-        at[0] = static_cast<std::uint8_t>(10 * i), at[1] = static_cast<std::uint8_t>(10 * i + 1),
-        at[2] = static_cast<std::uint8_t>(10 * i + 2);
-        at = quats.data() + 4 * i;
-        at[0] = at[1] = at[2] = 128, at[3] = static_cast<std::uint8_t>(252 + i % 4);
-        at = sh0.data() + 4 * i;
-        at[0] = static_cast<std::uint8_t>(20 * i), at[1] = static_cast<std::uint8_t>(20 * i + 1),
-        at[2] = static_cast<std::uint8_t>(20 * i + 2);
-        at[3] = static_cast<std::uint8_t>(255 * i / 8);
-        labels[4u * i] = static_cast<std::uint8_t>(i % 2 == 0 ? 65 : 1);  // in the second row of the palette, or the first
-    }
-    // Degree 1: 64 entries of three pixels a row; entry e, coefficient k has the bytes (e, k, 100).
-    std::vector<std::uint8_t> centroids(192 * 2 * 4, 255);
-    for (std::size_t entry = 0; entry < 128; ++entry) {
-        for (std::size_t k = 0; k < 3; ++k) {
-            std::uint8_t* at = centroids.data() + 4 * (entry / 64 * 192 + entry % 64 * 3 + k);
-            at[0] = static_cast<std::uint8_t>(entry), at[1] = static_cast<std::uint8_t>(k), at[2] = 100;
-        }
-    }
-    SogText files{{"l.webp", makeWebp(3, 3, low, false)},
-                  {"u.webp", makeWebp(3, 3, high, false)},
-                  {"s.webp", makeWebp(3, 3, scales, false)},
-                  {"q.webp", makeWebp(3, 3, quats)},
-                  {"c.webp", makeWebp(3, 3, sh0)}};
+    using Rgba = std::array<int, 4>;
+    SogText files;
+    files["l.webp"] = makeNine([](int) { return Rgba{0, 0, 255, 0}; });
+    files["u.webp"] = makeNine([](int i) { return Rgba{32 * i, 0, 255, 0}; });
+    files["s.webp"] = makeNine([](int i) { return Rgba{10 * i, 10 * i + 1, 10 * i + 2, 0}; });
+    files["q.webp"] = makeNine([](int i) { return Rgba{128, 128, 128, 252 + i % 4}; });
+    files["c.webp"] = makeNine([](int i) { return Rgba{20 * i, 20 * i + 1, 20 * i + 2, 255 * i / 8}; });
     const std::string means = R"("mins":[-1,-2,0],"maxs":[1,0,0.6931471805599453],"files":["l.webp","u.webp"])";
     std::string meta, palette;
     if (with_palette) {
-        files["p.webp"] = makeWebp(192, 2, centroids, false);
-        files["n.webp"] = makeWebp(3, 3, labels, false);
+        // Degree 1: 64 entries of three pixels a row; entry e, coefficient k has the bytes (e, k, 100).
+        std::vector<std::uint8_t> centroids;
+        for (std::uint8_t entry = 0; entry < 128; ++entry) {
+            for (std::uint8_t k = 0; k < 3; ++k) { centroids.insert(centroids.end(), {entry, k, 100, 255}); }
+        }
+        files["p.webp"] = makeWebp(192, 2, centroids);
+        files["n.webp"] = makeNine([](int i) { return Rgba{i % 2 == 0 ? 65 : 1, 0, 0, 0}; });  // of the palette's second row, or the first
         palette = version == 2
                       ? R"(,"shN":{"count":128,"bands":1,"codebook":)" + codebook(-2, 1.0 / 64) + R"(,"files":["p.webp","n.webp"]})"
                       : R"(,"shN":{"shape":[8,9],"mins":-2,"maxs":1.984375,"quantization":8,"files":["p.webp","n.webp"]})";
@@ -87,43 +81,26 @@ inline std::string writeSogFolder(const Folder& folder, const std::string& name,
 }
 
 // A zip archive of stored entries, or deflated ones, in the order of `files`; names get `prefix`.
-inline std::string makeZip(const std::vector<std::pair<std::string, std::string>>& files, bool deflated = false,
+inline std::string makeZip(const std::vector<std::pair<std::string, std::string>>& files, bool are_deflated = false,
                            const std::string& prefix = "") {
     std::string archive, directory;
     for (const auto& [plain_name, bytes] : files) {
         const std::string name = prefix + plain_name;
-        std::string packed = bytes;
-        if (deflated) {
-            uLongf size = compressBound(static_cast<uLong>(bytes.size())) + 16;
-            packed.resize(size);
-            z_stream stream{};
-            REQUIRE(deflateInit2(&stream, 9, Z_DEFLATED, -MAX_WBITS, 8, Z_DEFAULT_STRATEGY) == Z_OK);
-            stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
-            stream.avail_in = static_cast<uInt>(bytes.size());
-            stream.next_out = reinterpret_cast<Bytef*>(packed.data());
-            stream.avail_out = static_cast<uInt>(size);
-            REQUIRE(deflate(&stream, Z_FINISH) == Z_STREAM_END);
-            packed.resize(stream.total_out);
-            deflateEnd(&stream);
-        }
-        const auto sum =
-            static_cast<std::uint32_t>(crc32(0, reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uInt>(bytes.size())));
-        const std::string common = littleWord(20, 2) + littleWord(0, 2) + littleWord(deflated ? 8 : 0, 2) + littleWord(0) +
-                                   littleWord(sum) + littleWord(static_cast<std::uint32_t>(packed.size())) +
-                                   littleWord(static_cast<std::uint32_t>(bytes.size())) +
-                                   littleWord(static_cast<std::uint32_t>(name.size()), 2) + littleWord(0, 2);
+        const std::string packed = are_deflated ? deflated(bytes, -MAX_WBITS) : bytes;
+        const auto sum = crc32(0, reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uInt>(bytes.size()));
+        const std::string common = littleWord(20, 2) + littleWord(0, 2) + littleWord(are_deflated ? 8 : 0, 2) + littleWord(0) +
+                                   littleWord(sum) + littleWord(packed.size()) + littleWord(bytes.size()) + littleWord(name.size(), 2) +
+                                   littleWord(0, 2);
         directory += "PK\x01\x02" + littleWord(20, 2) + common + littleWord(0, 2) + littleWord(0, 2) + littleWord(0, 2) + littleWord(0) +
-                     littleWord(static_cast<std::uint32_t>(archive.size())) + name;
+                     littleWord(archive.size()) + name;
         archive += "PK\x03\x04" + common + name + packed;
     }
-    const auto count = static_cast<std::uint32_t>(files.size());
-    return archive + directory + "PK\x05\x06" + littleWord(0, 2) + littleWord(0, 2) + littleWord(count, 2) + littleWord(count, 2) +
-           littleWord(static_cast<std::uint32_t>(directory.size())) + littleWord(static_cast<std::uint32_t>(archive.size())) +
-           littleWord(0, 2);
+    return archive + directory + "PK\x05\x06" + littleWord(0, 4) + littleWord(files.size(), 2) + littleWord(files.size(), 2) +
+           littleWord(directory.size()) + littleWord(archive.size()) + littleWord(0, 2);
 }
 
-inline std::string makeZip(const SogText& files, bool deflated = false, const std::string& prefix = "") {
-    return makeZip(std::vector<std::pair<std::string, std::string>>(files.begin(), files.end()), deflated, prefix);
+inline std::string makeZip(const SogText& files, bool are_deflated = false, const std::string& prefix = "") {
+    return makeZip(std::vector<std::pair<std::string, std::string>>(files.begin(), files.end()), are_deflated, prefix);
 }
 
 }  // namespace binosplat::test

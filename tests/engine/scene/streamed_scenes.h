@@ -26,13 +26,20 @@ inline SogText makeChunk(int left, int version = 2, bool with_palette = true) {
     return files;
 }
 
-// Gives the folder. `meta` is that of makeLodMeta or a broken one.
-inline std::string writeStreamed(const Folder& folder, const std::string& name, const std::string& meta) {
+// Gives the folder. `meta` is that of makeLodMeta or a broken one. Chunks in `bundles` are a .sog each.
+inline std::string writeStreamed(const Folder& folder, const std::string& name, std::string meta,
+                                 const std::vector<std::string>& bundles = {}) {
     std::filesystem::remove_all(folder.file(name));
-    (void)writeSogFolder(folder, name + "/a", makeChunk(2));
-    (void)writeSogFolder(folder, name + "/b", makeChunk(3, 2, false));
-    (void)writeSogFolder(folder, name + "/c", makeChunk(4, 1));
-    (void)writeSogFolder(folder, name + "/env", makeChunk(5, 2, false));
+    std::filesystem::create_directories(folder.file(name));
+    for (const auto& [chunk, files] : {std::pair("a", makeChunk(2)), std::pair("b", makeChunk(3, 2, false)),
+                                       std::pair("c", makeChunk(4, 1)), std::pair("env", makeChunk(5, 2, false))}) {
+        if (std::ranges::count(bundles, chunk) > 0) {
+            meta = replaced(meta, fmt::format("\"{}/meta.json\"", chunk), fmt::format("\"{}.sog\"", chunk));
+            (void)folder.write(fmt::format("{}/{}.sog", name, chunk), makeZip(files, *chunk == 'b'));
+        } else {
+            (void)writeSogFolder(folder, fmt::format("{}/{}", name, chunk), files);
+        }
+    }
     (void)folder.write(name + "/lod-meta.json", meta);
     return folder.file(name);
 }

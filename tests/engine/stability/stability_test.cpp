@@ -2,13 +2,13 @@
 // sequences.
 #include "engine/stability/extreme_scenes.h"
 #include "engine/stability/run_case.h"
-#include "tests/engine/gpu/gpu_fixture.h"
+#include "tests/engine/frame/frame_runs.h"
+#include "tests/nightly.h"
 
 #include <doctest/doctest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <set>
 
 TEST_SUITE_BEGIN("stability");
@@ -18,33 +18,18 @@ namespace stability_test {
 using namespace binosplat;
 using namespace binosplat::stability;
 using test::Gpu;
+using test::nightly;
 
 namespace {
 
-// Pictures of one stage after another, by kernels that are compiled once.
-class Pairs {
-public:
-    explicit Pairs(const Context& context) : context_(context) {}
-
-    std::vector<Image> render(const Stage& stage, Mode mode) {
-        scene_.emplace(context_, stage.scene);
-        if (frame_) {
-            frame_->show(*scene_);
-        } else {
-            frame_.emplace(context_, *scene_);
-        }
-        FrameSettings settings;
-        settings.mode = mode;
-        settings.near = stage.near;
-        frame_->render(stage.eyes, settings);
-        return {frame_->readPicture(kLeft), frame_->readPicture(kRight)};
-    }
-
-private:
-    const Context& context_;
-    std::optional<GpuScene> scene_;
-    std::optional<StereoFrame> frame_;
-};
+test::PairOfValues render(const Context& context, const Stage& stage, Mode mode) {
+    FrameSettings settings;
+    settings.mode = mode;
+    settings.near = stage.near;
+    test::KeptFrame frame(context, stage.scene);
+    frame.render(stage.eyes, settings);
+    return test::shownBy(frame);
+}
 
 // The first `count` splats of a scene without SH bands.
 Stage keepFirst(Stage stage, std::size_t count) {
@@ -57,9 +42,15 @@ Stage keepFirst(Stage stage, std::size_t count) {
     return stage;
 }
 
+void checkSeesOnlyTheFirst(const Context& context, const Stage& stage, std::size_t count) {
+    for (const Mode mode : {Mode::kShared, Mode::kPredicted}) {
+        CHECK(render(context, stage, mode) == render(context, keepFirst(stage, count), mode));
+    }
+}
+
 }  // namespace
 
-TEST_CASE_FIXTURE(Gpu, "every case is finite, repeats and keeps to its bounds beside the twin, in every mode") {
+TEST_CASE_FIXTURE(Gpu, "every case is finite, repeats and keeps to its bounds beside the twin, in every mode" * nightly()) {
     std::set<std::string> names;
     CaseRunner runner(context());
     for (const Case& one : makeCatalogue()) {
@@ -78,7 +69,7 @@ TEST_CASE_FIXTURE(Gpu, "every case is finite, repeats and keeps to its bounds be
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "an eye that goes through discs and along their planes sees no more change at a time than the twin's") {
+TEST_CASE_FIXTURE(Gpu, "an eye that goes through discs and along their planes sees no more change at a time than the twin's" * nightly()) {
     CaseRunner runner(context());
     for (const Path& path : makePaths()) {
         const PathScore score = runner.run(path);
@@ -89,7 +80,7 @@ TEST_CASE_FIXTURE(Gpu, "an eye that goes through discs and along their planes se
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "pictures that are made from the ones before keep to their bounds beside full renders, however long") {
+TEST_CASE_FIXTURE(Gpu, "pictures that are made from the ones before keep to their bounds beside full renders, however long" * nightly()) {
     CaseRunner runner(context());
     for (const Sequence& sequence : makeSequences()) {
         const SequenceScore score = runner.run(sequence);
@@ -102,40 +93,26 @@ TEST_CASE_FIXTURE(Gpu, "pictures that are made from the ones before keep to thei
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "splats with a broken attribute change no byte, whichever attribute it is, of discs and of 3D Gaussians") {
-    Pairs pairs(context());
+TEST_CASE_FIXTURE(Gpu, "splats with a broken attribute, or of which dimming leaves nothing, change no byte, of discs and of 3D Gaussians" *
+                           nightly()) {
     for (const double broken : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
         for (const bool gaussians : {false, true}) {
             const Stage stage = gaussians ? makeBrokenGaussians(broken) : makeBrokenAttributes(broken);
-            const std::size_t count = stage.scene.size(), broken_splats = 3 + 3 + 4 + 2 + 1 + (gaussians ? 1 : 0);
-            for (const Mode mode : {Mode::kShared, Mode::kPredicted}) {
-                const auto with = pairs.render(stage, mode), without = pairs.render(keepFirst(stage, count - broken_splats), mode);
-                CHECK(with[kLeft].values == without[kLeft].values);
-                CHECK(with[kRight].values == without[kRight].values);
-            }
+            const std::size_t broken_splats = 3 + 3 + 4 + 2 + 1 + (gaussians ? 1 : 0);
+            checkSeesOnlyTheFirst(context(), stage, stage.scene.size() - broken_splats);
         }
     }
-}
-
-TEST_CASE_FIXTURE(Gpu, "what dimming leaves nothing of changes no byte") {
-    Pairs pairs(context());
     // Points and lines, after the wall and the clutter.
     for (const double flat_axes : {2.0, 3.0}) {
         const Stage stage = asDimmed(makeFlatAxes(flat_axes));
-        const std::size_t room = stage.scene.size() - 60;
-        for (const Mode mode : {Mode::kShared, Mode::kPredicted}) {
-            const auto with = pairs.render(stage, mode), without = pairs.render(keepFirst(stage, room), mode);
-            CHECK(with[kLeft].values == without[kLeft].values);
-            CHECK(with[kRight].values == without[kRight].values);
-        }
+        checkSeesOnlyTheFirst(context(), stage, stage.scene.size() - 60);
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "rotations of any length are those of length one") {
-    Pairs pairs(context());
-    const auto unit = pairs.render(makeQuaternions(1.0), Mode::kShared);
+TEST_CASE_FIXTURE(Gpu, "rotations of any length are those of length one" * nightly()) {
+    const auto unit = render(context(), makeQuaternions(1.0), Mode::kShared);
     for (const double length : {std::ldexp(1.0, -60), 0.25, std::ldexp(1.0, 60)}) {  // powers of two round nothing
-        CHECK(pairs.render(makeQuaternions(length), Mode::kShared)[kLeft].values == unit[kLeft].values);
+        CHECK(render(context(), makeQuaternions(length), Mode::kShared) == unit);
     }
 }
 

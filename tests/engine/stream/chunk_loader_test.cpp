@@ -4,6 +4,7 @@
 #include "engine/scene/procedural.h"
 #include "tests/engine/scene/streamed_scenes.h"
 #include "tests/engine/stream/split_scene.h"
+#include "tests/run_program.h"
 #ifdef BINOSPLAT_WEB_TESTS
 #include "tests/engine/web/web_runs.h"
 #endif
@@ -23,18 +24,17 @@ namespace {
 
 constexpr std::chrono::milliseconds kPatience(60'000);
 
-// 20,000 splats in 32 leaves of four levels, several leaves to a file.
-std::string writeSplit(const Folder& folder) {
-    splitScene(makeBuiltin("builtin:atelier", 20'000), folder.file("split"), {.leaf_splats = 1000, .levels = 4, .chunk_splats = 4000});
-    return folder.file("split");
+// 20,000 splats in 32 leaves of four levels, several leaves to a file, in a folder for all of the tests.
+std::string writtenSplit() {
+    static const Workplace place;
+    const std::string folder = (place.path / "split").string();
+    if (place.isEmpty()) {
+        splitScene(makeBuiltin("builtin:atelier", 20'000), folder, {.leaf_splats = 1000, .levels = 4, .chunk_splats = 4000});
+    }
+    return folder;
 }
 
 std::unique_ptr<ChunkSource> open(const std::string& source) { return std::make_unique<ChunkSource>(source, WebSettings()); }
-
-[[maybe_unused]] std::string bytesOf(const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-}
 
 // One level of every leaf.
 std::vector<LeafLevel> everyLeaf(const ChunkSource& source, std::uint32_t level) {
@@ -62,8 +62,7 @@ std::vector<LeafLevel> placesOf(const std::vector<LoadedPart>& parts) {
 }  // namespace
 
 TEST_CASE("what is wished for comes whole, the coarsest level before any finer one") {
-    const Folder folder;
-    ChunkLoader loader(open(writeSplit(folder)), {});
+    ChunkLoader loader(open(writtenSplit()), {});
     const ChunkSource& source = loader.source();
     loader.want(everyLeaf(source, 3), everyLeaf(source, 0));
     const std::vector<LoadedPart> parts = takeAll(loader);
@@ -73,12 +72,16 @@ TEST_CASE("what is wished for comes whole, the coarsest level before any finer o
         const LeafLevel at = parts[i].at;
         CHECK(at.level == (i < 32 ? 3 : 0));
         const LodRange& range = source.leaves()[at.leaf].levels[at.level];
-        if (!files.contains(range.file)) { files[range.file] = loadScene(folder.file("split/" + source.meta().files[range.file])); }
+        if (!files.contains(range.file)) { files[range.file] = loadScene(writtenSplit() + "/" + source.meta().files[range.file]); }
         const Scene& file = files[range.file];
         REQUIRE(parts[i].splats == range.splats.count);
         REQUIRE(parts[i].scene.size() == range.splats.count);
         const auto begin = file.positions.begin() + static_cast<std::ptrdiff_t>(range.splats.first);
         CHECK(std::equal(parts[i].scene.positions.begin(), parts[i].scene.positions.end(), begin));
+        const auto lies_outside = [&leaf = source.leaves()[at.leaf]](const glm::vec3& p) {
+            return glm::any(glm::lessThan(p, leaf.low - 0.01f)) || glm::any(glm::greaterThan(p, leaf.high + 0.01f));
+        };
+        CHECK(std::ranges::none_of(parts[i].scene.positions, lies_outside));
         CHECK(parts[i].scene.isGaussian3d());
     }
     CHECK(loader.takeLines().empty());
@@ -91,14 +94,12 @@ TEST_CASE("what is wished for comes whole, the coarsest level before any finer o
 }
 
 TEST_CASE("the same wishes give the same parts in the same order, on any number of threads") {
-    const Folder folder;
-    const std::string source = writeSplit(folder);
     std::vector<std::vector<LeafLevel>> orders;
     for (const int threads : {1, 3}) {
         LoaderSettings settings;
         settings.threads = threads;
         settings.kept_files = static_cast<std::size_t>(threads) - 1;
-        ChunkLoader loader(open(source), settings);
+        ChunkLoader loader(open(writtenSplit()), settings);
         loader.want(everyLeaf(loader.source(), 3), {{5, 1}, {31, 0}, {7, 1}, {6, 2}});
         orders.push_back(placesOf(takeAll(loader)));
     }
@@ -107,10 +108,9 @@ TEST_CASE("the same wishes give the same parts in the same order, on any number 
 }
 
 TEST_CASE("wishes that are given up are not loaded, and what waits is bounded") {
-    const Folder folder;
     LoaderSettings settings;
     settings.waiting_splats = 1;  // no second batch before the first is taken
-    ChunkLoader loader(open(writeSplit(folder)), settings);
+    ChunkLoader loader(open(writtenSplit()), settings);
     const ChunkSource& source = loader.source();
     loader.want({}, everyLeaf(source, 0));
     REQUIRE(loader.waitForNews(kPatience));
@@ -129,46 +129,35 @@ TEST_CASE("wishes that are given up are not loaded, and what waits is bounded") 
 
 TEST_CASE("of a file that is broken or missing one line says so, and the others come") {
     const Folder folder;
+    const auto check = [&](const std::string& source, const std::vector<LeafLevel>& coarsest, const std::vector<LeafLevel>& finer,
+                           const std::vector<LeafLevel>& come, const std::string& line) {
+        ChunkLoader loader(open(source), {});
+        REQUIRE(loader.source().leaves().size() == 4);  // with the environment
+        loader.want(coarsest, finer);
+        CHECK(placesOf(takeAll(loader)) == come);
+        const std::vector<std::string> lines = loader.takeLines();
+        REQUIRE(lines.size() == 1);
+        CHECK(contains(lines[0], line));
+        CHECK(loader.takeLines().empty());
+        CHECK(loader.brokenFiles() == std::vector<bool>{false, true, false, false});
+        CHECK(loader.isDone());
+    };
+    // Ranges beyond a chunk break that chunk alone.
+    const std::string longer = replaced(makeLodMeta(), R"("file":1,"offset":0,"count":8)", R"("file":1,"offset":0,"count":9)");
+    check(writeStreamed(folder, "scene", longer), {{2, 0}, {0, 1}}, {}, {{0, 1}},
+          "a leaf names splat 8 of filenames[1] (b/meta.json), which has 8");
     const std::string source = writeStreamed(folder, "scene", makeLodMeta());
     std::filesystem::remove(source + "/b/q.webp");
-    ChunkLoader loader(open(source), {});
-    REQUIRE(loader.source().leaves().size() == 4);  // with the environment
-    loader.want({{3, 0}, {0, 1}, {1, 1}, {2, 0}}, {{0, 0}, {1, 0}});
-    CHECK(placesOf(takeAll(loader)) == std::vector<LeafLevel>{{3, 0}, {0, 1}, {1, 1}, {0, 0}, {1, 0}});
-    const std::vector<std::string> lines = loader.takeLines();
-    REQUIRE(lines.size() == 1);
-    CHECK(contains(lines[0], "b/q.webp: no such file"));
-    CHECK(loader.takeLines().empty());
-    CHECK(loader.brokenFiles() == std::vector<bool>{false, true, false, false});
-    CHECK(loader.isDone());
-}
-
-TEST_CASE("ranges beyond a chunk break that chunk alone") {
-    const Folder folder;
-    const std::string source =
-        writeStreamed(folder, "scene", replaced(makeLodMeta(), R"("file":1,"offset":0,"count":8)", R"("file":1,"offset":0,"count":9)"));
-    ChunkLoader loader(open(source), {});
-    loader.want({{2, 0}, {0, 1}}, {});
-    CHECK(placesOf(takeAll(loader)) == std::vector<LeafLevel>{{0, 1}});
-    const std::vector<std::string> lines = loader.takeLines();
-    REQUIRE(lines.size() == 1);
-    CHECK(contains(lines[0], "a leaf names splat 8 of filenames[1] (b/meta.json), which has 8"));
+    check(source, {{3, 0}, {0, 1}, {1, 1}, {2, 0}}, {{0, 0}, {1, 0}}, {{3, 0}, {0, 1}, {1, 1}, {0, 0}, {1, 0}}, "b/q.webp: no such file");
 }
 
 #ifdef BINOSPLAT_WEB_TESTS
 TEST_CASE("a server that goes away in the middle is waited for: one line, and the rest when it is back") {
     const Folder folder;
-    const std::string path = writeSplit(folder);
-    std::map<std::string, std::string> files;
-    for (const auto& entry : std::filesystem::directory_iterator(path)) {
-        files["/" + entry.path().filename().string()] = bytesOf(entry.path());
-    }
+    const WebPages files = filesOf(writtenSplit());
     std::atomic<bool> is_down = false;
-    const WebServer server([&](const WebRequest& request) {
-        if (is_down) { return answer("503 Service Unavailable"); }
-        const auto found = files.find(request.path);
-        return found != files.end() ? answer("200 OK", "", found->second) : answer("404 Not Found");
-    });
+    const WebServer server(
+        [&](const WebRequest& request) { return is_down ? answer("503 Service Unavailable") : answerFrom(files, request); });
     WebSettings web = webSettings(folder);
     web.fetch.attempts = 1;
     LoaderSettings settings;
@@ -196,8 +185,7 @@ TEST_CASE("a server that goes away in the middle is waited for: one line, and th
     CHECK(lines.size() == 1);
     CHECK(loader.isDone());
     // Each file once, apart from what failed.
-    const std::vector<std::string> asked = server.asked();
-    CHECK(std::ranges::count(asked, "/3_0.sog") == 1);
+    CHECK(std::ranges::count(server.asked(), "/3_0.sog") == 1);
 }
 #endif
 

@@ -1,13 +1,11 @@
-// Frames of a moving scene read ahead: in the order in which they will be needed, within a limit of memory, and broken ones once.
+// Frames of a moving scene read ahead: in the order in which they will be needed, within a limit of memory.
 #include "engine/stream/series_loader.h"
 
-#include "engine/error.h"
 #include "tests/engine/stream/moving_frames.h"
 
 #include <doctest/doctest.h>
 
 #include <atomic>
-#include <set>
 
 TEST_SUITE_BEGIN("series_loader");
 
@@ -92,24 +90,6 @@ TEST_CASE("within a limit the next ones are there, and what is needed last makes
         waitUntil([&] { return small.tryGet(scene) != nullptr; });
         CHECK(small.bytesKept() <= SeriesLoader::kLeastKept * bytes);
     }
-}
-
-TEST_CASE("a frame that is broken is said once, and the others come") {
-    const SceneTraits traits = traitsOf(shifted(0));
-    SeriesLoader loader(
-        [](std::size_t scene) {
-            check(scene != 3 && scene != 5, "frame {} is broken", scene);
-            return shifted(scene);
-        },
-        kScenes, traits, {});
-    want(loader, from(2));
-    CHECK(loader.get(6) != nullptr);
-    CHECK(loader.get(1) != nullptr);
-    waitUntil([&] { return loader.isSurelyBroken(3) && loader.isSurelyBroken(5); });
-    CHECK(loader.takeLines() == std::vector<std::string>{"frame 3 is broken", "frame 5 is broken"});
-    CHECK(loader.takeLines().empty());
-    CHECK_THROWS_WITH_AS((void)loader.get(3), "frame 3 is broken", Error);
-    CHECK_FALSE(loader.isSurelyBroken(4));
 }
 
 }  // namespace series_loader_test

@@ -30,14 +30,9 @@ struct Box {
     }
 };
 
-// Where a leaf's splats of a level are.
-struct Entry {
-    std::size_t file = 0, offset = 0, count = 0;
-};
-
 struct Leaf {
     std::vector<std::uint32_t> splats;  // along a Morton curve
-    std::vector<Entry> levels;
+    std::vector<std::string> levels;    // JSON: where its splats are
 };
 
 std::size_t shWidth(const Scene& scene) { return static_cast<std::size_t>(3 * shCoefficientCount(scene.sh_degree)); }
@@ -74,24 +69,17 @@ public:
     void run() {
         std::vector<std::uint32_t> all(scene_.size());
         std::iota(all.begin(), all.end(), 0u);
-        cut(all);
+        std::string tree = cut(all);
         for (std::uint32_t level = 0; level < settings_.levels; ++level) { writeLevel(level); }
-        const std::string tree = nodeJson();
         std::ofstream file(std::filesystem::path(folder_) / "lod-meta.json", std::ios::binary);
-        file << R"({"version":1,"asset":{"generator":"binosplat's tests"},"lodLevels":)" << settings_.levels << R"(,"filenames":[)";
-        for (std::size_t i = 0; i < files_.size(); ++i) { file << (i == 0 ? "" : ",") << '"' << files_[i] << '"'; }
-        file << R"(],"tree":)" << tree << "}";
+        file << fmt::format(R"({{"version":1,"asset":{{"generator":"binosplat's tests"}},"lodLevels":{},"filenames":["{}"],"tree":{}}})",
+                            settings_.levels, fmt::join(files_, R"(",")"), withLevels(std::move(tree)));
         check(file.good(), "{}: cannot be written", folder_);
     }
 
 private:
-    struct Node {
-        Box box;
-        bool is_leaf = false;
-    };
-
-    // Nodes in the order of a walk, each before its two children.
-    void cut(std::span<std::uint32_t> splats) {
+    // The JSON of a node of these splats, a leaf or with two children; the levels of a leaf are still '#'.
+    std::string cut(std::span<std::uint32_t> splats) {
         Box box, centres;
         for (const std::uint32_t splat : splats) {
             const glm::vec3& p = scene_.positions[splat];
@@ -99,21 +87,27 @@ private:
             box.take(p - reach, p + reach);
             centres.take(p, p);
         }
-        const bool is_leaf = splats.size() <= settings_.leaf_splats;
-        nodes_.push_back({box, is_leaf});
-        if (is_leaf) {
+        if (splats.size() <= settings_.leaf_splats) {
             leaves_.push_back({alongCurve(splats), {}});
-            return;
+            return fmt::format(R"({{{},"lods":{{#}}}})", box.json());
         }
         const glm::vec3 sides = centres.high - centres.low;
         const int axis = sides.x >= sides.y && sides.x >= sides.z ? 0 : sides.y >= sides.z ? 1 : 2;
-        const auto middle = splats.begin() + static_cast<std::ptrdiff_t>(splats.size() / 2);
-        std::nth_element(splats.begin(), middle, splats.end(), [&](std::uint32_t a, std::uint32_t b) {
-            const float pa = scene_.positions[a][axis], pb = scene_.positions[b][axis];
-            return pa < pb || (pa == pb && a < b);
-        });
-        cut(splats.first(splats.size() / 2));
-        cut(splats.subspan(splats.size() / 2));
+        const std::size_t half = splats.size() / 2;
+        std::ranges::nth_element(splats, splats.begin() + static_cast<std::ptrdiff_t>(half), {},
+                                 [&](std::uint32_t splat) { return std::pair(scene_.positions[splat][axis], splat); });
+        const std::string first = cut(splats.first(half));
+        return fmt::format(R"({{{},"children":[{},{}]}})", box.json(), first, cut(splats.subspan(half)));
+    }
+
+    // The same with what was written of each leaf.
+    [[nodiscard]] std::string withLevels(std::string tree) const {
+        std::size_t at = 0;
+        for (const Leaf& leaf : leaves_) {
+            at = tree.find('#', at);
+            tree.replace(at, 1, fmt::format("{}", fmt::join(leaf.levels, ",")));
+        }
+        return tree;
     }
 
     std::vector<std::uint32_t> alongCurve(std::span<const std::uint32_t> splats) const {
@@ -137,7 +131,7 @@ private:
         for (Leaf& leaf : leaves_) {
             const std::size_t count = (leaf.splats.size() + group - 1) / group;
             if (chunk.size() + count > settings_.chunk_splats) { write(); }
-            leaf.levels.push_back({files_.size(), chunk.size(), count});
+            leaf.levels.push_back(fmt::format(R"("{}":{{"file":{},"offset":{},"count":{}}})", level, files_.size(), chunk.size(), count));
             for (std::size_t i = 0; i < leaf.splats.size(); i += group) {
                 appendGroup(scene_, std::span(leaf.splats).subspan(i, std::min(group, leaf.splats.size() - i)), chunk);
             }
@@ -145,29 +139,11 @@ private:
         write();
     }
 
-    std::string nodeJson() {
-        const Node& node = nodes_[next_node_++];
-        if (!node.is_leaf) {
-            const std::string first = nodeJson();
-            return fmt::format(R"({{{},"children":[{},{}]}})", node.box.json(), first, nodeJson());
-        }
-        std::string lods;
-        const Leaf& leaf = leaves_[next_leaf_++];
-        for (std::size_t level = 0; level < leaf.levels.size(); ++level) {
-            const Entry& entry = leaf.levels[level];
-            lods += fmt::format(R"({}"{}":{{"file":{},"offset":{},"count":{}}})", level == 0 ? "" : ",", level, entry.file, entry.offset,
-                                entry.count);
-        }
-        return fmt::format(R"({{{},"lods":{{{}}}}})", node.box.json(), lods);
-    }
-
     const Scene& scene_;
     std::string folder_;
     SplitSettings settings_;
-    std::vector<Node> nodes_;
     std::vector<Leaf> leaves_;
     std::vector<std::string> files_;
-    std::size_t next_leaf_ = 0, next_node_ = 0;
 };
 
 }  // namespace

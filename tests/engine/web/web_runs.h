@@ -45,6 +45,16 @@ inline std::vector<std::string> filesIn(const std::filesystem::path& folder) {
     return names;
 }
 
+// All that lies in a folder, by its path behind `prefix`.
+inline WebPages filesOf(const std::filesystem::path& folder, const std::string& prefix = "/") {
+    WebPages files;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+        if (!entry.is_regular_file()) { continue; }
+        files[prefix + std::filesystem::relative(entry.path(), folder).generic_string()] = textOf(entry.path().string());
+    }
+    return files;
+}
+
 inline std::uint64_t bytesIn(const std::filesystem::path& folder) {
     std::uint64_t sum = 0;
     for (const std::string& name : filesIn(folder)) { sum += std::filesystem::file_size(folder / name); }

@@ -27,6 +27,12 @@ struct WebRequest {
     std::string path;                            // with what follows a question mark
     std::map<std::string, std::string> headers;  // by names in small letters
     std::size_t number = 0;                      // how many came before
+
+    // Empty if it has none of that name.
+    [[nodiscard]] std::string header(const std::string& name) const {
+        const auto found = headers.find(name);
+        return found != headers.end() ? found->second : "";
+    }
 };
 
 // What a server does with one request: `bytes` go out as they are; then the connection stays open, is closed, or is left to wait until
@@ -38,6 +44,13 @@ struct WebAnswer {
 
 inline WebAnswer answer(const std::string& status, const std::string& headers = "", const std::string& body = "") {
     return {fmt::format("HTTP/1.1 {}\r\nContent-Length: {}\r\n{}\r\n{}", status, body.size(), headers, body)};
+}
+
+// Of a server with these files by their paths, "/a/b.ply"; others are not there.
+using WebPages = std::map<std::string, std::string>;
+inline WebAnswer answerFrom(const WebPages& files, const WebRequest& request) {
+    const auto found = files.find(request.path);
+    return found != files.end() ? answer("200 OK", "", found->second) : answer("404 Not Found", "", "no such page");
 }
 
 class WebServer {
@@ -56,12 +69,8 @@ public:
         port_ = ntohs(address.sin_port);
         acceptor_ = std::thread([this] { acceptAll(); });
     }
-    // Serves files by their paths, "/a/b.ply"; others are not there.
-    explicit WebServer(std::map<std::string, std::string> files)
-        : WebServer([held = std::move(files)](const WebRequest& request) {
-              const auto found = held.find(request.path);
-              return found != held.end() ? answer("200 OK", "", found->second) : answer("404 Not Found", "", "no such page");
-          }) {}
+    explicit WebServer(WebPages files)
+        : WebServer([held = std::move(files)](const WebRequest& request) { return answerFrom(held, request); }) {}
     WebServer(const WebServer&) = delete;
     WebServer& operator=(const WebServer&) = delete;
     ~WebServer() { stop(); }

@@ -7,10 +7,7 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 
 TEST_SUITE_BEGIN("letters");
 
@@ -35,23 +32,24 @@ std::string vectorFont() {
 
 bool isFont(const std::string& bytes) { return looksLikeFont({reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()}); }
 
-void write(const fs::path& path, const std::string& text = "x") { std::ofstream(path, std::ios::binary) << text; }
+// A letter of three bytes in UTF-8.
+std::string utf8(unsigned letter) {
+    return {static_cast<char>(0xe0 | letter >> 12), static_cast<char>(0x80 | (letter >> 6 & 0x3f)),
+            static_cast<char>(0x80 | (letter & 0x3f))};
+}
 
-bool isThere(int letter) { return ImGui::GetIO().Fonts->Fonts[0]->FindGlyphNoFallback(static_cast<ImWchar>(letter)) != nullptr; }
-
-// The private letters that a word is shown as, once its letters were brought; each is three bytes long.
+// The private letters that a word is shown as, once its letters were brought.
 std::vector<std::string> signsOf(PanelSketch& sketch, const std::string& word) {
     sketch.bringLetters(word);
     const std::string shown = asShown(word);
     std::vector<std::string> signs;
-    for (std::size_t i = 0; i + 2 < shown.size(); i += 3) {
-        signs.push_back(shown.substr(i, 3));
-        const auto byte = [&](std::size_t at) { return static_cast<unsigned>(static_cast<unsigned char>(shown[i + at])) & 0x3fu; };
-        const unsigned letter = (byte(0) & 0xfu) << 12 | byte(1) << 6 | byte(2);
-        CAPTURE(word);
-        CHECK(letter >= kFirstPrivate);
-        CHECK(letter <= kLastPrivate);
-        CHECK(isThere(static_cast<int>(letter)));
+    for (std::size_t i = 0; i + 2 < shown.size(); i += 3) { signs.push_back(shown.substr(i, 3)); }
+    CAPTURE(word);
+    for (const std::string& sign : signs) {
+        CHECK(sign >= utf8(kFirstPrivate));
+        CHECK(sign <= utf8(kLastPrivate));
+        const auto byte = [&](std::size_t at) { return static_cast<unsigned>(static_cast<unsigned char>(sign[at])) & 0x3fu; };
+        CHECK(isThere((byte(0) & 0xfu) << 12 | byte(1) << 6 | byte(2)));
     }
     return signs;
 }
@@ -63,22 +61,20 @@ TEST_CASE("letters are half a degree high where the panel hangs, and Latin, Gree
     PanelSketch sketch;
     CHECK(sketch.font->complaint().empty());
     sketch.draw();
-    ImFont& font = *ImGui::GetIO().Fonts->Fonts[0];
-    const ImFontGlyph* capital = font.FindGlyphNoFallback('H');
+    const ImFontGlyph* capital = glyphOf('H');
     REQUIRE(capital != nullptr);
     const double distance_m = std::sqrt(0.45 * 0.45 + 0.1 * 0.1 + 0.9 * 0.9);
     const double height_m = (capital->Y1 - capital->Y0) * kPanelWidthMetres / kPanelPx.x;
     CHECK(glm::degrees(2.0 * std::atan(0.5 * kPanelWidthMetres / distance_m)) == doctest::Approx(26.0).epsilon(0.005));
     CHECK(glm::degrees(std::atan(height_m / distance_m)) >= 0.5);
-    for (const int letter : {0x41, 0xe4, 0x159, 0x3a9, 0x436, 0x451, 0x1ea1, 0x301, 0x2013, 0x20ac}) {
-        CAPTURE(letter);
-        CHECK(font.FindGlyphNoFallback(static_cast<ImWchar>(letter)) != nullptr);
+    for (const unsigned letter : {0x41, 0xe4, 0x159, 0x3a9, 0x436, 0x451, 0x1ea1, 0x301, 0x2013, 0x20ac}) {
+        CHECK_MESSAGE(isThere(letter), letter);
     }
     // What is not there yet is a box: Chinese, bytes that are no UTF-8, and what lies beyond 16 bits.
-    const ImFontGlyph* box = font.FindGlyphNoFallback(0x25a1);
-    REQUIRE(box != nullptr);
-    CHECK(font.FindGlyph(0x4e2d) == box);
-    CHECK(font.FindGlyph(0xfffd) == box);
+    REQUIRE(isThere(0x25a1));
+    const ImFont& font = *ImGui::GetIO().Fonts->Fonts[0];
+    CHECK(font.FindGlyph(0x4e2d) == glyphOf(0x25a1));
+    CHECK(font.FindGlyph(0xfffd) == glyphOf(0x25a1));
 }
 
 TEST_CASE("names bring their letters along, those that no font has stay boxes, and what is on the panel stays where it is") {
@@ -96,7 +92,7 @@ TEST_CASE("names bring their letters along, those that no font has stay boxes, a
     CHECK_FALSE(sketch.bringLetters("\xff\xef\xbf\xbd plain"));
     // They stay, whatever is shown next; Chinese comes from the first font of the system that has it.
     const std::string chinese = "\xe6\xa3\xae\xe6\x9e\x97.ply";
-    write(work.path / chinese);
+    work.write(chinese, "x");
     sketch.settings.page = PanelPage::kScenes;
     sketch.chooser.showFolder(work.path.string());
     CHECK(sketch.draw().places.contains(chinese));
@@ -109,18 +105,11 @@ TEST_CASE("names bring their letters along, those that no font has stay boxes, a
         MESSAGE("skipped: no font of Chinese, Japanese and Korean is installed");
     }
     // However many there are, the atlas is one that a device can sample.
-    for (int page = 0; page < 8; ++page) {
+    for (unsigned page = 0; page < 8; ++page) {
         std::string text;
-        for (int letter = 0x4e00 + 2000 * page; letter < 0x4e00 + 2000 * (page + 1); ++letter) {
-            text += static_cast<char>(0xe0 + (letter >> 12));
-            text += static_cast<char>(0x80 + ((letter >> 6) & 0x3f));
-            text += static_cast<char>(0x80 + (letter & 0x3f));
-        }
+        for (unsigned letter = 2000 * page; letter < 2000 * (page + 1); ++letter) { text += utf8(0x4e00 + letter); }
         CHECK(sketch.bringLetters(text));
-        unsigned char* pixels = nullptr;
-        int width = 0, height = 0;
-        ImGui::GetIO().Fonts->GetTexDataAsAlpha8(&pixels, &width, &height);
-        CHECK(std::max(width, height) <= 4096);
+        CHECK(std::max(ImGui::GetIO().Fonts->TexWidth, ImGui::GetIO().Fonts->TexHeight) <= 4096);
         CHECK(isThere('A'));
     }
 }
@@ -177,22 +166,17 @@ TEST_CASE("a word's signs are drawn, keep their order among other letters, and a
     const auto signs = signsOf(sketch, shalom);
     REQUIRE(signs.size() == 4);
     CHECK(asShown("/a/" + shalom + "/b.ply") == "/a/" + signs[0] + signs[1] + signs[2] + signs[3] + "/b.ply");
-    const ImFont& font = *ImGui::GetIO().Fonts->Fonts[0];
-    const ImFontGlyph& drawn = *font.FindGlyphNoFallback(kFirstPrivate);
+    const ImFontGlyph& drawn = *glyphOf(kFirstPrivate);
     CHECK(drawn.X1 > drawn.X0 + 3.0f);
     CHECK(drawn.Y1 > drawn.Y0 + 3.0f);
-    CHECK(drawn.Y1 < font.FontSize);
+    CHECK(drawn.Y1 < ImGui::GetIO().Fonts->Fonts[0]->FontSize);
     CHECK(drawn.AdvanceX > 3.0f);
-    unsigned char* pixels = nullptr;
-    int width = 0, height = 0;
-    ImGui::GetIO().Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
+    const FontTexture texture = fontTexture();
+    const glm::vec2 size_px(texture.size_px);
+    const glm::uvec2 from(glm::vec2(drawn.U0, drawn.V0) * size_px), to(glm::vec2(drawn.U1, drawn.V1) * size_px);
     int most = 0;
-    for (int y = static_cast<int>(drawn.V0 * static_cast<float>(height)); y < static_cast<int>(drawn.V1 * static_cast<float>(height));
-         ++y) {
-        for (int x = static_cast<int>(drawn.U0 * static_cast<float>(width)); x < static_cast<int>(drawn.U1 * static_cast<float>(width));
-             ++x) {
-            most = std::max(most, static_cast<int>(pixels[4 * (y * width + x) + 3]));
-        }
+    for (unsigned y = from.y; y < to.y; ++y) {
+        for (unsigned x = from.x; x < to.x; ++x) { most = std::max<int>(most, texture.at({x, y})[3]); }
     }
     CHECK(most > 200);
     CHECK(asShown("\xee\x80\x80") == "\xef\xbf\xbd");
@@ -213,8 +197,8 @@ TEST_CASE("a word's signs are drawn, keep their order among other letters, and a
 TEST_CASE("without a font that can be used the small built-in one is, and one line says why") {
     const Workplace work;
     const std::string whole = vectorFont();
-    write(work.path / "text.ttf", "no font at all");
-    write(work.path / "short.ttf", whole.substr(0, whole.size() / 2));
+    work.write("text.ttf", "no font at all");
+    work.write("short.ttf", whole.substr(0, whole.size() / 2));
     fs::create_directory(work.path / "folder.ttf");
     for (const char* name : {"nowhere.ttf", "text.ttf", "short.ttf", "folder.ttf"}) {
         CAPTURE(name);

@@ -85,8 +85,36 @@ private:
     }
 };
 
-// Where to point at a widget of the first page, in shares of the panel's width and height; `with_all`: also at those that not every
-// device or headset has.
+// The font's texture as colours.
+struct FontTexture {
+    const unsigned char* rgba = nullptr;
+    glm::uvec2 size_px{0};
+
+    [[nodiscard]] std::array<unsigned char, 4> at(const glm::uvec2& texel) const {
+        const unsigned char* const first = rgba + 4 * (std::size_t{texel.y} * size_px.x + texel.x);
+        return {first[0], first[1], first[2], first[3]};
+    }
+};
+inline FontTexture fontTexture() {
+    unsigned char* pixels = nullptr;
+    int width = 0, height = 0;
+    ImGui::GetIO().Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
+    return {pixels, glm::uvec2(width, height)};
+}
+
+// The font's sign of a letter, if it was brought.
+inline const ImFontGlyph* glyphOf(unsigned letter) {
+    return ImGui::GetIO().Fonts->Fonts[0]->FindGlyphNoFallback(static_cast<ImWchar>(letter));
+}
+inline bool isThere(unsigned letter) { return glyphOf(letter) != nullptr; }
+
+// Where to point at a widget, in shares of the panel's width and height.
+inline glm::dvec2 shareOf(const WidgetPlaces& places, const std::string& name) {
+    REQUIRE_MESSAGE(places.contains(name), name);
+    return places.at(name) / glm::dvec2(kPanelPx);
+}
+
+// That of a page; `with_all`: also at those that not every device or headset has.
 inline glm::dvec2 placeOf(const std::string& name, bool with_all = false, PanelPage page = PanelPage::kView) {
     static const std::array<std::array<WidgetPlaces, 2>, 3> places = [] {
         std::array<std::array<WidgetPlaces, 2>, 3> found;
@@ -100,32 +128,26 @@ inline glm::dvec2 placeOf(const std::string& name, bool with_all = false, PanelP
         }
         return found;
     }();
-    const WidgetPlaces& all = places[static_cast<std::size_t>(page)][with_all ? 1 : 0];
-    REQUIRE_MESSAGE(all.contains(name), name);
-    return all.at(name) / glm::dvec2(kPanelPx);
+    return shareOf(places[static_cast<std::size_t>(page)][with_all ? 1 : 0], name);
 }
 
-// The same of the page of methods, which the panel opens with where the config says panel-page = "method".
+// Of the page of methods, which the panel opens with where the config says panel-page = "method".
 inline glm::dvec2 onMethod(const std::string& name, bool with_all = false) { return placeOf(name, with_all, PanelPage::kMethod); }
 
-// The same of the page of a scene that moves, whose panel has one tab more; `plays` as it does then.
+// Of a scene that moves, whose panel has one tab more; `plays` as it does then.
 inline glm::dvec2 placeOfTime(const std::string& name, bool plays, PanelPage page = PanelPage::kTime) {
     PanelSketch sketch;
     sketch.settings.page = page;
     sketch.status.time = ShownTime{.plays = plays};
-    const WidgetPlaces all = sketch.draw().places;
-    REQUIRE_MESSAGE(all.contains(name), name);
-    return all.at(name) / glm::dvec2(kPanelPx);
+    return shareOf(sketch.draw().places, name);
 }
 
-// The same of the page of scenes, with `folder` open.
+// Of the page of scenes, with `folder` open.
 inline glm::dvec2 placeOfScene(const std::string& name, const std::string& folder) {
     PanelSketch sketch;
     sketch.settings.page = PanelPage::kScenes;
     sketch.chooser.showFolder(folder);
-    const WidgetPlaces all = sketch.draw().places;
-    REQUIRE_MESSAGE(all.contains(name), name);
-    return all.at(name) / glm::dvec2(kPanelPx);
+    return shareOf(sketch.draw().places, name);
 }
 
 }  // namespace binosplat::test

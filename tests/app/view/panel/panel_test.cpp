@@ -4,7 +4,6 @@
 #include "app/view/scenes/recent_scenes.h"
 #include "app/view/scenes/scene_clock.h"
 #include "app/view/settings/view_settings_table.h"
-#include "engine/error.h"
 #include "engine/platform.h"
 #include "tests/app/view/panel/panel_sketch.h"
 #include "tests/run_program.h"
@@ -13,10 +12,7 @@
 #include <fmt/format.h>
 #include <imgui_internal.h>
 
-#include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 
 TEST_SUITE_BEGIN("panel");
 
@@ -29,63 +25,49 @@ using namespace binosplat::test;
 namespace {
 
 using Page = PanelPage;
-
-void write(const fs::path& path, const std::string& text = "x") { std::ofstream(path, std::ios::binary) << text; }
+constexpr std::array kPages{Page::kView, Page::kScenes, Page::kMethod, Page::kTime};
 
 }  // namespace
 
-TEST_CASE("every widget lies on the panel, none on another, on each page") {
-    for (const bool shaders : {false, true}) {
+TEST_CASE("on each page every widget lies on the panel, none on another, 1.5 degrees high at least, and what is used most twice that") {
+    const double half_px = 0.5 * 1.5 * kPanelPx.x / 26.0;
+    for (const bool all : {false, true}) {
         PanelSketch sketch;
-        sketch.status.can_reload_shaders = sketch.status.can_pass_through = shaders;
-        if (shaders) { sketch.status.refresh_rates = {72.0, 80.0, 90.0, 120.0, 144.0}; }
-        if (shaders) { sketch.status.time = ShownTime{11, 60, 30.0, true, 3}; }
-        for (const Page page : {Page::kView, Page::kScenes, Page::kMethod, Page::kTime}) {
+        sketch.status.can_reload_shaders = sketch.status.can_pass_through = all;
+        if (all) { sketch.status.refresh_rates = {72.0, 80.0, 90.0, 120.0, 144.0}; }
+        if (all) { sketch.status.time = ShownTime{11, 60, 30.0, true, 3}; }
+        const auto hoveredAt = [&](glm::dvec2 place, double down_px) {
+            place.y += down_px;
+            sketch.draw(&place);
+            return ImGui::GetCurrentContext()->HoveredId;
+        };
+        for (const Page page : kPages) {
             sketch.settings.page = page;
             sketch.chooser.showFolder(kBuiltinFolder);
             const WidgetPlaces places = sketch.draw().places;
             CHECK(places.size() >= 4);
             for (const auto& [name, place] : places) {
                 CAPTURE(name);
-                CHECK(place.x > 0.0);
-                CHECK(place.y > 0.0);
-                CHECK(place.x < kPanelPx.x);
-                CHECK(place.y < kPanelPx.y);
+                CHECK(glm::all(glm::greaterThan(place, glm::dvec2(0.0))));
+                CHECK(glm::all(glm::lessThan(place, glm::dvec2(kPanelPx))));
                 for (const auto& [other, there] : places) {
                     if (name < other) { CHECK_MESSAGE(glm::length(place - there) > 20.0, other); }
                 }
+                const ImGuiID id = hoveredAt(place, 0.0);
+                CHECK((id != 0 || name == "Up"));  // there is none above
+                const std::array large{"Sharp", "Balanced", "Fast", "Recentre", "Level", "Reset", "Step back", "Pause", "Step on"};
+                const double reach_px = 0.97 * half_px * (std::ranges::count(large, name) != 0 ? 2.0 : 1.0);
+                for (const double down_px : {-reach_px, reach_px}) { CHECK(hoveredAt(place, down_px) == id); }
             }
-        }
-    }
-}
-
-TEST_CASE("what one points at is 1.5 degrees high at least, and what is used most twice that") {
-    PanelSketch sketch;
-    const double half_px = 0.5 * 1.5 * kPanelPx.x / 26.0;
-    const auto hoveredAt = [&](glm::dvec2 place, double down_px) {
-        place.y += down_px;
-        sketch.draw(&place);
-        return ImGui::GetCurrentContext()->HoveredId;
-    };
-    sketch.status.time = ShownTime{};
-    for (const Page page : {Page::kView, Page::kScenes, Page::kMethod, Page::kTime}) {
-        sketch.settings.page = page;
-        sketch.chooser.showFolder(kBuiltinFolder);
-        const WidgetPlaces places = sketch.draw().places;
-        for (const auto& [name, place] : places) {
-            const ImGuiID id = hoveredAt(place, 0.0);
-            CAPTURE(name);
-            CHECK((id != 0 || name == "Up"));  // there is none above
-            const bool is_large =
-                std::ranges::count(std::array{"Sharp", "Balanced", "Fast", "Recentre", "Level", "Reset", "Step back", "Pause", "Step on"},
-                                   name) != 0;
-            for (const double side : {-0.97, 0.97}) { CHECK(hoveredAt(place, side * half_px * (is_large ? 2.0 : 1.0)) == id); }
         }
     }
 }
 
 TEST_CASE("a click reaches what it points at: boxes, buttons, sliders and pages") {
     PanelSketch sketch;
+    const auto asks = [&](const char* name, auto request) { return sketch.click(name).*request; };
+    using Asked = PanelRequests;
+    const std::vector<std::pair<const char*, bool Asked::*>> common{{"Save", &Asked::save}, {"Load", &Asked::load}, {"Quit", &Asked::quit}};
     sketch.click("Method");
     CHECK(sketch.settings.page == Page::kMethod);
     CHECK(sketch.click("paper").places.contains("Centre ROI (paper)"));
@@ -99,27 +81,26 @@ TEST_CASE("a click reaches what it points at: boxes, buttons, sliders and pages"
     CHECK(sketch.settings.stereo.foveation_deg == 0.0);
     sketch.click("budget");
     CHECK(sketch.settings.stereo.warp.budget == doctest::Approx(0.5).epsilon(0.02));
-    CHECK(sketch.click("Save").save);
-    CHECK(sketch.click("Load").load);
-    CHECK(sketch.click("Quit").quit);
+    for (const auto& [name, request] : common) { CHECK_MESSAGE(asks(name, request), name); }
     sketch.click("View");
     CHECK(sketch.settings.page == Page::kView);
-    CHECK(sketch.click("Quit").quit);
-    CHECK(sketch.click("Save").save);
-    CHECK(sketch.click("Load").load);
-    CHECK(sketch.click("Level").level_scene);
-    CHECK(sketch.click("Recentre").recentre);
-    CHECK(sketch.click("Reset").reset_scene);
-    CHECK(sketch.click("Picture").take_picture);
+    for (const auto& [name, request] : common) { CHECK_MESSAGE(asks(name, request), name); }
+    for (const auto& [name, request] : std::vector<std::pair<const char*, bool Asked::*>>{{"Level", &Asked::level_scene},
+                                                                                          {"Recentre", &Asked::recentre},
+                                                                                          {"Reset", &Asked::reset_scene},
+                                                                                          {"1:1", &Asked::natural_size},
+                                                                                          {"Picture", &Asked::take_picture}}) {
+        CHECK_MESSAGE(asks(name, request), name);
+    }
     sketch.click("Scenes");
     CHECK(sketch.settings.page == Page::kScenes);
-    CHECK(sketch.click("Quit").quit);
-    CHECK(sketch.click("Next scene").scene_step == 1);
-    CHECK(sketch.click("Previous scene").scene_step == -1);
-    CHECK(sketch.click("Last shown").last_scene);
-    CHECK(sketch.click("Next viewpoint").viewpoint_step == 1);
-    CHECK(sketch.click("Previous viewpoint").viewpoint_step == -1);
-    CHECK(sketch.click("Keep this one").keep_viewpoint);
+    CHECK(asks("Quit", &Asked::quit));
+    CHECK(asks("Next scene", &Asked::scene_step) == 1);
+    CHECK(asks("Previous scene", &Asked::scene_step) == -1);
+    CHECK(asks("Last shown", &Asked::last_scene));
+    CHECK(asks("Next viewpoint", &Asked::viewpoint_step) == 1);
+    CHECK(asks("Previous viewpoint", &Asked::viewpoint_step) == -1);
+    CHECK(asks("Keep this one", &Asked::keep_viewpoint));
 }
 
 TEST_CASE("a scene that moves has a page of its own, with what lets it rest, step, and go to a frame") {
@@ -158,12 +139,10 @@ TEST_CASE("the time of a scene that moves goes on while it plays, rests, steps a
     clock.togglePlaying();
     clock.pass(10.0);
     CHECK(clock.frame() == 2);
-    clock.step(1);
-    CHECK(clock.frame() == 3);
-    clock.step(2);
-    CHECK(clock.frame() == 0);
-    clock.step(-1);
-    CHECK(clock.frame() == 4);
+    for (const auto& [step, frame] : {std::pair(1, 3u), std::pair(2, 0u), std::pair(-1, 4u)}) {
+        clock.step(step);
+        CHECK(clock.frame() == frame);
+    }
     CHECK_FALSE(clock.plays());
     clock.togglePlaying();
     clock.goTo(1);
@@ -185,16 +164,12 @@ TEST_CASE("a picture of a scene lies in the font's texture as it is, and letters
     CHECK_FALSE(sketch.bringLetters("", {picture}));
     REQUIRE(sketch.font->pictures().contains("red"));
     const PictureCorners& corners = sketch.font->pictures().at("red");
-    unsigned char* pixels = nullptr;
-    int width = 0, height = 0;
-    ImGui::GetIO().Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
-    CHECK(std::lround((corners.high.x - corners.low.x) * static_cast<float>(width)) == kScenePicturePx.x);
-    CHECK(std::lround((corners.high.y - corners.low.y) * static_cast<float>(height)) == kScenePicturePx.y);
-    const auto x = static_cast<std::size_t>(0.5f * (corners.low.x + corners.high.x) * static_cast<float>(width)),
-               y = static_cast<std::size_t>(0.5f * (corners.low.y + corners.high.y) * static_cast<float>(height));
-    const unsigned char* const middle = pixels + 4 * (y * static_cast<std::size_t>(width) + x);
-    CHECK(std::array{middle[0], middle[1], middle[2], middle[3]} == std::array<unsigned char, 4>{200, 10, 20, 255});
-    CHECK(ImGui::GetIO().Fonts->Fonts[0]->FindGlyphNoFallback('A') != nullptr);
+    const FontTexture texture = fontTexture();
+    const auto inTexels = [&](const auto& at) { return glm::dvec2(at.x, at.y) * glm::dvec2(texture.size_px); };
+    const glm::dvec2 low = inTexels(corners.low), high = inTexels(corners.high);
+    CHECK(glm::uvec2(glm::round(high - low)) == kScenePicturePx);
+    CHECK(texture.at(glm::uvec2(0.5 * (low + high))) == std::array<unsigned char, 4>{200, 10, 20, 255});
+    CHECK(isThere('A'));
     sketch.draw();
     // A later picture of the same scene takes its place; those of others stay.
     ScenePicture other = picture, later = picture;
@@ -230,7 +205,6 @@ TEST_CASE("size and height are changed while their buttons are held, and what mo
     CHECK(held("Larger").first > 2.5);
     CHECK(held("Higher").second > 0.4);
     CHECK(held("Lower").second < -0.4);
-    CHECK(sketch.click("1:1").natural_size);
     sketch.click("Teleport");
     CHECK(sketch.settings.teleport);
     sketch.click("Walk");
@@ -240,12 +214,11 @@ TEST_CASE("size and height are changed while their buttons are held, and what mo
     sketch.click("Grey");
     CHECK(sketch.settings.backdrop == Backdrop::kGrey);
     // A second click on what is chosen leaves the settings as they are made on the page of methods.
-    sketch.click("Sharp");
-    CHECK(sketch.settings.quality == Quality::kSharp);
-    sketch.click("Fast");
-    CHECK(sketch.settings.quality == Quality::kFast);
-    sketch.click("Fast");
-    CHECK(sketch.settings.quality == Quality::kOff);
+    for (const auto& [name, quality] :
+         {std::pair("Sharp", Quality::kSharp), std::pair("Fast", Quality::kFast), std::pair("Fast", Quality::kOff)}) {
+        sketch.click(name);
+        CHECK(sketch.settings.quality == quality);
+    }
 }
 
 TEST_CASE("the panel has the names and ranges of the table of options") {
@@ -267,67 +240,65 @@ TEST_CASE("the panel has the names and ranges of the table of options") {
         sketch.click(std::string(name));
         CHECK_MESSAGE(isChosen(quality, sketch.settings, name), name);
     }
-    const auto slide = [&](const char* name, double to_px) {
-        glm::dvec2 place = sketch.draw().places.at(name);
-        sketch.draw(&place);
-        sketch.draw(&place, true);
-        place.x = to_px;
-        sketch.draw(&place, true);
-        sketch.draw(&place);
+    const auto slideAllTo = [&](double to_px) {
+        for (const char* name : {"margin (paper)", "budget", "resolution"}) {
+            glm::dvec2 place = sketch.draw().places.at(name);
+            sketch.draw(&place);
+            sketch.draw(&place, true);
+            place.x = to_px;
+            sketch.draw(&place, true);
+            sketch.draw(&place);
+        }
+        return std::tuple(sketch.settings.stereo.warp.margin_px, sketch.settings.stereo.warp.budget, sketch.settings.resolution_scale);
     };
-    for (const char* name : {"margin (paper)", "budget", "resolution"}) { slide(name, 0.0); }
-    CHECK(sketch.settings.stereo.warp.margin_px == 0);
-    CHECK(sketch.settings.stereo.warp.budget == 0.0);
-    CHECK(sketch.settings.resolution_scale == *findViewRow("resolution-scale")->field.least);
-    for (const char* name : {"margin (paper)", "budget", "resolution"}) { slide(name, kPanelPx.x); }
-    CHECK(sketch.settings.stereo.warp.margin_px == 128);
-    CHECK(sketch.settings.stereo.warp.budget == 1.0);
-    CHECK(sketch.settings.resolution_scale == *findViewRow("resolution-scale")->field.most);
+    const OptionField<ViewSettings>& scale = findViewRow("resolution-scale")->field;
+    CHECK(slideAllTo(0.0) == std::tuple(0u, 0.0, *scale.least));
+    CHECK(slideAllTo(kPanelPx.x) == std::tuple(128u, 1.0, *scale.most));
 }
 
 TEST_CASE("scenes are looked for by clicks: down, up, to other places, page by page, and what cannot be read does nothing") {
     const Workplace work;
-    fs::create_directories(work.path / "inner");
-    for (int i = 0; i < 12; ++i) { write(work.path / "inner" / fmt::format("room{}.ply", i)); }
-    write(work.path / "a##b.ply");
+    const std::string here = work.path.string(), inner = here + "/inner", scene = here + "/a##b.ply";
+    fs::create_directories(inner);
+    for (int i = 0; i < 12; ++i) { work.write(fmt::format("inner/room{}.ply", i), "x"); }
+    work.write("a##b.ply", "x");
     fs::create_symlink("nowhere", work.path / "gone.ply");
     setenv("XDG_CONFIG_HOME", (work.base / "config").c_str(), 1);
     PanelSketch sketch;
-    sketch.status.scene = (work.path / "a##b.ply").string();
-    // The page opens where the scene that is shown lies.
-    sketch.click("Scenes");
-    CHECK(sketch.chooser.list().title == work.path.string());
-    CHECK(sketch.click("gone.ply").chosen_scene.empty());
-    CHECK(sketch.click("a##b.ply").chosen_scene == (work.path / "a##b.ply").string());
-    CHECK(sketch.click("inner/").chosen_scene.empty());
-    CHECK(sketch.chooser.list().title == (work.path / "inner").string());
+    sketch.status.scene = scene;
+    const auto chosen = [&](const char* name) { return sketch.click(name).chosen_scene; };
+    const auto titleAfter = [&](const char* name) {
+        CHECK(chosen(name).empty());
+        return sketch.chooser.list().title;
+    };
+    CHECK(titleAfter("Scenes") == here);  // where the scene that is shown lies
+    CHECK(chosen("gone.ply").empty());
+    CHECK(chosen("a##b.ply") == scene);
+    CHECK(titleAfter("inner/") == inner);
     CHECK(sketch.chooser.pageCount() == 2);
     CHECK_FALSE(sketch.draw().places.contains("room11.ply"));
     sketch.click(">");
     sketch.click(">");
     CHECK(sketch.chooser.page() == 1);
-    CHECK(sketch.click("room11.ply").chosen_scene == (work.path / "inner" / "room11.ply").string());
+    CHECK(chosen("room11.ply") == inner + "/room11.ply");
     sketch.click("<");
-    CHECK(sketch.click("room0.ply").chosen_scene == (work.path / "inner" / "room0.ply").string());
-    sketch.click("Up");
-    CHECK(sketch.chooser.list().title == work.path.string());
+    CHECK(chosen("room0.ply") == inner + "/room0.ply");
+    CHECK(titleAfter("Up") == here);
     sketch.click("Built-in");
-    CHECK(sketch.click("step-edge").chosen_scene == "builtin:step-edge");
-    sketch.click("Up");  // there is none above
-    CHECK(sketch.chooser.list().title == "Built-in scenes");
+    CHECK(chosen("step-edge") == "builtin:step-edge");
+    CHECK(titleAfter("Up") == "Built-in scenes");  // there is none above
     sketch.click("Recent");
     CHECK(sketch.chooser.list().entries.empty());
-    rememberScene((work.path / "a##b.ply").string());
+    rememberScene(scene);
     sketch.click("Recent");
-    CHECK(sketch.click("a##b.ply").chosen_scene == (work.path / "a##b.ply").string());
+    CHECK(chosen("a##b.ply") == scene);
     const std::string home = environment("HOME");
     setenv("HOME", work.base.c_str(), 1);
-    sketch.click("Home");
-    CHECK(sketch.chooser.list().title == work.base.string());
+    CHECK(titleAfter("Home") == work.base.string());
     setenv("HOME", home.c_str(), 1);
     // A file that came meanwhile is there when the page is opened again.
-    sketch.chooser.showFolder(work.path.string());
-    write(work.path / "new.ply");
+    sketch.chooser.showFolder(here);
+    work.write("new.ply", "x");
     sketch.click("Scenes");
     CHECK(sketch.draw().places.contains("new.ply"));
     unsetenv("XDG_CONFIG_HOME");
@@ -336,7 +307,7 @@ TEST_CASE("scenes are looked for by clicks: down, up, to other places, page by p
 TEST_CASE("no folder is read while the panel is drawn: it says that it reads until a list is there, and an outdated one is not shown") {
     const Workplace work;
     fs::create_directory(work.path / "inner");
-    write(work.path / "inner" / "a.ply");
+    work.write("inner/a.ply", "x");
     PanelSketch sketch;
     sketch.settings.page = Page::kScenes;
     SceneChooser& chooser = sketch.chooser;
@@ -369,22 +340,21 @@ TEST_CASE("no folder is read while the panel is drawn: it says that it reads unt
     // Letters, too, are read and drawn elsewhere: a second wish waits for the first.
     CHECK(sketch.font->want("\xd7\x90"));
     CHECK_FALSE(sketch.font->want("\xe1\x83\x90"));
-    CHECK(ImGui::GetIO().Fonts->Fonts[0]->FindGlyphNoFallback(0x5d0) == nullptr);
+    CHECK_FALSE(isThere(0x5d0));
     sketch.font->build();
-    CHECK(ImGui::GetIO().Fonts->Fonts[0]->FindGlyphNoFallback(0x5d0) == nullptr);
+    CHECK_FALSE(isThere(0x5d0));
     sketch.font->take();
-    CHECK(ImGui::GetIO().Fonts->Fonts[0]->FindGlyphNoFallback(0x5d0) != nullptr);
+    CHECK(isThere(0x5d0));
     CHECK(sketch.bringLetters("\xe1\x83\x90"));
     sketch.draw();
 }
 
 TEST_CASE("names of any bytes and of any length are shown, and a long message is wrapped within the panel") {
     const Workplace work;
-    std::string longest(240, 'w');
-    longest += ".ply";
+    const std::string longest = std::string(240, 'w') + ".ply";
     for (const std::string& name : {std::string("\xce\xa9\xd0\x96\xc3\xa4.ply"), std::string("line\nbreak.ply"), std::string("%s%n.ply"),
                                     std::string("\xff\xfe.ply"), longest}) {
-        write(work.path / name);
+        work.write(name, "x");
     }
     PanelSketch sketch;
     sketch.settings.page = Page::kScenes;
@@ -410,12 +380,10 @@ TEST_CASE("the rates that the headset offers can be chosen, and left to it; wher
     CHECK_FALSE(sketch.draw().places.contains("Automatic"));
     sketch.status.refresh_rates = {72.0, 89.9988, 144.0};
     sketch.settings.refresh_rate = 72.0;
-    sketch.click("90 Hz");
-    CHECK(sketch.settings.refresh_rate == 89.9988);
-    sketch.click("144 Hz");
-    CHECK(sketch.settings.refresh_rate == 144.0);
-    sketch.click("Automatic");
-    CHECK(sketch.settings.refresh_rate == 0.0);
+    for (const auto& [name, rate] : {std::pair("90 Hz", 89.9988), std::pair("144 Hz", 144.0), std::pair("Automatic", 0.0)}) {
+        sketch.click(name);
+        CHECK(sketch.settings.refresh_rate == rate);
+    }
     // What is above stays where it is.
     const WidgetPlaces with = sketch.draw().places;
     sketch.status.refresh_rates.clear();

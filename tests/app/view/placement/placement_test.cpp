@@ -3,22 +3,20 @@
 #include "app/options/start_view.h"
 #include "app/view/headset/losses.h"
 #include "app/view/placement/view_eyes.h"
-#include "app/view/room/panel_in_room.h"
 #include "app/view/settings/view_files.h"
 #include "app/view/settings/view_settings.h"
-#include "engine/error.h"
+#include "tests/app/options/parsed.h"
+#include "tests/run_program.h"
 #include "xr/convert.h"
 
 #include <doctest/doctest.h>
-
-#include <filesystem>
-#include <fstream>
 
 TEST_SUITE_BEGIN("placement");
 
 namespace placement_test {
 
 using namespace binosplat;
+using namespace binosplat::test;
 
 namespace {
 
@@ -33,11 +31,8 @@ void checkNear(const glm::dvec3& a, const glm::dvec3& b, double tolerance = 1e-9
 
 const Similarity kSome{glm::normalize(glm::dquat(0.9, 0.1, -0.3, 0.2)), {1.0, -2.0, 3.0}, 2.5};
 
-Scene emptyScene() {
-    Scene scene;
-    scene.name = "empty";
-    return scene;
-}
+// A quarter turn about x, upwards.
+const glm::dquat kUpwards = glm::angleAxis(0.5 * kPi, glm::dvec3(1, 0, 0));
 
 }  // namespace
 
@@ -64,25 +59,10 @@ TEST_CASE("the mouse makes the scene grow, and tilts it, about the wearer") {
     checkNear(transform(grown, head + 2.0 * (ahead - head)), transform(kSome, ahead));
     CHECK(grownBy(kSome, 1e300, head).scale > 0.0);
     // A quarter turn upwards about the right: what lay ahead lies above.
-    const Similarity tilted = tiltedBy(kSome, glm::angleAxis(0.5 * kPi, glm::dvec3(1, 0, 0)), head);
+    const Similarity tilted = tiltedBy(kSome, kUpwards, head);
     checkNear(transform(tilted, head), transform(kSome, head));
     checkNear(transform(tilted, head + glm::dvec3(0.0, -2.0, 0.0)), transform(kSome, ahead));
     CHECK(tilted.scale == kSome.scale);
-}
-
-TEST_CASE("hands that may tilt the scene turn it any way, with what they hold") {
-    const std::array<glm::dvec3, 2> from{glm::dvec3(-0.2, 0.4, 0.3), glm::dvec3(0.2, 0.4, 0.3)};
-    const std::array<glm::dvec3, 2> to{glm::dvec3(0.1, 0.1, 0.3), glm::dvec3(0.15, 0.5, 0.4)};
-    const Similarity held = heldBy(kSome, from, to, true);
-    // Each hand still holds what it held, as far as the distance between them allows.
-    const double growth = glm::length(to[1] - to[0]) / glm::length(from[1] - from[0]);
-    CHECK(held.scale == doctest::Approx(kSome.scale / growth));
-    checkNear(transform(held, to[0]), transform(kSome, from[0]), 1e-9);
-    checkNear(transform(held, to[1]), transform(kSome, from[1]), 1e-9);
-    // Half a turn, too.
-    const Similarity turned = heldBy(kSome, from, {from[1], from[0]}, true);
-    checkNear(transform(turned, from[1]), transform(kSome, from[0]), 1e-9);
-    checkNear(transform(turned, from[0]), transform(kSome, from[1]), 1e-9);
 }
 
 TEST_CASE("a levelled scene stands upright about the wearer, as large and turned as it was") {
@@ -98,11 +78,12 @@ TEST_CASE("a levelled scene stands upright about the wearer, as large and turned
 }
 
 TEST_CASE("settings of a scene lie in the user's folder, by the file's place and size") {
-    const std::filesystem::path folder = std::filesystem::temp_directory_path() / "binosplat-placement-test";
+    const Workplace work;
+    const std::filesystem::path folder = work.path;
     std::filesystem::create_directories(folder / "elsewhere");
     setenv("XDG_CONFIG_HOME", "/somewhere", 1);
     const auto fileOf = [&](const std::string& name, const std::string& text) {
-        std::ofstream(folder / name) << text;
+        work.write(name, text);
         return viewSettingsFile((folder / name).string());
     };
     const std::filesystem::path first = fileOf("a.ply", "one");
@@ -126,7 +107,6 @@ TEST_CASE("settings of a scene lie in the user's folder, by the file's place and
     CHECK(viewSettingsFile("builtin:fence") == "/home/of/.config/binosplat/scenes/fence.view.toml");
     unsetenv("HOME");
     CHECK_THROWS_AS(static_cast<void>(viewSettingsFile("builtin:fence")), Error);
-    std::filesystem::remove_all(folder);
 }
 
 TEST_CASE("similarities compose") {
@@ -135,18 +115,25 @@ TEST_CASE("similarities compose") {
     checkNear(transform(compose(kSome, other), point), transform(kSome, transform(other, point)));
 }
 
-TEST_CASE("a wearer starts where the options put the eye, upright, metres as long as they say") {
-    CameraOptions camera;
-    camera.eye = glm::dvec3(1, 2, 3);
-    camera.look = glm::dvec3(1, 3, 5);  // down and ahead, for y points down
-    const Similarity start = startPlacement(startView(emptyScene(), camera, 0.5), 0.5);
+TEST_CASE("a wearer starts where the options put the eye or their camera is, upright, metres as long as they say") {
+    const Workplace work;
+    const std::string cameras = (work.path / "c.json").string();
+    const auto startWith = [&](const std::string& options) {
+        const CameraOptions camera = parse<ViewOptions>("view box.ply " + options).run.camera;
+        return startPlacement(startView(makeBox((work.path / "box.ply").string()), camera, 0.5), 0.5);
+    };
+    const Similarity start = startWith("--eye 1,2,3 --look 1,3,5");  // down and ahead, for y points down
     checkNear(transform(start, glm::dvec3(0.0)), {1, 2, 3});
     checkNear(transform(start, {0, 0, 1}), {1, 2, 5});   // ahead is level
     checkNear(transform(start, {0, -1, 0}), {1, 0, 3});  // up is up
     // Looking straight down there is no level ahead; it is upright still.
-    camera.look = glm::dvec3(1, 2, 3) + glm::dvec3(0, 0.001, 5);
-    camera.up = glm::dvec3(0, 0, -1);
-    checkNear(startPlacement(startView(emptyScene(), camera, 0.5), 0.5).orientation * glm::dvec3(0, -1, 0), {0, 0, -1}, 1e-6);
+    checkNear(startWith("--eye 1,2,3 --look 1,2.001,8 --up 0,0,-1").orientation * glm::dvec3(0, -1, 0), {0, 0, -1}, 1e-6);
+    // A camera that looks down by some 37 degrees, along (0, 0.6, 0.8): up is its own.
+    work.write("c.json", R"([{"position": [1, 2, 3], "rotation": [[1, 0, 0], [0, 0.8, 0.6], [0, -0.6, 0.8]],
+                              "width": 8, "height": 8, "fx": 9, "fy": 9}])");
+    const Similarity at_camera = startWith("--cameras " + cameras);
+    checkNear(at_camera.position, {1, 2, 3}, 1e-12);
+    checkNear(at_camera.orientation * glm::dvec3(0, -1, 0), {0, -0.8, 0.6}, 1e-6);
 }
 
 TEST_CASE("a scene that would be looked at from nearer than half a metre is shown larger, and no other one is") {
@@ -169,21 +156,26 @@ TEST_CASE("walking moves, turning keeps the head in its place") {
     checkNear(transform(turned, head + glm::dvec3(0, 0, 1)), transform(kSome, head + glm::dvec3(1, 0, 0)));
 }
 
-TEST_CASE("both hands hold what they took: points of the scene stay in them") {
+TEST_CASE("both hands hold what they took: points of the scene stay in them, upright or, where they may tilt it, turned any way") {
     const std::array<glm::dvec3, 2> from{glm::dvec3(-0.2, 0.4, 0.3), glm::dvec3(0.2, 0.4, 0.3)};
-    for (const auto& to : {std::array{glm::dvec3(-0.1, 0.1, 0.5), glm::dvec3(0.4, 0.1, 0.9)},
-                           std::array{glm::dvec3(0.3, 0.4, 0.3), glm::dvec3(-0.1, 0.4, 0.1)}, from}) {
-        const Similarity held = heldBy(kSome, from, to);
+    const auto checkHeld = [&](const std::array<glm::dvec3, 2>& to, bool tilts) {
+        const Similarity held = heldBy(kSome, from, to, tilts);
         for (std::size_t h = 0; h < 2; ++h) { checkNear(transform(held, to[h]), transform(kSome, from[h])); }
+        // Twice as far apart: the scene is twice as large, so a metre is half as many units.
+        const double growth = glm::length(to[1] - to[0]) / glm::length(from[1] - from[0]);
+        CHECK(held.scale == doctest::Approx(kSome.scale / growth));
+        return held;
+    };
+    for (const auto& to : {std::array{glm::dvec3(-0.1, 0.1, 0.5), glm::dvec3(0.4, 0.1, 0.9)},
+                           std::array{glm::dvec3(0.3, 0.4, 0.3), glm::dvec3(-0.1, 0.4, 0.1)},
+                           std::array{glm::dvec3(-0.4, 0.4, 0.3), glm::dvec3(0.4, 0.4, 0.3)}, from}) {
         // The vertical stays the vertical.
-        checkNear(held.orientation * glm::dvec3(0, 1, 0), kSome.orientation * glm::dvec3(0, 1, 0));
+        checkNear(checkHeld(to, false).orientation * glm::dvec3(0, 1, 0), kSome.orientation * glm::dvec3(0, 1, 0));
     }
-    // Twice as far apart: the scene is twice as large, so a metre is half as many units.
-    const Similarity grown = heldBy(kSome, from, {glm::dvec3(-0.4, 0.4, 0.3), glm::dvec3(0.4, 0.4, 0.3)});
-    CHECK(grown.scale == doctest::Approx(0.5 * kSome.scale));
+    checkHeld({glm::dvec3(0.1, 0.1, 0.3), glm::dvec3(0.15, 0.5, 0.4)}, true);
+    checkHeld({from[1], from[0]}, true);  // half a turn, too
     // Hands at one point say nothing about size and direction.
-    const Similarity same = heldBy(kSome, {from[0], from[0]}, from);
-    CHECK(same.scale == doctest::Approx(kSome.scale));
+    CHECK(heldBy(kSome, {from[0], from[0]}, from).scale == doctest::Approx(kSome.scale));
 }
 
 TEST_CASE("rounding between parallel eyes is taken out, canting is not") {
@@ -237,15 +229,14 @@ TEST_CASE("what the panel is set to survives its file") {
     settings.hands = settings.vignette = false;
     settings.teleport = settings.passthrough = true;
     settings.scene_from_room = kSome;
-    const auto file = std::filesystem::temp_directory_path() / "binosplat_placement_test.toml";
-    std::ofstream(file) << viewSettingsToml(settings);
+    const Workplace work;
+    work.write("kept.toml", viewSettingsToml(settings));
     std::vector<SettingsTable> view;
     Settings stereo;
-    for (const SettingsTable& table : readSettingsFile(file)) {
+    for (const SettingsTable& table : readSettingsFile(work.path / "kept.toml")) {
         if (table.name == "view") { view.push_back(table); }
         if (table.name == "stereo") { stereo = table.settings; }
     }
-    std::filesystem::remove(file);
     ViewSettings read = readViewSettings(view, {});
     read.stereo = runOptions(stereo).stereo;
     CHECK(describeChange(settings, read) == "");
@@ -260,37 +251,17 @@ TEST_CASE("what the panel is set to survives its file") {
     CHECK(describeChange(settings, read) == "margin = 16");
 }
 
-TEST_CASE("a config that places the scene in part is refused with its line") {
-    const SettingsTable table{"view", "a.toml:3", {{"scene-position", {"a.toml:4: scene-position", {"1", "2", "3"}}}}};
-    CHECK_THROWS_WITH_AS(readViewSettings({table}, {}), doctest::Contains("a.toml:3"), Error);
-    const SettingsTable unknown{"view", "a.toml:3", {{"colour", {"a.toml:4: colour", {"red"}}}}};
-    CHECK_THROWS_WITH_AS(readViewSettings({unknown}, {}), doctest::Contains("a.toml:4: colour"), Error);
-}
-
-TEST_CASE("a ray meets the panel where it points, from the front alone") {
-    PanelInRoom panel({800, 400}, 0.8);
-    const Pose& hung = panel.roomFromPanel();
-    std::array<xr::Hand, 2> hands;
-    // A quarter to the right and downwards of the panel's middle.
-    hands[kRight].aim = compose(hung, {glm::dquat(1, 0, 0, 0), {0.2, 0.1, -0.5}});
-    panel.update(hands, true);
-    REQUIRE(panel.pointer().place_px.has_value());
-    CHECK(panel.pointer().place_px->x == doctest::Approx(600));
-    CHECK(panel.pointer().place_px->y == doctest::Approx(300));
-    CHECK_FALSE(panel.pointer().pressed);
-    const auto rays = panel.rays(glm::dvec3(0.0), std::nullopt);
-    REQUIRE(rays.size() == 1);
-    CHECK(rays[0].sprite == Sprite::kRay);
-    CHECK(rays[0].strip.size_m.y == doctest::Approx(0.5));
-    checkNear(rays[0].strip.room_from_strip.position, transform(hung, {0.2, 0.1, -0.25}));
-    hands[kRight].aim = compose(hung, {glm::dquat(0, 0, 1, 0), {0.2, 0.1, 0.5}});  // behind it, towards it
-    panel.update(hands, true);
-    CHECK_FALSE(panel.pointer().place_px.has_value());
-    // It fades before it is there.
-    const auto behind = panel.rays(glm::dvec3(0.0), std::nullopt);
-    REQUIRE(behind.size() == 1);
-    CHECK(behind[0].sprite == Sprite::kFadingRay);
-    CHECK(behind[0].strip.size_m.y < 0.5);
+TEST_CASE("a config that places the scene in part, or by what is no number, is refused with its line, and so is an unknown key") {
+    using Items = std::vector<std::string>;
+    for (const auto& [key, items, place] :
+         std::vector<std::tuple<const char*, Items, const char*>>{{"scene-position", {"1", "2", "3"}, "a.toml:3"},
+                                                                  {"scene-position", {"1", "2"}, "a.toml:4: scene-position"},
+                                                                  {"units-per-metre", {"2"}, "a.toml:3"},
+                                                                  {"units-per-metre", {"nan"}, "a.toml:4: units-per-metre"},
+                                                                  {"colour", {"red"}, "a.toml:4: colour"}}) {
+        const SettingsTable table{"view", "a.toml:3", {{key, {fmt::format("a.toml:4: {}", key), items}}}};
+        CHECK_THROWS_WITH_AS(readViewSettings({table}, {}), doctest::Contains(place), Error);
+    }
 }
 
 }  // namespace placement_test

@@ -1,10 +1,14 @@
-// Facts about looking for a scene: what a folder holds, in which order, which scenes were shown last, and what is said of one.
+// Facts about looking for a scene: what a folder holds, in which order, which scenes were shown last, what is said and kept of one, and
+// the places to go to in it.
 #include "app/view/scenes/scene_list.h"
 #include "app/view/files/file_worker.h"
+#include "app/view/governor/met_displays.h"
 #include "app/view/scenes/natural_order.h"
 #include "app/view/scenes/recent_scenes.h"
 #include "app/view/scenes/scene_facts.h"
+#include "app/view/scenes/seen_scenes.h"
 #include "app/view/scenes/view_scenes.h"
+#include "app/view/scenes/viewpoints.h"
 #include "engine/error.h"
 #include "tests/run_program.h"
 
@@ -12,9 +16,6 @@
 #include <fmt/format.h>
 #include <sys/stat.h>
 
-#include <algorithm>
-#include <filesystem>
-#include <fstream>
 #include <future>
 #include <thread>
 
@@ -24,11 +25,17 @@ namespace scene_list_test {
 
 namespace fs = std::filesystem;
 using namespace binosplat;
-using binosplat::test::Workplace;
+using namespace binosplat::test;
 
 namespace {
 
-void write(const fs::path& path, const std::string& text = "x") { std::ofstream(path) << text; }
+// A user of one's own, with scenes.
+struct Home : Workplace {
+    Home() { setenv("XDG_CONFIG_HOME", (base / "config").c_str(), 1); }
+    ~Home() { unsetenv("XDG_CONFIG_HOME"); }
+    void add(const std::string& name) const { write(name, "x"); }
+    [[nodiscard]] std::string at(const std::string& name) const { return (path / name).string(); }
+};
 
 std::vector<std::string> namesOf(const SceneList& list) {
     std::vector<std::string> names;
@@ -61,14 +68,14 @@ TEST_CASE("numbers in names count as numbers, capitals do not count, and every t
 }
 
 TEST_CASE("a folder is listed with its folders and scenes, and without what is hidden or something else") {
-    const Workplace work;
+    const Home work;
     for (const char* name : {"room10.ply", "room2.PLY", "a.spz", ".hidden.ply", "notes.txt", "\xd0\x91\xd1\x8e\xd1\x81\xd1\x82.splat"}) {
-        write(work.path / name);
+        work.add(name);
     }
     for (const char* name : {"zoo", "Attic", ".git", "statue", "folder.ply"}) { fs::create_directory(work.path / name); }
-    write(work.path / "statue" / "meta.json");
+    work.add("statue/meta.json");
     fs::create_directories(work.path / "trained/point_cloud/iteration_7");
-    write(work.path / "trained/point_cloud/iteration_7/point_cloud.ply");
+    work.add("trained/point_cloud/iteration_7/point_cloud.ply");
     fs::create_directories(work.path / "untrained/point_cloud/iteration_7");
     const SceneList list = listFolder(work.path.string());
     CHECK(list.trouble.empty());
@@ -77,26 +84,26 @@ TEST_CASE("a folder is listed with its folders and scenes, and without what is h
     CHECK(namesOf(list) == std::vector<std::string>{"Attic/", "folder.ply/", "untrained/", "zoo/", "a.spz", "room2.PLY", "room10.ply",
                                                     "statue", "trained", "\xd0\x91\xd1\x8e\xd1\x81\xd1\x82.splat"});
     for (const SceneEntry& entry : list.entries) { CHECK(entry.trouble.empty()); }
-    CHECK(entryOf(list, "zoo").place == (work.path / "zoo").string());
+    CHECK(entryOf(list, "zoo").place == work.at("zoo"));
     // The viewer's next scene goes the same way.
-    CHECK(sceneBeside((work.path / "room2.PLY").string(), 1) == (work.path / "room10.ply").string());
-    CHECK(sceneBeside((work.path / "room10.ply").string(), 1) == (work.path / "statue").string());
+    CHECK(sceneBeside(work.at("room2.PLY"), 1) == work.at("room10.ply"));
+    CHECK(sceneBeside(work.at("room10.ply"), 1) == work.at("statue"));
 }
 
 TEST_CASE("what cannot be opened is listed with the reason, and nothing waits for a pipe") {
-    const Workplace work;
+    const Home work;
     REQUIRE(mkfifo((work.path / "pipe.ply").c_str(), 0600) == 0);
     fs::create_symlink("nowhere.ply", work.path / "gone.ply");
     fs::create_symlink("loop.ply", work.path / "loop.ply");
-    write(work.path / "good.ply");
+    work.add("good.ply");
     const SceneList list = listFolder(work.path.string());
     CHECK_FALSE(entryOf(list, "pipe.ply").trouble.empty());
     CHECK(entryOf(list, "gone.ply").trouble == "is not there");
     CHECK_FALSE(entryOf(list, "loop.ply").trouble.empty());
     CHECK(entryOf(list, "good.ply").trouble.empty());
-    CHECK_FALSE(listFolder((work.path / "nowhere").string()).trouble.empty());
-    CHECK_FALSE(listFolder((work.path / "good.ply").string()).trouble.empty());
-    CHECK(listFolder((work.path / "nowhere").string()).above == work.path.string());
+    CHECK_FALSE(listFolder(work.at("nowhere")).trouble.empty());
+    CHECK_FALSE(listFolder(work.at("good.ply")).trouble.empty());
+    CHECK(listFolder(work.at("nowhere")).above == work.path.string());
 }
 
 TEST_CASE("the way up ends at the top, and built-in scenes have a place of their own") {
@@ -111,27 +118,14 @@ TEST_CASE("the way up ends at the top, and built-in scenes have a place of their
     CHECK(entryOf(builtin, "fence").place == "builtin:fence");
 }
 
-TEST_CASE("the latest scenes come first, each once, ten at most") {
-    std::vector<std::string> scenes;
-    for (int i = 0; i < 12; ++i) { scenes = withLatest(scenes, fmt::format("{}.ply", i)); }
-    CHECK(scenes.size() == kMostRecentScenes);
-    CHECK(scenes.front() == "11.ply");
-    CHECK(scenes.back() == "2.ply");
-    scenes = withLatest(scenes, "5.ply");
-    CHECK(scenes.size() == kMostRecentScenes);
-    CHECK(scenes.front() == "5.ply");
-    CHECK(std::ranges::count(scenes, "5.ply") == 1);
-}
-
-TEST_CASE("recent scenes are kept in the user's folder, whole or as they were, and missing ones are marked") {
-    const Workplace work;
-    setenv("XDG_CONFIG_HOME", (work.base / "config").c_str(), 1);
+TEST_CASE("recent scenes are kept in the user's folder, the latest first, each once, ten at most, and missing ones are marked") {
+    const Home work;
     CHECK(recentScenes().empty());
-    write(work.path / "a.ply");
-    rememberScene((work.path / "a.ply").string());
+    work.add("a.ply");
+    rememberScene(work.at("a.ply"));
     rememberScene((work.path / "sub" / ".." / "gone.ply").string());
     rememberScene("builtin:fence");
-    const std::vector<std::string> kept{"builtin:fence", (work.path / "gone.ply").string(), (work.path / "a.ply").string()};
+    const std::vector<std::string> kept{"builtin:fence", work.at("gone.ply"), work.at("a.ply")};
     CHECK(recentScenes() == kept);
     const SceneList list = listScenes("Recent scenes", recentScenes());
     CHECK(namesOf(list) == std::vector<std::string>{"builtin:fence", "gone.ply", "a.ply"});
@@ -140,8 +134,17 @@ TEST_CASE("recent scenes are kept in the user's folder, whole or as they were, a
     CHECK(list.entries[2].trouble.empty());
     CHECK(list.entries[2].place == kept[2]);
     // A name of two lines would be two scenes.
-    rememberScene((work.path / "two\nlines.ply").string());
+    rememberScene(work.at("two\nlines.ply"));
     CHECK(recentScenes() == kept);
+    for (int i = 0; i < 12; ++i) { rememberScene(work.at(fmt::format("{}.ply", i))); }
+    CHECK(recentScenes().size() == kMostRecentScenes);
+    CHECK(recentScenes().front() == work.at("11.ply"));
+    CHECK(recentScenes().back() == work.at("2.ply"));
+    rememberScene(work.at("5.ply"));
+    const std::vector<std::string> latest = recentScenes();
+    CHECK(latest.size() == kMostRecentScenes);
+    CHECK(latest.front() == work.at("5.ply"));
+    CHECK(std::ranges::count(latest, work.at("5.ply")) == 1);
     // Nothing but the list lies there, and one that cannot be written stays as it was.
     const fs::path folder = work.base / "config" / "binosplat";
     CHECK(std::distance(fs::directory_iterator(folder), fs::directory_iterator()) == 1);
@@ -150,7 +153,6 @@ TEST_CASE("recent scenes are kept in the user's folder, whole or as they were, a
     CHECK(recentScenes().empty());
     CHECK_THROWS_AS(rememberScene("builtin:fence"), Error);
     CHECK(std::distance(fs::directory_iterator(folder), fs::directory_iterator()) == 1);
-    unsetenv("XDG_CONFIG_HOME");
 }
 
 TEST_CASE("files are read beside whoever asks, who waits for nothing, and what is to be written is written") {
@@ -206,10 +208,10 @@ TEST_CASE("a scene is described in words: how much, of what kind, how large") {
     CHECK(valueOf("Scale") == "0.25 metres a scene unit");
     CHECK(describeFacts({}, 1.0).at(0).second == "0");
     // From what loading met.
-    const Workplace work;
+    const Home work;
     fs::create_directory(work.path / "sog");
-    write(work.path / "sog" / "meta.json", std::string(100, 'x'));
-    write(work.path / "sog" / "means.webp", std::string(1000, 'x'));
+    work.write("sog/meta.json", std::string(100, 'x'));
+    work.write("sog/means.webp", std::string(1000, 'x'));
     Scene scene;
     scene.positions.resize(2);
     scene.thicknesses.resize(2);
@@ -218,7 +220,7 @@ TEST_CASE("a scene is described in words: how much, of what kind, how large") {
     notes.three_scales = true;
     notes.skipped_not_finite = 4;
     notes.sh_degree_in_file = 2;
-    const SceneFacts folder = factsOf(scene, notes, (work.path / "sog").string());
+    const SceneFacts folder = factsOf(scene, notes, work.at("sog"));
     CHECK(folder.splats == 2);
     CHECK(folder.left_out == 4);
     CHECK(folder.kind == "3D Gaussians");
@@ -233,12 +235,82 @@ TEST_CASE("a scene is described in words: how much, of what kind, how large") {
 }
 
 TEST_CASE("a folder of many numbered scenes is one that moves; of a few it is one to look into") {
-    const Workplace work;
-    for (int number = 1; number <= 23; ++number) { write(work.path / fmt::format("frame_{}.ply", number)); }
-    for (int number = 1; number <= 60; ++number) { write(work.path / fmt::format("note_{}.txt", number)); }
+    const Home work;
+    for (int number = 1; number <= 23; ++number) { work.add(fmt::format("frame_{}.ply", number)); }
+    for (int number = 1; number <= 60; ++number) { work.add(fmt::format("note_{}.txt", number)); }
     CHECK_FALSE(looksLikeScene(work.path));
-    for (int number = 24; number <= 45; ++number) { write(work.path / fmt::format("frame_{}.ply", number)); }
+    for (int number = 24; number <= 45; ++number) { work.add(fmt::format("frame_{}.ply", number)); }
     CHECK(looksLikeScene(work.path));
+}
+
+TEST_CASE("at a viewpoint the eyes are there, look that way and stand upright, wherever the head is in the room, at the same scale") {
+    const View view{{1, 2, 3}, {1, 2.5, 5}, {0, -1, 0.1}, 60.0};
+    const Pose head{glm::angleAxis(0.7, glm::dvec3(0, 1, 0)), {0.3, -0.2, 0.5}};
+    const Similarity placed = placedAt(view, {{1, 0, 0, 0}, {9, 9, 9}, 2.5}, head);
+    CHECK(placed.scale == 2.5);
+    CHECK(glm::distance(transform(placed, head.position), view.eye) < 1e-9);
+    const glm::dvec3 up = glm::normalize(view.up), ahead = view.look - view.eye;
+    CHECK(glm::distance(placed.orientation * glm::dvec3(0, -1, 0), up) < 1e-9);
+    const glm::dvec3 looks = transform(placed, head).orientation * glm::dvec3(0, 0, 1);
+    CHECK(glm::distance(looks, glm::normalize(ahead - glm::dot(ahead, up) * up)) < 1e-9);
+    // What is kept there leads back there.
+    const View kept = viewOf(placed, head);
+    const Similarity again = placedAt(kept, placed, head);
+    CHECK(glm::distance(again.position, placed.position) < 1e-9);
+}
+
+TEST_CASE("viewpoints are the cameras beside the scene, and then those that were kept") {
+    const Home work;
+    const std::string scene = work.at("a.ply");
+    work.add("a.ply");
+    CHECK(findViewpoints(scene, {}).empty());
+    keepViewpoint(scene, {{0, 0, 1}, {0, 0, 2}, {0, -1, 0}, 60.0});
+    keepViewpoint(scene, {{0, 0, 3}, {1, 0, 3}, {0, -1, 0}, 60.0});
+    work.write("cameras.json", R"([{"img_name": "door", "width": 8, "height": 8, "fx": 8, "fy": 8, "position": [5, 0, 0],
+                                    "rotation": [[1,0,0],[0,1,0],[0,0,1]]}])");
+    const std::vector<Viewpoint> found = findViewpoints(scene, {});
+    REQUIRE(found.size() == 3);
+    CHECK(found[0].name == "door");
+    CHECK(found[0].view.eye == glm::dvec3(5, 0, 0));
+    CHECK(found[1].view.eye == glm::dvec3(0, 0, 1));
+    CHECK(found[2].name == "your own 2");
+}
+
+TEST_CASE("a scene that was shown has a small picture and a line, and favourites come first") {
+    const Home work;
+    for (const char* name : {"a.ply", "b.ply", "c.ply"}) { work.add(name); }
+    Image wide{{400, 100}, 4, {}};
+    for (int y = 0; y < 100; ++y) {
+        for (int x = 0; x < 400; ++x) { wide.values.insert(wide.values.end(), {x < 200 ? 0.0f : 1.0f, 0.5f, 0.0f, 1.0f}); }
+    }
+    const Image small = makeScenePicture(wide);
+    CHECK(small.size_px == kScenePicturePx);
+    CHECK(small.values.size() == small.pixelCount() * 3);
+    CHECK(small.values[0] == 0.0f);
+    CHECK(small.values[small.values.size() - 3] == 1.0f);
+    keepSeenScene(work.at("b.ply"), small, "7 splats, discs");
+    toggleFavourite(work.at("c.ply"));
+    SceneList list = listFolder(work.path.string());
+    describeScenes(list);
+    REQUIRE(list.entries.size() == 3);
+    CHECK(list.entries[0].name == "c.ply");
+    CHECK(list.entries[0].is_favourite);
+    CHECK(list.entries[1].picture.key.empty());
+    CHECK(list.entries[1].about == "0.0 KiB");
+    CHECK(list.entries[2].about == "7 splats, discs");
+    CHECK(list.entries[2].picture.rgba.size() == std::size_t{4} * kScenePicturePx.x * kScenePicturePx.y);
+    toggleFavourite(work.at("c.ply"));
+    CHECK(favouriteScenes().empty());
+}
+
+TEST_CASE("the rate is that of displays with a new picture") {
+    MetDisplays met;
+    CHECK(met.displayHz() == 0.0);
+    for (int i = 0; i < 100; ++i) { met.add(10.0, 0.0); }
+    CHECK(met.metHz() == doctest::Approx(100.0));
+    for (int i = 0; i < 200; ++i) { met.add(10.0, 1.0); }
+    CHECK(met.displayHz() == doctest::Approx(100.0));
+    CHECK(met.metHz() == doctest::Approx(50.0));
 }
 
 }  // namespace scene_list_test

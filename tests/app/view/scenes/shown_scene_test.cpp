@@ -35,7 +35,7 @@ using namespace binosplat::test;
 namespace {
 
 struct Shown : Gpu, Workplace {
-    using Workplace::run;
+    using Workplace::run, Workplace::write;
 
     Shown() {
         setenv("XDG_CONFIG_HOME", (base / "config").c_str(), 1);
@@ -72,7 +72,7 @@ TEST_CASE_FIXTURE(Shown, "a file that is no scene gives one line, and what was s
     ShownScene scenes(context(), options, log);
     REQUIRE(scenes.take(state).empty());
     CHECK(scenes.name() == "builtin:step-edge");
-    std::ofstream(path / "notes.txt") << "no scene";
+    write("notes.txt", "no scene");
     fs::create_directory(path / "pictures");
     REQUIRE(mkfifo((path / "pipe.ply").c_str(), 0600) == 0);
     checkRefused(scenes, path / "notes.txt", "not a scene file of a known format");
@@ -85,7 +85,7 @@ TEST_CASE_FIXTURE(Shown, "a file that is no scene gives one line, and what was s
 #ifdef BINOSPLAT_SOG
 TEST_CASE_FIXTURE(Shown, "a folder of a SOG scene is shown like a file, with or without a slash at its end") {
     fs::create_directory(path / "statue");
-    for (const auto& [name, bytes] : makeSog()) { std::ofstream(path / "statue" / name, std::ios::binary) << bytes; }
+    for (const auto& [name, bytes] : makeSog()) { write("statue/" + name, bytes); }
     ShownScene scenes(context(), options, log);
     REQUIRE(scenes.take(state).empty());
     for (const std::string& place :
@@ -144,9 +144,7 @@ TEST_CASE_FIXTURE(
         CHECK(complaint.find(file.string()) != std::string::npos);
         CHECK(complaint.find('\n') == std::string::npos);
     };
-    for (const std::string& text :
-         {std::string("[view\n"), std::string("[view]\nnonsense = 1\n"), std::string("[view]\nscene-position = [1, 2]\n"),
-          std::string("[view]\nunits-per-metre = 2\n"), std::string("\xff\xfe\0\0", 4), std::string("[view]\nunits-per-metre = nan\n")}) {
+    for (const std::string& text : {std::string("[view\n"), std::string("[view]\nunits-per-metre = 2\n"), std::string("\xff\xfe\0\0", 4)}) {
         CAPTURE(text);
         spoil(text);
         checkSaid();
@@ -171,8 +169,8 @@ TEST_CASE_FIXTURE(
 
 TEST_CASE_FIXTURE(Shown, "loading gives up where it is told to, before the file's end, and so does the way to the device") {
     struct Enough {};
-    REQUIRE(run("scene atelier --splats 200000 --out many.ply").exit_code == 0);
-    REQUIRE(run("convert many.ply many.spz").exit_code == 0);
+    go("scene atelier --splats 200000 --out many.ply");
+    go("convert many.ply many.spz");
     for (const char* name : {"many.ply", "many.spz"}) {
         CAPTURE(name);
         double furthest = 0.0;
@@ -267,40 +265,6 @@ TEST_CASE_FIXTURE(Gpu, "the panel has the same colours where the runtime has no 
         CHECK(colours.size() > 20);
         CHECK(farthest < 1.0);
     }
-}
-
-TEST_CASE_FIXTURE(Gpu, "the depth of one pixel is that of the whole picture there, in full and in half floats, and none where nothing is") {
-    const Scene splat = loadScene("builtin:one-splat");
-    const GpuScene scene(context(), splat);
-    StereoFrame frame(context(), scene);
-    Eye middle{};
-    middle.size_px = {64, 48};
-    middle.intrinsics = intrinsicsFromFovX(1.0, middle.size_px);
-    middle.world_from_camera.position = glm::dvec3(splat.positions[0]) - glm::dvec3(0.0, 0.0, 2.0);
-    for (const bool half_floats : {false, true}) {
-        FrameSettings settings;
-        settings.mode = Mode::kMono;
-        settings.half_floats = half_floats;
-        static_cast<void>(frame.render(std::span(&middle, 1), settings));
-        const Image picture = frame.readPicture(0), depth = frame.readDepth(0);
-        std::size_t covered = 0;
-        for (const glm::uvec2 pixel : {glm::uvec2(32, 24), glm::uvec2(33, 23), glm::uvec2(0, 0), glm::uvec2(63, 47)}) {
-            const std::size_t at = std::size_t{pixel.y} * 64 + pixel.x;
-            const float alpha = picture.values[4 * at + 3];
-            const std::optional<double> one = frame.depthAt(0, pixel);
-            CHECK(one.has_value() == (alpha >= 0.5f));
-            if (!one) { continue; }
-            CHECK(*one == doctest::Approx(depth.values[at] / alpha));
-            CHECK(*one == doctest::Approx(2.0).epsilon(0.1));
-            ++covered;
-        }
-        CHECK(covered == 2);
-    }
-    FrameSettings without;
-    without.mode = Mode::kMono;
-    without.keep_depth = false;
-    static_cast<void>(frame.render(std::span(&middle, 1), without));
-    CHECK_FALSE(frame.depthAt(0, {32, 24}).has_value());
 }
 
 TEST_CASE_FIXTURE(Shown, "another method is drawn once its kernels are there, made beside the frames, and the next scene comes with them") {

@@ -1,12 +1,15 @@
-// Facts about the wearer's hands without a headset: who points, where a throw lands, what the vignette covers, how hands are drawn.
+// Facts about the wearer without a headset: who points, where a throw lands, what the vignette covers, how hands are drawn, where the
+// eyes are taken to look.
 #include "app/view/room/hand_picture.h"
 #include "app/view/room/vignette.h"
+#include "app/view/wearer/gaze_follower.h"
 #include "app/view/wearer/teleport.h"
 #include "app/view/wearer/wearer_controls.h"
 
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <utility>
 
 TEST_SUITE_BEGIN("wearer");
 
@@ -15,8 +18,6 @@ namespace wearer_test {
 using namespace binosplat;
 
 namespace {
-
-constexpr double kTenth = 0.1;
 
 // A hand that points straight at a place of a panel, half a metre before it.
 xr::Hand pointingAt(const PanelInRoom& panel, const glm::dvec2& from_middle_m, bool clicks = false) {
@@ -30,6 +31,50 @@ xr::Hand pointingAway() {
     xr::Hand hand;
     hand.aim = Pose{glm::angleAxis(3.0, glm::dvec3(0, 1, 0)), {0.3, 0.4, 0.3}};
     return hand;
+}
+
+// A panel, and two hands that point at it.
+struct Pointing {
+    PanelInRoom panel{{800, 400}, 0.8};
+    std::array<xr::Hand, 2> hands;
+
+    // Where the pointer is then, from the left; -1: nowhere.
+    double at(bool shown = true) {
+        panel.update(hands, shown);
+        return panel.pointer().place_px.value_or(glm::dvec2(-1.0)).x;
+    }
+    [[nodiscard]] std::size_t rays(const std::optional<int>& aiming = std::nullopt) const {
+        return panel.rays(glm::dvec3(0.0), aiming).size();
+    }
+};
+
+// A wearer, who is updated each tenth of a second.
+struct Wearer {
+    PanelInRoom panel{{800, 400}, 0.8};
+    WearerControls controls;
+    ViewState state;
+    WearerNow now;
+
+    explicit Wearer(const ViewSettings& settings = {}) : state(settings) { now.step_seconds = 0.1; }
+
+    void update() { controls.update(now, panel, state); }
+    void push(int hand, const glm::dvec2& stick) {
+        now.hands[static_cast<std::size_t>(hand)].stick = stick;
+        update();
+    }
+    [[nodiscard]] glm::dvec3 place() const { return state.sceneFromRoom().position; }
+    // About the vertical.
+    [[nodiscard]] double turn_rad() const {
+        const glm::dquat turned = state.sceneFromRoom().orientation;
+        return 2.0 * std::atan2(turned.y, turned.w);
+    }
+};
+
+ViewSettings teleporting(bool panel) {
+    ViewSettings settings;
+    settings.panel = panel;
+    settings.teleport = true;
+    return settings;
 }
 
 // Both eyes at the middle, each seeing so far to every side.
@@ -57,73 +102,97 @@ xr::HandJoints flatHand(const glm::dvec3& palm) {
     return joints;
 }
 
+constexpr double kStep = 0.01;
+const double kLensClear = glm::radians(15.0);
+
+double angleBetween(const glm::dvec3& a, const glm::dvec3& b) {
+    return 2.0 * std::asin(0.5 * glm::distance(glm::normalize(a), glm::normalize(b)));
+}
+
+// Canted eyes: the left one is turned outwards by 5 degrees.
+const std::array<Pose, 2> kEyes{Pose{glm::angleAxis(glm::radians(-5.0), glm::dvec3(0, 1, 0)), {-0.03, 0.0, 0.0}},
+                                Pose{{1, 0, 0, 0}, {0.03, 0.0, 0.0}}};
+const glm::dvec3 kAside = glm::normalize(glm::dvec3(0.3, -0.2, 1.0));
+
 }  // namespace
 
-TEST_CASE("both hands point, and the one that clicked last is the pointer") {
-    PanelInRoom panel({800, 400}, 0.8);
-    const auto at = [&] { return panel.pointer().place_px.value_or(glm::dvec2(-1.0)).x; };
-    std::array<xr::Hand, 2> hands{pointingAt(panel, {-0.2, 0.0}), pointingAt(panel, {0.2, 0.0})};
-    panel.update(hands, true);
-    CHECK(panel.rays(glm::dvec3(0.0), std::nullopt).size() == 2);
-    CHECK(at() == doctest::Approx(600));
+TEST_CASE("both hands point, and the one that clicked last is the pointer until the other one clicks or it misses") {
+    Pointing pointing;
+    auto& [panel, hands] = pointing;
+    hands = {pointingAt(panel, {-0.2, 0.0}), pointingAt(panel, {0.2, 0.0})};
+    CHECK(pointing.at() == doctest::Approx(600));
+    CHECK(pointing.rays() == 2);
     CHECK(panel.pulses(kLeft));
     CHECK(panel.pulses(kRight));
     hands[kLeft].clicks = true;
-    panel.update(hands, true);
-    CHECK(at() == doctest::Approx(200));
+    CHECK(pointing.at() == doctest::Approx(200));
     CHECK(panel.pointer().pressed);
     CHECK(panel.pulses(kLeft));
     CHECK_FALSE(panel.pulses(kRight));
-    // It stays the pointer, until the other one clicks or it misses.
     hands[kLeft].clicks = false;
-    panel.update(hands, true);
-    CHECK(at() == doctest::Approx(200));
-    const xr::Hand left = hands[kLeft];
-    hands[kLeft] = pointingAway();
-    panel.update(hands, true);
-    CHECK(at() == doctest::Approx(600));
+    CHECK(pointing.at() == doctest::Approx(200));
+    const xr::Hand left = std::exchange(hands[kLeft], pointingAway());
+    CHECK(pointing.at() == doctest::Approx(600));
     hands[kLeft] = left;
-    panel.update(hands, true);
-    CHECK(at() == doctest::Approx(200));
+    CHECK(pointing.at() == doctest::Approx(200));
     hands[kRight].clicks = true;
-    panel.update(hands, true);
-    CHECK(at() == doctest::Approx(600));
+    CHECK(pointing.at() == doctest::Approx(600));
 }
 
 TEST_CASE("a trigger that was pulled beside the panel does not click when the ray comes over it") {
-    PanelInRoom panel({800, 400}, 0.8);
-    std::array<xr::Hand, 2> hands{xr::Hand{}, pointingAway()};
+    Pointing pointing;
+    auto& [panel, hands] = pointing;
+    hands[kRight] = pointingAway();
     hands[kRight].clicks = true;
-    panel.update(hands, true);
+    CHECK(pointing.at() < 0.0);
     CHECK(panel.clicksElsewhere(kRight));
     hands[kRight] = pointingAt(panel, {0.0, 0.0}, true);
-    panel.update(hands, true);
-    CHECK(panel.pointer().place_px.has_value());
+    CHECK(pointing.at() == doctest::Approx(400));
     CHECK_FALSE(panel.pointer().pressed);
     CHECK(panel.clicksElsewhere(kRight));
-    hands[kRight].clicks = false;
-    panel.update(hands, true);
-    hands[kRight].clicks = true;
-    panel.update(hands, true);
+    for (const bool clicks : {false, true}) {
+        hands[kRight].clicks = clicks;
+        pointing.at();
+    }
     CHECK(panel.pointer().pressed);
     CHECK_FALSE(panel.clicksElsewhere(kRight));
 }
 
 TEST_CASE("without a panel a hand shows its ray only while its trigger is pulled") {
-    PanelInRoom panel({800, 400}, 0.8);
-    std::array<xr::Hand, 2> hands{pointingAt(panel, {0.0, 0.0}), pointingAt(panel, {0.0, 0.0})};
-    panel.update(hands, false);
-    CHECK(panel.rays(glm::dvec3(0.1, -0.2, 0.0), std::nullopt).empty());
-    CHECK_FALSE(panel.pointer().place_px.has_value());
+    Pointing pointing;
+    auto& [panel, hands] = pointing;
+    hands.fill(pointingAt(panel, {0.0, 0.0}));
+    CHECK(pointing.at(false) < 0.0);
+    CHECK(pointing.rays() == 0);
     hands[kLeft].clicks = true;
-    panel.update(hands, false);
+    pointing.at(false);
     const auto rays = panel.rays(glm::dvec3(0.1, -0.2, 0.0), std::nullopt);
     REQUIRE(rays.size() == 1);
     CHECK(rays[0].sprite == Sprite::kFadingRay);
-    CHECK(panel.rays(glm::dvec3(0.0), kLeft).empty());
+    CHECK(pointing.rays(kLeft) == 0);
 }
 
-TEST_CASE("a strip joins its ends and shows its face to the eye") {
+TEST_CASE("a ray meets the panel where it points, from the front alone, and a strip joins its ends and shows its face to the eye") {
+    Pointing pointing;
+    auto& [panel, hands] = pointing;
+    // A quarter to the right and downwards of the panel's middle.
+    hands[kRight] = pointingAt(panel, {0.2, 0.1});
+    CHECK(pointing.at() == doctest::Approx(600));
+    CHECK(panel.pointer().place_px->y == doctest::Approx(300));
+    CHECK_FALSE(panel.pointer().pressed);
+    const auto rays = panel.rays(glm::dvec3(0.0), std::nullopt);
+    REQUIRE(rays.size() == 1);
+    CHECK(rays[0].sprite == Sprite::kRay);
+    CHECK(rays[0].strip.size_m.y == doctest::Approx(0.5));
+    CHECK(glm::distance(rays[0].strip.room_from_strip.position, transform(panel.roomFromPanel(), {0.2, 0.1, -0.25})) < 1e-9);
+    hands[kRight].aim = compose(panel.roomFromPanel(), {glm::dquat(0, 0, 1, 0), {0.2, 0.1, 0.5}});  // behind it, towards it
+    CHECK(pointing.at() < 0.0);
+    // It fades before it is there.
+    const auto behind = panel.rays(glm::dvec3(0.0), std::nullopt);
+    REQUIRE(behind.size() == 1);
+    CHECK(behind[0].sprite == Sprite::kFadingRay);
+    CHECK(behind[0].strip.size_m.y < 0.5);
+
     const glm::dvec3 from(0.2, 0.4, 0.3), to(-0.3, 0.1, 0.9), eye(0.1, -0.2, 0.0);
     const auto strip = stripBetween(from, to, 0.01, eye);
     REQUIRE(strip.has_value());
@@ -161,26 +230,18 @@ TEST_CASE("a throw lands on the floor, where physics puts it") {
 }
 
 TEST_CASE("who teleports stands where the throw lands, once the stick is let go, and does not walk") {
-    PanelInRoom panel({800, 400}, 0.8);
-    WearerControls controls;
-    ViewSettings settings;
-    settings.panel = false;
-    settings.teleport = true;
-    ViewState state(settings);
-    WearerNow now;
+    Wearer wearer(teleporting(false));
+    auto& [panel, controls, state, now] = wearer;
     now.room_from_head.position = {0.3, 0.0, -0.2};
     now.floor_m = 1.6;
-    now.step_seconds = kTenth;
     now.hands[kLeft].aim = Pose{{1, 0, 0, 0}, {-0.2, 0.4, 0.3}};
-    now.hands[kLeft].stick = {0.0, 1.0};
-    controls.update(now, panel, state);
+    wearer.push(kLeft, {0.0, 1.0});
     CHECK(controls.aimingHand() == kLeft);
     CHECK_FALSE(controls.isMoving());
-    CHECK(state.sceneFromRoom().position == glm::dvec3(0.0));
+    CHECK(wearer.place() == glm::dvec3(0.0));
     const glm::dvec3 target = aimTeleport(*now.hands[kLeft].aim, *now.floor_m).target.value();
     CHECK(controls.things(now.room_from_head.position).size() == kTeleportStrips + 1);
-    now.hands[kLeft].stick = {0.0, 0.0};
-    controls.update(now, panel, state);
+    wearer.push(kLeft, {0.0, 0.0});
     CHECK_FALSE(controls.aimingHand().has_value());
     CHECK(controls.things(now.room_from_head.position).empty());
     // The head is above the target now, as high as before.
@@ -189,118 +250,69 @@ TEST_CASE("who teleports stands where the throw lands, once the stick is let go,
     CHECK(head.y == doctest::Approx(0.0));
     CHECK(head.z == doctest::Approx(target.z));
     // A hand that is lost while it aims moves nobody.
-    const Similarity before = state.sceneFromRoom();
-    now.hands[kLeft].stick = {0.0, 1.0};
-    controls.update(now, panel, state);
+    const glm::dvec3 before = wearer.place();
+    wearer.push(kLeft, {0.0, 1.0});
     now.hands[kLeft] = {};
-    controls.update(now, panel, state);
-    CHECK(state.sceneFromRoom().position == before.position);
+    wearer.update();
+    CHECK(wearer.place() == before);
     // The trigger does it, too, where there is no stick.
     now.hands[kRight].aim = Pose{{1, 0, 0, 0}, {0.2, 0.4, 0.3}};
     now.hands[kRight].clicks = true;
-    controls.update(now, panel, state);
+    wearer.update();
     CHECK(controls.aimingHand() == kRight);
     now.hands[kRight].clicks = false;
-    controls.update(now, panel, state);
-    CHECK(glm::distance(state.sceneFromRoom().position, before.position) > 1.0);
+    wearer.update();
+    CHECK(glm::distance(wearer.place(), before) > 1.0);
 }
 
-TEST_CASE("the stick of the hand that points at the panel scrolls there, and the other hand's moves the wearer") {
+TEST_CASE("the stick of the hand that points at the panel scrolls there, the other hand's moves the wearer, and a throw goes on over it") {
     for (const int pointing : {kLeft, kRight}) {
         for (const bool teleports : {false, true}) {
             CAPTURE(pointing);
             CAPTURE(teleports);
-            PanelInRoom panel({800, 400}, 0.8);
-            WearerControls controls;
-            ViewSettings settings;
-            settings.teleport = teleports;
-            ViewState state(settings);
-            WearerNow now;
-            now.step_seconds = kTenth;
+            Wearer wearer(teleports ? teleporting(true) : ViewSettings());
+            auto& [panel, controls, state, now] = wearer;
             now.hands[static_cast<std::size_t>(pointing)] = pointingAt(panel, {0.1, 0.1});
             now.hands[static_cast<std::size_t>(1 - pointing)] = pointingAway();
-            now.hands[static_cast<std::size_t>(pointing)].stick = {0.0, 1.0};
-            controls.update(now, panel, state);
+            wearer.push(pointing, {0.0, 1.0});
             CHECK(panel.isPointedAtBy(pointing));
             CHECK_FALSE(panel.isPointedAtBy(1 - pointing));
             CHECK(panel.pointer().wheel > 0.0);
-            CHECK(state.sceneFromRoom().position == glm::dvec3(0.0));
+            CHECK(wearer.place() == glm::dvec3(0.0));
             CHECK_FALSE(controls.aimingHand().has_value());
             now.hands[static_cast<std::size_t>(pointing)].stick = {};
-            now.hands[static_cast<std::size_t>(1 - pointing)].stick = {0.0, 1.0};
-            controls.update(now, panel, state);
+            wearer.push(1 - pointing, {0.0, 1.0});
             CHECK(controls.aimingHand().has_value() == (teleports && pointing == kRight));
-            CHECK((state.sceneFromRoom().position != glm::dvec3(0.0)) == !(teleports && pointing == kRight));
+            CHECK((wearer.place() != glm::dvec3(0.0)) == !(teleports && pointing == kRight));
         }
     }
-}
-
-TEST_CASE("a throw that passes over the panel goes on") {
-    PanelInRoom panel({800, 400}, 0.8);
-    WearerControls controls;
-    ViewSettings settings;
-    settings.teleport = true;
-    ViewState state(settings);
-    WearerNow now;
+    Wearer wearer(teleporting(true));
+    auto& [panel, controls, state, now] = wearer;
     now.hands[kLeft].aim = Pose{{1, 0, 0, 0}, {1.5, 0.4, 0.3}};
-    now.hands[kLeft].stick = {0.0, 1.0};
-    controls.update(now, panel, state);
+    wearer.push(kLeft, {0.0, 1.0});
     CHECK(controls.aimingHand() == kLeft);
     now.hands[kLeft].aim = pointingAt(panel, {0.1, 0.1}).aim;
-    controls.update(now, panel, state);
+    wearer.update();
     CHECK(panel.isPointedAtBy(kLeft));
     CHECK(controls.aimingHand() == kLeft);
-    CHECK(state.sceneFromRoom().position == glm::dvec3(0.0));
+    CHECK(wearer.place() == glm::dvec3(0.0));
 }
 
-TEST_CASE("where one turns smoothly the stick turns a right angle in a second, and that counts as moving") {
-    PanelInRoom panel({800, 400}, 0.8);
-    WearerControls controls;
+TEST_CASE("the stick turns smoothly, a right angle in a second, which counts as moving, or once until it comes back") {
     ViewSettings settings;
     settings.smooth_turn = true;
-    ViewState state(settings);
-    WearerNow now;
-    now.step_seconds = kTenth;
-    now.hands[kRight].stick = {1.0, 0.0};
-    for (int i = 0; i < 10; ++i) { controls.update(now, panel, state); }
-    CHECK(controls.isMoving());
-    CHECK(2.0 * std::atan2(state.sceneFromRoom().orientation.y, state.sceneFromRoom().orientation.w) ==
-          doctest::Approx(1.5707963).epsilon(1e-6));
-    now.hands[kRight].stick = {0.0, 0.0};
-    controls.update(now, panel, state);
-    CHECK_FALSE(controls.isMoving());
-}
-
-TEST_CASE("a stick that is pressed in goes to the next viewpoint once, the left one to the one before") {
-    PanelInRoom panel({800, 400}, 0.8);
-    WearerControls controls;
-    ViewState state;
-    WearerNow now;
-    const auto steps = [&](bool left, bool right) {
-        now.hands[kLeft].stick_presses = left;
-        now.hands[kRight].stick_presses = right;
-        controls.update(now, panel, state);
-        return controls.viewpointStep();
-    };
-    CHECK(steps(false, true) == 1);
-    CHECK(steps(false, true) == 0);
-    CHECK(steps(false, false) == 0);
-    CHECK(steps(true, false) == -1);
-    CHECK(steps(true, true) == 1);
-}
-
-TEST_CASE("a stick turns once until it comes back, also on a way round by ahead") {
-    PanelInRoom panel({800, 400}, 0.8);
-    WearerControls controls;
-    ViewSettings settings;
-    settings.panel = false;
-    WearerNow now;
+    Wearer smooth(settings);
+    for (int i = 0; i < 10; ++i) { smooth.push(kRight, {1.0, 0.0}); }
+    CHECK(smooth.controls.isMoving());
+    CHECK(smooth.turn_rad() == doctest::Approx(1.5707963).epsilon(1e-6));
+    smooth.push(kRight, {0.0, 0.0});
+    CHECK_FALSE(smooth.controls.isMoving());
+    Wearer wearer;
     // Turns by 30 degrees since the last one.
     const auto turns = [&](const glm::dvec2& stick) {
-        ViewState state(settings);
-        now.hands[kRight].stick = stick;
-        controls.update(now, panel, state);
-        return std::lround(2.0 * std::atan2(state.sceneFromRoom().orientation.y, state.sceneFromRoom().orientation.w) / 0.5235987755982988);
+        const double before_rad = wearer.turn_rad();
+        wearer.push(kRight, stick);
+        return std::lround((wearer.turn_rad() - before_rad) / 0.5235987755982988);
     };
     CHECK(turns({0.9, 0.0}) == 1);
     CHECK(turns({0.6, 0.7}) == 0);  // rises and sinks here
@@ -309,6 +321,21 @@ TEST_CASE("a stick turns once until it comes back, also on a way round by ahead"
     CHECK(turns({0.9, 0.0}) == 1);
     CHECK(turns({0.0, 0.0}) == 0);
     CHECK(turns({-0.9, 0.0}) == -1);
+}
+
+TEST_CASE("a stick that is pressed in goes to the next viewpoint once, the left one to the one before") {
+    Wearer wearer;
+    const auto steps = [&](bool left, bool right) {
+        wearer.now.hands[kLeft].stick_presses = left;
+        wearer.now.hands[kRight].stick_presses = right;
+        wearer.update();
+        return wearer.controls.viewpointStep();
+    };
+    CHECK(steps(false, true) == 1);
+    CHECK(steps(false, true) == 0);
+    CHECK(steps(false, false) == 0);
+    CHECK(steps(true, false) == -1);
+    CHECK(steps(true, true) == 1);
 }
 
 TEST_CASE("a trigger that was pressed while nobody looked counts once it was let go") {
@@ -387,6 +414,54 @@ TEST_CASE("pictures are multiplied by alpha, in the order and the encoding of th
     CHECK(alpha(Sprite::kVignette, {0.0, 0.5}) > 0.9);
     CHECK(alpha(Sprite::kKnob, {0.0, 0.0}) == 0.0);
     CHECK(alpha(Sprite::kKnob, {0.5, 0.5}) == 1.0);
+}
+
+TEST_CASE("an eye that nobody sees looks at the middle of its lens") {
+    GazeFollower follower;
+    for (int i = 0; i < 100; ++i) {
+        const auto gazes = follower.update(std::nullopt, kEyes, kLensClear, kStep);
+        REQUIRE(gazes[kLeft]);
+        CHECK(gazes[kLeft]->direction == glm::dvec3(0.0, 0.0, 1.0));
+        CHECK(gazes[kRight]->clear_rad == kLensClear);
+    }
+}
+
+TEST_CASE("an eye that is seen looks where it is seen to, in its own axes, and less about it is clear") {
+    GazeFollower follower;
+    std::array<std::optional<Gaze>, 2> gazes;
+    for (int i = 0; i < 20; ++i) { gazes = follower.update(kAside, kEyes, kLensClear, kStep); }
+    CHECK(angleBetween(gazes[kRight]->direction, kAside) < 1e-6);
+    CHECK(angleBetween(kEyes[kLeft].orientation * gazes[kLeft]->direction, kAside) < 1e-6);
+    CHECK(gazes[kLeft]->clear_rad == doctest::Approx(GazeFollower::kSeenClearRadians));
+    // From now on at once.
+    gazes = follower.update(glm::dvec3(0.0, 0.0, 1.0), kEyes, kLensClear, kStep);
+    CHECK(angleBetween(gazes[kRight]->direction, {0.0, 0.0, 1.0}) < 1e-6);
+    // No more than without a tracker.
+    CHECK(follower.update(kAside, kEyes, 0.05, kStep)[kLeft]->clear_rad == doctest::Approx(0.05));
+}
+
+TEST_CASE("a blink changes nothing, a gaze that stays lost goes back to the lens without a jump, and is found so again") {
+    GazeFollower follower;
+    std::array<std::optional<Gaze>, 2> gazes;
+    for (int i = 0; i < 20; ++i) { gazes = follower.update(kAside, kEyes, kLensClear, kStep); }
+    const Gaze seen = *gazes[kRight];
+    for (double t = kStep; t < GazeFollower::kHoldSeconds - 0.5 * kStep; t += kStep) {
+        gazes = follower.update(std::nullopt, kEyes, kLensClear, kStep);
+        CHECK(gazes[kRight]->direction == seen.direction);
+        CHECK(gazes[kRight]->clear_rad == seen.clear_rad);
+    }
+    const auto follow = [&](const std::optional<glm::dvec3>& gaze, double most_rad) {
+        const Gaze before = *gazes[kRight];
+        gazes = follower.update(gaze, kEyes, kLensClear, kStep);
+        CHECK(angleBetween(before.direction, gazes[kRight]->direction) <= most_rad);
+        CHECK(std::abs(before.clear_rad - gazes[kRight]->clear_rad) <= most_rad);
+    };
+    const double whole_rad = angleBetween(seen.direction, {0.0, 0.0, 1.0});
+    for (int i = 0; i < 100; ++i) { follow(std::nullopt, 1.1 * whole_rad * kStep / GazeFollower::kLoseSeconds); }
+    CHECK(gazes[kRight]->direction == glm::dvec3(0.0, 0.0, 1.0));
+    CHECK(gazes[kRight]->clear_rad == kLensClear);
+    for (int i = 0; i < 20; ++i) { follow(kAside, 1.1 * whole_rad * kStep / GazeFollower::kFindSeconds); }
+    CHECK(angleBetween(gazes[kRight]->direction, kAside) < 1e-6);
 }
 
 }  // namespace wearer_test

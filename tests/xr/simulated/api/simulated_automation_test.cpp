@@ -1,4 +1,5 @@
-// XR_EXT_conformance_automation on the simulated runtime: a program's own test moves inputs, poses and profiles from inside.
+// XR_EXT_conformance_automation on the simulated runtime, where a program's own test moves inputs, poses and profiles from inside, and
+// XR_EXT_eye_gaze_interaction: where the wearer looks, as the script says it, or such a test.
 #include "tests/xr/simulated/api/simulated_fixture.h"
 
 #include <cmath>
@@ -11,16 +12,16 @@ using namespace binosplat::test;
 
 namespace {
 
-constexpr const char* kTouch = "/interaction_profiles/oculus/touch_controller";
-constexpr const char* kSimple = "/interaction_profiles/khr/simple_controller";
 constexpr const char* kXbox = "/interaction_profiles/microsoft/xbox_controller";
+constexpr const char* kEyes = "/interaction_profiles/ext/eye_gaze_interaction";
+constexpr const char* kGazePath = "/user/eyes_ext/input/gaze_ext/pose";
 
 struct AutomationFixture : SessionFixture {
-    PFN_xrSetInputDeviceActiveEXT setActive = function<PFN_xrSetInputDeviceActiveEXT>("xrSetInputDeviceActiveEXT");
-    PFN_xrSetInputDeviceStateBoolEXT setBool = function<PFN_xrSetInputDeviceStateBoolEXT>("xrSetInputDeviceStateBoolEXT");
-    PFN_xrSetInputDeviceStateFloatEXT setFloat = function<PFN_xrSetInputDeviceStateFloatEXT>("xrSetInputDeviceStateFloatEXT");
-    PFN_xrSetInputDeviceStateVector2fEXT setVector = function<PFN_xrSetInputDeviceStateVector2fEXT>("xrSetInputDeviceStateVector2fEXT");
-    PFN_xrSetInputDeviceLocationEXT setLocation = function<PFN_xrSetInputDeviceLocationEXT>("xrSetInputDeviceLocationEXT");
+    PFN_xrSetInputDeviceActiveEXT setActive = XR(xrSetInputDeviceActiveEXT);
+    PFN_xrSetInputDeviceStateBoolEXT setBool = XR(xrSetInputDeviceStateBoolEXT);
+    PFN_xrSetInputDeviceStateFloatEXT setFloat = XR(xrSetInputDeviceStateFloatEXT);
+    PFN_xrSetInputDeviceStateVector2fEXT setVector = XR(xrSetInputDeviceStateVector2fEXT);
+    PFN_xrSetInputDeviceLocationEXT setLocation = XR(xrSetInputDeviceLocationEXT);
     XrPath left = path("/user/hand/left"), right = path("/user/hand/right"), gamepad = path("/user/gamepad");
     XrActionSet set = makeActionSet("walking");
     XrAction jump = makeAction(set, "jump", XR_ACTION_TYPE_BOOLEAN_INPUT, {left, right, gamepad});
@@ -35,178 +36,195 @@ struct AutomationFixture : SessionFixture {
                                  {pull, path("/user/hand/left/input/trigger/value")},
                                  {pull, path("/user/hand/right/input/trigger/value")},
                                  {stick, path("/user/hand/right/input/thumbstick")},
-                                 {grip, path("/user/hand/left/input/grip/pose")}}) == XR_SUCCESS);
+                                 {grip, path("/user/hand/left/input/grip/pose")},
+                                 {grip, path("/user/hand/right/input/grip/pose")}}) == XR_SUCCESS);
         REQUIRE(suggest(kSimple, {{jump, path("/user/hand/left/input/select/click")},
                                   {jump, path("/user/hand/right/input/select/click")}}) == XR_SUCCESS);
         REQUIRE(suggest(kXbox, {{jump, path("/user/gamepad/input/a/click")}}) == XR_SUCCESS);
         attach({set});
         focus();
-        REQUIRE(sync(set) == XR_SUCCESS);
-        states();
     }
 
-    XrActionStateBoolean jumps(XrPath hand) const {
-        XrActionStateBoolean state{XR_TYPE_ACTION_STATE_BOOLEAN};
-        const XrActionStateGetInfo get{XR_TYPE_ACTION_STATE_GET_INFO, nullptr, jump, hand};
-        REQUIRE(xrGetActionStateBoolean(session, &get, &state) == XR_SUCCESS);
-        return state;
-    }
-    float pulls(XrPath hand) const {
-        XrActionStateFloat state{XR_TYPE_ACTION_STATE_FLOAT};
-        const XrActionStateGetInfo get{XR_TYPE_ACTION_STATE_GET_INFO, nullptr, pull, hand};
-        REQUIRE(xrGetActionStateFloat(session, &get, &state) == XR_SUCCESS);
-        return state.currentState;
-    }
-    std::string profile(XrPath user_path) const {
-        XrInteractionProfileState state{XR_TYPE_INTERACTION_PROFILE_STATE};
-        REQUIRE(xrGetCurrentInteractionProfile(session, user_path, &state) == XR_SUCCESS);
-        if (state.interactionProfile == XR_NULL_PATH) return "none";
-        char text[XR_MAX_PATH_LENGTH];
-        std::uint32_t count = 0;
-        REQUIRE(xrPathToString(instance, state.interactionProfile, sizeof text, &count, text) == XR_SUCCESS);
-        return text;
-    }
+    void synchronize(XrPath hand = XR_NULL_PATH) const { REQUIRE(sync(set, hand) == XR_SUCCESS); }
     bool isAnnounced() const {
         XrEventDataBuffer event;
         return poll(event) == XR_TYPE_EVENT_DATA_INTERACTION_PROFILE_CHANGED;
     }
+    void switchTo(bool active, XrPath hand) const { REQUIRE(setActive(session, path(kTouch), hand, active) == XR_SUCCESS); }
 };
 
-// A pose that is bound in both hands, and a space on it that names neither.
-struct EitherHandFixture : SessionFixture {
-    PFN_xrSetInputDeviceActiveEXT setActive = function<PFN_xrSetInputDeviceActiveEXT>("xrSetInputDeviceActiveEXT");
-    XrPath left = path("/user/hand/left"), right = path("/user/hand/right");
-    XrActionSet set = makeActionSet("walking");
-    XrSpace space = XR_NULL_HANDLE;
-
-    EitherHandFixture() : SessionFixture(kQuietScript, {XR_EXT_CONFORMANCE_AUTOMATION_EXTENSION_NAME}) {
-        const XrAction grip = makeAction(set, "grip", XR_ACTION_TYPE_POSE_INPUT, {left, right});
-        REQUIRE(suggest(kTouch, {{grip, path("/user/hand/left/input/grip/pose")}, {grip, path("/user/hand/right/input/grip/pose")}}) ==
-                XR_SUCCESS);
-        const XrActionSpaceCreateInfo info{XR_TYPE_ACTION_SPACE_CREATE_INFO, nullptr, grip, XR_NULL_PATH, kIdentity};
-        REQUIRE(xrCreateActionSpace(session, &info, &space) == XR_SUCCESS);
-        attach({set});
-        focus();
-    }
-
-    void switchOff(XrPath hand) const { REQUIRE(setActive(session, path(kTouch), hand, XR_FALSE) == XR_SUCCESS); }
+// A space on the pose that is bound in both hands, which names neither.
+struct EitherHandFixture : AutomationFixture {
+    XrSpace space = makeActionSpace(grip);
 
     std::string whoIsFollowed() const {
-        XrSpaceLocation location{XR_TYPE_SPACE_LOCATION};
-        REQUIRE(xrLocateSpace(space, local, frame().predictedDisplayTime, &location) == XR_SUCCESS);
-        if ((location.locationFlags & XR_SPACE_LOCATION_POSITION_VALID_BIT) == 0) return "nobody";
+        const XrSpaceLocation location = locate(space, local, frame().predictedDisplayTime);
+        if ((location.locationFlags & XR_SPACE_LOCATION_POSITION_VALID_BIT) == 0) { return "nobody"; }
         return location.pose.position.x < 0 ? "left" : "right";
     }
 };
 
+struct Gaze {
+    bool is_active;
+    XrSpaceLocation location;
+    XrTime sampled;
+
+    // Degrees from where the head looks: to the left, and upwards.
+    double yaw() const { return angle(-forward().x); }
+    double pitch() const { return angle(forward().y); }
+
+private:
+    static double angle(float sine) { return 180.0 / std::acos(-1.0) * std::asin(static_cast<double>(sine)); }
+    XrVector3f forward() const {
+        const XrQuaternionf& q = location.pose.orientation;
+        return {-2 * (q.x * q.z + q.w * q.y), -2 * (q.y * q.z - q.w * q.x), -1 + 2 * (q.x * q.x + q.y * q.y)};
+    }
+};
+
+Extensions withGaze(Extensions extensions) {
+    extensions.push_back(XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME);
+    return extensions;
+}
+
+struct GazeFixture : SessionFixture {
+    XrActionSet set = makeActionSet("looking");
+    XrAction look = makeAction(set, "look", XR_ACTION_TYPE_POSE_INPUT);
+    XrSpace gaze_space = XR_NULL_HANDLE;
+    XrSpace view = makeSpace(XR_REFERENCE_SPACE_TYPE_VIEW);
+
+    explicit GazeFixture(const std::string& script, const Extensions& extensions = {})
+        : SessionFixture(kQuietScript + ("rate 100\n" + script), withGaze(extensions)) {
+        REQUIRE(suggest(kEyes, {{look, path(kGazePath)}}) == XR_SUCCESS);
+        attach({set});
+        gaze_space = makeActionSpace(look);
+        begin();
+    }
+
+    Gaze read(XrTime time, XrSpace base) const {
+        XrEyeGazeSampleTimeEXT sample{XR_TYPE_EYE_GAZE_SAMPLE_TIME_EXT, nullptr, 77};
+        const XrSpaceLocation location = locate(gaze_space, base, time, &sample);
+        return {pose(look).isActive == XR_TRUE, location, sample.time};
+    }
+    // After frames up to `until_s` of the script's time.
+    Gaze at(double until_s, XrSpace base = XR_NULL_HANDLE) {
+        XrTime time = 0;
+        for (; frames_ <= std::lround(100 * until_s); ++frames_) { time = frame().predictedDisplayTime; }
+        REQUIRE(XR_SUCCEEDED(sync(set)));
+        return read(time, base == XR_NULL_HANDLE ? view : base);
+    }
+
+private:
+    long frames_ = 0;
+};
+
+// What the answer is that the headset tracks eyes; 7 if there is none.
+XrBool32 supportsGaze(const std::string& script, const Extensions& extensions) {
+    const InstanceFixture made(kQuietScript + script, extensions);
+    XrSystemEyeGazeInteractionPropertiesEXT eyes{XR_TYPE_SYSTEM_EYE_GAZE_INTERACTION_PROPERTIES_EXT, nullptr, 7};
+    XrSystemProperties properties{XR_TYPE_SYSTEM_PROPERTIES, &eyes};
+    REQUIRE(xrGetSystemProperties(made.instance, made.system, &properties) == XR_SUCCESS);
+    return eyes.supportsEyeGazeInteraction;
+}
+
 }  // namespace
 
 TEST_CASE_FIXTURE(AutomationFixture, "what is set is read after the next xrSyncActions, and the script goes on with the rest") {
+    synchronize();
     CHECK(setBool(session, right, path("/user/hand/right/input/a/click"), XR_TRUE) == XR_SUCCESS);
     CHECK(setFloat(session, right, path("/user/hand/right/input/trigger/value"), 0.75f) == XR_SUCCESS);
     CHECK(setVector(session, right, path("/user/hand/right/input/thumbstick"), {0.5f, -1}) == XR_SUCCESS);
-    CHECK(jumps(right).currentState == XR_FALSE);
-    CHECK(sync(set) == XR_SUCCESS);
-    CHECK(jumps(right).currentState == XR_TRUE);
-    CHECK(jumps(right).changedSinceLastSync == XR_TRUE);
-    CHECK(jumps(left).currentState == XR_FALSE);
-    CHECK(pulls(right) == 0.75f);
-    CHECK(pulls(left) == 0.25f);
-    XrActionStateVector2f state{XR_TYPE_ACTION_STATE_VECTOR2F};
-    const XrActionStateGetInfo get{XR_TYPE_ACTION_STATE_GET_INFO, nullptr, stick, XR_NULL_PATH};
-    CHECK(xrGetActionStateVector2f(session, &get, &state) == XR_SUCCESS);
-    CHECK(state.currentState.x == 0.5f);
-    CHECK(state.currentState.y == -1);
+    CHECK(boolean(jump, right).currentState == XR_FALSE);
+    synchronize();
+    CHECK(boolean(jump, right).currentState == XR_TRUE);
+    CHECK(boolean(jump, right).changedSinceLastSync == XR_TRUE);
+    CHECK(boolean(jump, left).currentState == XR_FALSE);
+    CHECK(number(pull, right).currentState == 0.75f);
+    CHECK(number(pull, left).currentState == 0.25f);
+    CHECK(vector(stick).currentState.x == 0.5f);
+    CHECK(vector(stick).currentState.y == -1);
     CHECK(setBool(session, right, path("/user/hand/right/input/a/click"), XR_FALSE) == XR_SUCCESS);
-    CHECK(sync(set) == XR_SUCCESS);
-    CHECK(jumps(right).currentState == XR_FALSE);
+    synchronize();
+    CHECK(boolean(jump, right).currentState == XR_FALSE);
+
+    // A pose is put where it is said to be, in any space.
+    const XrPosef pose{{0, 0, 0, 1}, {1, 2, 3}};
+    CHECK(setLocation(session, left, path("/user/hand/left/input/grip/pose"), local, pose) == XR_SUCCESS);
+    synchronize();
+    const XrSpace stage = makeSpace(XR_REFERENCE_SPACE_TYPE_STAGE);
+    checkNear(locate(makeActionSpace(grip, left), stage, waitFrame().predictedDisplayTime).pose.position, {1, 3.6f, 3});
 }
 
 TEST_CASE_FIXTURE(AutomationFixture, "devices take up profiles, one by one, and are switched off") {
-    CHECK(profile(left) == kTouch);
-    CHECK(profile(gamepad) == "none");
+    synchronize();
+    states();
+    CHECK(profileOf(left) == kTouch);
+    CHECK(profileOf(gamepad) == "none");
     CHECK(setActive(session, path(kSimple), left, XR_TRUE) == XR_SUCCESS);
-    CHECK(profile(left) == kTouch);
-    CHECK(sync(set) == XR_SUCCESS);
+    CHECK(profileOf(left) == kTouch);
+    synchronize();
     CHECK(isAnnounced());
-    CHECK(profile(left) == kSimple);
-    CHECK(profile(right) == kTouch);
+    CHECK(profileOf(left) == kSimple);
+    CHECK(profileOf(right) == kTouch);
     CHECK(setBool(session, left, path("/user/hand/left/input/select/click"), XR_TRUE) == XR_SUCCESS);
-    CHECK(sync(set) == XR_SUCCESS);
+    synchronize();
     CHECK_FALSE(isAnnounced());
-    CHECK(jumps(left).currentState == XR_TRUE);
-    CHECK_MESSAGE(pulls(left) == 0, "the simple controller has no trigger");
+    CHECK(boolean(jump, left).currentState == XR_TRUE);
+    CHECK_MESSAGE(number(pull, left).currentState == 0, "the simple controller has no trigger");
     CHECK(setActive(session, path(kSimple), left, XR_FALSE) == XR_SUCCESS);
-    CHECK(sync(set) == XR_SUCCESS);
-    CHECK(jumps(left).isActive == XR_FALSE);
-    CHECK(jumps(right).isActive == XR_TRUE);
+    synchronize();
+    CHECK(boolean(jump, left).isActive == XR_FALSE);
+    CHECK(boolean(jump, right).isActive == XR_TRUE);
     // There is a gamepad as soon as somebody says so.
-    CHECK(jumps(gamepad).isActive == XR_FALSE);
+    CHECK(boolean(jump, gamepad).isActive == XR_FALSE);
     CHECK(setActive(session, path(kXbox), gamepad, XR_TRUE) == XR_SUCCESS);
     CHECK(setBool(session, gamepad, path("/user/gamepad/input/a/click"), XR_TRUE) == XR_SUCCESS);
-    CHECK(sync(set) == XR_SUCCESS);
-    CHECK(profile(gamepad) == kXbox);
-    CHECK(jumps(gamepad).currentState == XR_TRUE);
+    synchronize();
+    CHECK(profileOf(gamepad) == kXbox);
+    CHECK(boolean(jump, gamepad).currentState == XR_TRUE);
     // A profile that the program has no bindings for.
     CHECK(setActive(session, path("/interaction_profiles/valve/index_controller"), right, XR_TRUE) == XR_SUCCESS);
-    CHECK(sync(set) == XR_SUCCESS);
-    CHECK(profile(right) == "none");
-    CHECK(jumps(right).isActive == XR_FALSE);
+    synchronize();
+    CHECK(profileOf(right) == "none");
+    CHECK(boolean(jump, right).isActive == XR_FALSE);
 }
 
-TEST_CASE_FIXTURE(AutomationFixture, "a pose is put where it is said to be, in any space") {
-    const XrSpace stage = makeSpace(XR_REFERENCE_SPACE_TYPE_STAGE);
-    const XrActionSpaceCreateInfo info{XR_TYPE_ACTION_SPACE_CREATE_INFO, nullptr, grip, left, kIdentity};
-    XrSpace space = XR_NULL_HANDLE;
-    REQUIRE(xrCreateActionSpace(session, &info, &space) == XR_SUCCESS);
-    XrPosef pose = kIdentity;
-    pose.position = {1, 2, 3};
-    CHECK(setLocation(session, left, path("/user/hand/left/input/grip/pose"), local, pose) == XR_SUCCESS);
-    CHECK(sync(set) == XR_SUCCESS);
-    XrSpaceLocation location{XR_TYPE_SPACE_LOCATION};
-    CHECK(xrLocateSpace(space, stage, waitFrame().predictedDisplayTime, &location) == XR_SUCCESS);
-    CHECK(location.pose.position.x == doctest::Approx(1));
-    CHECK(location.pose.position.y == doctest::Approx(3.6));
-    CHECK(location.pose.position.z == doctest::Approx(3));
-}
-
-TEST_CASE_FIXTURE(EitherHandFixture, "a pose of either hand is that of a hand that is there") {
-    switchOff(left);
-    CHECK(sync(set) == XR_SUCCESS);
+TEST_CASE_FIXTURE(EitherHandFixture, "a pose of either hand is that of a hand that is there, and stays") {
+    switchTo(false, left);
+    synchronize();
     CHECK(whoIsFollowed() == "right");
-    // It stays there when there are both.
-    CHECK(setActive(session, path(kTouch), left, XR_TRUE) == XR_SUCCESS);
-    CHECK(sync(set) == XR_SUCCESS);
+    switchTo(true, left);
+    synchronize();
     CHECK(whoIsFollowed() == "right");
 }
 
 TEST_CASE_FIXTURE(EitherHandFixture, "a pose of either hand stays with its hand, though that is put down") {
-    CHECK(sync(set) == XR_SUCCESS);
+    synchronize();
     CHECK(whoIsFollowed() == "left");
-    switchOff(left);
-    CHECK(sync(set) == XR_SUCCESS);
+    switchTo(false, left);
+    synchronize();
     CHECK(whoIsFollowed() == "nobody");
-    CHECK(setActive(session, path(kTouch), left, XR_TRUE) == XR_SUCCESS);
-    CHECK(sync(set) == XR_SUCCESS);
+    switchTo(true, left);
+    synchronize();
     CHECK(whoIsFollowed() == "left");
 }
 
 TEST_CASE_FIXTURE(EitherHandFixture, "a pose of either hand goes to the hand that is synchronized") {
-    CHECK(sync(set, left) == XR_SUCCESS);
+    synchronize(left);
     CHECK(whoIsFollowed() == "left");
-    CHECK(sync(set, right) == XR_SUCCESS);
+    synchronize(right);
     CHECK(whoIsFollowed() == "right");
-    CHECK(sync(set) == XR_SUCCESS);
+    synchronize();
     CHECK(whoIsFollowed() == "right");
-    switchOff(left);
-    CHECK(sync(set, left) == XR_SUCCESS);
+    switchTo(false, left);
+    synchronize(left);
     CHECK(whoIsFollowed() == "nobody");
-    CHECK(sync(set) == XR_SUCCESS);
+    synchronize();
     CHECK(whoIsFollowed() == "right");
 }
 
 TEST_CASE_FIXTURE(AutomationFixture, "there is no input that the device's profile lacks") {
-    const XrPath trigger = path("/user/hand/right/input/trigger/value");
+    synchronize();
+    const XrPath trigger = path("/user/hand/right/input/trigger/value"), left_grip = path("/user/hand/left/input/grip/pose");
     CHECK(setFloat(session, right, path("/user/hand/right/input/nose/value"), 1) == XR_ERROR_PATH_UNSUPPORTED);
     CHECK(setFloat(session, left, trigger, 1) == XR_ERROR_PATH_UNSUPPORTED);
     CHECK(setFloat(session, path("/user/treadmill"), trigger, 1) == XR_ERROR_PATH_UNSUPPORTED);
@@ -220,13 +238,101 @@ TEST_CASE_FIXTURE(AutomationFixture, "there is no input that the device's profil
     CHECK(setActive(session, path(kXbox), right, XR_TRUE) == XR_ERROR_PATH_UNSUPPORTED);
     CHECK(setActive(session, path("/interaction_profiles/nobody/nothing"), right, XR_TRUE) == XR_ERROR_PATH_UNSUPPORTED);
     CHECK(setActive(session, XR_NULL_PATH, right, XR_TRUE) == XR_ERROR_PATH_INVALID);
-    XrPosef pose = kIdentity;
-    const XrPath grip_path = path("/user/hand/left/input/grip/pose");
-    CHECK(setLocation(session, left, trigger, local, pose) == XR_ERROR_PATH_UNSUPPORTED);
-    CHECK(setLocation(session, left, path("/user/hand/left/input/trigger/value"), local, pose) == XR_ERROR_PATH_UNSUPPORTED);
-    CHECK(setLocation(session, left, grip_path, XR_NULL_HANDLE, pose) == XR_ERROR_HANDLE_INVALID);
-    pose.orientation.w = 0;
-    CHECK(setLocation(session, left, grip_path, local, pose) == XR_ERROR_POSE_INVALID);
+    CHECK(setLocation(session, left, trigger, local, kIdentity) == XR_ERROR_PATH_UNSUPPORTED);
+    CHECK(setLocation(session, left, path("/user/hand/left/input/trigger/value"), local, kIdentity) == XR_ERROR_PATH_UNSUPPORTED);
+    CHECK(setLocation(session, left, left_grip, XR_NULL_HANDLE, kIdentity) == XR_ERROR_HANDLE_INVALID);
+    CHECK(setLocation(session, left, left_grip, local, {{0, 0, 0, 0}, {0, 0, 0}}) == XR_ERROR_POSE_INVALID);
+}
+
+TEST_CASE("the headset says whether it tracks eyes, to whoever enabled the extension") {
+    const Extensions enabled = withGaze({});
+    for (const char* script : {"", "eye-tracking on\n", "eye-tracking refused\n"}) { CHECK(supportsGaze(script, enabled) == XR_TRUE); }
+    CHECK(supportsGaze("eye-tracking off\n", enabled) == XR_FALSE);
+    CHECK(supportsGaze("", {}) == 7);
+    // Its hands may be declared by an action.
+    const InstanceFixture made(kQuietScript, enabled);
+    made.makeAction(made.makeActionSet("looking"), "look", XR_ACTION_TYPE_POSE_INPUT, {made.path("/user/eyes_ext")});
+}
+
+TEST_CASE("the gaze goes where the script says, from between the eyes, with the time of its sample") {
+    GazeFixture made("head 0 position 0.1 1.5 0.2 turn 30 0\ngaze 0.1 0 0\ngaze 0.3 20 -10\n");
+    Gaze gaze = made.at(0.1);
+    CHECK(gaze.is_active);
+    CHECK(gaze.location.locationFlags == (kValid | kTracked));
+    CHECK(gaze.yaw() == doctest::Approx(0).epsilon(0.001));
+    gaze = made.at(0.2);
+    CHECK(std::asin(std::sin(gaze.yaw() / 57.29578) / std::cos(-5 / 57.29578)) * 57.29578 == doctest::Approx(10).epsilon(0.001));
+    CHECK(gaze.pitch() == doctest::Approx(-5).epsilon(0.001));
+    const XrVector3f& place = gaze.location.pose.position;
+    CHECK(std::abs(place.x) + std::abs(place.y) + std::abs(place.z) < 1e-6f);
+    const XrFrameState frame = made.frame();
+    REQUIRE(made.sync(made.set) == XR_SUCCESS);
+    CHECK(made.read(frame.predictedDisplayTime, made.view).sampled == frame.predictedDisplayTime);
+    // In the room it turns with the head.
+    gaze = made.read(frame.predictedDisplayTime, made.makeSpace(XR_REFERENCE_SPACE_TYPE_STAGE));
+    checkNear(gaze.location.pose.position, {0.1f, 1.5f, 0.2f});
+    CHECK(gaze.yaw() > 35.0);
+    CHECK(made.profileOf(made.path("/user/eyes_ext")) == kEyes);
+}
+
+TEST_CASE("a gaze may be lost, found again, and be too poor to rely on; whatever else is located has no sample") {
+    GazeFixture made("at 0.1 gaze off\nat 0.2 gaze degraded\nat 0.3 gaze on\nat 0.4 head off\nat 0.5 head turn-only\nat 0.6 focused off\n");
+    CHECK(made.at(0.05).is_active);
+    Gaze gaze = made.at(0.15);
+    CHECK_FALSE(gaze.is_active);
+    CHECK(gaze.location.locationFlags == 0);
+    CHECK(gaze.sampled == 0);
+    gaze = made.at(0.25);
+    CHECK(gaze.is_active);
+    CHECK(gaze.location.locationFlags == kValid);
+    CHECK(gaze.sampled > 0);
+    CHECK(made.at(0.35).location.locationFlags == (kValid | kTracked));
+    // The head is lost, not the eyes in it.
+    CHECK(made.at(0.44).location.locationFlags == (kValid | kTracked));
+    CHECK(made.at(0.45, made.local).location.locationFlags == 0);
+    // Both parts of a gaze are tracked, or neither.
+    CHECK(made.at(0.55, made.local).location.locationFlags == XR_SPACE_LOCATION_ORIENTATION_VALID_BIT);
+
+    // A gaze is known in itself, lost or poor, though only a gaze that is seen has a sample.
+    for (const double time_s : {0.15, 0.25}) {
+        gaze = made.read(kStart + std::lround(time_s * 1e9), made.gaze_space);
+        CHECK(gaze.location.locationFlags == (kValid | kTracked));
+        CHECK((gaze.sampled > 0) == (time_s > 0.2));
+    }
+
+    XrEyeGazeSampleTimeEXT sample{XR_TYPE_EYE_GAZE_SAMPLE_TIME_EXT, nullptr, 77};
+    made.locate(made.view, made.view, kStart, &sample);
+    CHECK(sample.time == 0);
+    // Out of focus.
+    CHECK_FALSE(made.at(0.65).is_active);
+}
+
+TEST_CASE("a wearer who refuses, and a headset without a tracker, leave the gaze inactive") {
+    for (const std::string script : {"eye-tracking refused\n", "eye-tracking off\n"}) {
+        CAPTURE(script);
+        GazeFixture made(script);
+        const Gaze gaze = made.at(0.1);
+        CHECK_FALSE(gaze.is_active);
+        CHECK(gaze.location.locationFlags == 0);
+        CHECK(gaze.sampled == 0);
+        CHECK((made.profileOf(made.path("/user/eyes_ext")) != "none") == (script == "eye-tracking refused\n"));
+    }
+}
+
+TEST_CASE("a program's own test moves the gaze from inside") {
+    GazeFixture made("", {XR_EXT_CONFORMANCE_AUTOMATION_EXTENSION_NAME});
+    REQUIRE(made.at(0.1).is_active);
+    const XrPath eyes = made.path("/user/eyes_ext"), gaze = made.path(kGazePath);
+    const auto setLocation = made.XR(xrSetInputDeviceLocationEXT);
+    const auto setActive = made.XR(xrSetInputDeviceActiveEXT);
+    // Half a right angle to the left.
+    const XrPosef left{{0, std::sin(0.3926991f), 0, std::cos(0.3926991f)}, {0, 0, 0}};
+    CHECK(setLocation(made.session, eyes, gaze, made.view, left) == XR_SUCCESS);
+    CHECK(setLocation(made.session, eyes, made.path("/user/eyes_ext/input/aim/pose"), made.view, left) == XR_ERROR_PATH_UNSUPPORTED);
+    CHECK(made.at(0.2).yaw() == doctest::Approx(45).epsilon(0.001));
+    CHECK(setActive(made.session, made.path(kEyes), eyes, XR_FALSE) == XR_SUCCESS);
+    CHECK_FALSE(made.at(0.3).is_active);
+    CHECK(setActive(made.session, made.path(kSimple), eyes, XR_TRUE) == XR_ERROR_PATH_UNSUPPORTED);
 }
 
 }  // namespace simulated_automation_test

@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <cstdio>
 #include <cstdlib>
 #include <fstream>
 
@@ -28,10 +29,9 @@ VkDebugUtilsMessengerCreateInfoEXT messengerInfo(std::vector<std::string>& messa
     return info;
 }
 
-template <std::size_t size>
-void setText(char (&destination)[size], const std::string& text) {
-    REQUIRE(text.size() < size);
-    std::strcpy(destination, text.c_str());
+VulkanDevice& sharedDevice(const InstanceFixture& runtime) {
+    static VulkanDevice device(runtime, vkGetInstanceProcAddr);
+    return device;
 }
 
 }  // namespace
@@ -44,7 +44,7 @@ Headset::Headset(const std::string& script) {
     setenv("XR_RUNTIME_JSON", BINOSPLAT_SIMULATED_RUNTIME, 1);
     setenv("SIMULATED_OPENXR_SCRIPT", (folder / "test.script").c_str(), 1);
     setenv("SIMULATED_OPENXR_OUT", written.c_str(), 1);
-    unsetenv("SIMULATED_OPENXR_CLOCK");
+    setenv("SIMULATED_OPENXR_CLOCK", clock, 1);
 }
 
 Headset::~Headset() {
@@ -52,77 +52,62 @@ Headset::~Headset() {
     fs::remove_all(folder, ignored);
 }
 
-XrInstanceCreateInfo instanceInfo(const std::vector<const char*>& extensions) {
+std::vector<nlohmann::json> Headset::logged() const {
+    std::vector<nlohmann::json> lines;
+    std::ifstream log(written / "frames.jsonl");
+    for (std::string line; std::getline(log, line);) { lines.push_back(nlohmann::json::parse(line)); }
+    return lines;
+}
+
+XrInstanceCreateInfo instanceInfo(const Extensions& extensions, XrVersion version) {
     XrInstanceCreateInfo info{XR_TYPE_INSTANCE_CREATE_INFO};
     setText(info.applicationInfo.applicationName, "test");
-    info.applicationInfo.apiVersion = XR_MAKE_VERSION(1, 0, 0);
+    info.applicationInfo.apiVersion = version;
     info.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
     info.enabledExtensionNames = extensions.data();
     return info;
 }
 
-InstanceFixture::InstanceFixture(const std::string& script, const std::vector<const char*>& more_extensions) : Headset(script) {
-    std::vector<const char*> extensions{XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME, XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME,
-                                        XR_KHR_VISIBILITY_MASK_EXTENSION_NAME};
-    extensions.insert(extensions.end(), more_extensions.begin(), more_extensions.end());
-    const XrInstanceCreateInfo info = instanceInfo(extensions);
-    REQUIRE(xrCreateInstance(&info, &instance) == XR_SUCCESS);
-    XrSystemGetInfo get{XR_TYPE_SYSTEM_GET_INFO, nullptr, XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY};
-    REQUIRE(xrGetSystem(instance, &get, &system) == XR_SUCCESS);
+XrResult tryInstance(const XrInstanceCreateInfo& info, PFN_xrGetInstanceProcAddr find) {
+    PFN_xrVoidFunction create = nullptr, destroy = nullptr;
+    REQUIRE(find(XR_NULL_HANDLE, "xrCreateInstance", &create) == XR_SUCCESS);
+    XrInstance instance = XR_NULL_HANDLE;
+    const XrResult result = reinterpret_cast<PFN_xrCreateInstance>(create)(&info, &instance);
+    if (result == XR_SUCCESS) {
+        REQUIRE(find(instance, "xrDestroyInstance", &destroy) == XR_SUCCESS);
+        CHECK(reinterpret_cast<PFN_xrDestroyInstance>(destroy)(instance) == XR_SUCCESS);
+    }
+    return result;
 }
 
-InstanceFixture::~InstanceFixture() {
-    if (instance != XR_NULL_HANDLE) xrDestroyInstance(instance);
-}
-
-XrPath InstanceFixture::path(const std::string& text) const {
-    XrPath path = XR_NULL_PATH;
-    REQUIRE(xrStringToPath(instance, text.c_str(), &path) == XR_SUCCESS);
-    return path;
-}
-
-XrActionSet InstanceFixture::makeActionSet(const std::string& name, std::uint32_t priority) const {
+XrActionSetCreateInfo actionSetInfo(const std::string& name, const std::string& localized_name) {
     XrActionSetCreateInfo info{XR_TYPE_ACTION_SET_CREATE_INFO};
     setText(info.actionSetName, name);
-    setText(info.localizedActionSetName, "the " + name);
-    info.priority = priority;
-    XrActionSet set = XR_NULL_HANDLE;
-    REQUIRE(xrCreateActionSet(instance, &info, &set) == XR_SUCCESS);
-    return set;
+    setText(info.localizedActionSetName, localized_name);
+    return info;
 }
 
-XrAction InstanceFixture::makeAction(XrActionSet set, const std::string& name, XrActionType type,
-                                     const std::vector<XrPath>& subaction_paths) const {
+XrActionCreateInfo actionInfo(const std::string& name, const std::string& localized_name, XrActionType type) {
     XrActionCreateInfo info{XR_TYPE_ACTION_CREATE_INFO};
     setText(info.actionName, name);
-    setText(info.localizedActionName, "the " + name);
+    setText(info.localizedActionName, localized_name);
     info.actionType = type;
-    info.countSubactionPaths = static_cast<std::uint32_t>(subaction_paths.size());
-    info.subactionPaths = subaction_paths.data();
-    XrAction action = XR_NULL_HANDLE;
-    REQUIRE(xrCreateAction(set, &info, &action) == XR_SUCCESS);
-    return action;
+    return info;
 }
 
-XrResult InstanceFixture::suggest(const std::string& profile, const std::vector<XrActionSuggestedBinding>& bindings) const {
-    XrInteractionProfileSuggestedBinding info{XR_TYPE_INTERACTION_PROFILE_SUGGESTED_BINDING};
-    info.interactionProfile = path(profile);
-    info.countSuggestedBindings = static_cast<std::uint32_t>(bindings.size());
-    info.suggestedBindings = bindings.data();
-    return xrSuggestInteractionProfileBindings(instance, &info);
+XrSwapchainCreateInfo swapchainInfo(VkFormat format) {
+    XrSwapchainCreateInfo info{XR_TYPE_SWAPCHAIN_CREATE_INFO};
+    const bool is_depth = format == VK_FORMAT_D32_SFLOAT || format == VK_FORMAT_D16_UNORM || format == VK_FORMAT_D24_UNORM_S8_UINT ||
+                          format == VK_FORMAT_D32_SFLOAT_S8_UINT;
+    info.usageFlags = is_depth ? XR_SWAPCHAIN_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT : XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT;
+    info.format = format;
+    info.width = 64;
+    info.height = 32;
+    info.sampleCount = info.faceCount = info.arraySize = info.mipCount = 1;
+    return info;
 }
 
-XrStructureType InstanceFixture::poll(XrEventDataBuffer& event) const {
-    event = {XR_TYPE_EVENT_DATA_BUFFER};
-    return xrPollEvent(instance, &event) == XR_SUCCESS ? event.type : XR_TYPE_UNKNOWN;
-}
-
-VulkanFixture::VulkanFixture(const std::string& script, const std::vector<const char*>& more_extensions, PFN_vkGetInstanceProcAddr loader)
-    : InstanceFixture(script, more_extensions) {
-    XrGraphicsRequirementsVulkan2KHR requirements{XR_TYPE_GRAPHICS_REQUIREMENTS_VULKAN2_KHR};
-    const auto getRequirements = function<PFN_xrGetVulkanGraphicsRequirements2KHR>("xrGetVulkanGraphicsRequirements2KHR");
-    REQUIRE(getRequirements(instance, system, &requirements) == XR_SUCCESS);
-
+VulkanDevice::VulkanDevice(const InstanceFixture& runtime, PFN_vkGetInstanceProcAddr loader) {
     const VkApplicationInfo application{VK_STRUCTURE_TYPE_APPLICATION_INFO, nullptr, "test", 0, nullptr, 0, VK_API_VERSION_1_1};
     const char* const layer = "VK_LAYER_KHRONOS_validation";
     const char* const extension = VK_EXT_DEBUG_UTILS_EXTENSION_NAME;
@@ -130,40 +115,56 @@ VulkanFixture::VulkanFixture(const std::string& script, const std::vector<const 
     VkDebugUtilsMessengerCreateInfoEXT messenger_info = messengerInfo(messages);
     const VkValidationFeaturesEXT features{VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT, &messenger_info, 1, &feature, 0, nullptr};
     const VkInstanceCreateInfo vulkan_info{VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO, &features, 0, &application, 1, &layer, 1, &extension};
-    XrVulkanInstanceCreateInfoKHR info{XR_TYPE_VULKAN_INSTANCE_CREATE_INFO_KHR};
-    info.systemId = system;
-    info.pfnGetInstanceProcAddr = loader;
-    info.vulkanCreateInfo = &vulkan_info;
+    const XrVulkanInstanceCreateInfoKHR info{
+        XR_TYPE_VULKAN_INSTANCE_CREATE_INFO_KHR, nullptr, runtime.system, 0, loader, &vulkan_info, nullptr};
     VkResult result = VK_ERROR_UNKNOWN;
-    REQUIRE(function<PFN_xrCreateVulkanInstanceKHR>("xrCreateVulkanInstanceKHR")(instance, &info, &vulkan, &result) == XR_SUCCESS);
+    REQUIRE(runtime.XR(xrCreateVulkanInstanceKHR)(runtime.instance, &info, &instance, &result) == XR_SUCCESS);
     REQUIRE(result == VK_SUCCESS);
     const auto makeMessenger =
-        reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(vkGetInstanceProcAddr(vulkan, "vkCreateDebugUtilsMessengerEXT"));
-    REQUIRE(makeMessenger(vulkan, &messenger_info, nullptr, &messenger) == VK_SUCCESS);
+        reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(vkGetInstanceProcAddr(instance, "vkCreateDebugUtilsMessengerEXT"));
+    REQUIRE(makeMessenger(instance, &messenger_info, nullptr, &messenger) == VK_SUCCESS);
 
-    const XrVulkanGraphicsDeviceGetInfoKHR get{XR_TYPE_VULKAN_GRAPHICS_DEVICE_GET_INFO_KHR, nullptr, system, vulkan};
-    REQUIRE(function<PFN_xrGetVulkanGraphicsDevice2KHR>("xrGetVulkanGraphicsDevice2KHR")(instance, &get, &physical_device) == XR_SUCCESS);
+    const XrVulkanGraphicsDeviceGetInfoKHR get{XR_TYPE_VULKAN_GRAPHICS_DEVICE_GET_INFO_KHR, nullptr, runtime.system, instance};
+    REQUIRE(runtime.XR(xrGetVulkanGraphicsDevice2KHR)(runtime.instance, &get, &physical_device) == XR_SUCCESS);
     const float priority = 1;
     const VkDeviceQueueCreateInfo queue_info{VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO, nullptr, 0, 0, 1, &priority};
     const VkDeviceCreateInfo device_info{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, nullptr, 0, 1, &queue_info, 0, nullptr, 0, nullptr, nullptr};
-    XrVulkanDeviceCreateInfoKHR make{XR_TYPE_VULKAN_DEVICE_CREATE_INFO_KHR};
-    make.systemId = system;
-    make.pfnGetInstanceProcAddr = loader;
-    make.vulkanPhysicalDevice = physical_device;
-    make.vulkanCreateInfo = &device_info;
-    REQUIRE(function<PFN_xrCreateVulkanDeviceKHR>("xrCreateVulkanDeviceKHR")(instance, &make, &device, &result) == XR_SUCCESS);
+    const XrVulkanDeviceCreateInfoKHR make{
+        XR_TYPE_VULKAN_DEVICE_CREATE_INFO_KHR, nullptr, runtime.system, 0, loader, physical_device, &device_info, nullptr};
+    REQUIRE(runtime.XR(xrCreateVulkanDeviceKHR)(runtime.instance, &make, &device, &result) == XR_SUCCESS);
     REQUIRE(result == VK_SUCCESS);
+}
+
+void VulkanDevice::endDevice() { vkDestroyDevice(std::exchange(device, VK_NULL_HANDLE), nullptr); }
+
+VulkanDevice::~VulkanDevice() {
+    endDevice();
+    reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(vkGetInstanceProcAddr(instance, "vkDestroyDebugUtilsMessengerEXT"))(
+        instance, messenger, nullptr);
+    vkDestroyInstance(instance, nullptr);
+    if (messages.empty()) { return; }
+    // The tests are over.
+    for (const std::string& message : messages) { std::fprintf(stderr, "%s\n", message.c_str()); }
+    std::_Exit(1);
+}
+
+VulkanFixture::VulkanFixture(const std::string& script, const Extensions& more_extensions, PFN_vkGetInstanceProcAddr loader)
+    : InstanceFixture(script, more_extensions),
+      own(loader == nullptr ? nullptr : std::make_unique<VulkanDevice>(*this, loader)),
+      used(own == nullptr ? sharedDevice(*this) : *own) {
+    XrGraphicsRequirementsVulkan2KHR requirements{XR_TYPE_GRAPHICS_REQUIREMENTS_VULKAN2_KHR};
+    REQUIRE(XR(xrGetVulkanGraphicsRequirements2KHR)(instance, system, &requirements) == XR_SUCCESS);
+    const XrVulkanGraphicsDeviceGetInfoKHR get{XR_TYPE_VULKAN_GRAPHICS_DEVICE_GET_INFO_KHR, nullptr, system, vulkan};
+    VkPhysicalDevice found = VK_NULL_HANDLE;
+    REQUIRE(XR(xrGetVulkanGraphicsDevice2KHR)(instance, &get, &found) == XR_SUCCESS);
+    REQUIRE(found == physical_device);
 }
 
 VulkanFixture::~VulkanFixture() {
     // OpenXR's objects go first: they hold images of this device.
-    xrDestroyInstance(instance);
-    instance = XR_NULL_HANDLE;
-    vkDestroyDevice(device, nullptr);
-    for (const std::string& message : messages) FAIL_CHECK(message);
-    reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(vkGetInstanceProcAddr(vulkan, "vkDestroyDebugUtilsMessengerEXT"))(
-        vulkan, messenger, nullptr);
-    vkDestroyInstance(vulkan, nullptr);
+    XR(xrDestroyInstance)(std::exchange(instance, XR_NULL_HANDLE));
+    if (own != nullptr) { own->endDevice(); }
+    for (const std::string& message : std::exchange(used.messages, {})) { FAIL_CHECK(message); }
 }
 
 XrGraphicsBindingVulkan2KHR VulkanFixture::binding() const {
@@ -174,102 +175,6 @@ VkQueue VulkanFixture::queue() const {
     VkQueue queue = VK_NULL_HANDLE;
     vkGetDeviceQueue(device, 0, 0, &queue);
     return queue;
-}
-
-SessionFixture::SessionFixture(const std::string& script, const std::vector<const char*>& more_extensions, PFN_vkGetInstanceProcAddr loader)
-    : VulkanFixture(script, more_extensions, loader) {
-    const XrGraphicsBindingVulkan2KHR graphics = binding();
-    const XrSessionCreateInfo info{XR_TYPE_SESSION_CREATE_INFO, &graphics, 0, system};
-    REQUIRE(xrCreateSession(instance, &info, &session) == XR_SUCCESS);
-    local = makeSpace(XR_REFERENCE_SPACE_TYPE_LOCAL);
-}
-
-SessionFixture::~SessionFixture() = default;
-
-std::vector<XrSessionState> SessionFixture::states() const {
-    std::vector<XrSessionState> states;
-    XrEventDataBuffer event;
-    for (XrStructureType type = poll(event); type != XR_TYPE_UNKNOWN; type = poll(event)) {
-        if (type != XR_TYPE_EVENT_DATA_SESSION_STATE_CHANGED) continue;
-        states.push_back(reinterpret_cast<const XrEventDataSessionStateChanged&>(event).state);
-    }
-    return states;
-}
-
-void SessionFixture::begin() const {
-    const XrSessionBeginInfo info{XR_TYPE_SESSION_BEGIN_INFO, nullptr, XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO};
-    REQUIRE(xrBeginSession(session, &info) == XR_SUCCESS);
-}
-
-XrFrameState SessionFixture::waitFrame() const {
-    XrFrameState state{XR_TYPE_FRAME_STATE};
-    REQUIRE(XR_SUCCEEDED(xrWaitFrame(session, nullptr, &state)));
-    return state;
-}
-
-XrResult SessionFixture::endFrame(XrTime time, const std::vector<const XrCompositionLayerBaseHeader*>& layers) const {
-    const XrFrameEndInfo info{
-        XR_TYPE_FRAME_END_INFO, nullptr, time, XR_ENVIRONMENT_BLEND_MODE_OPAQUE, static_cast<std::uint32_t>(layers.size()), layers.data()};
-    return xrEndFrame(session, &info);
-}
-
-XrFrameState SessionFixture::frame(const std::vector<const XrCompositionLayerBaseHeader*>& layers) const {
-    const XrFrameState state = waitFrame();
-    REQUIRE(XR_SUCCEEDED(xrBeginFrame(session, nullptr)));
-    REQUIRE(XR_SUCCEEDED(endFrame(state.predictedDisplayTime, layers)));
-    return state;
-}
-
-void SessionFixture::focus() const {
-    begin();
-    for (int i = 0; i < 3; ++i) frame();
-    REQUIRE(states().back() == XR_SESSION_STATE_FOCUSED);
-}
-
-XrSpace SessionFixture::makeSpace(XrReferenceSpaceType type) const {
-    const XrReferenceSpaceCreateInfo info{XR_TYPE_REFERENCE_SPACE_CREATE_INFO, nullptr, type, kIdentity};
-    XrSpace space = XR_NULL_HANDLE;
-    REQUIRE(xrCreateReferenceSpace(session, &info, &space) == XR_SUCCESS);
-    return space;
-}
-
-XrSwapchainCreateInfo swapchainInfo(VkFormat format) {
-    XrSwapchainCreateInfo info{XR_TYPE_SWAPCHAIN_CREATE_INFO};
-    const bool is_depth = format == VK_FORMAT_D32_SFLOAT || format == VK_FORMAT_D16_UNORM;
-    info.usageFlags = is_depth ? XR_SWAPCHAIN_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT : XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT;
-    info.format = format;
-    info.width = 64;
-    info.height = 32;
-    info.sampleCount = info.faceCount = info.arraySize = info.mipCount = 1;
-    return info;
-}
-
-XrSwapchain SessionFixture::makeSwapchain(VkFormat format, XrSwapchainCreateFlags flags) const {
-    XrSwapchainCreateInfo info = swapchainInfo(format);
-    info.createFlags = flags;
-    XrSwapchain swapchain = XR_NULL_HANDLE;
-    REQUIRE(xrCreateSwapchain(session, &info, &swapchain) == XR_SUCCESS);
-    return swapchain;
-}
-
-void SessionFixture::turn(XrSwapchain swapchain) const {
-    std::uint32_t index = 0;
-    REQUIRE(xrAcquireSwapchainImage(swapchain, nullptr, &index) == XR_SUCCESS);
-    const XrSwapchainImageWaitInfo wait{XR_TYPE_SWAPCHAIN_IMAGE_WAIT_INFO, nullptr, XR_INFINITE_DURATION};
-    REQUIRE(xrWaitSwapchainImage(swapchain, &wait) == XR_SUCCESS);
-    REQUIRE(xrReleaseSwapchainImage(swapchain, nullptr) == XR_SUCCESS);
-}
-
-void SessionFixture::attach(const std::vector<XrActionSet>& sets) const {
-    const XrSessionActionSetsAttachInfo info{XR_TYPE_SESSION_ACTION_SETS_ATTACH_INFO, nullptr, static_cast<std::uint32_t>(sets.size()),
-                                             sets.data()};
-    REQUIRE(xrAttachSessionActionSets(session, &info) == XR_SUCCESS);
-}
-
-XrResult SessionFixture::sync(XrActionSet set, XrPath subaction_path) const {
-    const XrActiveActionSet active{set, subaction_path};
-    const XrActionsSyncInfo info{XR_TYPE_ACTIONS_SYNC_INFO, nullptr, 1, &active};
-    return xrSyncActions(session, &info);
 }
 
 }  // namespace binosplat::test

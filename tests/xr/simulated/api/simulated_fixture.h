@@ -1,5 +1,5 @@
-// Programs for the simulated runtime, as far as tests need them: an instance through the standard loader, a session on a Vulkan device with
-// validation, frames. Any message of the Vulkan validation layer fails the test.
+// Programs for the simulated runtime, as far as tests need them: an instance, through the standard loader or without one; a session on a
+// Vulkan device with validation, or a headless one; frames and actions. Any message of the Vulkan validation layer fails the test.
 #pragma once
 
 #define XR_USE_GRAPHICS_API_VULKAN
@@ -14,7 +14,11 @@
 
 #include <cstring>
 #include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 namespace doctest {
@@ -24,9 +28,106 @@ struct StringMaker<XrResult> {
 };
 }  // namespace doctest
 
+// A function of a fixture's instance: made.XR(xrLocateSpace)(...).
+#define XR(name) function<PFN_##name>(#name)
+
 namespace binosplat::test {
 
 inline constexpr const char* kQuietScript = "size 64 64\nframes none\n";
+inline constexpr XrTime kStart = 1'000'000'000;  // of time in lock-step
+inline constexpr XrPosef kIdentity{{0, 0, 0, 1}, {0, 0, 0}};
+inline constexpr auto kStereo = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
+inline constexpr const char* kTouch = "/interaction_profiles/oculus/touch_controller";
+inline constexpr const char* kSimple = "/interaction_profiles/khr/simple_controller";
+inline constexpr XrSpaceLocationFlags kValid = XR_SPACE_LOCATION_ORIENTATION_VALID_BIT | XR_SPACE_LOCATION_POSITION_VALID_BIT;
+inline constexpr XrSpaceLocationFlags kTracked = XR_SPACE_LOCATION_ORIENTATION_TRACKED_BIT | XR_SPACE_LOCATION_POSITION_TRACKED_BIT;
+inline constexpr XrSpaceVelocityFlags kMoving = XR_SPACE_VELOCITY_LINEAR_VALID_BIT | XR_SPACE_VELOCITY_ANGULAR_VALID_BIT;
+
+using Extensions = std::vector<const char*>;
+using Layers = std::vector<const XrCompositionLayerBaseHeader*>;
+using States = std::vector<XrSessionState>;
+
+// What a call answers while a value is another.
+template <class Value, class Call>
+auto with(Value& place, std::type_identity_t<Value> value, const Call& call) {
+    const Value before = std::exchange(place, value);
+    const auto answer = call();
+    place = before;
+    return answer;
+}
+
+// A change for checkChanges.
+template <class Value>
+auto to(Value& place, std::type_identity_t<Value> value) {
+    return [&place, value](const auto& call) { return with(place, value, call); };
+}
+// What a call answers to each of some changes, made one at a time.
+template <class Call, class... Change>
+void checkChanges(const Call& call, XrResult expected, const Change&... changes) {
+    int number = 0;
+    const auto check = [&](const auto& change) {
+        ++number;
+        CAPTURE(number);
+        CHECK(change(call) == expected);
+    };
+    (check(changes), ...);
+}
+
+// What a call answers to a handle that is none, and to each structure, or place for an answer, that is missing or of another type.
+template <class Function, class Handle, class... Places>
+void checkArguments(Function call, Handle handle, Places*... places) {
+    const auto answer = [&](Handle of, Places*... to) { return call(of, to...); };
+    CHECK(answer(XR_NULL_HANDLE, places...) == XR_ERROR_HANDLE_INVALID);
+    std::tuple<Places*...> all{places...};
+    const auto checkOne = [&](auto& place) {
+        const auto again = [&] { return std::apply([&](Places*... to) { return answer(handle, to...); }, all); };
+        CHECK(with(place, nullptr, again) == XR_ERROR_VALIDATION_FAILURE);
+        if constexpr (requires { place->type; }) { CHECK(with(place->type, XR_TYPE_UNKNOWN, again) == XR_ERROR_VALIDATION_FAILURE); }
+    };
+    std::apply([&](auto&... place) { (checkOne(place), ...); }, all);
+}
+
+// All that a function lists in two calls, and what it says of too little room and of places that are missing.
+template <class Value, class List>
+std::vector<Value> checkList(const List& list, const Value& blank = {}) {
+    std::uint32_t count = 0;
+    CHECK(list(0u, &count, static_cast<Value*>(nullptr)) == XR_SUCCESS);
+    REQUIRE(count > 0);
+    std::vector<Value> values(count, blank);
+    CHECK(list(count, &count, static_cast<Value*>(nullptr)) == XR_ERROR_VALIDATION_FAILURE);
+    CHECK(list(count, static_cast<std::uint32_t*>(nullptr), values.data()) == XR_ERROR_VALIDATION_FAILURE);
+    if (count > 1) { CHECK(list(count - 1, &count, values.data()) == XR_ERROR_SIZE_INSUFFICIENT); }
+    CHECK(count == values.size());
+    CHECK(list(count, &count, values.data()) == XR_SUCCESS);
+    if constexpr (requires { values[0].type; }) {
+        CHECK(with(values.back().type, XR_TYPE_UNKNOWN, [&] { return list(count, &count, values.data()); }) == XR_ERROR_VALIDATION_FAILURE);
+    }
+    return values;
+}
+
+inline void checkNear(const XrVector3f& found, const XrVector3f& expected) {
+    CHECK(found.x == doctest::Approx(expected.x));
+    CHECK(found.y == doctest::Approx(expected.y));
+    CHECK(found.z == doctest::Approx(expected.z));
+}
+
+template <std::size_t size>
+void setText(char (&destination)[size], const std::string& text) {
+    REQUIRE(text.size() < size);
+    std::strcpy(destination, text.c_str());
+}
+
+XrInstanceCreateInfo instanceInfo(const Extensions& extensions, XrVersion version = XR_MAKE_VERSION(1, 0, 0));
+// What the making of an instance answers; it is destroyed again.
+XrResult tryInstance(const XrInstanceCreateInfo& info, PFN_xrGetInstanceProcAddr find = xrGetInstanceProcAddr);
+XrActionSetCreateInfo actionSetInfo(const std::string& name, const std::string& localized_name);
+XrActionCreateInfo actionInfo(const std::string& name, const std::string& localized_name, XrActionType type = XR_ACTION_TYPE_BOOLEAN_INPUT);
+XrSwapchainCreateInfo swapchainInfo(VkFormat format = VK_FORMAT_R8G8B8A8_SRGB);
+
+template <class Layer>
+const XrCompositionLayerBaseHeader* headerOf(const Layer& layer) {
+    return reinterpret_cast<const XrCompositionLayerBaseHeader*>(&layer);
+}
 
 // The environment that the runtime reads, and an empty folder for what it writes; both end with the test.
 class Headset {
@@ -36,79 +137,297 @@ public:
     Headset(const Headset&) = delete;
     Headset& operator=(const Headset&) = delete;
 
+    // The log, line by line.
+    std::vector<nlohmann::json> logged() const;
+
+    static inline const char* clock = "lockstep";
     std::filesystem::path folder, written;
 };
 
 struct InstanceFixture : Headset {
     XrInstance instance = XR_NULL_HANDLE;
     XrSystemId system = XR_NULL_SYSTEM_ID;
+    XrSession session = XR_NULL_HANDLE;
 
-    explicit InstanceFixture(const std::string& script = kQuietScript, const std::vector<const char*>& more_extensions = {});
-    ~InstanceFixture();
+    explicit InstanceFixture(const std::string& script = kQuietScript, const Extensions& more_extensions = {})
+        : InstanceFixture(script, xrGetInstanceProcAddr, instanceInfo(withUsual(more_extensions))) {}
 
-    XrPath path(const std::string& text) const;
-    XrActionSet makeActionSet(const std::string& name, std::uint32_t priority = 0) const;
-    XrAction makeAction(XrActionSet set, const std::string& name, XrActionType type, const std::vector<XrPath>& subaction_paths = {}) const;
-    XrResult suggest(const std::string& profile, const std::vector<XrActionSuggestedBinding>& bindings) const;
-    // The next event's type; XR_TYPE_UNKNOWN if none waits.
-    XrStructureType poll(XrEventDataBuffer& event) const;
+    ~InstanceFixture() {
+        if (instance != XR_NULL_HANDLE) { XR(xrDestroyInstance)(instance); }
+    }
 
     template <class Function>
     Function function(const char* name) const {
         PFN_xrVoidFunction found = nullptr;
-        REQUIRE(xrGetInstanceProcAddr(instance, name, &found) == XR_SUCCESS);
+        REQUIRE_MESSAGE(find_function(instance, name, &found) == XR_SUCCESS, name);
         return reinterpret_cast<Function>(found);
     }
+    bool has(const char* name) const {
+        PFN_xrVoidFunction found = nullptr;
+        return find_function(instance, name, &found) == XR_SUCCESS;
+    }
+
+    XrPath path(const std::string& text) const {
+        XrPath path = XR_NULL_PATH;
+        REQUIRE(XR(xrStringToPath)(instance, text.c_str(), &path) == XR_SUCCESS);
+        return path;
+    }
+    std::string textOf(XrPath path) const {
+        char text[XR_MAX_PATH_LENGTH];
+        std::uint32_t count = 0;
+        REQUIRE(XR(xrPathToString)(instance, path, sizeof text, &count, text) == XR_SUCCESS);
+        return text;
+    }
+    // The next event's type; XR_TYPE_UNKNOWN if none waits.
+    XrStructureType poll(XrEventDataBuffer& event) const {
+        event = {XR_TYPE_EVENT_DATA_BUFFER};
+        return XR(xrPollEvent)(instance, &event) == XR_SUCCESS ? event.type : XR_TYPE_UNKNOWN;
+    }
+    // All that wait, and of them those of a type.
+    template <class Event>
+    std::vector<Event> events(XrStructureType type) const {
+        std::vector<Event> found;
+        XrEventDataBuffer event;
+        for (XrStructureType next = poll(event); next != XR_TYPE_UNKNOWN; next = poll(event)) {
+            if (next == type) { found.push_back(reinterpret_cast<const Event&>(event)); }
+        }
+        return found;
+    }
+    States states() const {
+        States states;
+        for (const auto& event : events<XrEventDataSessionStateChanged>(XR_TYPE_EVENT_DATA_SESSION_STATE_CHANGED)) {
+            states.push_back(event.state);
+        }
+        return states;
+    }
+
+    XrActionSet makeActionSet(const std::string& name, std::uint32_t priority = 0) const {
+        XrActionSetCreateInfo info = actionSetInfo(name, "the " + name);
+        info.priority = priority;
+        XrActionSet set = XR_NULL_HANDLE;
+        REQUIRE(XR(xrCreateActionSet)(instance, &info, &set) == XR_SUCCESS);
+        return set;
+    }
+    XrAction makeAction(XrActionSet set, const std::string& name, XrActionType type,
+                        const std::vector<XrPath>& subaction_paths = {}) const {
+        XrActionCreateInfo info = actionInfo(name, "the " + name, type);
+        info.countSubactionPaths = static_cast<std::uint32_t>(subaction_paths.size());
+        info.subactionPaths = subaction_paths.data();
+        XrAction action = XR_NULL_HANDLE;
+        REQUIRE(XR(xrCreateAction)(set, &info, &action) == XR_SUCCESS);
+        return action;
+    }
+    XrResult suggest(const std::string& profile, const std::vector<XrActionSuggestedBinding>& bindings) const {
+        const XrInteractionProfileSuggestedBinding info{XR_TYPE_INTERACTION_PROFILE_SUGGESTED_BINDING, nullptr, path(profile),
+                                                        static_cast<std::uint32_t>(bindings.size()), bindings.data()};
+        return XR(xrSuggestInteractionProfileBindings)(instance, &info);
+    }
+    // An action of its own is bound.
+    XrResult suggest(const std::string& profile, const std::string& binding, XrActionType type = XR_ACTION_TYPE_POSE_INPUT) const {
+        const XrActionSet set = makeActionSet("set");
+        const XrResult result = suggest(profile, {{makeAction(set, "action", type), path(binding)}});
+        REQUIRE(XR(xrDestroyActionSet)(set) == XR_SUCCESS);
+        return result;
+    }
+    void attach(const std::vector<XrActionSet>& sets) const {
+        const XrSessionActionSetsAttachInfo info{XR_TYPE_SESSION_ACTION_SETS_ATTACH_INFO, nullptr, static_cast<std::uint32_t>(sets.size()),
+                                                 sets.data()};
+        REQUIRE(XR(xrAttachSessionActionSets)(session, &info) == XR_SUCCESS);
+    }
+    XrResult sync() const {
+        const XrActionsSyncInfo info{XR_TYPE_ACTIONS_SYNC_INFO};
+        return XR(xrSyncActions)(session, &info);
+    }
+    XrResult sync(XrActionSet set, XrPath subaction_path = XR_NULL_PATH) const {
+        const XrActiveActionSet active{set, subaction_path};
+        const XrActionsSyncInfo info{XR_TYPE_ACTIONS_SYNC_INFO, nullptr, 1, &active};
+        return XR(xrSyncActions)(session, &info);
+    }
+    XrActionStateBoolean boolean(XrAction action, XrPath hand = XR_NULL_PATH) const {
+        return stateOf<XrActionStateBoolean>(XR(xrGetActionStateBoolean), XR_TYPE_ACTION_STATE_BOOLEAN, action, hand);
+    }
+    XrActionStateFloat number(XrAction action, XrPath hand = XR_NULL_PATH) const {
+        return stateOf<XrActionStateFloat>(XR(xrGetActionStateFloat), XR_TYPE_ACTION_STATE_FLOAT, action, hand);
+    }
+    XrActionStateVector2f vector(XrAction action, XrPath hand = XR_NULL_PATH) const {
+        return stateOf<XrActionStateVector2f>(XR(xrGetActionStateVector2f), XR_TYPE_ACTION_STATE_VECTOR2F, action, hand);
+    }
+    XrActionStatePose pose(XrAction action, XrPath hand = XR_NULL_PATH) const {
+        return stateOf<XrActionStatePose>(XR(xrGetActionStatePose), XR_TYPE_ACTION_STATE_POSE, action, hand);
+    }
+    // The path of the profile that is in use, or "none".
+    std::string profileOf(XrPath user_path) const {
+        XrInteractionProfileState state{XR_TYPE_INTERACTION_PROFILE_STATE};
+        REQUIRE(XR(xrGetCurrentInteractionProfile)(session, user_path, &state) == XR_SUCCESS);
+        return state.interactionProfile == XR_NULL_PATH ? "none" : textOf(state.interactionProfile);
+    }
+
+    void begin(XrViewConfigurationType type = kStereo) const {
+        const XrSessionBeginInfo info{XR_TYPE_SESSION_BEGIN_INFO, nullptr, type};
+        REQUIRE(XR(xrBeginSession)(session, &info) == XR_SUCCESS);
+    }
+    XrFrameState waitFrame() const {
+        XrFrameState state{XR_TYPE_FRAME_STATE};
+        REQUIRE(XR_SUCCEEDED(XR(xrWaitFrame)(session, nullptr, &state)));
+        return state;
+    }
+    XrResult endFrame(XrTime time, const Layers& layers = {}) const {
+        const auto count = static_cast<std::uint32_t>(layers.size());
+        const XrFrameEndInfo info{XR_TYPE_FRAME_END_INFO, nullptr, time, XR_ENVIRONMENT_BLEND_MODE_OPAQUE, count, layers.data()};
+        return XR(xrEndFrame)(session, &info);
+    }
+    // Wait, begin, end.
+    XrFrameState frame(const Layers& layers = {}) const {
+        const XrFrameState state = waitFrame();
+        REQUIRE(XR_SUCCEEDED(XR(xrBeginFrame)(session, nullptr)));
+        REQUIRE(XR_SUCCEEDED(endFrame(state.predictedDisplayTime, layers)));
+        return state;
+    }
+    // What the end of a frame with a layer answers; if it is refused, the frame is ended without it.
+    XrResult show(const void* layer) const {
+        const XrTime time = waitFrame().predictedDisplayTime;
+        REQUIRE(XR(xrBeginFrame)(session, nullptr) == XR_SUCCESS);
+        const XrResult result = endFrame(time, {static_cast<const XrCompositionLayerBaseHeader*>(layer)});
+        if (XR_FAILED(result)) { REQUIRE(endFrame(time) == XR_SUCCESS); }
+        return result;
+    }
+
+    XrResult trySpace(XrReferenceSpaceType type, XrSpace& space) const {
+        const XrReferenceSpaceCreateInfo info{XR_TYPE_REFERENCE_SPACE_CREATE_INFO, nullptr, type, kIdentity};
+        return XR(xrCreateReferenceSpace)(session, &info, &space);
+    }
+    XrSpace makeSpace(XrReferenceSpaceType type) const {
+        XrSpace space = XR_NULL_HANDLE;
+        REQUIRE(trySpace(type, space) == XR_SUCCESS);
+        return space;
+    }
+    XrSpace makeActionSpace(XrAction action, XrPath hand = XR_NULL_PATH, const XrPosef& pose_in_space = kIdentity) const {
+        const XrActionSpaceCreateInfo info{XR_TYPE_ACTION_SPACE_CREATE_INFO, nullptr, action, hand, pose_in_space};
+        XrSpace space = XR_NULL_HANDLE;
+        REQUIRE(XR(xrCreateActionSpace)(session, &info, &space) == XR_SUCCESS);
+        return space;
+    }
+    XrSpaceLocation locate(XrSpace space, XrSpace base, XrTime time, void* next = nullptr) const {
+        XrSpaceLocation location{XR_TYPE_SPACE_LOCATION, next};
+        REQUIRE(XR(xrLocateSpace)(space, base, time, &location) == XR_SUCCESS);
+        return location;
+    }
+
+protected:
+    InstanceFixture(const std::string& script, PFN_xrGetInstanceProcAddr find, const XrInstanceCreateInfo& info)
+        : Headset(script), find_function(find) {
+        REQUIRE(XR(xrCreateInstance)(&info, &instance) == XR_SUCCESS);
+        const XrSystemGetInfo get{XR_TYPE_SYSTEM_GET_INFO, nullptr, XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY};
+        REQUIRE(XR(xrGetSystem)(instance, &get, &system) == XR_SUCCESS);
+    }
+
+private:
+    static Extensions withUsual(Extensions more) {
+        const Extensions usual{XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME, XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME,
+                               XR_KHR_VISIBILITY_MASK_EXTENSION_NAME};
+        more.insert(more.end(), usual.begin(), usual.end());
+        return more;
+    }
+    template <class State, class Function>
+    State stateOf(Function get, XrStructureType type, XrAction action, XrPath hand) const {
+        State state{type};
+        const XrActionStateGetInfo info{XR_TYPE_ACTION_STATE_GET_INFO, nullptr, action, hand};
+        REQUIRE(get(session, &info, &state) == XR_SUCCESS);
+        return state;
+    }
+
+    PFN_xrGetInstanceProcAddr find_function;
 };
 
-XrInstanceCreateInfo instanceInfo(const std::vector<const char*>& extensions);
-
-// A Vulkan instance and device made through the runtime.
-struct VulkanFixture : InstanceFixture {
-    VkInstance vulkan = VK_NULL_HANDLE;
+// A Vulkan instance and device made through a runtime.
+struct VulkanDevice {
+    VkInstance instance = VK_NULL_HANDLE;
     VkPhysicalDevice physical_device = VK_NULL_HANDLE;
     VkDevice device = VK_NULL_HANDLE;
     std::vector<std::string> messages;
 
-    // The loader is what the runtime finds Vulkan's functions by.
-    explicit VulkanFixture(const std::string& script = kQuietScript, const std::vector<const char*>& more_extensions = {},
-                           PFN_vkGetInstanceProcAddr loader = vkGetInstanceProcAddr);
+    VulkanDevice(const InstanceFixture& runtime, PFN_vkGetInstanceProcAddr loader);
+    ~VulkanDevice();
+    VulkanDevice(const VulkanDevice&) = delete;
+    VulkanDevice& operator=(const VulkanDevice&) = delete;
+
+    void endDevice();
+
+private:
+    VkDebugUtilsMessengerEXT messenger = VK_NULL_HANDLE;
+};
+
+struct VulkanFixture : InstanceFixture {
+    // Of the first fixture of a program, for all of them; where the runtime is to find Vulkan's functions by a loader, of the fixture
+    // alone.
+    explicit VulkanFixture(const std::string& script = kQuietScript, const Extensions& more_extensions = {},
+                           PFN_vkGetInstanceProcAddr loader = nullptr);
     ~VulkanFixture();
 
     XrGraphicsBindingVulkan2KHR binding() const;
     VkQueue queue() const;
 
 private:
-    VkDebugUtilsMessengerEXT messenger = VK_NULL_HANDLE;
+    std::unique_ptr<VulkanDevice> own;
+    VulkanDevice& used;
+
+public:
+    const VkInstance vulkan = used.instance;
+    const VkPhysicalDevice physical_device = used.physical_device;
+    const VkDevice device = used.device;
 };
 
 struct SessionFixture : VulkanFixture {
-    XrSession session = XR_NULL_HANDLE;
     XrSpace local = XR_NULL_HANDLE;
 
-    explicit SessionFixture(const std::string& script = kQuietScript, const std::vector<const char*>& more_extensions = {},
-                            PFN_vkGetInstanceProcAddr loader = vkGetInstanceProcAddr);
-    ~SessionFixture();
+    explicit SessionFixture(const std::string& script = kQuietScript, const Extensions& more_extensions = {},
+                            PFN_vkGetInstanceProcAddr loader = nullptr)
+        : VulkanFixture(script, more_extensions, loader) {
+        makeSession();
+    }
 
-    // The states of all events that wait.
-    std::vector<XrSessionState> states() const;
-    void begin() const;
-    XrFrameState waitFrame() const;
-    XrResult endFrame(XrTime time, const std::vector<const XrCompositionLayerBaseHeader*>& layers = {}) const;
-    // Wait, begin, end.
-    XrFrameState frame(const std::vector<const XrCompositionLayerBaseHeader*>& layers = {}) const;
+    // Also another one, once the first is gone.
+    void makeSession() {
+        const XrGraphicsBindingVulkan2KHR graphics = binding();
+        const XrSessionCreateInfo info{XR_TYPE_SESSION_CREATE_INFO, &graphics, 0, system};
+        REQUIRE(xrCreateSession(instance, &info, &session) == XR_SUCCESS);
+        local = makeSpace(XR_REFERENCE_SPACE_TYPE_LOCAL);
+    }
     // Begins, and runs frames until the session is FOCUSED.
-    void focus() const;
-    XrSpace makeSpace(XrReferenceSpaceType type) const;
-    XrSwapchain makeSwapchain(VkFormat format = VK_FORMAT_R8G8B8A8_SRGB, XrSwapchainCreateFlags flags = 0) const;
+    void focus() const {
+        begin();
+        for (int i = 0; i < 3; ++i) { frame(); }
+        REQUIRE(states().back() == XR_SESSION_STATE_FOCUSED);
+    }
+    XrSwapchain makeSwapchain(const XrSwapchainCreateInfo& info = swapchainInfo()) const {
+        XrSwapchain swapchain = XR_NULL_HANDLE;
+        REQUIRE(xrCreateSwapchain(session, &info, &swapchain) == XR_SUCCESS);
+        return swapchain;
+    }
+    std::vector<VkImage> imagesOf(XrSwapchain swapchain) const {
+        std::uint32_t count = 0;
+        REQUIRE(xrEnumerateSwapchainImages(swapchain, 0, &count, nullptr) == XR_SUCCESS);
+        std::vector<XrSwapchainImageVulkan2KHR> found(count, {XR_TYPE_SWAPCHAIN_IMAGE_VULKAN2_KHR});
+        auto* const headers = reinterpret_cast<XrSwapchainImageBaseHeader*>(found.data());
+        REQUIRE(xrEnumerateSwapchainImages(swapchain, count, &count, headers) == XR_SUCCESS);
+        std::vector<VkImage> images;
+        for (const XrSwapchainImageVulkan2KHR& one : found) { images.push_back(one.image); }
+        return images;
+    }
+    // Its index is returned.
+    std::uint32_t acquire(XrSwapchain swapchain) const {
+        std::uint32_t index = 0;
+        REQUIRE(xrAcquireSwapchainImage(swapchain, nullptr, &index) == XR_SUCCESS);
+        return index;
+    }
     // Acquire, wait, release.
-    void turn(XrSwapchain swapchain) const;
-    void attach(const std::vector<XrActionSet>& sets) const;
-    XrResult sync(XrActionSet set, XrPath subaction_path = XR_NULL_PATH) const;
+    std::uint32_t turn(XrSwapchain swapchain) const {
+        const std::uint32_t index = acquire(swapchain);
+        const XrSwapchainImageWaitInfo wait{XR_TYPE_SWAPCHAIN_IMAGE_WAIT_INFO, nullptr, XR_INFINITE_DURATION};
+        REQUIRE(xrWaitSwapchainImage(swapchain, &wait) == XR_SUCCESS);
+        REQUIRE(xrReleaseSwapchainImage(swapchain, nullptr) == XR_SUCCESS);
+        return index;
+    }
 };
-
-XrSwapchainCreateInfo swapchainInfo(VkFormat format = VK_FORMAT_R8G8B8A8_SRGB);
-
-inline constexpr XrPosef kIdentity{{0, 0, 0, 1}, {0, 0, 0}};
 
 }  // namespace binosplat::test

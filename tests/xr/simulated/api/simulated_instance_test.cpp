@@ -1,5 +1,14 @@
-// Chapters 4 to 6 of OpenXR on the simulated runtime: instances, systems, view configurations, paths, names of values.
-#include "tests/xr/simulated/api/simulated_fixture.h"
+// Chapters 4 to 6 of OpenXR on the simulated runtime, and XR_KHR_vulkan_enable2: the library, instances, systems, view configurations,
+// paths, names of values, Vulkan's instances and devices.
+#include "tests/xr/simulated/api/simulated_direct.h"
+
+#include <unistd.h>
+
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <set>
 
 TEST_SUITE_BEGIN("simulated_instance");
 
@@ -9,52 +18,84 @@ using namespace binosplat::test;
 
 namespace {
 
-std::vector<XrExtensionProperties> extensionsThere() {
-    std::uint32_t count = 0;
-    REQUIRE(xrEnumerateInstanceExtensionProperties(nullptr, 0, &count, nullptr) == XR_SUCCESS);
-    std::vector<XrExtensionProperties> properties(count, {XR_TYPE_EXTENSION_PROPERTIES});
-    REQUIRE(xrEnumerateInstanceExtensionProperties(nullptr, count, &count, properties.data()) == XR_SUCCESS);
-    return properties;
+// What is said on standard error, with explanations on.
+template <class Body>
+std::string explainedBy(Body&& body) {
+    std::FILE* const said = std::tmpfile();
+    REQUIRE(said != nullptr);
+    std::fflush(stderr);
+    const int before = dup(STDERR_FILENO);
+    dup2(fileno(said), STDERR_FILENO);
+    setenv("SIMULATED_OPENXR_EXPLAIN", "1", 1);
+    body();
+    unsetenv("SIMULATED_OPENXR_EXPLAIN");
+    std::fflush(stderr);
+    dup2(before, STDERR_FILENO);
+    close(before);
+    std::string text;
+    std::rewind(said);
+    for (int c = std::fgetc(said); c != EOF; c = std::fgetc(said)) { text += static_cast<char>(c); }
+    std::fclose(said);
+    return text;
+}
+
+XrResult tryScript(const std::string& script, const Extensions& extensions = {}) {
+    const Headset headset(script);
+    return tryInstance(instanceInfo(extensions));
 }
 
 }  // namespace
 
-TEST_CASE("extensions are enumerated in two calls, and none of a layer") {
-    const Headset headset(kQuietScript);
-    std::uint32_t count = 0;
-    CHECK(xrEnumerateInstanceExtensionProperties(nullptr, 0, &count, nullptr) == XR_SUCCESS);
-    REQUIRE(count >= 4);
-    std::vector<XrExtensionProperties> properties(count, {XR_TYPE_EXTENSION_PROPERTIES});
-    CHECK(xrEnumerateInstanceExtensionProperties(nullptr, count, &count, properties.data()) == XR_SUCCESS);
-    const auto has = [&](const char* name) {
-        for (const auto& property : properties) {
-            if (std::strcmp(property.extensionName, name) == 0) return true;
-        }
-        return false;
-    };
-    CHECK(has(XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME));
-    CHECK(has(XR_KHR_VISIBILITY_MASK_EXTENSION_NAME));
-    CHECK(has(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME));
-    CHECK(xrEnumerateInstanceExtensionProperties(nullptr, 1, &count, properties.data()) == XR_ERROR_SIZE_INSUFFICIENT);
-    CHECK(xrEnumerateInstanceExtensionProperties(nullptr, 0, nullptr, nullptr) == XR_ERROR_VALIDATION_FAILURE);
-    CHECK(xrEnumerateInstanceExtensionProperties("XR_APILAYER_nobody_nothing", 0, &count, nullptr) == XR_ERROR_API_LAYER_NOT_PRESENT);
+TEST_CASE("the library shows one function, which negotiates version 1, and 1.1 or what its loader can do with") {
+    const Direct runtime;
+    // What is found then belongs to another library that this one needs.
+    for (const char* name : {"xrCreateInstance", "xrGetInstanceProcAddr", "vkCreateInstance"}) {
+        Dl_info owner{};
+        void* const found = dlsym(runtime.library, name);
+        CHECK((found == nullptr || (dladdr(found, &owner) != 0 && std::strstr(owner.dli_fname, "binosplat") == nullptr)));
+    }
+    LoaderInfo info;
+    RuntimeRequest request;
+    const auto negotiate = [&] { return runtime.negotiate(&info, &request); };
+    checkChanges(negotiate, XR_ERROR_INITIALIZATION_FAILED, to(info.type, 2), to(info.version, 2), to(info.size, 8));
+    CHECK(with(info.most_interface, 2, [&] { return with(info.least_interface, 2, negotiate); }) == XR_ERROR_INITIALIZATION_FAILED);
+    checkChanges(negotiate, XR_ERROR_INITIALIZATION_FAILED, to(info.least_api, XR_MAKE_VERSION(2, 0, 0)), to(request.type, 1),
+                 to(request.size, 8));
+    CHECK(runtime.negotiate(nullptr, nullptr) == XR_ERROR_INITIALIZATION_FAILED);
+    CHECK(XR_VERSION_MAJOR(runtime.api) == 1);
+    CHECK(XR_VERSION_MINOR(runtime.api) == 1);
+    CHECK(with(info.most_api, XR_MAKE_VERSION(1, 0, 0xFFF), negotiate) == XR_SUCCESS);
+    CHECK(XR_VERSION_MINOR(request.api) == 0);
+    // The loader answers for the layers by itself; a loader that asks is told of none.
+    PFN_xrVoidFunction found = nullptr;
+    REQUIRE(runtime.get(XR_NULL_HANDLE, "xrEnumerateApiLayerProperties", &found) == XR_SUCCESS);
+    const auto enumerateLayers = reinterpret_cast<PFN_xrEnumerateApiLayerProperties>(found);
+    std::uint32_t count = 9;
+    CHECK(enumerateLayers(0, &count, nullptr) == XR_SUCCESS);
+    CHECK(count == 0);
+    CHECK(enumerateLayers(0, nullptr, nullptr) == XR_ERROR_VALIDATION_FAILURE);
 }
 
-TEST_CASE("every extension is enabled alone, and all are together, some twice, with a session that draws and one that does not") {
+TEST_CASE("extensions are listed in two calls, and enabled alone, and all, some twice, with a session that draws and one that does not") {
+    Extensions all;
     std::vector<XrExtensionProperties> properties;
     {
         const Headset headset(kQuietScript);
-        properties = extensionsThere();
-        for (const XrExtensionProperties& property : properties) {
-            const std::vector<const char*> alone{property.extensionName};
-            const XrInstanceCreateInfo info = instanceInfo(alone);
-            XrInstance instance = XR_NULL_HANDLE;
-            CHECK_MESSAGE(xrCreateInstance(&info, &instance) == XR_SUCCESS, std::string(property.extensionName));
-            CHECK(xrDestroyInstance(instance) == XR_SUCCESS);
-        }
+        const auto list = [](auto... step) { return xrEnumerateInstanceExtensionProperties(nullptr, step...); };
+        properties = checkList<XrExtensionProperties>(list, {XR_TYPE_EXTENSION_PROPERTIES});
+        std::uint32_t count = 0;
+        CHECK(xrEnumerateInstanceExtensionProperties("XR_APILAYER_nobody_nothing", 0, &count, nullptr) == XR_ERROR_API_LAYER_NOT_PRESENT);
     }
-    std::vector<const char*> all;
-    for (const XrExtensionProperties& property : properties) all.push_back(property.extensionName);
+    for (const XrExtensionProperties& property : properties) {
+        CHECK_MESSAGE(tryScript(kQuietScript, {property.extensionName}) == XR_SUCCESS, std::string(property.extensionName));
+        all.push_back(property.extensionName);
+    }
+    const std::set<std::string> names(all.begin(), all.end());
+    for (const char* name : {XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME, XR_KHR_VISIBILITY_MASK_EXTENSION_NAME,
+                             XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME, XR_MND_HEADLESS_EXTENSION_NAME}) {
+        CHECK_MESSAGE(names.contains(name), name);
+    }
+    CHECK(tryScript("extension XR_KHR_visibility_mask off\n", {XR_KHR_VISIBILITY_MASK_EXTENSION_NAME}) == XR_ERROR_EXTENSION_NOT_PRESENT);
     // The fixture enables three of them by itself.
     const SessionFixture made(kQuietScript, all);
     made.focus();
@@ -65,132 +106,197 @@ TEST_CASE("every extension is enabled alone, and all are together, some twice, w
     CHECK(xrCreateSession(made.instance, &info, &headless) == XR_SUCCESS);
 }
 
-TEST_CASE("an extension that the script takes away is neither listed nor enabled") {
-    const Headset headset("extension XR_KHR_visibility_mask off\n");
-    const std::vector<const char*> wanted{XR_KHR_VISIBILITY_MASK_EXTENSION_NAME};
-    const XrInstanceCreateInfo info = instanceInfo(wanted);
-    XrInstance instance = XR_NULL_HANDLE;
-    CHECK(xrCreateInstance(&info, &instance) == XR_ERROR_EXTENSION_NOT_PRESENT);
-}
-
-TEST_CASE("an instance is refused for what its description lacks") {
-    const Headset headset(kQuietScript);
-    XrInstance instance = XR_NULL_HANDLE;
-    XrInstanceCreateInfo info = instanceInfo({});
-    CHECK(xrCreateInstance(nullptr, &instance) == XR_ERROR_VALIDATION_FAILURE);
-    CHECK(xrCreateInstance(&info, nullptr) == XR_ERROR_VALIDATION_FAILURE);
-    info.type = XR_TYPE_SYSTEM_GET_INFO;
-    CHECK(xrCreateInstance(&info, &instance) == XR_ERROR_VALIDATION_FAILURE);
-    info = instanceInfo({});
-    info.createFlags = 1;
-    CHECK(xrCreateInstance(&info, &instance) == XR_ERROR_VALIDATION_FAILURE);
-    info = instanceInfo({});
-    info.applicationInfo.applicationName[0] = '\0';
-    CHECK(xrCreateInstance(&info, &instance) == XR_ERROR_NAME_INVALID);
-    info = instanceInfo({});
-    std::strcpy(info.applicationInfo.engineName, "\xFF\xFE");
-    CHECK(xrCreateInstance(&info, &instance) == XR_ERROR_VALIDATION_FAILURE);
-    info = instanceInfo({});
-    info.applicationInfo.apiVersion = XR_MAKE_VERSION(1, 2, 0);
-    CHECK(xrCreateInstance(&info, &instance) == XR_ERROR_API_VERSION_UNSUPPORTED);
-    info.applicationInfo.apiVersion = 0;
-    CHECK(xrCreateInstance(&info, &instance) == XR_ERROR_API_VERSION_UNSUPPORTED);
-    const std::vector<const char*> unknown{"XR_KHR_nothing"};
-    info = instanceInfo(unknown);
-    CHECK(xrCreateInstance(&info, &instance) == XR_ERROR_EXTENSION_NOT_PRESENT);
-}
-
-TEST_CASE("layers are the loader's business") {
-    const Headset headset(kQuietScript);
-    XrInstance instance = XR_NULL_HANDLE;
-    // The loader wants the layer to be there, so it is one that there is: the loader hands its name on.
-    std::uint32_t count = 0;
-    REQUIRE(xrEnumerateApiLayerProperties(0, &count, nullptr) == XR_SUCCESS);
-    std::vector<XrApiLayerProperties> layers(count, {XR_TYPE_API_LAYER_PROPERTIES});
-    REQUIRE(xrEnumerateApiLayerProperties(count, &count, layers.data()) == XR_SUCCESS);
-    for (const XrApiLayerProperties& layer : layers) {
-        const char* const name = layer.layerName;
+TEST_CASE("an instance is refused for what its description lacks, and for a script that is none") {
+    {
+        const Headset headset(kQuietScript);
+        XrInstance instance = XR_NULL_HANDLE;
         XrInstanceCreateInfo info = instanceInfo({});
-        info.enabledApiLayerCount = 1;
-        info.enabledApiLayerNames = &name;
-        CHECK(xrCreateInstance(&info, &instance) == XR_SUCCESS);
-        CHECK(xrDestroyInstance(instance) == XR_SUCCESS);
+        XrApplicationInfo& application = info.applicationInfo;
+        const auto make = [&] { return tryInstance(info); };
+        CHECK(xrCreateInstance(nullptr, &instance) == XR_ERROR_VALIDATION_FAILURE);
+        CHECK(xrCreateInstance(&info, nullptr) == XR_ERROR_VALIDATION_FAILURE);
+        checkChanges(make, XR_ERROR_VALIDATION_FAILURE, to(info.type, XR_TYPE_SYSTEM_GET_INFO), to(info.createFlags, 1));
+        CHECK(with(application.applicationName[0], '\0', make) == XR_ERROR_NAME_INVALID);
+        CHECK(with(application.engineName[0], '\xFF', make) == XR_ERROR_VALIDATION_FAILURE);
+        checkChanges(make, XR_ERROR_API_VERSION_UNSUPPORTED, to(application.apiVersion, XR_MAKE_VERSION(1, 2, 0)),
+                     to(application.apiVersion, 0));
+    }
+    CHECK(tryScript(kQuietScript, {"XR_KHR_nothing"}) == XR_ERROR_EXTENSION_NOT_PRESENT);
+    CHECK(tryScript("profile khr/simple_controller\npress left squeeze 0 1\n") == XR_ERROR_RUNTIME_FAILURE);
+    CHECK(tryScript("hed 0 position 0 0 0\n") == XR_ERROR_RUNTIME_FAILURE);
+}
+
+TEST_CASE("instances are of 1.0 and 1.1, whatever the patch, and of nothing else; names that are not ended are invalid") {
+    const Headset headset(kQuietScript);
+    const Direct runtime;
+    XrInstanceCreateInfo info = instanceInfo({});
+    const auto make = [&] { return tryInstance(info, runtime.get); };
+    for (const XrVersion good :
+         {XR_MAKE_VERSION(1, 0, 0), XR_MAKE_VERSION(1, 0, 34), XR_MAKE_VERSION(1, 1, 0), XR_MAKE_VERSION(1, 1, 4711)}) {
+        CHECK(with(info.applicationInfo.apiVersion, good, make) == XR_SUCCESS);
+    }
+    for (const XrVersion bad : {XR_MAKE_VERSION(1, 2, 0), XR_MAKE_VERSION(2, 0, 0), XR_MAKE_VERSION(0, 9, 0), 1ULL}) {
+        CHECK(with(info.applicationInfo.apiVersion, bad, make) == XR_ERROR_API_VERSION_UNSUPPORTED);
+    }
+    std::memset(info.applicationInfo.engineName, 'a', sizeof info.applicationInfo.engineName);
+    CHECK(make() == XR_ERROR_NAME_INVALID);
+    info = instanceInfo({});
+    std::memset(info.applicationInfo.applicationName, 'a', sizeof info.applicationInfo.applicationName);
+    CHECK(make() == XR_ERROR_NAME_INVALID);
+}
+
+TEST_CASE("layers are the loader's business, whatever they are called") {
+    const Headset headset(kQuietScript);
+    const char* name = "XR_APILAYER_nobody_nothing";
+    XrInstanceCreateInfo info = instanceInfo({});
+    info.enabledApiLayerCount = 1;
+    info.enabledApiLayerNames = &name;
+    CHECK(tryInstance(info, Direct().get) == XR_SUCCESS);
+    // The loader wants the layer to be there, so it is one that there is: the loader hands its name on.
+    for (const auto& layer : checkList<XrApiLayerProperties>(xrEnumerateApiLayerProperties, {XR_TYPE_API_LAYER_PROPERTIES})) {
+        name = layer.layerName;
+        CHECK(tryInstance(info) == XR_SUCCESS);
     }
 }
 
-TEST_CASE("a script whose controllers lack what it presses is a failure of the runtime") {
-    const Headset headset("profile khr/simple_controller\npress left squeeze 0 1\n");
-    const XrInstanceCreateInfo info = instanceInfo({});
-    XrInstance instance = XR_NULL_HANDLE;
-    CHECK(xrCreateInstance(&info, &instance) == XR_ERROR_RUNTIME_FAILURE);
-}
-
-TEST_CASE("a broken script is a failure of the runtime") {
+TEST_CASE("the environment is read again for each instance") {
     const Headset headset("hed 0 position 0 0 0\n");
-    const XrInstanceCreateInfo info = instanceInfo({});
-    XrInstance instance = XR_NULL_HANDLE;
-    CHECK(xrCreateInstance(&info, &instance) == XR_ERROR_RUNTIME_FAILURE);
+    const Direct runtime;
+    CHECK(tryInstance(instanceInfo({}), runtime.get) == XR_ERROR_RUNTIME_FAILURE);
+    std::ofstream(headset.folder / "other.script") << "plugged on\n";
+    setenv("SIMULATED_OPENXR_SCRIPT", (headset.folder / "other.script").c_str(), 1);
+    CHECK(tryInstance(instanceInfo({}), runtime.get) == XR_SUCCESS);
+    setenv("SIMULATED_OPENXR_CLOCK", "sundial", 1);
+    const std::string explained = explainedBy([&] { CHECK(tryInstance(instanceInfo({}), runtime.get) == XR_ERROR_RUNTIME_FAILURE); });
+    CHECK(explained == "simulated runtime: xrCreateInstance: SIMULATED_OPENXR_CLOCK is 'sundial', must be lockstep or real\n");
+    for (const char* name : {"SIMULATED_OPENXR_SCRIPT", "SIMULATED_OPENXR_CLOCK"}) { unsetenv(name); }
 }
 
-TEST_CASE_FIXTURE(InstanceFixture, "an instance says what it runs on, and ends once") {
+TEST_CASE("refusals are explained, counted where they come again, and not those of the loader's own questions") {
+    const std::string refused = explainedBy([] {
+        const Headset headset(kQuietScript);
+        const Direct runtime;
+        XrInstanceCreateInfo info = instanceInfo({});
+        info.createFlags = 1;
+        CHECK(tryInstance(info, runtime.get) == XR_ERROR_VALIDATION_FAILURE);
+        PFN_xrVoidFunction found = nullptr;
+        for (const char* name : {"xrWaitFrame", "xrEndFrame", "xrCreateHandTrackerEXT"}) {
+            CHECK(runtime.get(XR_NULL_HANDLE, name, &found) == XR_ERROR_HANDLE_INVALID);
+        }
+    });
+    CHECK(refused == "simulated runtime: xrCreateInstance: XR_ERROR_VALIDATION_FAILURE: createFlags is 1, no flags are known\n");
+
+    const std::string repeated = explainedBy([] {
+        const DirectInstance made(k1_0, {});
+        XrPath path = XR_NULL_PATH;
+        const auto toPath = made.XR(xrStringToPath);
+        for (int i = 0; i < 125; ++i) {
+            CHECK(toPath(made.instance, "no slash", &path) == XR_ERROR_PATH_FORMAT_INVALID);
+            if (i % 20 == 0) { CHECK(toPath(made.instance, "/a/../b", &path) == XR_ERROR_PATH_FORMAT_INVALID); }
+        }
+    });
+    const std::string line = "simulated runtime: xrStringToPath: XR_ERROR_PATH_FORMAT_INVALID: 'no slash' is not a well-formed path";
+    const std::string other = "simulated runtime: xrStringToPath: XR_ERROR_PATH_FORMAT_INVALID: '/a/../b' is not a well-formed path";
+    CHECK(repeated == line + "\n" + other + "\n" + line + " (10 times so far)\n" + line + " (100 times so far)\n" + other +
+                          " (7 times in all)\n" + line + " (125 times in all)\n");
+}
+
+TEST_CASE("an instance empties the folder of an earlier run, one that is refused leaves it alone") {
+    const Headset headset(kQuietScript);
+    const std::filesystem::path log = headset.written / "frames.jsonl", picture = headset.written / "frame_000003.png";
+    std::filesystem::create_directories(headset.written);
+    std::ofstream(picture) << "x";
+    std::ofstream(log) << "{\"frame\":0,\"display_time_ns\":1,\"picture\":\"frame_000003.png\"}\n";
+    const Direct runtime;
+    const Extensions unknown{"XR_KHR_nothing"};
+    CHECK(tryInstance(instanceInfo(unknown), runtime.get) == XR_ERROR_EXTENSION_NOT_PRESENT);
+    CHECK(std::filesystem::exists(picture));
+    CHECK(std::filesystem::file_size(log) > 0);
+    CHECK(tryInstance(instanceInfo({}), runtime.get) == XR_SUCCESS);
+    CHECK_FALSE(std::filesystem::exists(picture));
+    CHECK(std::filesystem::file_size(log) == 0);
+    // Somebody else's log, here behind a link.
+    std::ofstream(headset.folder / "victim") << "keep me";
+    std::filesystem::remove(log);
+    std::filesystem::create_symlink(headset.folder / "victim", log);
+    const std::string explained = explainedBy([&] { CHECK(tryInstance(instanceInfo({}), runtime.get) == XR_ERROR_RUNTIME_FAILURE); });
+    CHECK(explained ==
+          "simulated runtime: xrCreateInstance: " + log.string() + ": not what an earlier run left here, must be moved elsewhere\n");
+    CHECK(std::filesystem::file_size(headset.folder / "victim") == 7);
+}
+
+TEST_CASE("functions are found by name, those of extensions and of 1.1 where these are enabled") {
+    {
+        const InstanceFixture made;
+        PFN_xrVoidFunction found = nullptr;
+        CHECK(xrGetInstanceProcAddr(made.instance, "xrWaitFrame", &found) == XR_SUCCESS);
+        CHECK((found != nullptr));
+        CHECK(made.has("xrGetVisibilityMaskKHR"));
+        CHECK(xrGetInstanceProcAddr(made.instance, "xrGetVulkanGraphicsDeviceKHR", &found) == XR_ERROR_FUNCTION_UNSUPPORTED);
+        CHECK((found == nullptr));
+        CHECK(xrGetInstanceProcAddr(made.instance, "xrMakeCoffee", &found) == XR_ERROR_FUNCTION_UNSUPPORTED);
+        CHECK(xrGetInstanceProcAddr(XR_NULL_HANDLE, "xrCreateSession", &found) == XR_ERROR_HANDLE_INVALID);
+        CHECK(xrGetInstanceProcAddr(XR_NULL_HANDLE, "xrCreateInstance", &found) == XR_SUCCESS);
+    }
+    for (const auto& [version, extensions, of_1_1, of_extension] :
+         {std::tuple(k1_0, Extensions{}, false, false), std::tuple(k1_0, Extensions{XR_KHR_LOCATE_SPACES_EXTENSION_NAME}, false, true),
+          std::tuple(k1_1, Extensions{}, true, false)}) {
+        const DirectInstance made(version, extensions);
+        CHECK(made.has("xrLocateSpaces") == of_1_1);
+        CHECK(made.has("xrLocateSpacesKHR") == of_extension);
+        for (const char* name : {"xrCreateDebugUtilsMessengerEXT", "xrConvertTimespecTimeToTimeKHR", "xrCreateHandTrackerEXT",
+                                 "xrGetDisplayRefreshRateFB", "xrSetInputDeviceActiveEXT"}) {
+            CHECK_FALSE_MESSAGE(made.has(name), name);
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(InstanceFixture, "an instance says what it runs on, has events, and ends once") {
     XrInstanceProperties properties{XR_TYPE_INSTANCE_PROPERTIES};
     CHECK(xrGetInstanceProperties(instance, &properties) == XR_SUCCESS);
     CHECK(std::string(properties.runtimeName) == "Simulated OpenXR runtime");
     CHECK(properties.runtimeVersion > 0);
-    properties.type = XR_TYPE_SYSTEM_PROPERTIES;
-    CHECK(xrGetInstanceProperties(instance, &properties) == XR_ERROR_VALIDATION_FAILURE);
-    CHECK(xrGetInstanceProperties(instance, nullptr) == XR_ERROR_VALIDATION_FAILURE);
+    checkArguments(xrGetInstanceProperties, instance, &properties);
+    XrEventDataBuffer event{XR_TYPE_EVENT_DATA_BUFFER};
+    CHECK(xrPollEvent(instance, &event) == XR_EVENT_UNAVAILABLE);
+    checkArguments(xrPollEvent, instance, &event);
     CHECK(xrDestroyInstance(XR_NULL_HANDLE) == XR_ERROR_HANDLE_INVALID);
     CHECK(xrDestroyInstance(instance) == XR_SUCCESS);
     CHECK(xrDestroyInstance(instance) == XR_ERROR_HANDLE_INVALID);
     instance = XR_NULL_HANDLE;
 }
 
-TEST_CASE_FIXTURE(InstanceFixture, "functions are found by name, those of extensions only where they are enabled") {
-    PFN_xrVoidFunction found = nullptr;
-    CHECK(xrGetInstanceProcAddr(instance, "xrWaitFrame", &found) == XR_SUCCESS);
-    CHECK((found != nullptr));
-    CHECK(xrGetInstanceProcAddr(instance, "xrGetVisibilityMaskKHR", &found) == XR_SUCCESS);
-    CHECK(xrGetInstanceProcAddr(instance, "xrGetVulkanGraphicsDeviceKHR", &found) == XR_ERROR_FUNCTION_UNSUPPORTED);
-    CHECK((found == nullptr));
-    CHECK(xrGetInstanceProcAddr(instance, "xrMakeCoffee", &found) == XR_ERROR_FUNCTION_UNSUPPORTED);
-    CHECK(xrGetInstanceProcAddr(XR_NULL_HANDLE, "xrCreateSession", &found) == XR_ERROR_HANDLE_INVALID);
-    CHECK(xrGetInstanceProcAddr(XR_NULL_HANDLE, "xrCreateInstance", &found) == XR_SUCCESS);
+TEST_CASE("values have names, also those of 1.1") {
+    const DirectInstance made(k1_1, {});
+    char text[XR_MAX_RESULT_STRING_SIZE];
+    for (const auto& [value, name] : {std::pair(XR_ERROR_LAYER_INVALID, "XR_ERROR_LAYER_INVALID"),
+                                      std::pair(static_cast<XrResult>(-31415), "XR_UNKNOWN_FAILURE_-31415"),
+                                      std::pair(static_cast<XrResult>(31415), "XR_UNKNOWN_SUCCESS_31415"),
+                                      std::pair(static_cast<XrResult>(-1000710001), "XR_ERROR_EXTENSION_DEPENDENCY_NOT_ENABLED"),
+                                      std::pair(static_cast<XrResult>(-1000710000), "XR_ERROR_PERMISSION_INSUFFICIENT")}) {
+        CHECK(made.XR(xrResultToString)(made.instance, value, text) == XR_SUCCESS);
+        CHECK(std::string(text) == name);
+    }
+    CHECK(made.XR(xrResultToString)(made.instance, XR_SUCCESS, nullptr) == XR_ERROR_VALIDATION_FAILURE);
+    for (const auto& [value, name] : {std::pair(XR_TYPE_SWAPCHAIN_CREATE_INFO, "XR_TYPE_SWAPCHAIN_CREATE_INFO"),
+                                      std::pair(static_cast<XrStructureType>(31415), "XR_UNKNOWN_STRUCTURE_TYPE_31415"),
+                                      std::pair(static_cast<XrStructureType>(1000471001), "XR_TYPE_SPACE_LOCATIONS")}) {
+        CHECK(made.XR(xrStructureTypeToString)(made.instance, value, text) == XR_SUCCESS);
+        CHECK(std::string(text) == name);
+    }
 }
 
-TEST_CASE_FIXTURE(InstanceFixture, "values have names") {
-    char result[XR_MAX_RESULT_STRING_SIZE], type[XR_MAX_STRUCTURE_NAME_SIZE];
-    CHECK(xrResultToString(instance, XR_ERROR_LAYER_INVALID, result) == XR_SUCCESS);
-    CHECK(std::string(result) == "XR_ERROR_LAYER_INVALID");
-    CHECK(xrResultToString(instance, static_cast<XrResult>(-31415), result) == XR_SUCCESS);
-    CHECK(std::string(result) == "XR_UNKNOWN_FAILURE_-31415");
-    CHECK(xrResultToString(instance, static_cast<XrResult>(31415), result) == XR_SUCCESS);
-    CHECK(std::string(result) == "XR_UNKNOWN_SUCCESS_31415");
-    CHECK(xrStructureTypeToString(instance, XR_TYPE_SWAPCHAIN_CREATE_INFO, type) == XR_SUCCESS);
-    CHECK(std::string(type) == "XR_TYPE_SWAPCHAIN_CREATE_INFO");
-    CHECK(xrStructureTypeToString(instance, static_cast<XrStructureType>(31415), type) == XR_SUCCESS);
-    CHECK(std::string(type) == "XR_UNKNOWN_STRUCTURE_TYPE_31415");
-    CHECK(xrResultToString(instance, XR_SUCCESS, nullptr) == XR_ERROR_VALIDATION_FAILURE);
-}
-
-TEST_CASE_FIXTURE(InstanceFixture, "events are polled into a buffer of the right type") {
-    XrEventDataBuffer event{XR_TYPE_EVENT_DATA_BUFFER};
-    CHECK(xrPollEvent(instance, &event) == XR_EVENT_UNAVAILABLE);
-    event.type = XR_TYPE_EVENT_DATA_EVENTS_LOST;
-    CHECK(xrPollEvent(instance, &event) == XR_ERROR_VALIDATION_FAILURE);
-    CHECK(xrPollEvent(instance, nullptr) == XR_ERROR_VALIDATION_FAILURE);
-}
-
-TEST_CASE_FIXTURE(InstanceFixture, "a system is one head-mounted display") {
-    XrSystemGetInfo get{XR_TYPE_SYSTEM_GET_INFO, nullptr, XR_FORM_FACTOR_HANDHELD_DISPLAY};
+TEST_CASE_FIXTURE(InstanceFixture, "a system is one head-mounted display; a next chain may hold what is unknown, but it must end") {
+    XrSystemGetInfo info{XR_TYPE_SYSTEM_GET_INFO, nullptr, XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY};
     XrSystemId id = XR_NULL_SYSTEM_ID;
-    CHECK(xrGetSystem(instance, &get, &id) == XR_ERROR_FORM_FACTOR_UNSUPPORTED);
-    get.formFactor = static_cast<XrFormFactor>(77);
-    CHECK(xrGetSystem(instance, &get, &id) == XR_ERROR_FORM_FACTOR_UNSUPPORTED);
-    get.formFactor = XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY;
-    CHECK(xrGetSystem(instance, &get, nullptr) == XR_ERROR_VALIDATION_FAILURE);
-    get.type = XR_TYPE_UNKNOWN;
-    CHECK(xrGetSystem(instance, &get, &id) == XR_ERROR_VALIDATION_FAILURE);
+    const auto get = [&] { return xrGetSystem(instance, &info, &id); };
+    checkChanges(get, XR_ERROR_FORM_FACTOR_UNSUPPORTED, to(info.formFactor, XR_FORM_FACTOR_HANDHELD_DISPLAY),
+                 to(info.formFactor, static_cast<XrFormFactor>(77)));
+    checkArguments(xrGetSystem, instance, &info, &id);
+    XrBaseInStructure stranger{static_cast<XrStructureType>(987654321), nullptr};
+    CHECK(with(info.next, &stranger, get) == XR_SUCCESS);
+    stranger.next = &stranger;
+    CHECK(with(info.next, &stranger, get) == XR_ERROR_VALIDATION_FAILURE);
 
     XrSystemProperties properties{XR_TYPE_SYSTEM_PROPERTIES};
     CHECK(xrGetSystemProperties(instance, system, &properties) == XR_SUCCESS);
@@ -201,26 +307,13 @@ TEST_CASE_FIXTURE(InstanceFixture, "a system is one head-mounted display") {
     CHECK(xrGetSystemProperties(instance, system + 1, &properties) == XR_ERROR_SYSTEM_INVALID);
 }
 
-TEST_CASE_FIXTURE(InstanceFixture, "a next chain may hold what the runtime does not know, but it must end") {
-    XrBaseInStructure stranger{static_cast<XrStructureType>(987654321), nullptr};
-    XrSystemGetInfo get{XR_TYPE_SYSTEM_GET_INFO, &stranger, XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY};
-    XrSystemId id = XR_NULL_SYSTEM_ID;
-    CHECK(xrGetSystem(instance, &get, &id) == XR_SUCCESS);
-    stranger.next = &stranger;
-    CHECK(xrGetSystem(instance, &get, &id) == XR_ERROR_VALIDATION_FAILURE);
-}
-
-TEST_CASE_FIXTURE(InstanceFixture, "views are two, of the script's size") {
+TEST_CASE_FIXTURE(InstanceFixture, "views are two, of the script's size, and opaque") {
     std::uint32_t count = 0;
-    XrViewConfigurationType type{};
-    CHECK(xrEnumerateViewConfigurations(instance, system, 1, &count, &type) == XR_SUCCESS);
-    CHECK(count == 1);
-    CHECK(type == XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO);
+    const auto listTypes = [&](auto... step) { return xrEnumerateViewConfigurations(instance, system, step...); };
+    CHECK(checkList<XrViewConfigurationType>(listTypes) == std::vector{kStereo});
     CHECK(xrEnumerateViewConfigurations(instance, 0, 0, &count, nullptr) == XR_ERROR_SYSTEM_INVALID);
-    CHECK(xrEnumerateViewConfigurations(instance, system, 1, &count, nullptr) == XR_ERROR_VALIDATION_FAILURE);
-
     XrViewConfigurationProperties properties{XR_TYPE_VIEW_CONFIGURATION_PROPERTIES};
-    CHECK(xrGetViewConfigurationProperties(instance, system, type, &properties) == XR_SUCCESS);
+    CHECK(xrGetViewConfigurationProperties(instance, system, kStereo, &properties) == XR_SUCCESS);
     CHECK(properties.fovMutable == XR_TRUE);
     const auto mono = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_MONO;
     CHECK(xrGetViewConfigurationProperties(instance, system, mono, &properties) == XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED);
@@ -229,83 +322,125 @@ TEST_CASE_FIXTURE(InstanceFixture, "views are two, of the script's size") {
         CHECK(xrGetViewConfigurationProperties(instance, system, none, &properties) == XR_ERROR_VALIDATION_FAILURE);
     }
 
-    XrViewConfigurationView views[2] = {{XR_TYPE_VIEW_CONFIGURATION_VIEW}, {XR_TYPE_VIEW_CONFIGURATION_VIEW}};
-    CHECK(xrEnumerateViewConfigurationViews(instance, system, type, 2, &count, views) == XR_SUCCESS);
-    CHECK(count == 2);
+    const auto listViews = [&](auto... step) { return xrEnumerateViewConfigurationViews(instance, system, kStereo, step...); };
+    const auto views = checkList<XrViewConfigurationView>(listViews, {XR_TYPE_VIEW_CONFIGURATION_VIEW});
+    REQUIRE(views.size() == 2);
     CHECK(views[1].recommendedImageRectWidth == 64);
-    CHECK(xrEnumerateViewConfigurationViews(instance, system, type, 1, &count, views) == XR_ERROR_SIZE_INSUFFICIENT);
-    CHECK(count == 2);
-    views[1].type = XR_TYPE_VIEW;
-    CHECK(xrEnumerateViewConfigurationViews(instance, system, type, 2, &count, views) == XR_ERROR_VALIDATION_FAILURE);
     CHECK(xrEnumerateViewConfigurationViews(instance, system, mono, 0, &count, nullptr) == XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED);
+
+    const auto listModes = [&](auto... step) { return xrEnumerateEnvironmentBlendModes(instance, system, kStereo, step...); };
+    CHECK(checkList<XrEnvironmentBlendMode>(listModes) == std::vector{XR_ENVIRONMENT_BLEND_MODE_OPAQUE});
+    CHECK(xrEnumerateEnvironmentBlendModes(instance, 5, kStereo, 0, &count, nullptr) == XR_ERROR_SYSTEM_INVALID);
+    CHECK(xrEnumerateEnvironmentBlendModes(instance, system, mono, 0, &count, nullptr) == XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED);
 }
 
-TEST_CASE_FIXTURE(InstanceFixture, "the blend mode is opaque") {
-    std::uint32_t count = 0;
-    XrEnvironmentBlendMode mode{};
-    const auto stereo = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
-    CHECK(xrEnumerateEnvironmentBlendModes(instance, system, stereo, 1, &count, &mode) == XR_SUCCESS);
-    CHECK(mode == XR_ENVIRONMENT_BLEND_MODE_OPAQUE);
-    CHECK(xrEnumerateEnvironmentBlendModes(instance, 5, stereo, 1, &count, &mode) == XR_ERROR_SYSTEM_INVALID);
-    CHECK(xrEnumerateEnvironmentBlendModes(instance, system, XR_VIEW_CONFIGURATION_TYPE_PRIMARY_MONO, 1, &count, &mode) ==
-          XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED);
-}
-
-TEST_CASE_FIXTURE(InstanceFixture, "paths are the same for the same text, and back") {
+TEST_CASE_FIXTURE(InstanceFixture, "paths are the same for the same text, and back, and have a form") {
     const XrPath hand = path("/user/hand/left");
     CHECK(hand != XR_NULL_PATH);
     CHECK(hand == path("/user/hand/left"));
     CHECK(hand != path("/user/hand/right"));
-    char text[XR_MAX_PATH_LENGTH];
+    const auto text = checkList<char>([&](auto... step) { return xrPathToString(instance, hand, step...); });
+    CHECK(text.size() == 16);
+    CHECK(std::string(text.data()) == "/user/hand/left");
     std::uint32_t count = 0;
-    CHECK(xrPathToString(instance, hand, 0, &count, nullptr) == XR_SUCCESS);
-    CHECK(count == 16);
-    CHECK(xrPathToString(instance, hand, count, &count, text) == XR_SUCCESS);
-    CHECK(std::string(text) == "/user/hand/left");
-    CHECK(xrPathToString(instance, hand, count - 1, &count, text) == XR_ERROR_SIZE_INSUFFICIENT);
-    CHECK(xrPathToString(instance, hand, count, nullptr, text) == XR_ERROR_VALIDATION_FAILURE);
-    CHECK(xrPathToString(instance, hand, count, &count, nullptr) == XR_ERROR_VALIDATION_FAILURE);
-    CHECK(xrPathToString(instance, XR_NULL_PATH, 0, &count, nullptr) == XR_ERROR_PATH_INVALID);
-    CHECK(xrPathToString(instance, 123456, 0, &count, nullptr) == XR_ERROR_PATH_INVALID);
-}
+    for (const XrPath none : {XrPath{XR_NULL_PATH}, XrPath{123456}}) {
+        CHECK(xrPathToString(instance, none, 0, &count, nullptr) == XR_ERROR_PATH_INVALID);
+    }
 
-TEST_CASE_FIXTURE(InstanceFixture, "a path has a form") {
     XrPath made = XR_NULL_PATH;
-    for (const char* good : {"/a", "/a/b.c-d_e/9", "/.a/..b"}) CHECK_MESSAGE(xrStringToPath(instance, good, &made) == XR_SUCCESS, good);
-    for (const char* bad : {"", "/", "a", "a/b", "/a/", "//a", "/a//b", "/A", "/a b", "/a/.", "/..", "/a/.../b", "/\xC3\xA4", "/a\n"}) {
+    const std::string longest = "/" + std::string(XR_MAX_PATH_LENGTH - 2, 'a'), longer = longest + "a";
+    for (const char* good : {"/a", "/a/b.c-d_e/9", "/.a/..b", longest.c_str()}) {
+        CHECK_MESSAGE(xrStringToPath(instance, good, &made) == XR_SUCCESS, good);
+    }
+    for (const char* bad :
+         {"", "/", "a", "a/b", "/a/", "//a", "/a//b", "/A", "/a b", "/a/.", "/..", "/a/.../b", "/\xC3\xA4", "/a\n", longer.c_str()}) {
         CHECK_MESSAGE(xrStringToPath(instance, bad, &made) == XR_ERROR_PATH_FORMAT_INVALID, bad);
     }
-    const std::string longest = "/" + std::string(XR_MAX_PATH_LENGTH - 2, 'a');
-    CHECK(xrStringToPath(instance, longest.c_str(), &made) == XR_SUCCESS);
-    CHECK(xrStringToPath(instance, (longest + "a").c_str(), &made) == XR_ERROR_PATH_FORMAT_INVALID);
     CHECK(xrStringToPath(instance, nullptr, &made) == XR_ERROR_VALIDATION_FAILURE);
     CHECK(xrStringToPath(instance, "/a", nullptr) == XR_ERROR_VALIDATION_FAILURE);
 }
 
-TEST_CASE("messages of refused calls come through the loader") {
-    struct Listening : InstanceFixture {
-        Listening() : InstanceFixture(kQuietScript, {XR_EXT_DEBUG_UTILS_EXTENSION_NAME}) {}
-    };
-    const Listening fixture;
-    std::vector<std::string> heard;
-    const XrDebugUtilsMessengerCreateInfoEXT info{
-        XR_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
-        nullptr,
-        XR_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
-        XR_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT,
-        [](XrDebugUtilsMessageSeverityFlagsEXT, XrDebugUtilsMessageTypeFlagsEXT, const XrDebugUtilsMessengerCallbackDataEXT* data,
-           void* list) -> XrBool32 {
-            static_cast<std::vector<std::string>*>(list)->push_back(std::string(data->functionName) + ": " + data->message);
-            return XR_FALSE;
-        },
-        &heard};
-    XrDebugUtilsMessengerEXT messenger = XR_NULL_HANDLE;
-    const auto create = fixture.function<PFN_xrCreateDebugUtilsMessengerEXT>("xrCreateDebugUtilsMessengerEXT");
-    REQUIRE(create(fixture.instance, &info, &messenger) == XR_SUCCESS);
-    XrPath path = XR_NULL_PATH;
-    CHECK(xrStringToPath(fixture.instance, "no slash", &path) == XR_ERROR_PATH_FORMAT_INVALID);
-    CHECK(heard == std::vector<std::string>{"xrStringToPath: 'no slash' is not a well-formed path"});
-    CHECK(fixture.function<PFN_xrDestroyDebugUtilsMessengerEXT>("xrDestroyDebugUtilsMessengerEXT")(messenger) == XR_SUCCESS);
+TEST_CASE_FIXTURE(InstanceFixture, "Vulkan's requirements are a range of versions, asked for before a session, its own refusal is told") {
+    const auto getRequirements = XR(xrGetVulkanGraphicsRequirements2KHR);
+    XrGraphicsRequirementsVulkan2KHR requirements{XR_TYPE_GRAPHICS_REQUIREMENTS_VULKAN2_KHR};
+    CHECK(getRequirements(instance, system + 1, &requirements) == XR_ERROR_SYSTEM_INVALID);
+    const auto get = [&] { return getRequirements(instance, system, &requirements); };
+    const auto getFor = [&](XrInstance of, auto* place) { return getRequirements(of, system, place); };
+    checkArguments(getFor, instance, &requirements);
+    const XrGraphicsBindingVulkan2KHR graphics{XR_TYPE_GRAPHICS_BINDING_VULKAN2_KHR};
+    const XrSessionCreateInfo session_info{XR_TYPE_SESSION_CREATE_INFO, &graphics, 0, system};
+    CHECK(xrCreateSession(instance, &session_info, &session) == XR_ERROR_GRAPHICS_REQUIREMENTS_CALL_MISSING);
+    CHECK(get() == XR_SUCCESS);
+    CHECK(requirements.minApiVersionSupported <= XR_MAKE_VERSION(1, 1, 0));
+    CHECK(requirements.maxApiVersionSupported >= XR_MAKE_VERSION(1, 2, 0));
+    CHECK(xrCreateSession(instance, &session_info, &session) == XR_ERROR_GRAPHICS_DEVICE_INVALID);
+
+    const auto create = XR(xrCreateVulkanInstanceKHR);
+    const char* const nothing = "VK_KHR_nothing";
+    VkInstanceCreateInfo vulkan_info{VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO};
+    vulkan_info.enabledExtensionCount = 1;
+    vulkan_info.ppEnabledExtensionNames = &nothing;
+    XrVulkanInstanceCreateInfoKHR info{
+        XR_TYPE_VULKAN_INSTANCE_CREATE_INFO_KHR, nullptr, system, 0, vkGetInstanceProcAddr, &vulkan_info, nullptr};
+    VkInstance vulkan = VK_NULL_HANDLE;
+    VkResult result = VK_SUCCESS;
+    const auto make = [&] { return create(instance, &info, &vulkan, &result); };
+    CHECK(make() == XR_SUCCESS);
+    CHECK(result == VK_ERROR_EXTENSION_NOT_PRESENT);
+    CHECK(with(info.createFlags, 1, make) == XR_ERROR_VALIDATION_FAILURE);
+    CHECK(with(info.systemId, 9, make) == XR_ERROR_SYSTEM_INVALID);
+    checkChanges(make, XR_ERROR_VALIDATION_FAILURE, to(info.pfnGetInstanceProcAddr, nullptr), to(info.vulkanCreateInfo, nullptr));
+    checkArguments(create, instance, &info, &vulkan, &result);
+}
+
+TEST_CASE_FIXTURE(VulkanFixture, "the graphics device is one of Vulkan's instance, the same each time, and devices are made on it alone") {
+    const auto get = XR(xrGetVulkanGraphicsDevice2KHR);
+    XrVulkanGraphicsDeviceGetInfoKHR get_info{XR_TYPE_VULKAN_GRAPHICS_DEVICE_GET_INFO_KHR, nullptr, system, vulkan};
+    VkPhysicalDevice found = VK_NULL_HANDLE;
+    const auto find = [&] { return get(instance, &get_info, &found); };
+    CHECK(find() == XR_SUCCESS);
+    CHECK(found == physical_device);
+    CHECK(with(get_info.systemId, 0, find) == XR_ERROR_SYSTEM_INVALID);
+    CHECK(with(get_info.vulkanInstance, VK_NULL_HANDLE, find) == XR_ERROR_VALIDATION_FAILURE);
+    checkArguments(get, instance, &get_info, &found);
+    for (const char* index : {"99", "first", "0x"}) {
+        setenv("SIMULATED_OPENXR_GPU", index, 1);
+        CHECK_MESSAGE(find() == XR_ERROR_RUNTIME_FAILURE, index);
+    }
+    unsetenv("SIMULATED_OPENXR_GPU");
+    CHECK(find() == XR_SUCCESS);
+
+    const VkDeviceCreateInfo vulkan_info{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO};
+    XrVulkanDeviceCreateInfoKHR info{
+        XR_TYPE_VULKAN_DEVICE_CREATE_INFO_KHR, nullptr, system, 0, vkGetInstanceProcAddr, physical_device, &vulkan_info, nullptr};
+    VkDevice made = VK_NULL_HANDLE;
+    VkResult result = VK_SUCCESS;
+    checkArguments(XR(xrCreateVulkanDeviceKHR), instance, &info, &made, &result);
+    const auto make = [&] { return XR(xrCreateVulkanDeviceKHR)(instance, &info, &made, &result); };
+    CHECK(with(info.vulkanPhysicalDevice, VK_NULL_HANDLE, make) == XR_ERROR_HANDLE_INVALID);
+    CHECK(with(info.systemId, 4, make) == XR_ERROR_SYSTEM_INVALID);
+}
+
+TEST_CASE("the older extension has functions of its own, and needs no extensions of Vulkan") {
+    const DirectInstance made(k1_0, {XR_KHR_VULKAN_ENABLE_EXTENSION_NAME});
+    CHECK_FALSE(made.has("xrCreateVulkanInstanceKHR"));
+    CHECK(made.has("xrGetVulkanGraphicsDeviceKHR"));
+    for (const auto getExtensions : {made.XR(xrGetVulkanInstanceExtensionsKHR), made.XR(xrGetVulkanDeviceExtensionsKHR)}) {
+        std::uint32_t count = 0;
+        char text[4] = "no";
+        CHECK(getExtensions(made.instance, 1, 0, &count, nullptr) == XR_SUCCESS);
+        CHECK(count == 1);
+        CHECK(getExtensions(made.instance, 1, 4, &count, text) == XR_SUCCESS);
+        CHECK(std::string(text).empty());
+        CHECK(getExtensions(made.instance, 2, 4, &count, text) == XR_ERROR_SYSTEM_INVALID);
+    }
+    const auto getRequirements = made.XR(xrGetVulkanGraphicsRequirementsKHR);
+    XrGraphicsRequirementsVulkanKHR requirements{XR_TYPE_GRAPHICS_REQUIREMENTS_VULKAN_KHR};
+    CHECK(getRequirements(made.instance, 1, &requirements) == XR_SUCCESS);
+    CHECK(requirements.minApiVersionSupported <= XR_MAKE_VERSION(1, 1, 0));
+    CHECK(requirements.maxApiVersionSupported >= XR_MAKE_VERSION(1, 2, 0));
+    CHECK(getRequirements(made.instance, 2, &requirements) == XR_ERROR_SYSTEM_INVALID);
+    checkArguments([&](XrInstance of, auto* place) { return getRequirements(of, 1, place); }, made.instance, &requirements);
 }
 
 }  // namespace simulated_instance_test

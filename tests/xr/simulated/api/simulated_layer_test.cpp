@@ -1,8 +1,9 @@
-// Section 10.6 of OpenXR on the simulated runtime: the layers of xrEndFrame, and what of them reaches the wearer's eyes and the log.
-#include "tests/xr/simulated/api/simulated_fixture.h"
+// Section 10.6 of OpenXR on the simulated runtime: the layers of xrEndFrame, also of XR_KHR_composition_layer_cylinder, _equirect2 and
+// _cube, and what of them reaches the wearer's eyes and the log.
+#include "tests/xr/simulated/api/simulated_painter.h"
+#include "xr/simulated/compose/picture_file.h"
 
 #include <cmath>
-#include <fstream>
 
 TEST_SUITE_BEGIN("simulated_layer");
 
@@ -12,211 +13,260 @@ using namespace binosplat::test;
 
 namespace {
 
-struct LayersFixture : SessionFixture {
+using Json = nlohmann::json;
+using Texel = std::array<std::uint8_t, 4>;
+
+constexpr float kPi = 3.14159265f;
+constexpr auto kNotValid = XR_ERROR_VALIDATION_FAILURE;
+const Extensions kExtensions{XR_KHR_COMPOSITION_LAYER_CYLINDER_EXTENSION_NAME, XR_KHR_COMPOSITION_LAYER_EQUIRECT2_EXTENSION_NAME,
+                             XR_KHR_COMPOSITION_LAYER_CUBE_EXTENSION_NAME};
+
+struct FlatFixture : SessionFixture {
     XrSwapchain colour, depth;
     XrCompositionLayerProjectionView views[2];
     XrCompositionLayerDepthInfoKHR depths[2];
     XrCompositionLayerProjection projection{XR_TYPE_COMPOSITION_LAYER_PROJECTION};
     XrCompositionLayerQuad quad{XR_TYPE_COMPOSITION_LAYER_QUAD};
 
-    explicit LayersFixture(const std::string& script = kQuietScript) : SessionFixture(script) {
+    explicit FlatFixture(const std::string& script = kQuietScript) : SessionFixture(script) {
         focus();
         colour = makeSwapchain();
-        depth = makeSwapchain(VK_FORMAT_D32_SFLOAT);
+        depth = makeSwapchain(swapchainInfo(VK_FORMAT_D32_SFLOAT));
         turn(colour);
         turn(depth);
+        const XrRect2Di whole{{0, 0}, {64, 32}};
         for (int eye = 0; eye < 2; ++eye) {
-            depths[eye] = {XR_TYPE_COMPOSITION_LAYER_DEPTH_INFO_KHR, nullptr, {depth, {{0, 0}, {64, 32}}, 0}, 0, 1, 0.1f, 100};
-            views[eye] = {XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW,
-                          &depths[eye],
-                          kIdentity,
-                          {-0.8f, 0.8f, 0.8f, -0.8f},
-                          {colour, {{0, 0}, {64, 32}}, 0}};
+            depths[eye] = {XR_TYPE_COMPOSITION_LAYER_DEPTH_INFO_KHR, nullptr, {depth, whole, 0}, 0, 1, 0.1f, 100};
+            views[eye] = {
+                XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW, &depths[eye], kIdentity, {-0.8f, 0.8f, 0.8f, -0.8f}, {colour, whole, 0}};
         }
-        projection.space = local;
+        projection.space = quad.space = local;
         projection.viewCount = 2;
         projection.views = views;
-        quad.space = local;
-        quad.subImage = {colour, {{0, 0}, {64, 32}}, 0};
+        quad.subImage = {colour, whole, 0};
         quad.pose = {{0, 0, 0, 1}, {0, 0, -1}};
         quad.size = {1, 0.5f};
     }
-
-    // Ends a frame with the layer, and then one without any, so that the next call starts anew.
-    XrResult shown(const void* layer) const {
-        const XrTime time = waitFrame().predictedDisplayTime;
-        REQUIRE(xrBeginFrame(session, nullptr) == XR_SUCCESS);
-        const XrResult result = endFrame(time, {static_cast<const XrCompositionLayerBaseHeader*>(layer)});
-        if (XR_FAILED(result)) REQUIRE(endFrame(time) == XR_SUCCESS);
-        return result;
-    }
 };
 
-struct WritingFixture : LayersFixture {
-    WritingFixture() : LayersFixture("size 64 32\nframes from 3 to 9\n") {}
+struct SurroundFixture : SessionFixture {
+    Painter painter{*this};
+    XrSwapchain picture = XR_NULL_HANDLE, cube_map = XR_NULL_HANDLE;
+    XrCompositionLayerCylinderKHR cylinder{XR_TYPE_COMPOSITION_LAYER_CYLINDER_KHR};
+    XrCompositionLayerEquirect2KHR sphere{XR_TYPE_COMPOSITION_LAYER_EQUIRECT2_KHR};
+    XrCompositionLayerCubeKHR cube{XR_TYPE_COMPOSITION_LAYER_CUBE_KHR};
+
+    explicit SurroundFixture(const Extensions& extensions = kExtensions) : SessionFixture("size 16 16\nframes from 3 to 99\n", extensions) {
+        focus();
+        picture = painter.makeSwapchain(VK_FORMAT_R8G8B8A8_SRGB, 4, 4);
+        painter.paint(picture, 4, 4, std::vector<Texel>(16, {255, 0, 0, 255}));
+        cylinder.space = sphere.space = cube.space = local;
+        cylinder.subImage = sphere.subImage = {picture, {{0, 0}, {4, 4}}, 0};
+        cylinder.pose = sphere.pose = kIdentity;
+        cylinder.centralAngle = kPi;
+        cylinder.aspectRatio = 1;
+        sphere.centralHorizontalAngle = 2 * kPi;
+        sphere.upperVerticalAngle = kPi / 2;
+        sphere.lowerVerticalAngle = -kPi / 2;
+        cube.orientation = {0, 0, 0, 1};
+    }
+    void makeCube() {
+        cube_map = painter.makeSwapchain(VK_FORMAT_R8G8B8A8_SRGB, 4, 4, 1, 6);
+        std::vector<Texel> texels(6 * 16, {0, 0, 0, 255});
+        std::fill(texels.begin() + 5 * 16, texels.end(), Texel{0, 255, 0, 255});  // -z
+        painter.paint(cube_map, 4, 4, texels);
+        cube.swapchain = cube_map;
+    }
+    // In the middle of the left eye's last picture.
+    Texel seen() const {
+        const simulated::RgbPicture both = simulated::readPng(written / logged().back()["picture"].get<std::string>());
+        const std::size_t i = 3 * (8 * std::size_t{both.size_px.x} + 8);
+        return {both.bytes[i], both.bytes[i + 1], both.bytes[i + 2], 255};
+    }
 };
 
 }  // namespace
 
-TEST_CASE_FIXTURE(LayersFixture, "good layers are taken") {
-    CHECK(shown(&projection) == XR_SUCCESS);
-    CHECK(shown(&quad) == XR_SUCCESS);
-    CHECK(frame({reinterpret_cast<const XrCompositionLayerBaseHeader*>(&projection),
-                 reinterpret_cast<const XrCompositionLayerBaseHeader*>(&quad)})
-              .shouldRender == XR_TRUE);
-}
+TEST_CASE_FIXTURE(FlatFixture, "layers are of a known type, some eye's, of poses of length 1, and as many as the system says") {
+    const auto showQuad = [&] { return show(&quad); };
+    const auto showViews = [&] { return show(&projection); };
+    CHECK(showViews() == XR_SUCCESS);
+    CHECK(showQuad() == XR_SUCCESS);
+    CHECK(frame({headerOf(projection), headerOf(quad)}).shouldRender == XR_TRUE);
+    CHECK(show(nullptr) == XR_ERROR_LAYER_INVALID);
+    CHECK(with(quad.type, XR_TYPE_COMPOSITION_LAYER_CUBE_KHR, showQuad) == XR_ERROR_LAYER_INVALID);
+    CHECK(with(quad.layerFlags, 1 << 20, showQuad) == kNotValid);
+    CHECK(with(quad.space, XR_NULL_HANDLE, showQuad) == XR_ERROR_HANDLE_INVALID);
+    CHECK(with(quad.pose.orientation.w, 0, showQuad) == XR_ERROR_POSE_INVALID);
+    CHECK(with(quad.eyeVisibility, static_cast<XrEyeVisibility>(3), showQuad) == kNotValid);
+    CHECK(with(quad.eyeVisibility, XR_EYE_VISIBILITY_RIGHT, showQuad) == XR_SUCCESS);
+    // It may be a line or a point, but not inside out.
+    checkChanges(showQuad, XR_SUCCESS, to(quad.size, {0, 0}), to(quad.size, {1, 0}));
+    checkChanges(showQuad, kNotValid, to(quad.size, {1, -1}), to(quad.size, {NAN, 1}));
+    // A view for each eye.
+    checkChanges(showViews, kNotValid, to(projection.viewCount, 1), to(projection.viewCount, 3), to(projection.views, nullptr),
+                 to(views[0].type, XR_TYPE_VIEW), to(views[0].fov.angleRight, 1.6f));
+    CHECK(with(views[1].pose.orientation, {1, 1, 0, 0}, showViews) == XR_ERROR_POSE_INVALID);
+    // Depth is checked as colour is.
+    CHECK(with(depths[0].subImage.imageRect.extent.width, 65, showViews) == XR_ERROR_SWAPCHAIN_RECT_INVALID);
+    checkChanges(showViews, kNotValid, to(depths[0].minDepth, -0.5f), to(depths[0].maxDepth, 2), to(depths[0].nearZ, depths[0].farZ));
+    CHECK(with(depths[1].subImage.swapchain, colour, showViews) == XR_ERROR_LAYER_INVALID);
+    CHECK(showViews() == XR_SUCCESS);
 
-TEST_CASE_FIXTURE(LayersFixture, "a layer is of a known type, and there") {
-    CHECK(shown(nullptr) == XR_ERROR_LAYER_INVALID);
-    quad.type = XR_TYPE_COMPOSITION_LAYER_CUBE_KHR;
-    CHECK(shown(&quad) == XR_ERROR_LAYER_INVALID);
-    quad.type = XR_TYPE_COMPOSITION_LAYER_QUAD;
-    quad.layerFlags = 1 << 20;
-    CHECK(shown(&quad) == XR_ERROR_VALIDATION_FAILURE);
-    quad.layerFlags = 0;
-    quad.space = XR_NULL_HANDLE;
-    CHECK(shown(&quad) == XR_ERROR_HANDLE_INVALID);
-}
-
-TEST_CASE_FIXTURE(LayersFixture, "there are at most as many layers as the system says") {
     XrSystemProperties properties{XR_TYPE_SYSTEM_PROPERTIES};
     REQUIRE(xrGetSystemProperties(instance, system, &properties) == XR_SUCCESS);
-    const std::uint32_t most = properties.graphicsProperties.maxLayerCount;
-    std::vector<const XrCompositionLayerBaseHeader*> layers(most, reinterpret_cast<const XrCompositionLayerBaseHeader*>(&quad));
+    Layers layers(properties.graphicsProperties.maxLayerCount + 1, headerOf(quad));
     const XrTime time = waitFrame().predictedDisplayTime;
     REQUIRE(xrBeginFrame(session, nullptr) == XR_SUCCESS);
-    layers.push_back(layers.front());
     CHECK(endFrame(time, layers) == XR_ERROR_LAYER_LIMIT_EXCEEDED);
     layers.pop_back();
     const XrFrameEndInfo nothing{XR_TYPE_FRAME_END_INFO, nullptr, time, XR_ENVIRONMENT_BLEND_MODE_OPAQUE, 1, nullptr};
-    CHECK(xrEndFrame(session, &nothing) == XR_ERROR_VALIDATION_FAILURE);
+    CHECK(xrEndFrame(session, &nothing) == kNotValid);
     CHECK(endFrame(time, layers) == XR_SUCCESS);
 }
 
-TEST_CASE_FIXTURE(LayersFixture, "rectangles stay inside their image") {
-    const auto withRect = [&](XrRect2Di rect) {
-        quad.subImage.imageRect = rect;
-        return shown(&quad);
-    };
-    CHECK(withRect({{0, 0}, {65, 32}}) == XR_ERROR_SWAPCHAIN_RECT_INVALID);
-    CHECK(withRect({{1, 0}, {64, 32}}) == XR_ERROR_SWAPCHAIN_RECT_INVALID);
-    CHECK(withRect({{0, 1}, {64, 32}}) == XR_ERROR_SWAPCHAIN_RECT_INVALID);
-    CHECK(withRect({{-1, 0}, {32, 32}}) == XR_ERROR_SWAPCHAIN_RECT_INVALID);
-    CHECK(withRect({{32, 0}, {-32, 32}}) == XR_ERROR_SWAPCHAIN_RECT_INVALID);
-    CHECK(withRect({{1, 0}, {INT32_MAX, 32}}) == XR_ERROR_SWAPCHAIN_RECT_INVALID);
-    CHECK(withRect({{63, 31}, {1, 1}}) == XR_SUCCESS);
-    // Empty ones reach out nowhere.
-    CHECK(withRect({{0, 0}, {0, 32}}) == XR_SUCCESS);
-    CHECK(withRect({{64, 32}, {0, 0}}) == XR_SUCCESS);
-    CHECK(withRect({{65, 0}, {0, 0}}) == XR_ERROR_SWAPCHAIN_RECT_INVALID);
-    CHECK(withRect({{0, 0}, {32, -1}}) == XR_ERROR_SWAPCHAIN_RECT_INVALID);
-    quad.subImage.imageRect = {{63, 31}, {1, 1}};
-    quad.subImage.imageArrayIndex = 1;
-    CHECK(shown(&quad) == XR_ERROR_VALIDATION_FAILURE);
-}
-
-TEST_CASE_FIXTURE(LayersFixture, "a swapchain has to have shown an image before") {
-    quad.subImage.swapchain = makeSwapchain();
-    quad.subImage.imageRect = {{0, 0}, {64, 32}};
-    CHECK(shown(&quad) == XR_ERROR_LAYER_INVALID);
-    turn(quad.subImage.swapchain);
-    CHECK(shown(&quad) == XR_SUCCESS);
-    CHECK_MESSAGE(shown(&quad) == XR_SUCCESS, "the last released image stays");
-    quad.subImage.swapchain = XR_NULL_HANDLE;
-    CHECK(shown(&quad) == XR_ERROR_HANDLE_INVALID);
-    quad.subImage.swapchain = depth;
-    CHECK(shown(&quad) == XR_ERROR_LAYER_INVALID);
-}
-
-TEST_CASE_FIXTURE(LayersFixture, "poses are of length 1 and finite") {
-    quad.pose.orientation.w = 0;
-    CHECK(shown(&quad) == XR_ERROR_POSE_INVALID);
-    views[1].pose.orientation = {1, 1, 0, 0};
-    CHECK(shown(&projection) == XR_ERROR_POSE_INVALID);
-}
-
-TEST_CASE_FIXTURE(LayersFixture, "a projection layer has a view for each eye") {
-    projection.viewCount = 1;
-    CHECK(shown(&projection) == XR_ERROR_VALIDATION_FAILURE);
-    projection.viewCount = 3;
-    CHECK(shown(&projection) == XR_ERROR_VALIDATION_FAILURE);
-    projection.viewCount = 2;
-    projection.views = nullptr;
-    CHECK(shown(&projection) == XR_ERROR_VALIDATION_FAILURE);
-    projection.views = views;
-    views[0].type = XR_TYPE_VIEW;
-    CHECK(shown(&projection) == XR_ERROR_VALIDATION_FAILURE);
-    views[0].type = XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW;
-    views[0].fov.angleRight = 1.6f;
-    CHECK(shown(&projection) == XR_ERROR_VALIDATION_FAILURE);
-}
-
-TEST_CASE_FIXTURE(LayersFixture, "a quad is seen by some eye") {
-    quad.eyeVisibility = static_cast<XrEyeVisibility>(3);
-    CHECK(shown(&quad) == XR_ERROR_VALIDATION_FAILURE);
-    quad.eyeVisibility = XR_EYE_VISIBILITY_RIGHT;
-    CHECK(shown(&quad) == XR_SUCCESS);
-}
-
-TEST_CASE_FIXTURE(LayersFixture, "a quad may be a line or a point, but not inside out") {
-    quad.size = {0, 0};
-    CHECK(shown(&quad) == XR_SUCCESS);
-    quad.size = {1, 0};
-    CHECK(shown(&quad) == XR_SUCCESS);
-    quad.size = {1, -1};
-    CHECK(shown(&quad) == XR_ERROR_VALIDATION_FAILURE);
-    quad.size = {NAN, 1};
-    CHECK(shown(&quad) == XR_ERROR_VALIDATION_FAILURE);
-}
-
-TEST_CASE_FIXTURE(LayersFixture, "depth is checked as colour is") {
-    depths[0].subImage.imageRect.extent.width = 65;
-    CHECK(shown(&projection) == XR_ERROR_SWAPCHAIN_RECT_INVALID);
-    depths[0].subImage.imageRect.extent.width = 64;
-    depths[0].minDepth = -0.5f;
-    CHECK(shown(&projection) == XR_ERROR_VALIDATION_FAILURE);
-    depths[0].minDepth = 0;
-    depths[0].maxDepth = 2;
-    CHECK(shown(&projection) == XR_ERROR_VALIDATION_FAILURE);
-    depths[0].maxDepth = 1;
-    depths[0].nearZ = depths[0].farZ;
-    CHECK(shown(&projection) == XR_ERROR_VALIDATION_FAILURE);
-    depths[0].nearZ = 0.1f;
-    depths[1].subImage.swapchain = colour;
-    CHECK(shown(&projection) == XR_ERROR_LAYER_INVALID);
-    depths[1].subImage.swapchain = depth;
-    CHECK(shown(&projection) == XR_SUCCESS);
-}
-
-TEST_CASE_FIXTURE(WritingFixture, "frames are logged, and pictures written for those with layers") {
-    CHECK(shown(&projection) == XR_SUCCESS);
-    CHECK(std::filesystem::exists(written / "frame_000003.png"));
-    CHECK(!std::filesystem::exists(written / "frame_000002.png"));
-    std::ifstream log(written / "frames.jsonl");
-    std::string line;
-    for (int i = 0; i < 4; ++i) REQUIRE(std::getline(log, line));
-    CHECK(line.find("\"projection\"") != std::string::npos);
-    CHECK(line.find("VK_FORMAT_R8G8B8A8_SRGB") != std::string::npos);
-    CHECK(line.find("VK_FORMAT_D32_SFLOAT") != std::string::npos);
-    CHECK(line.find("\"LOCAL\"") != std::string::npos);
-    CHECK(!std::getline(log, line));
-}
-
-TEST_CASE_FIXTURE(WritingFixture, "a layer of which no pixel is chosen is logged, and the picture is written without it") {
-    for (XrCompositionLayerProjectionView& view : views) view.subImage.imageRect = {{0, 0}, {0, 0}};
-    CHECK(shown(&projection) == XR_SUCCESS);
-    CHECK(std::filesystem::exists(written / "frame_000003.png"));
-}
-
-TEST_CASE_FIXTURE(WritingFixture, "what is on show stays on show while the application holds every image") {
-    REQUIRE(shown(&projection) == XR_SUCCESS);
-    turn(colour);
-    for (int i = 0; i < 3; ++i) {
-        std::uint32_t index = 0;
-        REQUIRE(xrAcquireSwapchainImage(colour, nullptr, &index) == XR_SUCCESS);
+TEST_CASE_FIXTURE(FlatFixture, "rectangles stay inside their image, of a swapchain that has shown one before") {
+    const auto showQuad = [&] { return show(&quad); };
+    for (const XrRect2Di& outside :
+         {XrRect2Di{{0, 0}, {65, 32}}, XrRect2Di{{1, 0}, {64, 32}}, XrRect2Di{{0, 1}, {64, 32}}, XrRect2Di{{-1, 0}, {32, 32}},
+          XrRect2Di{{32, 0}, {-32, 32}}, XrRect2Di{{1, 0}, {INT32_MAX, 32}}, XrRect2Di{{65, 0}, {0, 0}}, XrRect2Di{{0, 0}, {32, -1}}}) {
+        CAPTURE(outside.offset.x);
+        CAPTURE(outside.extent.width);
+        CHECK(with(quad.subImage.imageRect, outside, showQuad) == XR_ERROR_SWAPCHAIN_RECT_INVALID);
     }
-    CHECK(shown(&projection) == XR_SUCCESS);
-    CHECK(std::filesystem::exists(written / "frame_000004.png"));
+    // Empty ones reach out nowhere.
+    for (const XrRect2Di& inside : {XrRect2Di{{63, 31}, {1, 1}}, XrRect2Di{{0, 0}, {0, 32}}, XrRect2Di{{64, 32}, {0, 0}}}) {
+        CHECK(with(quad.subImage.imageRect, inside, showQuad) == XR_SUCCESS);
+    }
+    CHECK(with(quad.subImage.imageArrayIndex, 1, showQuad) == kNotValid);
+    CHECK(with(quad.subImage.swapchain, XR_NULL_HANDLE, showQuad) == XR_ERROR_HANDLE_INVALID);
+    CHECK(with(quad.subImage.swapchain, depth, showQuad) == XR_ERROR_LAYER_INVALID);
+    quad.subImage.swapchain = makeSwapchain();
+    CHECK(showQuad() == XR_ERROR_LAYER_INVALID);
+    turn(quad.subImage.swapchain);
+    CHECK(showQuad() == XR_SUCCESS);
+    CHECK_MESSAGE(showQuad() == XR_SUCCESS, "the last released image stays");
+}
+
+TEST_CASE("frames are logged, and pictures written for those with layers, also of no pixel, or while every image is held") {
+    FlatFixture made("size 64 32\nframes from 3 to 9\neye left angles -40.10705 34.37747 28.64789 -22.91831\n");
+    made.projection.layerFlags = XR_COMPOSITION_LAYER_BLEND_TEXTURE_SOURCE_ALPHA_BIT;
+    made.depths[0].nearZ = INFINITY;
+    made.quad.eyeVisibility = XR_EYE_VISIBILITY_LEFT;
+    made.frame({headerOf(made.projection), headerOf(made.quad)});
+    CHECK(std::filesystem::exists(made.written / "frame_000003.png"));
+    CHECK_FALSE(std::filesystem::exists(made.written / "frame_000002.png"));
+    const std::vector<Json> lines = made.logged();
+    REQUIRE(lines.size() == 4);
+    CHECK(lines[3]["frame"] == 3);
+    CHECK(lines[3]["session_state"] == "FOCUSED");
+    CHECK(lines[3]["should_render"] == true);
+    CHECK(lines[3]["blend_mode"] == "OPAQUE");
+    CHECK(lines[3]["eyes"][0]["fov"]["left"].get<double>() == doctest::Approx(-0.7));
+    CHECK_FALSE(lines[2].contains("picture"));
+    REQUIRE(lines[3]["layers"].size() == 2);
+    const Json &projection = lines[3]["layers"][0], &quad = lines[3]["layers"][1];
+    CHECK(projection["type"] == "projection");
+    CHECK(projection["space"] == "LOCAL");
+    CHECK(projection["flags"] == Json{"blend_texture_source_alpha"});
+    CHECK(projection["views"].size() == 2);
+    CHECK(projection["views"][1]["rect"] == Json{0, 0, 64, 32});
+    CHECK(projection["views"][0]["format"] == "VK_FORMAT_R8G8B8A8_SRGB");
+    CHECK(projection["views"][0]["depth"]["format"] == "VK_FORMAT_D32_SFLOAT");
+    CHECK(projection["views"][0]["depth"]["far"] == 100.0);
+    CHECK(projection["views"][0]["depth"]["near"].is_null());  // infinite
+    CHECK_FALSE(projection.contains("size"));
+    CHECK(quad["size"] == Json{1.0, 0.5});
+    CHECK(quad["eye_visibility"] == "left");
+    CHECK_FALSE(quad["views"][0].contains("pose"));
+    made.turn(made.colour);
+    for (int i = 0; i < 3; ++i) { made.acquire(made.colour); }
+    CHECK(made.show(&made.projection) == XR_SUCCESS);
+    CHECK(std::filesystem::exists(made.written / "frame_000004.png"));
+    for (XrCompositionLayerProjectionView& view : made.views) { view.subImage.imageRect = {{0, 0}, {0, 0}}; }
+    CHECK(made.show(&made.projection) == XR_SUCCESS);
+    CHECK(std::filesystem::exists(made.written / "frame_000005.png"));
+    CHECK(made.logged().size() == 6);
+}
+
+TEST_CASE_FIXTURE(SurroundFixture, "layers that surround reach the wearer and the log") {
+    CHECK(show(&cylinder) == XR_SUCCESS);
+    CHECK(seen() == Texel{255, 0, 0, 255});
+    Json layer = logged().back()["layers"][0];
+    CHECK(layer["type"] == "cylinder");
+    CHECK(layer["central_angle"].get<double>() == doctest::Approx(kPi));
+    CHECK(layer["radius"] == 0.0);
+    CHECK(layer["eye_visibility"] == "both");
+    CHECK(show(&sphere) == XR_SUCCESS);
+    CHECK(seen() == Texel{255, 0, 0, 255});
+    layer = logged().back()["layers"][0];
+    CHECK(layer["type"] == "equirect2");
+    CHECK(layer["upper_angle"].get<double>() == doctest::Approx(kPi / 2));
+    makeCube();
+    CHECK(show(&cube) == XR_SUCCESS);
+    CHECK(seen() == Texel{0, 255, 0, 255});
+    layer = logged().back()["layers"][0];
+    CHECK(layer["type"] == "cube");
+    CHECK(layer["views"][0]["rect"] == Json{0, 0, 4, 4});
+    cube.orientation = {0, 0.70710678f, 0, 0.70710678f};
+    CHECK(show(&cube) == XR_SUCCESS);
+    CHECK(seen() == Texel{0, 0, 0, 255});
+
+    // A frame that is refused stands in the log, with the layer and the value that were wrong, and has no picture.
+    cylinder.centralAngle = 7;
+    const XrTime time = waitFrame().predictedDisplayTime;
+    REQUIRE(xrBeginFrame(session, nullptr) == XR_SUCCESS);
+    CHECK(endFrame(time, {headerOf(sphere), headerOf(cylinder)}) == kNotValid);
+    const Json refused = logged().back();
+    CHECK(refused["refused"] == "XR_ERROR_VALIDATION_FAILURE");
+    CHECK(refused["reason"] == "layer 1: the central angle is 7, must be 0 to 2 pi");
+    CHECK(refused["session_state"] == "FOCUSED");
+    CHECK_FALSE(refused.contains("picture"));
+    cylinder.centralAngle = 1;
+    CHECK(endFrame(time, {headerOf(sphere), headerOf(cylinder)}) == XR_SUCCESS);
+    CHECK(logged().back()["picture"] == "frame_000007.png");
+}
+
+TEST_CASE_FIXTURE(SurroundFixture, "cylinders and spheres have angles, radii and pictures, cubes have cube maps") {
+    const auto showCylinder = [&] { return show(&cylinder); };
+    const auto showSphere = [&] { return show(&sphere); };
+    const auto showCube = [&] { return show(&cube); };
+    checkChanges(showCylinder, kNotValid, to(cylinder.radius, -1), to(cylinder.radius, NAN));
+    CHECK(with(cylinder.radius, INFINITY, showCylinder) == XR_SUCCESS);
+    CHECK(with(cylinder.centralAngle, 7, showCylinder) == kNotValid);
+    CHECK(with(cylinder.centralAngle, 0, showCylinder) == XR_SUCCESS);
+    CHECK(with(cylinder.aspectRatio, 0, showCylinder) == kNotValid);
+    CHECK(with(cylinder.pose.orientation.w, 0, showCylinder) == XR_ERROR_POSE_INVALID);
+    CHECK(with(cylinder.subImage.imageRect.extent.width, 5, showCylinder) == XR_ERROR_SWAPCHAIN_RECT_INVALID);
+    CHECK(with(cylinder.eyeVisibility, static_cast<XrEyeVisibility>(3), showCylinder) == kNotValid);
+    CHECK(with(cylinder.space, XR_NULL_HANDLE, showCylinder) == XR_ERROR_HANDLE_INVALID);
+    CHECK(with(cylinder.layerFlags, 1 << 20, showCylinder) == kNotValid);
+    checkChanges(showSphere, kNotValid, to(sphere.radius, -1), to(sphere.centralHorizontalAngle, 7), to(sphere.upperVerticalAngle, 2),
+                 to(sphere.lowerVerticalAngle, -2), to(sphere.subImage.imageArrayIndex, 1));
+    makeCube();
+    CHECK(with(cube.swapchain, picture, showCube) == XR_ERROR_LAYER_INVALID);
+    CHECK(with(cube.imageArrayIndex, 1, showCube) == kNotValid);
+    CHECK(with(cube.orientation.w, 0, showCube) == XR_ERROR_POSE_INVALID);
+    CHECK(with(cylinder.subImage.swapchain, cube_map, showCylinder) == XR_ERROR_LAYER_INVALID);
+    XrSwapchainCreateInfo info = swapchainInfo();
+    info.faceCount = 6;
+    XrSwapchain oblong = XR_NULL_HANDLE;
+    CHECK(xrCreateSwapchain(session, &info, &oblong) == kNotValid);
+    info.height = info.width;
+    info.arraySize = 2;
+    CHECK(xrCreateSwapchain(session, &info, &oblong) == XR_SUCCESS);
+}
+
+TEST_CASE("without their extensions these layers are none, and there are no cube maps") {
+    const SurroundFixture plain(Extensions{});
+    for (const XrCompositionLayerBaseHeader* layer : {headerOf(plain.cylinder), headerOf(plain.sphere), headerOf(plain.cube)}) {
+        CHECK(plain.show(layer) == XR_ERROR_LAYER_INVALID);
+    }
+    XrSwapchainCreateInfo info = swapchainInfo();
+    info.height = info.width;
+    info.faceCount = 6;
+    XrSwapchain swapchain = XR_NULL_HANDLE;
+    CHECK(xrCreateSwapchain(plain.session, &info, &swapchain) == XR_ERROR_FEATURE_UNSUPPORTED);
 }
 
 }  // namespace simulated_layer_test

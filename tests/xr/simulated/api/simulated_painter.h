@@ -29,24 +29,17 @@ public:
         info.height = height;
         info.arraySize = layers;
         info.faceCount = faces;
-        XrSwapchain swapchain = XR_NULL_HANDLE;
-        REQUIRE(xrCreateSwapchain(fixture.session, &info, &swapchain) == XR_SUCCESS);
-        return swapchain;
+        return fixture.makeSwapchain(info);
     }
 
     // Acquires an image and writes the texels of all its layers, the first layer's first row first. It is not released.
     template <class Texel>
     void begin(XrSwapchain swapchain, std::uint32_t width, std::uint32_t height, const std::vector<Texel>& texels) const {
-        std::uint32_t index = 0, count = 0;
-        REQUIRE(xrAcquireSwapchainImage(swapchain, nullptr, &index) == XR_SUCCESS);
+        const std::uint32_t index = fixture.acquire(swapchain);
         const XrSwapchainImageWaitInfo wait{XR_TYPE_SWAPCHAIN_IMAGE_WAIT_INFO, nullptr, XR_INFINITE_DURATION};
         REQUIRE(xrWaitSwapchainImage(swapchain, &wait) == XR_SUCCESS);
-        REQUIRE(xrEnumerateSwapchainImages(swapchain, 0, &count, nullptr) == XR_SUCCESS);
-        std::vector<XrSwapchainImageVulkan2KHR> images(count, {XR_TYPE_SWAPCHAIN_IMAGE_VULKAN2_KHR});
-        REQUIRE(xrEnumerateSwapchainImages(swapchain, count, &count, reinterpret_cast<XrSwapchainImageBaseHeader*>(images.data())) ==
-                XR_SUCCESS);
         const auto layers = static_cast<std::uint32_t>(texels.size() / (std::size_t{width} * height));
-        copy(images.at(index).image, {width, height, 1}, layers, texels.data(), texels.size() * sizeof(Texel));
+        copy(fixture.imagesOf(swapchain).at(index), {width, height, 1}, layers, texels.data(), texels.size() * sizeof(Texel));
     }
     template <class Texel>
     void paint(XrSwapchain swapchain, std::uint32_t width, std::uint32_t height, const std::vector<Texel>& texels) const {
@@ -54,17 +47,41 @@ public:
         REQUIRE(xrReleaseSwapchainImage(swapchain, nullptr) == XR_SUCCESS);
     }
 
+    // Records commands, and waits until they are done.
+    template <class Record>
+    void run(const Record& record) const {
+        VkCommandBuffer commands = VK_NULL_HANDLE;
+        const VkCommandBufferAllocateInfo info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO, nullptr, pool,
+                                               VK_COMMAND_BUFFER_LEVEL_PRIMARY, 1};
+        REQUIRE(vkAllocateCommandBuffers(fixture.device, &info, &commands) == VK_SUCCESS);
+        const VkCommandBufferBeginInfo begin_info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO, nullptr,
+                                                  VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT, nullptr};
+        REQUIRE(vkBeginCommandBuffer(commands, &begin_info) == VK_SUCCESS);
+        record(commands);
+        REQUIRE(vkEndCommandBuffer(commands) == VK_SUCCESS);
+        const VkSubmitInfo submit{VK_STRUCTURE_TYPE_SUBMIT_INFO, nullptr, 0, nullptr, nullptr, 1, &commands, 0, nullptr};
+        REQUIRE(vkQueueSubmit(fixture.queue(), 1, &submit, VK_NULL_HANDLE) == VK_SUCCESS);
+        REQUIRE(vkQueueWaitIdle(fixture.queue()) == VK_SUCCESS);
+    }
+    static void move(VkCommandBuffer commands, VkImage image, std::uint32_t layers, VkImageLayout from, VkImageLayout to,
+                     VkImageAspectFlags aspects = VK_IMAGE_ASPECT_COLOR_BIT) {
+        VkImageMemoryBarrier barrier{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER};
+        barrier.srcAccessMask = barrier.dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
+        barrier.oldLayout = from;
+        barrier.newLayout = to;
+        barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+        barrier.image = image;
+        barrier.subresourceRange = {aspects, 0, 1, 0, layers};
+        vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0, nullptr, 0, nullptr, 1,
+                             &barrier);
+    }
+
 private:
     void copy(VkImage image, VkExtent3D size, std::uint32_t layers, const void* texels, std::size_t bytes) const {
         VkBuffer buffer = VK_NULL_HANDLE;
-        const VkBufferCreateInfo buffer_info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
-                                             nullptr,
-                                             0,
-                                             bytes,
-                                             VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
-                                             VK_SHARING_MODE_EXCLUSIVE,
-                                             0,
-                                             nullptr};
+        VkBufferCreateInfo buffer_info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
+        buffer_info.size = bytes;
+        buffer_info.usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
         REQUIRE(vkCreateBuffer(fixture.device, &buffer_info, nullptr, &buffer) == VK_SUCCESS);
         VkMemoryRequirements needs{};
         vkGetBufferMemoryRequirements(fixture.device, buffer, &needs);
@@ -77,40 +94,15 @@ private:
         REQUIRE(vkMapMemory(fixture.device, memory, 0, VK_WHOLE_SIZE, 0, &mapped) == VK_SUCCESS);
         std::memcpy(mapped, texels, bytes);
         vkUnmapMemory(fixture.device, memory);
-
-        VkCommandBuffer commands = VK_NULL_HANDLE;
-        const VkCommandBufferAllocateInfo info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO, nullptr, pool,
-                                               VK_COMMAND_BUFFER_LEVEL_PRIMARY, 1};
-        REQUIRE(vkAllocateCommandBuffers(fixture.device, &info, &commands) == VK_SUCCESS);
-        const VkCommandBufferBeginInfo begin_info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO, nullptr,
-                                                  VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT, nullptr};
-        REQUIRE(vkBeginCommandBuffer(commands, &begin_info) == VK_SUCCESS);
-        // An application finds images ready for drawing and leaves them so.
-        move(commands, image, layers, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
-        const VkBufferImageCopy region{0, 0, 0, {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, layers}, {0, 0, 0}, size};
-        vkCmdCopyBufferToImage(commands, buffer, image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
-        move(commands, image, layers, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
-        REQUIRE(vkEndCommandBuffer(commands) == VK_SUCCESS);
-        const VkSubmitInfo submit{VK_STRUCTURE_TYPE_SUBMIT_INFO, nullptr, 0, nullptr, nullptr, 1, &commands, 0, nullptr};
-        REQUIRE(vkQueueSubmit(fixture.queue(), 1, &submit, VK_NULL_HANDLE) == VK_SUCCESS);
-        REQUIRE(vkQueueWaitIdle(fixture.queue()) == VK_SUCCESS);
+        run([&](VkCommandBuffer commands) {
+            // An application finds images ready for drawing and leaves them so.
+            move(commands, image, layers, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+            const VkBufferImageCopy region{0, 0, 0, {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, layers}, {0, 0, 0}, size};
+            vkCmdCopyBufferToImage(commands, buffer, image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
+            move(commands, image, layers, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
+        });
         vkDestroyBuffer(fixture.device, buffer, nullptr);
         vkFreeMemory(fixture.device, memory, nullptr);
-    }
-
-    static void move(VkCommandBuffer commands, VkImage image, std::uint32_t layers, VkImageLayout from, VkImageLayout to) {
-        const VkImageMemoryBarrier barrier{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER,
-                                           nullptr,
-                                           VK_ACCESS_MEMORY_WRITE_BIT,
-                                           VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT,
-                                           from,
-                                           to,
-                                           VK_QUEUE_FAMILY_IGNORED,
-                                           VK_QUEUE_FAMILY_IGNORED,
-                                           image,
-                                           {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, layers}};
-        vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0, nullptr, 0, nullptr, 1,
-                             &barrier);
     }
 
     [[nodiscard]] std::uint32_t hostMemory(std::uint32_t allowed) const {

@@ -1,8 +1,10 @@
-// Every input and output of every interaction profile on the simulated runtime, moved by XR_EXT_conformance_automation and read back.
+// Every input and output of every interaction profile on the simulated runtime, moved by XR_EXT_conformance_automation and read back, and
+// what may be bound with which version and extensions. There is no loader here; sessions are headless.
 #include "tests/xr/simulated/api/simulated_direct.h"
 #include "xr/simulated/api/profiles.h"
 
 #include <cmath>
+#include <set>
 
 TEST_SUITE_BEGIN("simulated_profiles");
 
@@ -36,7 +38,7 @@ XrActionType typeOf(simulated::ComponentKind kind) {
 // Of 1.1, with the extension that the profile may need; without one for older names of the palm and the finger tips.
 simulated::Enabled enabledFor(const Profile& profile) {
     simulated::Enabled enabled{true, {XR_EXT_CONFORMANCE_AUTOMATION_EXTENSION_NAME}};
-    if (!enabled.meets(profile.depends)) enabled.extensions.insert(std::string(profile.depends));
+    if (!enabled.meets(profile.depends)) { enabled.extensions.insert(std::string(profile.depends)); }
     return enabled;
 }
 
@@ -44,85 +46,55 @@ std::vector<Bound> bindingsOf(const Profile& profile, std::string_view user_path
     std::vector<Bound> bindings;
     const simulated::Enabled enabled = enabledFor(profile);
     for (const simulated::Component& component : profile.components) {
-        if (simulated::findComponent(profile, user_path, component.path, enabled) != &component) continue;
+        if (simulated::findComponent(profile, user_path, component.path, enabled) != &component) { continue; }
         const std::string path = std::string(user_path).append(component.path);
         bindings.push_back({path, typeOf(component.kind)});
-        if (path.ends_with("/x")) bindings.push_back({path.substr(0, path.size() - 2), XR_ACTION_TYPE_VECTOR2F_INPUT});
+        if (path.ends_with("/x")) { bindings.push_back({path.substr(0, path.size() - 2), XR_ACTION_TYPE_VECTOR2F_INPUT}); }
     }
     return bindings;
 }
 
-std::vector<const char*> namesOf(const simulated::Enabled& enabled) {
-    std::vector<const char*> names;
-    for (const std::string& name : enabled.extensions) names.push_back(name.c_str());
+Extensions namesOf(const simulated::Enabled& enabled) {
+    Extensions names;
+    for (const std::string& name : enabled.extensions) { names.push_back(name.c_str()); }
     return names;
 }
 
 struct Played : HeadlessSession {
     XrPath profile_path, user_path;
-    XrActionSet set = XR_NULL_HANDLE;
+    XrActionSet set = makeActionSet("all");
     std::vector<Bound> bindings;
 
     Played(const Profile& profile, std::string_view user)
         : HeadlessSession(k1_1, namesOf(enabledFor(profile))),
-          profile_path(path(std::string(profile.path).c_str())),
-          user_path(path(std::string(user).c_str())),
+          profile_path(path(std::string(profile.path))),
+          user_path(path(std::string(user))),
           bindings(bindingsOf(profile, user)) {
-        XrActionSetCreateInfo info{XR_TYPE_ACTION_SET_CREATE_INFO, nullptr, "all", "All", 0};
-        REQUIRE(xr<PFN_xrCreateActionSet>("xrCreateActionSet")(instance, &info, &set) == XR_SUCCESS);
         std::vector<XrActionSuggestedBinding> suggested;
         for (Bound& bound : bindings) {
-            bound.action = makeAction(bound.type, suggested.size());
-            suggested.push_back({bound.action, path(bound.path.c_str())});
+            bound.action = makeAction(set, "action_" + std::to_string(suggested.size()), bound.type, {user_path});
+            suggested.push_back({bound.action, path(bound.path)});
         }
-        const XrInteractionProfileSuggestedBinding suggestion{XR_TYPE_INTERACTION_PROFILE_SUGGESTED_BINDING, nullptr, profile_path,
-                                                              static_cast<std::uint32_t>(suggested.size()), suggested.data()};
-        REQUIRE(xr<PFN_xrSuggestInteractionProfileBindings>("xrSuggestInteractionProfileBindings")(instance, &suggestion) == XR_SUCCESS);
-        const XrSessionActionSetsAttachInfo attach{XR_TYPE_SESSION_ACTION_SETS_ATTACH_INFO, nullptr, 1, &set};
-        REQUIRE(xr<PFN_xrAttachSessionActionSets>("xrAttachSessionActionSets")(session, &attach) == XR_SUCCESS);
+        REQUIRE(suggest(std::string(profile.path), suggested) == XR_SUCCESS);
+        attach({set});
         begin();
     }
 
-    XrAction makeAction(XrActionType type, std::size_t number) const {
-        XrActionCreateInfo info{XR_TYPE_ACTION_CREATE_INFO};
-        std::strcpy(info.actionName, ("action_" + std::to_string(number)).c_str());
-        std::strcpy(info.localizedActionName, ("Action " + std::to_string(number)).c_str());
-        info.actionType = type;
-        info.countSubactionPaths = 1;
-        info.subactionPaths = &user_path;
-        XrAction action = XR_NULL_HANDLE;
-        REQUIRE(xr<PFN_xrCreateAction>("xrCreateAction")(set, &info, &action) == XR_SUCCESS);
-        return action;
-    }
+    void synchronize() const { REQUIRE(sync(set) == XR_SUCCESS); }
     void switchTo(bool active) const {
-        REQUIRE(xr<PFN_xrSetInputDeviceActiveEXT>("xrSetInputDeviceActiveEXT")(session, profile_path, user_path, active) == XR_SUCCESS);
-        sync();
-    }
-    void sync() const {
-        const XrActiveActionSet active{set, XR_NULL_PATH};
-        const XrActionsSyncInfo info{XR_TYPE_ACTIONS_SYNC_INFO, nullptr, 1, &active};
-        REQUIRE(xr<PFN_xrSyncActions>("xrSyncActions")(session, &info) == XR_SUCCESS);
+        REQUIRE(XR(xrSetInputDeviceActiveEXT)(session, profile_path, user_path, active) == XR_SUCCESS);
+        synchronize();
     }
     void move(const Bound& bound, float value) const {
-        const XrPath source = path(bound.path.c_str());
+        const XrPath source = path(bound.path);
         if (bound.type == XR_ACTION_TYPE_BOOLEAN_INPUT) {
-            const auto setBool = xr<PFN_xrSetInputDeviceStateBoolEXT>("xrSetInputDeviceStateBoolEXT");
-            REQUIRE(setBool(session, user_path, source, value > 0) == XR_SUCCESS);
+            REQUIRE(XR(xrSetInputDeviceStateBoolEXT)(session, user_path, source, value > 0) == XR_SUCCESS);
         } else if (bound.type == XR_ACTION_TYPE_FLOAT_INPUT) {
-            const auto setFloat = xr<PFN_xrSetInputDeviceStateFloatEXT>("xrSetInputDeviceStateFloatEXT");
-            REQUIRE(setFloat(session, user_path, source, value) == XR_SUCCESS);
+            REQUIRE(XR(xrSetInputDeviceStateFloatEXT)(session, user_path, source, value) == XR_SUCCESS);
         } else if (bound.type == XR_ACTION_TYPE_VECTOR2F_INPUT) {
-            const auto setVector = xr<PFN_xrSetInputDeviceStateVector2fEXT>("xrSetInputDeviceStateVector2fEXT");
-            REQUIRE(setVector(session, user_path, source, {value, -value}) == XR_SUCCESS);
+            REQUIRE(XR(xrSetInputDeviceStateVector2fEXT)(session, user_path, source, {value, -value}) == XR_SUCCESS);
         }
-        sync();
-    }
-
-    XrSpace spaceOf(const Bound& bound) const {
-        const XrActionSpaceCreateInfo info{XR_TYPE_ACTION_SPACE_CREATE_INFO, nullptr, bound.action, user_path, kIdentity};
-        XrSpace made = XR_NULL_HANDLE;
-        REQUIRE(xr<PFN_xrCreateActionSpace>("xrCreateActionSpace")(session, &info, &made) == XR_SUCCESS);
-        return made;
+        synchronize();
     }
 
     struct Reading {
@@ -130,128 +102,230 @@ struct Played : HeadlessSession {
         XrTime changed_at;
         float x, y;
     };
-    template <class State, class Function>
-    State get(const char* function, const Bound& bound, XrStructureType type) const {
-        State state{type};
-        const XrActionStateGetInfo info{XR_TYPE_ACTION_STATE_GET_INFO, nullptr, bound.action, user_path};
-        REQUIRE(xr<Function>(function)(session, &info, &state) == XR_SUCCESS);
-        return state;
-    }
     Reading read(const Bound& bound) const {
-        const auto boolean = [&] {
-            const auto state =
-                get<XrActionStateBoolean, PFN_xrGetActionStateBoolean>("xrGetActionStateBoolean", bound, XR_TYPE_ACTION_STATE_BOOLEAN);
-            return Reading{state.isActive != 0, state.changedSinceLastSync != 0, state.lastChangeTime, state.currentState ? 1.0f : 0.0f, 0};
+        const auto reading = [](const auto& state, float x, float y) {
+            return Reading{state.isActive != 0, state.changedSinceLastSync != 0, state.lastChangeTime, x, y};
         };
-        const auto number = [&] {
-            const auto state =
-                get<XrActionStateFloat, PFN_xrGetActionStateFloat>("xrGetActionStateFloat", bound, XR_TYPE_ACTION_STATE_FLOAT);
-            return Reading{state.isActive != 0, state.changedSinceLastSync != 0, state.lastChangeTime, state.currentState, 0};
-        };
-        const auto vector = [&] {
-            const auto state =
-                get<XrActionStateVector2f, PFN_xrGetActionStateVector2f>("xrGetActionStateVector2f", bound, XR_TYPE_ACTION_STATE_VECTOR2F);
-            return Reading{state.isActive != 0, state.changedSinceLastSync != 0, state.lastChangeTime, state.currentState.x,
-                           state.currentState.y};
-        };
-        switch (bound.type) {
-            case XR_ACTION_TYPE_BOOLEAN_INPUT:
-                return boolean();
-            case XR_ACTION_TYPE_FLOAT_INPUT:
-                return number();
-            case XR_ACTION_TYPE_VECTOR2F_INPUT:
-                return vector();
-            default:
-                return {
-                    get<XrActionStatePose, PFN_xrGetActionStatePose>("xrGetActionStatePose", bound, XR_TYPE_ACTION_STATE_POSE).isActive !=
-                        0,
-                    false, 0, 0, 0};
+        if (bound.type == XR_ACTION_TYPE_BOOLEAN_INPUT) {
+            const auto state = boolean(bound.action, user_path);
+            return reading(state, state.currentState ? 1.0f : 0.0f, 0);
         }
+        if (bound.type == XR_ACTION_TYPE_FLOAT_INPUT) {
+            const auto state = number(bound.action, user_path);
+            return reading(state, state.currentState, 0);
+        }
+        if (bound.type == XR_ACTION_TYPE_VECTOR2F_INPUT) {
+            const auto state = vector(bound.action, user_path);
+            return reading(state, state.currentState.x, state.currentState.y);
+        }
+        return {pose(bound.action, user_path).isActive != 0, false, 0, 0, 0};
     }
+
+    // A quarter turn to the left, at (1, 2, 3).
+    void checkPose(const Bound& bound) const {
+        constexpr float kHalf = 0.70710678f;
+        const XrSpace stage = makeSpace(XR_REFERENCE_SPACE_TYPE_STAGE);
+        const XrPosef wanted{{0, kHalf, 0, kHalf}, {1, 2, 3}};
+        REQUIRE(XR(xrSetInputDeviceLocationEXT)(session, user_path, path(bound.path), stage, wanted) == XR_SUCCESS);
+        synchronize();
+        const XrSpaceLocation location = locate(makeActionSpace(bound.action, user_path), stage, kStart);
+        CHECK((location.locationFlags & XR_SPACE_LOCATION_POSITION_VALID_BIT) != 0);
+        const XrPosef& found = location.pose;
+        checkNear(found.position, {1, 2, 3});
+        CHECK(std::abs(found.orientation.y * kHalf + found.orientation.w * kHalf) == doctest::Approx(1));
+    }
+};
+
+// What answers where it is bound: of 1.0, of 1.1, and of 1.0 with an extension.
+struct Binding {
+    const char *profile, *path, *extension = nullptr;
+    bool of_1_0 = false, of_1_1 = true;
+    XrActionType type = XR_ACTION_TYPE_BOOLEAN_INPUT;
 };
 
 }  // namespace
 
-TEST_CASE("every input of every profile is read as it is moved, each by itself, and only while its device is there") {
+TEST_CASE("every input of every profile is read as it is moved, each by itself, every pose where it is put, while its device is there") {
     for (const Profile& profile : simulated::listProfiles()) {
         for (const std::string_view user : profile.user_paths) {
             INFO(std::string(profile.path), " ", std::string(user));
             const Played played(profile, user);
             played.switchTo(false);
             for (const Bound& bound : played.bindings) {
-                if (bound.type == XR_ACTION_TYPE_VIBRATION_OUTPUT) continue;
+                if (bound.type == XR_ACTION_TYPE_VIBRATION_OUTPUT) { continue; }
                 const Played::Reading off = played.read(bound);
                 CHECK_MESSAGE(!off.is_active, bound.path);
                 CHECK_MESSAGE((off.x == 0 && off.y == 0 && off.changed_at == 0 && !off.has_changed), bound.path);
             }
             played.switchTo(true);
             for (const Bound& bound : played.bindings) {
-                if (bound.type == XR_ACTION_TYPE_VIBRATION_OUTPUT) continue;
-                CHECK_MESSAGE(played.read(bound).is_active, bound.path);
-                if (bound.type == XR_ACTION_TYPE_POSE_INPUT) continue;
+                INFO(bound.path);
+                if (bound.type == XR_ACTION_TYPE_VIBRATION_OUTPUT) { continue; }
+                CHECK(played.read(bound).is_active);
+                if (bound.type == XR_ACTION_TYPE_POSE_INPUT) {
+                    played.checkPose(bound);
+                    continue;
+                }
                 const float value = bound.type == XR_ACTION_TYPE_BOOLEAN_INPUT ? 1.0f : 0.75f;
                 played.move(bound, value);
                 const Played::Reading moved = played.read(bound);
-                CHECK_MESSAGE(moved.x == value, bound.path);
-                CHECK_MESSAGE(moved.y == (bound.type == XR_ACTION_TYPE_VECTOR2F_INPUT ? -value : 0.0f), bound.path);
-                CHECK_MESSAGE((moved.has_changed && moved.changed_at > 0), bound.path);
+                CHECK(moved.x == value);
+                CHECK(moved.y == (bound.type == XR_ACTION_TYPE_VECTOR2F_INPUT ? -value : 0.0f));
+                CHECK((moved.has_changed && moved.changed_at > 0));
                 // Nothing else of its type moves with it.
                 for (const Bound& other : played.bindings) {
-                    if (&other == &bound || other.type != bound.type) continue;
-                    CHECK_MESSAGE(played.read(other).x == 0, bound.path << " moves " << other.path);
+                    if (&other == &bound || other.type != bound.type) { continue; }
+                    CHECK_MESSAGE(played.read(other).x == 0, other.path);
                 }
-                played.sync();
+                played.synchronize();
                 const Played::Reading held = played.read(bound);
-                CHECK_MESSAGE((held.x == value && !held.has_changed && held.changed_at == moved.changed_at), bound.path);
+                CHECK((held.x == value && !held.has_changed && held.changed_at == moved.changed_at));
                 played.move(bound, 0);
                 const Played::Reading released = played.read(bound);
-                CHECK_MESSAGE((released.x == 0 && released.y == 0 && released.has_changed), bound.path);
-                CHECK_MESSAGE(released.changed_at > moved.changed_at, bound.path);
+                CHECK((released.x == 0 && released.y == 0 && released.has_changed));
+                CHECK(released.changed_at > moved.changed_at);
             }
         }
     }
 }
 
-TEST_CASE("every pose of every profile is where it is put") {
-    constexpr float kHalf = 0.70710678f;
-    for (const Profile& profile : simulated::listProfiles()) {
-        for (const std::string_view user : profile.user_paths) {
-            const Played played(profile, user);
-            const XrSpace stage = played.space(XR_REFERENCE_SPACE_TYPE_STAGE);
-            played.switchTo(true);
-            for (const Bound& bound : played.bindings) {
-                if (bound.type != XR_ACTION_TYPE_POSE_INPUT) continue;
-                INFO(std::string(profile.path), " ", bound.path);
-                const XrPosef wanted{{0, kHalf, 0, kHalf}, {1, 2, 3}};
-                REQUIRE(played.xr<PFN_xrSetInputDeviceLocationEXT>("xrSetInputDeviceLocationEXT")(
-                            played.session, played.user_path, played.path(bound.path.c_str()), stage, wanted) == XR_SUCCESS);
-                played.sync();
-                XrSpaceLocation location{XR_TYPE_SPACE_LOCATION};
-                REQUIRE(played.xr<PFN_xrLocateSpace>("xrLocateSpace")(played.spaceOf(bound), stage, 1'000'000'000, &location) ==
-                        XR_SUCCESS);
-                CHECK((location.locationFlags & XR_SPACE_LOCATION_POSITION_VALID_BIT) != 0);
-                const XrPosef& found = location.pose;
-                CHECK(found.position.x == doctest::Approx(1));
-                CHECK(found.position.y == doctest::Approx(2));
-                CHECK(found.position.z == doctest::Approx(3));
-                CHECK(std::abs(found.orientation.y * kHalf + found.orientation.w * kHalf) == doctest::Approx(1));
-            }
+TEST_CASE("each profile takes its own paths and no others, in its version, or with its extension") {
+    constexpr const char* kPico4 = "bytedance/pico4_controller";
+    constexpr const char* kPicoG3 = "bytedance/pico_g3_controller";
+    constexpr const char* kCosmos = "htc/vive_cosmos_controller";
+    constexpr const char* kQuest1 = "meta/touch_controller_quest_1_rift_s";
+    constexpr const char* kByteDance = "XR_BD_controller_interaction";
+    constexpr const char* kHands = "XR_EXT_hand_interaction";
+    constexpr const char* kEyes = XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME;
+    constexpr auto kPose = XR_ACTION_TYPE_POSE_INPUT;
+    const Binding bindings[] = {
+        // The core's.
+        {"khr/simple_controller", "hand/left/input/select/click", nullptr, true},
+        {"khr/simple_controller", "hand/right/output/haptic", nullptr, true},
+        {"google/daydream_controller", "hand/left/input/trackpad/touch", nullptr, true},
+        {"htc/vive_controller", "hand/right/input/squeeze/click", nullptr, true},
+        {"htc/vive_controller", "hand/right/input/trackpad", nullptr, true},
+        {"htc/vive_pro", "head/input/volume_up/click", nullptr, true},
+        {"microsoft/motion_controller", "hand/left/input/thumbstick/x", nullptr, true},
+        {"microsoft/xbox_controller", "gamepad/input/dpad_up/click", nullptr, true},
+        {"microsoft/xbox_controller", "gamepad/output/haptic_left_trigger", nullptr, true},
+        {"oculus/go_controller", "hand/left/input/back/click", nullptr, true},
+        {"oculus/touch_controller", "hand/left/input/x/click", nullptr, true},
+        {"oculus/touch_controller", "hand/right/input/a/touch", nullptr, true},
+        {"oculus/touch_controller", "hand/left/input/thumbrest/touch", nullptr, true},
+        {"valve/index_controller", "hand/left/input/squeeze/force", nullptr, true},
+        {"valve/index_controller", "hand/left/input/a/click", nullptr, true},
+        // Nobody's.
+        {"khr/simple_controller", "hand/left/input/trigger/value", nullptr, false, false},
+        {"khr/simple_controller", "head/input/select/click", nullptr, false, false},
+        {"khr/simple_controller", "hand/left", nullptr, false, false},
+        {"khr/simple_controller", "hand/left/input", nullptr, false, false},
+        {"google/daydream_controller", "hand/left/output/haptic", nullptr, false, false},
+        {"htc/vive_controller", "hand/left/input/squeeze/value", nullptr, false, false},
+        {"htc/vive_pro", "hand/left/input/system/click", nullptr, false, false},
+        {"microsoft/motion_controller", "hand/left/input/squeeze/value", nullptr, false, false},
+        {"microsoft/xbox_controller", "hand/left/input/a/click", nullptr, false, false},
+        {"microsoft/xbox_controller", "gamepad/output/haptic", nullptr, false, false},
+        {"microsoft/xbox_controller", "gamepad/input/grip_surface/pose", nullptr, false, false, kPose},
+        {"oculus/go_controller", "hand/left/input/menu/click", nullptr, false, false},
+        {"oculus/touch_controller", "hand/right/input/x/click", nullptr, false, false},
+        {"oculus/touch_controller", "hand/left/input/a/click", nullptr, false, false},
+        {"oculus/touch_controller", "hand/right/input/menu/click", nullptr, false, false},
+        {"oculus/touch_controller", "hand/left/input/trig/value", nullptr, false, false},
+        {"oculus/touch_controller", "hand/left/input/trigger/click", nullptr, false, false},
+        {"valve/index_controller", "hand/left/input/trackpad/click", nullptr, false, false},
+        {"nobody/nothing", "hand/left/input/a/click", nullptr, false, false},
+        {kPico4, "hand/right/input/menu/click", nullptr, false, false},
+        {kQuest1, "hand/left/input/thumbrest/touch", nullptr, false, false},
+        {kCosmos, "hand/left/input/thumbrest/touch", nullptr, false, false},
+        // Those of 1.1, and of extensions of 1.0 that became part of it.
+        {"hp/mixed_reality_controller", "hand/left/input/x/click", "XR_EXT_hp_mixed_reality_controller"},
+        {"samsung/odyssey_controller", "hand/left/input/trackpad/click", "XR_EXT_samsung_odyssey_controller"},
+        {kCosmos, "hand/left/input/shoulder/click", "XR_HTC_vive_cosmos_controller_interaction"},
+        {"htc/vive_focus3_controller", "hand/right/input/squeeze/touch", "XR_HTC_vive_focus3_controller_interaction"},
+        {"ml/ml2_controller", "hand/right/input/home/click", "XR_ML_ml2_controller_interaction"},
+        {"bytedance/pico_neo3_controller", "hand/right/input/menu/click", kByteDance},
+        {kPico4, "hand/left/input/menu/click", kByteDance},
+        {kPicoG3, "hand/left/input/thumbstick/click", kByteDance},
+        {kPicoG3, "hand/right/input/thumbstick/x", kByteDance},
+        {"oculus/touch_controller", "hand/left/input/trigger/proximity"},
+        {"oculus/touch_controller", "hand/right/input/thumb_resting_surfaces/proximity"},
+        {"meta/touch_pro_controller", "hand/left/input/stylus/force"},
+        {"meta/touch_pro_controller", "hand/left/output/haptic_thumb", nullptr, false, true, XR_ACTION_TYPE_VIBRATION_OUTPUT},
+        {"meta/touch_plus_controller", "hand/left/input/trigger/force"},
+        {"meta/touch_controller_quest_2", "hand/left/input/thumbrest/touch"},
+        {kQuest1, "hand/left/input/trigger/proximity"},
+        {"meta/touch_controller_rift_cv1", "hand/left/input/thumb_resting_surfaces/proximity"},
+        // The palm's surface is grip_surface in 1.1 and palm_ext by the extension.
+        {"khr/simple_controller", "hand/left/input/grip_surface/pose", XR_KHR_MAINTENANCE1_EXTENSION_NAME, false, true, kPose},
+        {"khr/simple_controller", "hand/left/input/grip_surface", XR_KHR_MAINTENANCE1_EXTENSION_NAME, false, true, kPose},
+        {"khr/simple_controller", "hand/left/input/palm_ext/pose", XR_EXT_PALM_POSE_EXTENSION_NAME, false, false, kPose},
+        // Finger tips are poses of every hand with the hands' extension, and gestures are of its profile alone.
+        {"khr/simple_controller", "hand/left/input/pinch_ext/pose", kHands, false, false, kPose},
+        {"khr/simple_controller", "hand/right/input/poke_ext/pose", kHands, false, false, kPose},
+        {"ext/hand_interaction_ext", "hand/left/input/pinch_ext/value", kHands, false, false, XR_ACTION_TYPE_FLOAT_INPUT},
+        // The eyes' profile has a gaze, and nothing else.
+        {"ext/eye_gaze_interaction", "eyes_ext/input/gaze_ext/pose", kEyes, false, false, kPose},
+        {"ext/eye_gaze_interaction", "eyes_ext/input/gaze_ext", kEyes, false, false, kPose},
+    };
+    const auto check = [&](XrVersion version, const Extensions& extensions, const auto& isTaken) {
+        const DirectInstance made(version, extensions);
+        for (const Binding& one : bindings) {
+            INFO(one.profile, " ", one.path, " ", version == k1_1 ? "1.1 " : "1.0 ", extensions.empty() ? "" : extensions[0]);
+            const XrResult expected = isTaken(one) ? XR_SUCCESS : XR_ERROR_PATH_UNSUPPORTED;
+            CHECK(made.suggest(std::string("/interaction_profiles/") + one.profile, std::string("/user/") + one.path, one.type) ==
+                  expected);
         }
+    };
+    check(k1_0, {}, [](const Binding& one) { return one.of_1_0; });
+    check(k1_1, {}, [](const Binding& one) { return one.of_1_1; });
+    std::set<std::string> extensions;
+    for (const Binding& one : bindings) {
+        if (one.extension != nullptr) { extensions.insert(one.extension); }
+    }
+    for (const std::string& extension : extensions) {
+        check(k1_0, {extension.c_str()},
+              [&](const Binding& one) { return one.of_1_0 || (one.extension != nullptr && one.extension == extension); });
+    }
+    for (const auto& [extension, profile, path] :
+         {std::tuple(kHands, kSimple, "/user/hand/left/input/pinch_ext/value"),
+          std::tuple(kEyes, "/interaction_profiles/ext/eye_gaze_interaction", "/user/eyes_ext/input/aim/pose"),
+          std::tuple(kEyes, "/interaction_profiles/ext/eye_gaze_interaction", "/user/hand/left/input/gaze_ext/pose"),
+          std::tuple(kEyes, kSimple, "/user/eyes_ext/input/gaze_ext/pose")}) {
+        CHECK(DirectInstance(k1_1, {extension}).suggest(profile, path) == XR_ERROR_PATH_UNSUPPORTED);
+    }
+}
+
+TEST_CASE("the palm's surface lies beside the grip, turned towards the index finger") {
+    const HeadlessSession made(k1_1, {}, "controller left 0 position 1 2 3 turn 40 10\n");
+    const XrActionSet set = made.makeActionSet("set");
+    const std::string hands[] = {"/user/hand/left", "/user/hand/right"};
+    const std::vector<XrPath> paths{made.path(hands[0]), made.path(hands[1])};
+    std::vector<XrAction> actions;
+    std::vector<XrActionSuggestedBinding> bindings;
+    for (const std::string name : {"grip", "grip_surface"}) {
+        actions.push_back(made.makeAction(set, name, XR_ACTION_TYPE_POSE_INPUT, paths));
+        for (const std::string& hand : hands) { bindings.push_back({actions.back(), made.path(hand + "/input/" + name + "/pose")}); }
+    }
+    REQUIRE(made.suggest(kSimple, bindings) == XR_SUCCESS);
+    made.attach({set});
+    made.begin();
+    REQUIRE(made.sync(set) == XR_SUCCESS);
+    for (const XrPath hand : paths) {
+        const XrSpaceLocation location =
+            made.locate(made.makeActionSpace(actions[1], hand), made.makeActionSpace(actions[0], hand), kStart);
+        CHECK(location.locationFlags == 15);
+        CHECK(location.pose.position.x == doctest::Approx(hand == paths[0] ? -0.02 : 0.02));
+        CHECK(location.pose.orientation.x == doctest::Approx(-std::sin(3.14159265 / 8)));
+        CHECK(location.pose.orientation.w == doctest::Approx(std::cos(3.14159265 / 8)));
     }
 }
 
 TEST_CASE("what a path depends on is read as the registry writes it: + is and, a comma is or") {
-    const simulated::Enabled older{false, {"A", "B"}}, newer{true, {}};
-    CHECK(older.meets(""));
-    CHECK(older.meets("A"));
-    CHECK_FALSE(older.meets("C"));
-    CHECK(older.meets("A+B"));
-    CHECK_FALSE(older.meets("A+C"));
-    CHECK(older.meets("C,B"));
-    CHECK(older.meets("C+A,B"));
-    CHECK(older.meets("B,C+A"));
-    CHECK_FALSE(older.meets("A+C,XR_VERSION_1_1"));
-    CHECK(newer.meets("A+C,XR_VERSION_1_1"));
+    const simulated::Enabled older{false, {"A", "B"}};
+    for (const char* met : {"", "A", "A+B", "C,B", "C+A,B", "B,C+A"}) { CHECK_MESSAGE(older.meets(met), met); }
+    for (const char* not_met : {"C", "A+C", "A+C,XR_VERSION_1_1"}) { CHECK_FALSE_MESSAGE(older.meets(not_met), not_met); }
+    CHECK(simulated::Enabled{true, {}}.meets("A+C,XR_VERSION_1_1"));
 }
 
 }  // namespace simulated_profiles_test

@@ -1,13 +1,15 @@
-// The simulated runtime as a library that strangers load: what it shows, how it negotiates, and programs that were not written for it.
-#include "tests/xr/simulated/api/simulated_direct.h"
+// Programs that were not written for the simulated runtime: openxr_runtime_list and, of Khronos, hello_xr. What these do and see on it,
+// also where it is lost, and that runs in lock-step repeat bit for bit. BINOSPLAT_WRITE_GOLDENS=1 makes the golden picture anew.
+#include "tests/shared_data.h"
 #include "tests/xr/simulated/api/simulated_fixture.h"
 #include "tests/xr/simulated/installed.h"
+#include "xr/simulated/compose/picture_file.h"
 
-#include <dlfcn.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
-#include <cstdio>
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -17,255 +19,264 @@ TEST_SUITE_BEGIN("simulated_runtime");
 namespace simulated_runtime_test {
 
 using namespace binosplat::test;
+using simulated::kLeft;
+using simulated::kRight;
+using simulated::RgbPicture;
 
 namespace {
 
-struct Run {
-    int exit_code = -1;
-    std::string output;
-};
+using Json = nlohmann::json;
 
-// Standard input is a pipe that nobody writes to: hello_xr ends at the first key.
-Run run(const Headset& headset, const std::string& command, const std::string& environment = "") {
-    const std::string log = (headset.folder / "log").string(), keys = (headset.folder / "keys").string();
-    const std::string line = "rm -f " + keys + " && mkfifo " + keys + " && " BINOSPLAT_STRANGERS_ENVIRONMENT + environment +
-                             " timeout 100 " + command + " 0<>" + keys + " > " + log + " 2>&1";
-    const int status = std::system(line.c_str());
-    std::ifstream stream(log);
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, {std::istreambuf_iterator<char>(stream), {}}};
+constexpr double kLeastDb = 40.0;
+
+// Periods of 10 ms are whole nanoseconds: frame n is displayed at n * 0.01 s exactly.
+const std::string kQuiet = "rate 100\nsize 64 64\nframes none\n";
+
+// Unequal, canted views of a head that looks about, hands in sight; the picture is of frame 20, when the head turns.
+const char* const kLooking =
+    "size 240 200\n"
+    "eye left angles -35 28 27 -33\n"
+    "eye right angles -28 35 27 -33\n"
+    "eye left cant 4\n"
+    "eye right cant 4\n"
+    "head 0 position 0 1.6 0 turn 0 0\n"
+    "head 0.4 position 0.1 1.6 0.1 turn 16 -16\n"
+    "controller left 0 position -0.25 1.35 -0.7 turn 30 20\n"
+    "controller right 0 position 0.15 1.35 -0.6 turn -20 -10\n"
+    "axis right squeeze 0 0\n"
+    "axis right squeeze 0.4 1\n"
+    "frames from 10 to 20 every 10\n"
+    "at 0.3 exit\n";
+
+std::string readFile(const std::filesystem::path& path) {
+    std::ifstream stream(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-bool contains(const std::string& text, const char* part) { return text.find(part) != std::string::npos; }
+bool haveHelloXr() { return isInstalled("hello_xr", "libopenxr-utils"); }
+
+// A stranger's run. hello_xr ends when its session ends or when a key is pressed: its input is a pipe that stays open and silent.
+struct Run : Headset {
+    int exit_status = -1;  // 124: it did not end within its time
+    std::string output;
+    std::vector<Json> frames;  // of the log
+
+    explicit Run(const std::string& script, const std::string& command = "hello_xr -g Vulkan2", const std::string& environment = "")
+        : Headset(script) {
+        const std::string keys = (folder / "keys").string(), log = (folder / "output").string();
+        const std::string line = "mkfifo " + keys + " && " BINOSPLAT_STRANGERS_ENVIRONMENT + environment + " timeout 60 " + command +
+                                 " 0<>" + keys + " > " + log + " 2>&1";
+        const int status = std::system(line.c_str());
+        exit_status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+        output = readFile(log);
+        for (const Json& json : logged()) {
+            if (json.contains("frame")) { frames.push_back(json); }
+        }
+    }
+
+    [[nodiscard]] bool says(const std::string& part) const { return output.find(part) != std::string::npos; }
+    // Frames with the event.
+    [[nodiscard]] std::size_t count(const std::string& event) const {
+        const auto has = [&](const Json& frame) { return std::ranges::find(frame["events"], Json(event)) != frame["events"].end(); };
+        return static_cast<std::size_t>(std::ranges::count_if(frames, has));
+    }
+    // A part of one eye's half of a frame's picture.
+    [[nodiscard]] RgbPicture part(std::size_t frame, simulated::Side side, const glm::uvec2& from, const glm::uvec2& size_px) const {
+        const RgbPicture both = simulated::readPng(written / frames.at(frame)["picture"].get<std::string>());
+        RgbPicture part{size_px, {}};
+        for (std::uint32_t y = from.y; y < from.y + size_px.y; ++y) {
+            const std::size_t first = std::size_t{3} * (y * both.size_px.x + side * both.size_px.x / 2 + from.x);
+            const auto row = both.bytes.begin() + static_cast<std::ptrdiff_t>(first);
+            part.bytes.insert(part.bytes.end(), row, row + std::ptrdiff_t{3} * size_px.x);
+        }
+        return part;
+    }
+};
 
 void checkSilent(const std::string& output) {
     for (const char* complaint : {"VUID-", "SYNC-HAZARD", "UNASSIGNED-", "Validation Error", "Validation Warning"}) {
         const std::size_t place = output.find(complaint);
-        if (place != std::string::npos) FAIL_CHECK(output.substr(place, 500));
+        if (place != std::string::npos) { FAIL_CHECK(output.substr(place, 500)); }
     }
 }
 
-// What is said on standard error, with explanations on.
-template <class Body>
-std::string explainedBy(Body&& body) {
-    std::FILE* const said = std::tmpfile();
-    REQUIRE(said != nullptr);
-    std::fflush(stderr);
-    const int before = dup(STDERR_FILENO);
-    dup2(fileno(said), STDERR_FILENO);
-    setenv("SIMULATED_OPENXR_EXPLAIN", "1", 1);
-    body();
-    unsetenv("SIMULATED_OPENXR_EXPLAIN");
-    std::fflush(stderr);
-    dup2(before, STDERR_FILENO);
-    close(before);
-    std::string text;
-    std::rewind(said);
-    for (int c = std::fgetc(said); c != EOF; c = std::fgetc(said)) text += static_cast<char>(c);
-    std::fclose(said);
-    return text;
+double psnrDb(const RgbPicture& a, const RgbPicture& b) {
+    REQUIRE(a.size_px == b.size_px);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < a.bytes.size(); ++i) { sum += std::pow((a.bytes[i] - b.bytes[i]) / 255.0, 2.0); }
+    return sum == 0.0 ? 200.0 : -10.0 * std::log10(sum / static_cast<double>(a.bytes.size()));
 }
 
-constexpr const char* kLeaving = "size 128 128\nframes every 10\npress right squeeze 0.1 0.3\nat 0.4 exit\n";
-constexpr const char* kValidation =
-    "VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation VK_LAYER_ENABLES=VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT";
+// The mean column and row of pixels of pure blue: a cube's faces are drawn in six pure colours, and nothing else is.
+glm::dvec2 centreOfBlue(const RgbPicture& picture) {
+    glm::dvec2 sum(0.0);
+    double count = 0.0;
+    for (std::size_t i = 0; i < picture.bytes.size() / 3; ++i) {
+        const std::uint8_t* const pixel = &picture.bytes[3 * i];
+        if (pixel[0] > 2 || pixel[1] > 2 || pixel[2] < 253) { continue; }
+        sum += glm::dvec2(static_cast<double>(i % picture.size_px.x) + 0.5, static_cast<double>(i / picture.size_px.x) + 0.5);
+        count += 1.0;
+    }
+    REQUIRE(count > 0.0);
+    return sum / count;
+}
 
 }  // namespace
 
-TEST_CASE("the library shows one function, which negotiates version 1") {
-    void* const handle = dlopen(Direct::path().c_str(), RTLD_NOW | RTLD_LOCAL);
-    REQUIRE(handle != nullptr);
-    // What is found then belongs to another library that this one needs.
-    for (const char* name : {"xrCreateInstance", "xrGetInstanceProcAddr", "vkCreateInstance"}) {
-        Dl_info owner{};
-        void* const found = dlsym(handle, name);
-        CHECK((found == nullptr || (dladdr(found, &owner) != 0 && !contains(owner.dli_fname, "binosplat"))));
-    }
-    const auto negotiate = reinterpret_cast<Negotiate>(dlsym(handle, "xrNegotiateLoaderRuntimeInterface"));
-    REQUIRE((negotiate != nullptr));
-    const auto negotiated = [&](auto&& change) {
-        LoaderInfo info;
-        RuntimeRequest request;
-        change(info, request);
-        return negotiate(&info, &request);
-    };
-    CHECK(negotiated([](auto&, auto&) {}) == XR_SUCCESS);
-    CHECK(negotiated([](auto& info, auto&) { info.type = 2; }) == XR_ERROR_INITIALIZATION_FAILED);
-    CHECK(negotiated([](auto& info, auto&) { info.version = 2; }) == XR_ERROR_INITIALIZATION_FAILED);
-    CHECK(negotiated([](auto& info, auto&) { info.size = 8; }) == XR_ERROR_INITIALIZATION_FAILED);
-    CHECK(negotiated([](auto& info, auto&) { info.least_interface = info.most_interface = 2; }) == XR_ERROR_INITIALIZATION_FAILED);
-    CHECK(negotiated([](auto& info, auto&) { info.least_api = XR_MAKE_VERSION(2, 0, 0); }) == XR_ERROR_INITIALIZATION_FAILED);
-    CHECK(negotiated([](auto&, auto& request) { request.type = 1; }) == XR_ERROR_INITIALIZATION_FAILED);
-    CHECK(negotiated([](auto&, auto& request) { request.size = 8; }) == XR_ERROR_INITIALIZATION_FAILED);
-    CHECK(negotiate(nullptr, nullptr) == XR_ERROR_INITIALIZATION_FAILED);
-    RuntimeRequest request;
-    const LoaderInfo info;
-    CHECK(negotiate(&info, &request) == XR_SUCCESS);
-    CHECK(request.interface == 1);
-    CHECK(XR_VERSION_MAJOR(request.api) == 1);
-    REQUIRE((request.get_instance_proc_addr != nullptr));
-    // The loader answers for the layers by itself; a loader that asks is told of none.
-    PFN_xrVoidFunction found = nullptr;
-    CHECK(request.get_instance_proc_addr(XR_NULL_HANDLE, "xrEnumerateApiLayerProperties", &found) == XR_SUCCESS);
-    const auto enumerateLayers = reinterpret_cast<PFN_xrEnumerateApiLayerProperties>(found);
-    REQUIRE((enumerateLayers != nullptr));
-    std::uint32_t count = 9;
-    CHECK(enumerateLayers(0, &count, nullptr) == XR_SUCCESS);
-    CHECK(count == 0);
-    CHECK(enumerateLayers(0, nullptr, nullptr) == XR_ERROR_VALIDATION_FAILURE);
-    dlclose(handle);
-}
-
-TEST_CASE("what the loader asks for after a refused instance is not explained, what the program asked for is") {
-    const Headset headset(kLeaving);
-    const Direct runtime;
-    const std::string explained = explainedBy([&] {
-        XrInstanceCreateInfo info = instanceInfo({});
-        info.createFlags = 1;
-        XrInstance instance = XR_NULL_HANDLE;
-        CHECK(runtime.function<PFN_xrCreateInstance>(XR_NULL_HANDLE, "xrCreateInstance")(&info, &instance) == XR_ERROR_VALIDATION_FAILURE);
-        PFN_xrVoidFunction found = nullptr;
-        for (const char* name : {"xrWaitFrame", "xrEndFrame", "xrCreateHandTrackerEXT"}) {
-            CHECK(runtime.get(XR_NULL_HANDLE, name, &found) == XR_ERROR_HANDLE_INVALID);
-            CHECK(runtime.get(instance, name, &found) == XR_ERROR_HANDLE_INVALID);
-        }
-    });
-    CHECK(explained == "simulated runtime: xrCreateInstance: XR_ERROR_VALIDATION_FAILURE: createFlags is 1, no flags are known\n");
-}
-
-TEST_CASE("the environment is read again for each instance") {
-    const Headset headset("plugged off\n");
-    const auto systemOf = [&](const Direct& runtime) {
-        const XrInstanceCreateInfo info = instanceInfo({});
-        XrInstance instance = XR_NULL_HANDLE;
-        REQUIRE(runtime.function<PFN_xrCreateInstance>(XR_NULL_HANDLE, "xrCreateInstance")(&info, &instance) == XR_SUCCESS);
-        const XrSystemGetInfo get{XR_TYPE_SYSTEM_GET_INFO, nullptr, XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY};
-        XrSystemId system = XR_NULL_SYSTEM_ID;
-        const XrResult result = runtime.function<PFN_xrGetSystem>(instance, "xrGetSystem")(instance, &get, &system);
-        CHECK(runtime.function<PFN_xrDestroyInstance>(instance, "xrDestroyInstance")(instance) == XR_SUCCESS);
-        return result;
-    };
-    const Direct runtime;
-    CHECK_MESSAGE(systemOf(runtime) == XR_ERROR_FORM_FACTOR_UNAVAILABLE, "no headset");
-    std::ofstream(headset.folder / "other.script") << "plugged on\n";
-    setenv("SIMULATED_OPENXR_SCRIPT", (headset.folder / "other.script").c_str(), 1);
-    CHECK(systemOf(runtime) == XR_SUCCESS);
-    setenv("SIMULATED_OPENXR_CLOCK", "sundial", 1);
-    const std::string explained = explainedBy([&] {
-        const XrInstanceCreateInfo info = instanceInfo({});
-        XrInstance instance = XR_NULL_HANDLE;
-        CHECK(runtime.function<PFN_xrCreateInstance>(XR_NULL_HANDLE, "xrCreateInstance")(&info, &instance) == XR_ERROR_RUNTIME_FAILURE);
-    });
-    CHECK(explained == "simulated runtime: xrCreateInstance: SIMULATED_OPENXR_CLOCK is 'sundial', must be lockstep or real\n");
-    for (const char* name : {"SIMULATED_OPENXR_SCRIPT", "SIMULATED_OPENXR_CLOCK"}) unsetenv(name);
-}
-
-TEST_CASE("a refusal that comes again is counted, not repeated") {
-    const std::string explained = explainedBy([&] {
-        const DirectInstance made(k1_0, {});
-        XrPath path = XR_NULL_PATH;
-        const auto toPath = made.xr<PFN_xrStringToPath>("xrStringToPath");
-        for (int i = 0; i < 125; ++i) {
-            CHECK(toPath(made.instance, "no slash", &path) == XR_ERROR_PATH_FORMAT_INVALID);
-            if (i % 20 == 0) { CHECK(toPath(made.instance, "/a/../b", &path) == XR_ERROR_PATH_FORMAT_INVALID); }
-        }
-    });
-    const std::string line = "simulated runtime: xrStringToPath: XR_ERROR_PATH_FORMAT_INVALID: 'no slash' is not a well-formed path";
-    const std::string other = "simulated runtime: xrStringToPath: XR_ERROR_PATH_FORMAT_INVALID: '/a/../b' is not a well-formed path";
-    CHECK(explained == line + "\n" + other + "\n" + line + " (10 times so far)\n" + line + " (100 times so far)\n" + other +
-                           " (7 times in all)\n" + line + " (125 times in all)\n");
-}
-
-TEST_CASE("an instance empties the folder of an earlier run, one that is refused leaves it alone") {
-    const Headset headset(kQuietScript);
-    std::filesystem::create_directories(headset.written);
-    const std::filesystem::path picture = headset.written / "frame_000003.png";
-    std::ofstream(picture) << "x";
-    std::ofstream(headset.written / "frames.jsonl") << "{\"frame\":0,\"display_time_ns\":1,\"picture\":\"frame_000003.png\"}\n";
-    const Direct runtime;
-    const auto create = runtime.function<PFN_xrCreateInstance>(XR_NULL_HANDLE, "xrCreateInstance");
-    const std::vector<const char*> unknown{"XR_KHR_nothing"};
-    XrInstanceCreateInfo info = instanceInfo(unknown);
-    XrInstance instance = XR_NULL_HANDLE;
-    CHECK(create(&info, &instance) == XR_ERROR_EXTENSION_NOT_PRESENT);
-    CHECK(std::filesystem::exists(picture));
-    CHECK(std::filesystem::file_size(headset.written / "frames.jsonl") > 0);
-    info = instanceInfo({});
-    REQUIRE(create(&info, &instance) == XR_SUCCESS);
-    CHECK_FALSE(std::filesystem::exists(picture));
-    CHECK(std::filesystem::file_size(headset.written / "frames.jsonl") == 0);
-    CHECK(runtime.function<PFN_xrDestroyInstance>(instance, "xrDestroyInstance")(instance) == XR_SUCCESS);
-    // Somebody else's log, here behind a link.
-    std::ofstream(headset.folder / "victim") << "keep me";
-    std::filesystem::remove(headset.written / "frames.jsonl");
-    std::filesystem::create_symlink(headset.folder / "victim", headset.written / "frames.jsonl");
-    const std::string explained = explainedBy([&] { CHECK(create(&info, &instance) == XR_ERROR_RUNTIME_FAILURE); });
-    CHECK(explained == "simulated runtime: xrCreateInstance: " + (headset.written / "frames.jsonl").string() +
-                           ": not what an earlier run left here, must be moved elsewhere\n");
-    CHECK(std::filesystem::file_size(headset.folder / "victim") == 7);
-}
-
 TEST_CASE("openxr_runtime_list finds it") {
-    if (!isInstalled("openxr_runtime_list", "libopenxr-utils")) return;
-    const Headset headset(kLeaving);
-    const Run listed = run(headset, "openxr_runtime_list");
-    CHECK(listed.exit_code == 0);
-    CHECK(contains(listed.output, "Simulated headset"));
-    CHECK(contains(listed.output, XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME));
+    if (!isInstalled("openxr_runtime_list", "libopenxr-utils")) { return; }
+    const Run listed(kQuiet, "openxr_runtime_list");
+    CHECK(listed.exit_status == 0);
+    CHECK(listed.says("Simulated headset"));
+    CHECK(listed.says(XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME));
 }
 
-TEST_CASE("hello_xr runs on it from start to end, and neither validation layer has anything to say") {
-    if (!isInstalled("hello_xr", "libopenxr-utils")) return;
-    const Headset headset(kLeaving);
-    std::string environment = kValidation;
-    SUBCASE("XR_KHR_vulkan_enable2") {
-        const Run hello = run(headset, "hello_xr -g Vulkan2", environment);
-        CHECK(hello.exit_code == 0);
-        CHECK(contains(hello.output, "XR_SESSION_STATE_VISIBLE->XR_SESSION_STATE_FOCUSED"));
-        CHECK(contains(hello.output, "XR_SESSION_STATE_IDLE->XR_SESSION_STATE_EXITING"));
-        CHECK(std::filesystem::exists(headset.written / "frame_000010.png"));
-        CHECK(std::filesystem::exists(headset.written / "frame_000030.png"));
-        checkSilent(hello.output);
+TEST_CASE("hello_xr runs on it from start to end, and no validation layer has anything to say") {
+    if (!haveHelloXr()) { return; }
+    const std::string script = "size 128 128\nframes every 10\npress right squeeze 0.1 0.3\nat 0.4 exit\n";
+    const std::string validation =
+        "VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation VK_LAYER_ENABLES=VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT ";
+    std::vector<std::string> outputs;
+    {
+        // With other controllers, and under OpenXR's own layer.
+        const Run hello(script, "hello_xr -g Vulkan2",
+                        validation +
+                            "SIMULATED_OPENXR_PROFILE=valve/index_controller XR_ENABLE_API_LAYERS=XR_APILAYER_LUNARG_core_validation "
+                            "XR_CORE_VALIDATION_EXPORT_TYPE=text XR_CORE_VALIDATION_FILE_NAME=$SIMULATED_OPENXR_SCRIPT.validation");
+        CHECK(hello.exit_status == 0);
+        CHECK(hello.says("Left hand Index controller Squeeze"));
+        CHECK(std::filesystem::exists(hello.written / "frame_000010.png"));
+        CHECK(std::filesystem::exists(hello.written / "frame_000030.png"));
+        CHECK(hello.says("Core Validation output type: text"));
+        outputs = {hello.output, readFile(hello.folder / "test.script.validation")};
     }
-    SUBCASE("XR_KHR_vulkan_enable") {
-        const Run hello = run(headset, "hello_xr -g Vulkan", environment);
-        CHECK(hello.exit_code == 0);
-        CHECK(contains(hello.output, "XR_SESSION_STATE_VISIBLE->XR_SESSION_STATE_FOCUSED"));
-        checkSilent(hello.output);
-    }
-    SUBCASE("under OpenXR's own validation layer") {
-        environment +=
-            " XR_ENABLE_API_LAYERS=XR_APILAYER_LUNARG_core_validation XR_CORE_VALIDATION_EXPORT_TYPE=text XR_CORE_VALIDATION_FILE_NAME=" +
-            (headset.folder / "validation").string();
-        const Run hello = run(headset, "hello_xr -g Vulkan2", environment);
-        CHECK(hello.exit_code == 0);
-        checkSilent(hello.output);
-        std::ifstream validation(headset.folder / "validation");
-        checkSilent({std::istreambuf_iterator<char>(validation), {}});
-    }
-    SUBCASE("paced by a real clock") {
-        const Run hello = run(headset, "hello_xr -g Vulkan2", environment + " SIMULATED_OPENXR_CLOCK=real");
-        CHECK(hello.exit_code == 0);
-        CHECK(contains(hello.output, "XR_SESSION_STATE_IDLE->XR_SESSION_STATE_EXITING"));
-    }
-    SUBCASE("with other controllers") {
-        const Run hello = run(headset, "hello_xr -g Vulkan2", environment + " SIMULATED_OPENXR_PROFILE=valve/index_controller");
-        CHECK(hello.exit_code == 0);
-        CHECK(contains(hello.output, "Left hand Index controller Squeeze"));
+    // By the older extension, paced by a real clock.
+    const Run older(script, "hello_xr -g Vulkan", validation + "SIMULATED_OPENXR_CLOCK=real");
+    CHECK(older.exit_status == 0);
+    outputs.push_back(older.output);
+    for (const std::string& output : outputs) { checkSilent(output); }
+    for (const std::string& output : {outputs[0], outputs[2]}) {
+        CHECK(output.find("XR_SESSION_STATE_VISIBLE->XR_SESSION_STATE_FOCUSED") != std::string::npos);
+        CHECK(output.find("XR_SESSION_STATE_IDLE->XR_SESSION_STATE_EXITING") != std::string::npos);
     }
 }
 
 TEST_CASE("a machine without GPU is told apart from one without headset and from a broken script") {
-    if (!isInstalled("hello_xr", "libopenxr-utils")) return;
-    const Headset headset(kLeaving);
-    const Run no_gpu = run(headset, "hello_xr -g Vulkan2", "VK_ICD_FILENAMES=/nowhere.json VK_DRIVER_FILES=/nowhere.json");
-    CHECK(contains(no_gpu.output, "simulated runtime: xrCreateVulkanInstanceKHR: no GPU: Vulkan has no driver"));
-    const Headset absent("plugged off\n");
-    const Run no_headset = run(absent, "hello_xr -g Vulkan2", "SIMULATED_OPENXR_EXPLAIN=1");
-    CHECK(contains(no_headset.output, "simulated runtime: xrGetSystem: XR_ERROR_FORM_FACTOR_UNAVAILABLE: no headset"));
-    const Headset broken("at noon exit\n");
-    const Run no_script = run(broken, "hello_xr -g Vulkan2");
-    CHECK(contains(no_script.output, "test.script:1: "));
-    for (const Run& one : {no_headset, no_script}) CHECK(!contains(one.output, "no GPU"));
+    if (!haveHelloXr()) { return; }
+    const Run no_gpu(kQuiet, "hello_xr -g Vulkan2", "VK_ICD_FILENAMES=/nowhere.json VK_DRIVER_FILES=/nowhere.json");
+    CHECK(no_gpu.says("simulated runtime: xrCreateVulkanInstanceKHR: no GPU: Vulkan has no driver"));
+    const Run no_headset("plugged off\n", "hello_xr -g Vulkan2", "SIMULATED_OPENXR_EXPLAIN=1");
+    CHECK(no_headset.says("simulated runtime: xrGetSystem: XR_ERROR_FORM_FACTOR_UNAVAILABLE: no headset"));
+    CHECK_FALSE(no_headset.says("no GPU"));
+    const Run no_script("at noon exit\n");
+    CHECK(no_script.says("test.script:1: "));
+    CHECK_FALSE(no_script.says("no GPU"));
+}
+
+TEST_CASE("a lost session and a lost instance are left and made anew") {
+    if (!haveHelloXr()) { return; }
+    const Run run(kQuiet + "at 0.2 lose-session\nat 0.6 lose-instance\nat 1 exit\n");
+    CHECK_MESSAGE(run.exit_status == 0, run.output);
+    CHECK(run.count("lose-session") == 1);
+    CHECK(run.count("state FOCUSED") == 3);
+    CHECK(run.says("XR_SESSION_STATE_LOSS_PENDING"));
+    // Frames count on, and those of a new session are later ones.
+    XrTime last = 0;
+    for (std::size_t i = 0; i < run.frames.size(); ++i) {
+        REQUIRE(run.frames[i]["frame"] == i);
+        REQUIRE(run.frames[i]["display_time_ns"].get<XrTime>() > last);
+        last = run.frames[i]["display_time_ns"].get<XrTime>();
+    }
+}
+
+TEST_CASE("submitted poses are the head's of their display time, and the menu button reaches the program's quit action") {
+    if (!haveHelloXr()) { return; }
+    // A metre per second to the right, in LOCAL, whose origin is the head at time 0.
+    const Run run(kQuiet + "head 0 position 0 1.6 0\nhead 1 position 1 1.6 0\npress left menu 0.4 0.5\nat 3 exit\n");
+    CHECK_MESSAGE(run.exit_status == 0, run.output);
+    for (const std::size_t frame : {9u, 18u, 30u}) {
+        const Json& logged = run.frames.at(frame);
+        const double time_s = (logged["display_time_ns"].get<double>() - run.frames[0]["display_time_ns"].get<double>()) * 1e-9;
+        const double left_x = logged["layers"].at(0)["views"].at(0)["pose"]["position"].at(0);
+        CHECK(left_x == doctest::Approx(time_s - 0.0315).epsilon(1e-5));
+    }
+    CHECK(run.count("exit") == 0);
+    CHECK(run.frames.size() < 70);
+}
+
+TEST_CASE("a recorded walk reaches the program as it was walked" * needsSharedData()) {
+    const auto data = sharedData();
+    if (!data || !haveHelloXr()) { return; }
+    const Run run(kQuiet + "head-motion \"" + std::filesystem::absolute(*data / "headmotion" / "User3.csv").string() +
+                  "\" axes unity skip 5\nat 1 exit\n");
+    CHECK_MESSAGE(run.exit_status == 0, run.output);
+    const auto vectorOf = [](const Json& json) { return glm::dvec3(json[0].get<double>(), json[1].get<double>(), json[2].get<double>()); };
+    double way_m = 0.0, largest_error_m = 0.0;
+    for (std::size_t i = 10; i < 100; ++i) {
+        const Json& frame = run.frames.at(i);
+        const Json& layer = frame["layers"].at(0);
+        // LOCAL is level and faces where the head faced at time 0; its heading is in the log.
+        const Json& q = layer["stage_from_space"]["orientation"];
+        const glm::dquat stage_from_local(q[3].get<double>(), q[0].get<double>(), q[1].get<double>(), q[2].get<double>());
+        for (const std::size_t eye : {0u, 1u}) {
+            const glm::dvec3 submitted =
+                vectorOf(layer["stage_from_space"]["position"]) + stage_from_local * vectorOf(layer["views"].at(eye)["pose"]["position"]);
+            largest_error_m = std::max(largest_error_m, glm::length(submitted - vectorOf(frame["eyes"].at(eye)["pose"]["position"])));
+        }
+        way_m += glm::length(vectorOf(frame["head"]["position"]) - vectorOf(run.frames.at(i - 1)["head"]["position"]));
+    }
+    CHECK(largest_error_m < 1e-6);
+    CHECK(way_m > 0.1);
+    CHECK(way_m < 2.0);
+}
+
+TEST_CASE("hello_xr looks as it did, and a lock-step run writes the same files again") {
+    if (!haveHelloXr()) { return; }
+    const Run run(kLooking), again(kLooking);
+    REQUIRE_MESSAGE(run.exit_status == 0, run.output);
+    CHECK(std::distance(std::filesystem::directory_iterator(run.written), {}) == 3);  // two pictures and the log
+    CHECK(std::system(("diff -r " + run.written.string() + " " + again.written.string()).c_str()) == 0);
+    const auto eye = [&](std::size_t frame, simulated::Side side) { return run.part(frame, side, {0, 0}, {240, 200}); };
+    const RgbPicture left = eye(20, kLeft);
+    const std::filesystem::path file = std::filesystem::path(BINOSPLAT_SOURCE_DIR) / "tests/golden/hello_xr_left.png";
+    const char* const write = std::getenv("BINOSPLAT_WRITE_GOLDENS");
+    if (write != nullptr && std::string(write) == "1") { simulated::writePng(file, left); }
+    const RgbPicture golden = simulated::readPng(file);
+    const double db = psnrDb(golden, left);
+    CHECK(db >= kLeastDb);
+    if (db < kLeastDb) {
+        const std::filesystem::path actual = std::filesystem::path(BINOSPLAT_OUTPUT_DIR) / "golden" / "hello_xr_left_actual.png";
+        std::filesystem::create_directories(actual.parent_path());
+        simulated::writePng(actual, left);
+        MESSAGE("look at " << actual.string());
+    }
+    // What the comparison must tell apart.
+    CHECK(psnrDb(golden, eye(20, kRight)) < kLeastDb);
+    CHECK(psnrDb(golden, eye(10, kLeft)) < kLeastDb);
+}
+
+TEST_CASE("a cube ahead has its disparity and is upright, and controllers are seen where the script holds them") {
+    if (!haveHelloXr()) { return; }
+    // 150 pixels per unit of tangent, eyes 0.1 m apart. hello_xr puts a cube of 0.25 m 2 m ahead of the head, and others on the floor; its
+    // near face, 1.875 m away, is the +z side, pure blue. The right controller's is of 0.1 m: held 0.3 m to the right, 0.2 m above the
+    // eyes' height, its near face 0.5 m ahead.
+    const Run run(
+        "size 300 300\nipd 0.1\nframes from 20 to 50 every 30\ncontroller left 0 position 0 9 9\n"
+        "controller right 0 position 0.3 1.8 -0.55\nat 0.3 controller right off\nat 0.7 exit\n",
+        "hello_xr -g Vulkan2 --space View");
+    REQUIRE_MESSAGE(run.exit_status == 0, run.output);
+    for (const auto side : {kLeft, kRight}) {
+        const double aside_m = side == kLeft ? 0.05 : -0.05;
+        const glm::dvec2 ahead = centreOfBlue(run.part(20, side, {100, 100}, {100, 100})) + glm::dvec2(100.0);
+        CHECK(std::abs(ahead.x - (150.0 + 150.0 * aside_m / 1.875)) <= 0.5);
+        CHECK(std::abs(ahead.y - 150.0) <= 0.5);
+        const glm::dvec2 held = centreOfBlue(run.part(20, side, {200, 0}, {100, 140})) + glm::dvec2(200.0, 0.0);
+        CHECK(std::abs(held.x - (150.0 + 150.0 * (0.3 + aside_m) / 0.5)) <= 0.5);
+        CHECK(std::abs(held.y - 90.0) <= 0.5);
+    }
+    // Not tracked any more: only the background, of one colour.
+    const RgbPicture empty = run.part(50, kLeft, {200, 0}, {100, 140});
+    for (std::size_t i = 0; i < empty.bytes.size(); ++i) { REQUIRE(empty.bytes[i] == empty.bytes[i % 3]); }
 }
 
 }  // namespace simulated_runtime_test

@@ -1,7 +1,10 @@
-// Chapter 9 and section 10.4 of OpenXR on the simulated runtime: the life of a session, its frame loop, and how either ends early.
-#include "tests/xr/simulated/api/simulated_fixture.h"
+// Chapter 9 and section 10.4 of OpenXR on the simulated runtime: the life of a session, its frame loop, the pace of its frames by script,
+// how either ends early, and sessions without graphics (XR_MND_headless; there is no loader then).
+#include "tests/xr/simulated/api/simulated_direct.h"
 
+#include <algorithm>
 #include <atomic>
+#include <set>
 #include <thread>
 
 TEST_SUITE_BEGIN("simulated_session");
@@ -12,326 +15,453 @@ using namespace binosplat::test;
 
 namespace {
 
-using States = std::vector<XrSessionState>;
+using Json = nlohmann::json;
 
-struct ExitingFixture : SessionFixture {
-    ExitingFixture() : SessionFixture("size 64 64\nframes none\nat 0.1 exit\n") {}
-};
-struct HiddenFixture : SessionFixture {
-    HiddenFixture()
-        : SessionFixture(
-              "size 64 64\nframes none\nrate 10\n"
-              "at 1 focused off\nat 2 visible off\nat 3 visible on\nat 3.5 focused on\nat 4 should-render off\n") {}
-};
-struct LosingFixture : SessionFixture {
-    LosingFixture() : SessionFixture("size 64 64\nframes none\nrate 10\nat 1 lose-session\n") {}
-};
-struct InstanceLosingFixture : SessionFixture {
-    InstanceLosingFixture() : SessionFixture("size 64 64\nframes none\nrate 10\nat 1 lose-instance\n") {}
+const std::string kSmall = "size 64 64\nframes none\n";
+constexpr XrDuration kPeriod = 10'000'000;  // of 100 frames per second
+const States kWholeLife{XR_SESSION_STATE_IDLE,    XR_SESSION_STATE_READY,   XR_SESSION_STATE_SYNCHRONIZED, XR_SESSION_STATE_VISIBLE,
+                        XR_SESSION_STATE_FOCUSED, XR_SESSION_STATE_VISIBLE, XR_SESSION_STATE_SYNCHRONIZED, XR_SESSION_STATE_STOPPING};
+
+struct Begun : SessionFixture {
+    explicit Begun(const std::string& script, const Extensions& extensions = {}) : SessionFixture(kSmall + script, extensions) { begin(); }
 };
 
-// Loses and gains focus with every other frame, from the third on.
-std::string restlessScript() {
-    std::string script = "size 64 64\nframes none\nrate 10\n";
-    for (int i = 0; i < 110; ++i) { script += "at " + std::to_string(0.25 + 0.1 * i) + (i % 2 == 0 ? " focused off\n" : " focused on\n"); }
-    return script;
+// A hundred frames per second, and the wearer leaves after ten.
+struct Leaving : Begun {
+    Leaving() : Begun("rate 100\nat 0.1 exit") {}
+
+    // Waits for frames, and hands their times on, until the session is to stop.
+    template <class Body>
+    States runOn(const Body& body) const {
+        States seen;
+        for (int i = 0; i < 50; ++i) {
+            const XrTime time = waitFrame().predictedDisplayTime;
+            for (const XrSessionState state : states()) { seen.push_back(state); }
+            if (!seen.empty() && seen.back() == XR_SESSION_STATE_STOPPING) { break; }
+            CHECK(XR_SUCCEEDED(xrBeginFrame(session, nullptr)));
+            body(time);
+        }
+        return seen;
+    }
+};
+
+// What the first call says that fails, of ten frames that end.
+XrResult failureOf(const SessionFixture& made) {
+    XrResult result = XR_SUCCESS;
+    XrFrameState state{XR_TYPE_FRAME_STATE};
+    for (int i = 0; i < 10 && XR_SUCCEEDED(result); ++i) {
+        result = xrWaitFrame(made.session, nullptr, &state);
+        if (XR_SUCCEEDED(result)) { result = xrBeginFrame(made.session, nullptr); }
+        if (XR_SUCCEEDED(result)) { result = made.endFrame(state.predictedDisplayTime); }
+    }
+    return result;
 }
-struct RestlessFixture : SessionFixture {
-    RestlessFixture() : SessionFixture(restlessScript()) {}
-};
 
 }  // namespace
 
-TEST_CASE_FIXTURE(VulkanFixture, "a session wants a graphics binding and a system") {
-    XrGraphicsBindingVulkan2KHR graphics = binding();
+TEST_CASE_FIXTURE(VulkanFixture, "a session wants a graphics binding and a system; its objects and events end with it") {
+    XrGraphicsBindingVulkan2KHR graphics = binding(), second = graphics;
     XrSessionCreateInfo info{XR_TYPE_SESSION_CREATE_INFO, &graphics, 0, system};
-    XrSession session = XR_NULL_HANDLE;
-    CHECK(xrCreateSession(instance, nullptr, &session) == XR_ERROR_VALIDATION_FAILURE);
-    CHECK(xrCreateSession(instance, &info, nullptr) == XR_ERROR_VALIDATION_FAILURE);
-    info.next = nullptr;
-    CHECK(xrCreateSession(instance, &info, &session) == XR_ERROR_GRAPHICS_DEVICE_INVALID);
-    XrGraphicsBindingVulkan2KHR second = graphics;
-    graphics.next = &second;
-    info.next = &graphics;
-    CHECK(xrCreateSession(instance, &info, &session) == XR_ERROR_GRAPHICS_DEVICE_INVALID);
-    graphics = binding();
-    graphics.device = VK_NULL_HANDLE;
-    CHECK(xrCreateSession(instance, &info, &session) == XR_ERROR_GRAPHICS_DEVICE_INVALID);
-    graphics = binding();
-    graphics.queueFamilyIndex = 99;
-    CHECK(xrCreateSession(instance, &info, &session) == XR_ERROR_GRAPHICS_DEVICE_INVALID);
-    graphics = binding();
-    info.systemId = 7;
-    CHECK(xrCreateSession(instance, &info, &session) == XR_ERROR_SYSTEM_INVALID);
-    info.systemId = system;
-    info.createFlags = 1;
-    CHECK(xrCreateSession(instance, &info, &session) == XR_ERROR_VALIDATION_FAILURE);
-    info.createFlags = 0;
-    CHECK(xrCreateSession(instance, &info, &session) == XR_SUCCESS);
+    const auto make = [&] { return xrCreateSession(instance, &info, &session); };
+    checkArguments(xrCreateSession, instance, &info, &session);
+    checkChanges(make, XR_ERROR_GRAPHICS_DEVICE_INVALID, to(info.next, nullptr), to(graphics.next, &second),
+                 to(graphics.device, VK_NULL_HANDLE), to(graphics.queueFamilyIndex, 99));
+    CHECK(with(info.systemId, 7, make) == XR_ERROR_SYSTEM_INVALID);
+    CHECK(with(info.createFlags, 1, make) == XR_ERROR_VALIDATION_FAILURE);
+    REQUIRE(make() == XR_SUCCESS);
     XrSession another = XR_NULL_HANDLE;
     CHECK(xrCreateSession(instance, &info, &another) == XR_ERROR_LIMIT_REACHED);
-    CHECK(xrDestroySession(session) == XR_SUCCESS);
-    CHECK(xrDestroySession(session) == XR_ERROR_HANDLE_INVALID);
-    CHECK(xrCreateSession(instance, &info, &another) == XR_SUCCESS);
-}
 
-TEST_CASE_FIXTURE(SessionFixture, "what belongs to a session ends with it") {
-    const XrSwapchain swapchain = makeSwapchain();
-    CHECK(xrDestroySession(session) == XR_SUCCESS);
-    CHECK(xrDestroySpace(local) == XR_ERROR_HANDLE_INVALID);
-    CHECK(xrDestroySwapchain(swapchain) == XR_ERROR_HANDLE_INVALID);
-    CHECK(xrRequestExitSession(session) == XR_ERROR_HANDLE_INVALID);
-    CHECK(states().empty());
-}
-
-TEST_CASE_FIXTURE(SessionFixture, "a handle of one type is not taken for another") {
-    CHECK(xrDestroySession(reinterpret_cast<XrSession>(local)) == XR_ERROR_HANDLE_INVALID);
+    const XrSwapchainCreateInfo swapchain_info = swapchainInfo();
+    XrSwapchain swapchain = XR_NULL_HANDLE;
+    REQUIRE(xrCreateSwapchain(session, &swapchain_info, &swapchain) == XR_SUCCESS);
+    const XrSpace space = makeSpace(XR_REFERENCE_SPACE_TYPE_LOCAL);
+    // A handle of one type is not taken for another.
+    CHECK(xrDestroySession(reinterpret_cast<XrSession>(space)) == XR_ERROR_HANDLE_INVALID);
     CHECK(xrDestroySpace(reinterpret_cast<XrSpace>(session)) == XR_ERROR_HANDLE_INVALID);
     CHECK(xrDestroySwapchain(reinterpret_cast<XrSwapchain>(instance)) == XR_ERROR_HANDLE_INVALID);
     CHECK(xrDestroySession(XR_NULL_HANDLE) == XR_ERROR_HANDLE_INVALID);
-}
 
-TEST_CASE_FIXTURE(SessionFixture, "a session goes from IDLE to FOCUSED, a state per frame, and is shown from VISIBLE on") {
-    CHECK(states() == States{XR_SESSION_STATE_IDLE, XR_SESSION_STATE_READY});
-    begin();
-    CHECK(frame().shouldRender == XR_FALSE);
-    CHECK(states() == States{XR_SESSION_STATE_SYNCHRONIZED});
-    CHECK(frame().shouldRender == XR_FALSE);
-    CHECK(states() == States{XR_SESSION_STATE_VISIBLE});
-    CHECK(frame().shouldRender == XR_TRUE);
-    CHECK(states() == States{XR_SESSION_STATE_FOCUSED});
-    frame();
+    CHECK(xrDestroySession(session) == XR_SUCCESS);
+    CHECK(xrDestroySession(session) == XR_ERROR_HANDLE_INVALID);
+    CHECK(xrDestroySpace(space) == XR_ERROR_HANDLE_INVALID);
+    CHECK(xrDestroySwapchain(swapchain) == XR_ERROR_HANDLE_INVALID);
+    CHECK(xrRequestExitSession(session) == XR_ERROR_HANDLE_INVALID);
     CHECK(states().empty());
+    CHECK(make() == XR_SUCCESS);
+    CHECK(xrDestroySession(session) == XR_SUCCESS);
+    CHECK(make() == XR_SUCCESS);
+    CHECK(states() == States{XR_SESSION_STATE_IDLE, XR_SESSION_STATE_READY});
 }
 
-TEST_CASE_FIXTURE(SessionFixture, "a session begins once, when it is READY, in stereo") {
-    XrSessionBeginInfo info{XR_TYPE_SESSION_BEGIN_INFO, nullptr, XR_VIEW_CONFIGURATION_TYPE_PRIMARY_MONO};
-    CHECK(xrBeginSession(session, &info) == XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED);
-    info.primaryViewConfigurationType = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
-    info.type = XR_TYPE_UNKNOWN;
-    CHECK(xrBeginSession(session, &info) == XR_ERROR_VALIDATION_FAILURE);
-    CHECK(xrBeginSession(session, nullptr) == XR_ERROR_VALIDATION_FAILURE);
-    info.type = XR_TYPE_SESSION_BEGIN_INFO;
-    CHECK(xrBeginSession(XR_NULL_HANDLE, &info) == XR_ERROR_HANDLE_INVALID);
-    CHECK(xrBeginSession(session, &info) == XR_SUCCESS);
-    CHECK(xrBeginSession(session, &info) == XR_ERROR_SESSION_RUNNING);
-}
-
-TEST_CASE_FIXTURE(SessionFixture, "a session that does not run has no frames") {
+TEST_CASE_FIXTURE(SessionFixture, "a session begins once, when it is READY, in stereo, and goes from IDLE to FOCUSED, a state per frame") {
     XrFrameState state{XR_TYPE_FRAME_STATE};
     CHECK(xrWaitFrame(session, nullptr, &state) == XR_ERROR_SESSION_NOT_RUNNING);
     CHECK(xrBeginFrame(session, nullptr) == XR_ERROR_SESSION_NOT_RUNNING);
     CHECK(endFrame(1) == XR_ERROR_SESSION_NOT_RUNNING);
     CHECK(xrEndSession(session) == XR_ERROR_SESSION_NOT_RUNNING);
     CHECK(xrRequestExitSession(session) == XR_ERROR_SESSION_NOT_RUNNING);
+
+    XrSessionBeginInfo info{XR_TYPE_SESSION_BEGIN_INFO, nullptr, kStereo};
+    const auto begin = [&] { return xrBeginSession(session, &info); };
+    CHECK(with(info.primaryViewConfigurationType, XR_VIEW_CONFIGURATION_TYPE_PRIMARY_MONO, begin) ==
+          XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED);
+    checkArguments(xrBeginSession, session, &info);
+    CHECK(states() == States{XR_SESSION_STATE_IDLE, XR_SESSION_STATE_READY});
+    CHECK(begin() == XR_SUCCESS);
+    CHECK(begin() == XR_ERROR_SESSION_RUNNING);
+
+    // Drawn for from VISIBLE on; in lock-step a frame lasts one period.
+    state = frame();
+    CHECK(state.shouldRender == XR_FALSE);
+    CHECK(state.predictedDisplayPeriod == 11'111'111);
+    CHECK(state.predictedDisplayTime == kStart);
+    CHECK(states() == States{XR_SESSION_STATE_SYNCHRONIZED});
+    state = frame();
+    CHECK(state.shouldRender == XR_FALSE);
+    CHECK(state.predictedDisplayTime == kStart + state.predictedDisplayPeriod);
+    CHECK(states() == States{XR_SESSION_STATE_VISIBLE});
+    CHECK(frame().shouldRender == XR_TRUE);
+    CHECK(states() == States{XR_SESSION_STATE_FOCUSED});
+    frame();
+    CHECK(states().empty());
+
+    CHECK(xrEndSession(session) == XR_ERROR_SESSION_NOT_STOPPING);
+    CHECK(xrRequestExitSession(session) == XR_SUCCESS);
+    for (int i = 0; i < 3; ++i) { frame(); }
+    CHECK(states() == States{XR_SESSION_STATE_VISIBLE, XR_SESSION_STATE_SYNCHRONIZED, XR_SESSION_STATE_STOPPING});
+    CHECK(xrEndSession(session) == XR_SUCCESS);
+    CHECK(states() == States{XR_SESSION_STATE_IDLE, XR_SESSION_STATE_EXITING});
+    CHECK(begin() == XR_ERROR_SESSION_NOT_READY);
 }
 
-TEST_CASE_FIXTURE(SessionFixture, "frames are waited for, begun and ended in this order") {
+TEST_CASE_FIXTURE(SessionFixture, "frames are waited for, begun and ended in this order, in structures of their types") {
     begin();
     CHECK(xrBeginFrame(session, nullptr) == XR_ERROR_CALL_ORDER_INVALID);
     CHECK(endFrame(1) == XR_ERROR_CALL_ORDER_INVALID);
-    const XrTime first = waitFrame().predictedDisplayTime;
-    CHECK(endFrame(first) == XR_ERROR_CALL_ORDER_INVALID);
-    CHECK(xrBeginFrame(session, nullptr) == XR_SUCCESS);
-    CHECK(xrBeginFrame(session, nullptr) == XR_ERROR_CALL_ORDER_INVALID);
-    const XrTime second = waitFrame().predictedDisplayTime;
-    CHECK(xrBeginFrame(session, nullptr) == XR_FRAME_DISCARDED);
-    CHECK(endFrame(second) == XR_SUCCESS);
-    CHECK(endFrame(second) == XR_ERROR_CALL_ORDER_INVALID);
-}
-
-TEST_CASE_FIXTURE(SessionFixture, "a frame that was refused can be ended again") {
-    begin();
-    const XrTime time = waitFrame().predictedDisplayTime;
-    CHECK(xrBeginFrame(session, nullptr) == XR_SUCCESS);
-    CHECK(endFrame(0) == XR_ERROR_TIME_INVALID);
-    CHECK(endFrame(-5) == XR_ERROR_TIME_INVALID);
-    CHECK(endFrame(time) == XR_SUCCESS);
-}
-
-TEST_CASE_FIXTURE(SessionFixture, "the frame loop's structures have types") {
-    begin();
     XrFrameState state{XR_TYPE_FRAME_END_INFO};
     CHECK(xrWaitFrame(session, nullptr, &state) == XR_ERROR_VALIDATION_FAILURE);
     CHECK(xrWaitFrame(session, nullptr, nullptr) == XR_ERROR_VALIDATION_FAILURE);
     const XrFrameWaitInfo wait{XR_TYPE_FRAME_BEGIN_INFO};
     state.type = XR_TYPE_FRAME_STATE;
     CHECK(xrWaitFrame(session, &wait, &state) == XR_ERROR_VALIDATION_FAILURE);
-    waitFrame();
+    CHECK(endFrame(waitFrame().predictedDisplayTime) == XR_ERROR_CALL_ORDER_INVALID);
     const XrFrameBeginInfo begin_info{XR_TYPE_FRAME_WAIT_INFO};
     CHECK(xrBeginFrame(session, &begin_info) == XR_ERROR_VALIDATION_FAILURE);
     CHECK(xrBeginFrame(session, nullptr) == XR_SUCCESS);
-    CHECK(xrEndFrame(session, nullptr) == XR_ERROR_VALIDATION_FAILURE);
-    XrFrameEndInfo end{XR_TYPE_FRAME_END_INFO, nullptr, 1, XR_ENVIRONMENT_BLEND_MODE_ADDITIVE, 0, nullptr};
-    CHECK(xrEndFrame(session, &end) == XR_ERROR_ENVIRONMENT_BLEND_MODE_UNSUPPORTED);
-    end.environmentBlendMode = static_cast<XrEnvironmentBlendMode>(0);
-    CHECK(xrEndFrame(session, &end) == XR_ERROR_VALIDATION_FAILURE);
+    CHECK(xrBeginFrame(session, nullptr) == XR_ERROR_CALL_ORDER_INVALID);
+    const XrTime second = waitFrame().predictedDisplayTime;
+    CHECK(xrBeginFrame(session, nullptr) == XR_FRAME_DISCARDED);
+
+    XrFrameEndInfo info{XR_TYPE_FRAME_END_INFO, nullptr, second, XR_ENVIRONMENT_BLEND_MODE_OPAQUE, 0, nullptr};
+    const auto end = [&] { return xrEndFrame(session, &info); };
+    checkArguments(xrEndFrame, session, &info);
+    CHECK(with(info.environmentBlendMode, XR_ENVIRONMENT_BLEND_MODE_ADDITIVE, end) == XR_ERROR_ENVIRONMENT_BLEND_MODE_UNSUPPORTED);
+    CHECK(with(info.environmentBlendMode, static_cast<XrEnvironmentBlendMode>(0), end) == XR_ERROR_VALIDATION_FAILURE);
+    // One that was refused can be ended again.
+    checkChanges(end, XR_ERROR_TIME_INVALID, to(info.displayTime, 0), to(info.displayTime, -5));
+    CHECK(end() == XR_SUCCESS);
+    CHECK(end() == XR_ERROR_CALL_ORDER_INVALID);
 }
 
-TEST_CASE_FIXTURE(SessionFixture, "in lock-step a frame lasts one period") {
-    begin();
-    const XrFrameState first = frame();
-    CHECK(first.predictedDisplayPeriod == 11'111'111);
-    CHECK(first.predictedDisplayTime == 1'000'000'000);
-    CHECK(frame().predictedDisplayTime == first.predictedDisplayTime + first.predictedDisplayPeriod);
-}
-
-TEST_CASE_FIXTURE(SessionFixture, "xrWaitFrame waits until the frame before has begun") {
-    begin();
-    waitFrame();
-    std::atomic<bool> has_returned = false;
-    std::atomic<XrResult> result = XR_ERROR_RUNTIME_FAILURE;
-    std::thread second([&] {
-        XrFrameState state{XR_TYPE_FRAME_STATE};
-        result = xrWaitFrame(session, nullptr, &state);
-        has_returned = true;
-    });
-    const bool was_early = has_returned;
-    CHECK(xrBeginFrame(session, nullptr) == XR_SUCCESS);
-    second.join();
-    CHECK(!was_early);
-    CHECK(result == XR_SUCCESS);
-}
-
-TEST_CASE_FIXTURE(SessionFixture, "an xrWaitFrame that waits returns when its session ends") {
+TEST_CASE_FIXTURE(SessionFixture, "xrWaitFrame waits until the frame before has begun, or its session ends") {
     begin();
     waitFrame();
-    std::atomic<XrResult> result = XR_SUCCESS;
-    std::thread second([&] {
-        XrFrameState state{XR_TYPE_FRAME_STATE};
-        result = xrWaitFrame(session, nullptr, &state);
-    });
-    CHECK(xrDestroySession(session) == XR_SUCCESS);
-    second.join();
-    CHECK(result == XR_ERROR_HANDLE_INVALID);
-}
-
-TEST_CASE_FIXTURE(SessionFixture, "an application leaves through STOPPING, and its session ends EXITING") {
-    focus();
-    CHECK(xrEndSession(session) == XR_ERROR_SESSION_NOT_STOPPING);
-    CHECK(xrRequestExitSession(session) == XR_SUCCESS);
-    for (int i = 0; i < 3; ++i) frame();
-    CHECK(states() == States{XR_SESSION_STATE_VISIBLE, XR_SESSION_STATE_SYNCHRONIZED, XR_SESSION_STATE_STOPPING});
-    CHECK(xrEndSession(session) == XR_SUCCESS);
-    CHECK(states() == States{XR_SESSION_STATE_IDLE, XR_SESSION_STATE_EXITING});
-    const XrSessionBeginInfo info{XR_TYPE_SESSION_BEGIN_INFO, nullptr, XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO};
-    CHECK(xrBeginSession(session, &info) == XR_ERROR_SESSION_NOT_READY);
-}
-
-TEST_CASE_FIXTURE(ExitingFixture, "the wearer leaves when the script says so") {
-    focus();
-    int frames = 0;
-    States seen;
-    while (seen.empty() && frames < 100) {
-        frame();
-        ++frames;
-        seen = states();
+    for (const bool ends : {false, true}) {
+        std::atomic<bool> has_returned = false;
+        std::atomic<XrResult> result = XR_ERROR_RUNTIME_FAILURE;
+        std::thread second([&] {
+            XrFrameState state{XR_TYPE_FRAME_STATE};
+            result = xrWaitFrame(session, nullptr, &state);
+            has_returned = true;
+        });
+        const bool was_early = has_returned;
+        CHECK((ends ? xrDestroySession(session) : xrBeginFrame(session, nullptr)) == XR_SUCCESS);
+        second.join();
+        CHECK_FALSE(was_early);
+        CHECK(result == (ends ? XR_ERROR_HANDLE_INVALID : XR_SUCCESS));
     }
-    // 0.1 s are nine periods of 1/90 s; three frames were shown before.
-    CHECK(seen == States{XR_SESSION_STATE_VISIBLE});
-    CHECK(frames <= 8);
 }
 
-TEST_CASE_FIXTURE(HiddenFixture, "the script hides the session, takes its focus, and lets frames go undrawn") {
-    focus();  // three frames of 0.1 s
-    const auto runUntil = [&](int last_frame, int first_frame) {
+TEST_CASE("the script hides the session, takes its focus, and lets frames go undrawn") {
+    const SessionFixture made(kSmall +
+                              "rate 10\nat 1 focused off\nat 2 visible off\nat 3 visible on\nat 3.5 focused on\nat 4 should-render off\n");
+    made.focus();  // three frames of 0.1 s
+    int shown = 2;
+    const auto runTo = [&](int frame) {
         XrFrameState state{};
-        for (int i = first_frame; i <= last_frame; ++i) state = frame();
-        return state;
+        for (; shown < frame; ++shown) { state = made.frame(); }
+        return state.shouldRender == XR_TRUE;
     };
-    CHECK(runUntil(10, 3).shouldRender == XR_TRUE);
-    CHECK(states() == States{XR_SESSION_STATE_VISIBLE});
-    runUntil(20, 11);
-    CHECK(states() == States{XR_SESSION_STATE_SYNCHRONIZED});
-    CHECK(runUntil(21, 21).shouldRender == XR_FALSE);
-    runUntil(36, 22);
-    CHECK(states() == States{XR_SESSION_STATE_VISIBLE, XR_SESSION_STATE_FOCUSED});
-    CHECK(runUntil(41, 37).shouldRender == XR_FALSE);
-    CHECK(states().empty());
+    CHECK(runTo(10));
+    CHECK(made.states() == States{XR_SESSION_STATE_VISIBLE});
+    runTo(20);
+    CHECK(made.states() == States{XR_SESSION_STATE_SYNCHRONIZED});
+    CHECK_FALSE(runTo(21));
+    runTo(36);
+    CHECK(made.states() == States{XR_SESSION_STATE_VISIBLE, XR_SESSION_STATE_FOCUSED});
+    CHECK_FALSE(runTo(41));
+    CHECK(made.states().empty());
 }
 
-TEST_CASE_FIXTURE(LosingFixture, "a session that is being lost says so with every success, and then fails") {
-    focus();
-    for (int i = 3; i < 10; ++i) frame();
+TEST_CASE("a session that is being lost says so with every success, and then fails; the next one is well") {
+    SessionFixture made(kSmall + "rate 10\nat 1 lose-session\n");
+    const XrSession session = made.session;
+    made.focus();
+    for (int i = 3; i < 10; ++i) { made.frame(); }
     XrFrameState state{XR_TYPE_FRAME_STATE};
     CHECK(xrWaitFrame(session, nullptr, &state) == XR_SESSION_LOSS_PENDING);
-    CHECK(states() == States{XR_SESSION_STATE_LOSS_PENDING});
+    CHECK(made.states() == States{XR_SESSION_STATE_LOSS_PENDING});
     std::uint32_t count = 0;
     CHECK(xrEnumerateReferenceSpaces(session, 0, &count, nullptr) == XR_SESSION_LOSS_PENDING);
     CHECK(xrBeginFrame(session, nullptr) == XR_SESSION_LOSS_PENDING);
-    CHECK(endFrame(state.predictedDisplayTime) == XR_SESSION_LOSS_PENDING);
-    XrResult result = XR_SUCCESS;
-    for (int i = 0; i < 10 && XR_SUCCEEDED(result); ++i) {
-        result = xrWaitFrame(session, nullptr, &state);
-        if (XR_SUCCEEDED(result)) result = xrBeginFrame(session, nullptr);
-        if (XR_SUCCEEDED(result)) result = endFrame(state.predictedDisplayTime);
-    }
-    CHECK(result == XR_ERROR_SESSION_LOST);
+    CHECK(made.endFrame(state.predictedDisplayTime) == XR_SESSION_LOSS_PENDING);
+    CHECK(failureOf(made) == XR_ERROR_SESSION_LOST);
     CHECK(xrEnumerateReferenceSpaces(session, 0, &count, nullptr) == XR_ERROR_SESSION_LOST);
     CHECK(xrRequestExitSession(session) == XR_ERROR_SESSION_LOST);
     CHECK(xrDestroySession(session) == XR_SUCCESS);
-
-    // The next one is well: time went on, so the script's line is past.
-    const XrGraphicsBindingVulkan2KHR graphics = binding();
-    const XrSessionCreateInfo info{XR_TYPE_SESSION_CREATE_INFO, &graphics, 0, system};
-    REQUIRE(xrCreateSession(instance, &info, &session) == XR_SUCCESS);
-    focus();
+    // Time went on, so the script's line is past.
+    made.makeSession();
+    made.focus();
 }
 
-TEST_CASE_FIXTURE(InstanceLosingFixture, "an instance that is lost says when, and then fails") {
-    focus();
-    for (int i = 3; i < 10; ++i) frame();
-    const XrTime time = waitFrame().predictedDisplayTime;
+TEST_CASE("an instance that is lost says when, and then fails") {
+    const SessionFixture made(kSmall + "rate 10\nat 1 lose-instance\n");
+    made.focus();
+    for (int i = 3; i < 10; ++i) { made.frame(); }
+    const XrTime time = made.waitFrame().predictedDisplayTime;
     XrEventDataBuffer event;
-    REQUIRE(poll(event) == XR_TYPE_EVENT_DATA_INSTANCE_LOSS_PENDING);
+    REQUIRE(made.poll(event) == XR_TYPE_EVENT_DATA_INSTANCE_LOSS_PENDING);
     CHECK(reinterpret_cast<const XrEventDataInstanceLossPending&>(event).lossTime > time);
-    XrResult result = XR_SUCCESS;
-    XrFrameState state{XR_TYPE_FRAME_STATE};
-    for (int i = 0; i < 10 && XR_SUCCEEDED(result); ++i) {
-        result = xrBeginFrame(session, nullptr);
-        if (XR_SUCCEEDED(result)) result = xrWaitFrame(session, nullptr, &state);
-    }
-    CHECK(result == XR_ERROR_INSTANCE_LOST);
-    XrPath made = XR_NULL_PATH;
-    CHECK(xrStringToPath(instance, "/a", &made) == XR_ERROR_INSTANCE_LOST);
-    CHECK(xrPollEvent(instance, &event) == XR_ERROR_INSTANCE_LOST);
+    CHECK(XR_SUCCEEDED(xrBeginFrame(made.session, nullptr)));
+    CHECK(failureOf(made) == XR_ERROR_INSTANCE_LOST);
+    XrPath path = XR_NULL_PATH;
+    CHECK(xrStringToPath(made.instance, "/a", &path) == XR_ERROR_INSTANCE_LOST);
+    CHECK(xrPollEvent(made.instance, &event) == XR_ERROR_INSTANCE_LOST);
 }
 
-TEST_CASE_FIXTURE(RestlessFixture, "events that nobody polls are lost and counted") {
-    begin();
-    for (int i = 0; i < 100; ++i) frame();
+TEST_CASE("events that nobody polls are lost and counted") {
+    // Loses and gains focus with every other frame, from the third on.
+    std::string script = "rate 10\n";
+    for (int i = 0; i < 110; ++i) { script += "at " + std::to_string(0.25 + 0.1 * i) + (i % 2 == 0 ? " focused off\n" : " focused on\n"); }
+    const Begun made(script);
+    for (int i = 0; i < 100; ++i) { made.frame(); }
     XrEventDataBuffer event;
     int kept = 0;
-    XrStructureType type = poll(event);
-    for (; type == XR_TYPE_EVENT_DATA_SESSION_STATE_CHANGED; type = poll(event)) ++kept;
+    XrStructureType type = made.poll(event);
+    for (; type == XR_TYPE_EVENT_DATA_SESSION_STATE_CHANGED; type = made.poll(event)) { ++kept; }
     CHECK(kept == 64);
     REQUIRE(type == XR_TYPE_EVENT_DATA_EVENTS_LOST);
     // IDLE, READY, and a change with each of the frames.
     CHECK(reinterpret_cast<const XrEventDataEventsLost&>(event).lostEventCount == 102 - 64);
-    CHECK(poll(event) == XR_TYPE_UNKNOWN);
+    CHECK(made.poll(event) == XR_TYPE_UNKNOWN);
 }
 
-TEST_CASE_FIXTURE(SessionFixture, "a session's events are forgotten with it") {
-    CHECK(xrDestroySession(session) == XR_SUCCESS);
-    const XrGraphicsBindingVulkan2KHR graphics = binding();
-    const XrSessionCreateInfo info{XR_TYPE_SESSION_CREATE_INFO, &graphics, 0, system};
-    REQUIRE(xrCreateSession(instance, &info, &session) == XR_SUCCESS);
-    CHECK(states() == States{XR_SESSION_STATE_IDLE, XR_SESSION_STATE_READY});
+TEST_CASE("frames go by the display's rate from the next one on: that which the program requests, or the script, which tells of it") {
+    const Begun made("rate 100\nat 0.1 rate 50", {XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME});
+    const auto request = made.XR(xrRequestDisplayRefreshRateFB);
+    XrFrameState state = made.frame();
+    const auto step = [&] {
+        const XrTime before = std::exchange(state, made.frame()).predictedDisplayTime;
+        return state.predictedDisplayTime - before;
+    };
+    CHECK(step() == kPeriod);
+    REQUIRE(request(made.session, 80) == XR_SUCCESS);
+    CHECK(step() == 12'500'000);
+    CHECK(state.predictedDisplayPeriod == 12'500'000);
+    REQUIRE(request(made.session, 0) == XR_SUCCESS);
+    CHECK(step() == kPeriod);
+    made.states();
+    // From 0.0325 s on.
+    std::vector<XrDuration> steps;
+    for (int i = 0; i < 12; ++i) { steps.push_back(step()); }
+    CHECK(std::ranges::find(steps, 2 * kPeriod) - steps.begin() == 7);
+    CHECK(std::ranges::count(steps, 2 * kPeriod) == 5);
+    const auto changes = made.events<XrEventDataDisplayRefreshRateChangedFB>(XR_TYPE_EVENT_DATA_DISPLAY_REFRESH_RATE_CHANGED_FB);
+    REQUIRE(changes.size() == 1);
+    CHECK(changes[0].fromDisplayRefreshRate == 100.0f);
+    CHECK(changes[0].toDisplayRefreshRate == 50.0f);
+    float rates[16] = {};
+    std::uint32_t count = 0;
+    REQUIRE(made.XR(xrEnumerateDisplayRefreshRatesFB)(made.session, 16, &count, rates) == XR_SUCCESS);
+    CHECK(std::count(rates, rates + count, 50.0f) == 1);
 }
 
-TEST_CASE("frames go by the display's rate from the next one on, and stay in order") {
-    const SessionFixture fixture("size 64 64\nframes none\nrate 100\n", {XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME});
-    const auto request = fixture.function<PFN_xrRequestDisplayRefreshRateFB>("xrRequestDisplayRefreshRateFB");
-    fixture.begin();
-    const XrFrameState first = fixture.frame(), second = fixture.frame();
-    CHECK(second.predictedDisplayTime - first.predictedDisplayTime == 10'000'000);
-    REQUIRE(request(fixture.session, 80) == XR_SUCCESS);
-    const XrFrameState third = fixture.frame();
-    CHECK(third.predictedDisplayTime - second.predictedDisplayTime == 12'500'000);
-    CHECK(third.predictedDisplayPeriod == 12'500'000);
-    REQUIRE(request(fixture.session, 0) == XR_SUCCESS);
-    const XrFrameState fourth = fixture.frame();
-    CHECK(fourth.predictedDisplayTime - third.predictedDisplayTime == 10'000'000);
+TEST_CASE("irregular periods differ, within what the script says, and do not drift") {
+    const Begun made("rate 100\nirregular 50");
+    XrTime before = 0;
+    std::set<XrDuration> steps;
+    for (int i = 0; i < 200; ++i) {
+        const XrFrameState state = made.frame();
+        if (before != 0) { steps.insert(state.predictedDisplayTime - before); }
+        before = state.predictedDisplayTime;
+        CHECK(state.predictedDisplayPeriod == kPeriod);
+    }
+    CHECK(steps.size() > 50);
+    CHECK(*steps.begin() >= kPeriod / 2);
+    CHECK(*steps.rbegin() <= kPeriod + kPeriod / 2);
+    CHECK(std::abs(before - kStart - 199 * kPeriod) <= kPeriod / 4);
+}
+
+TEST_CASE("a device that takes longer than a period misses displays, and the log says how long it takes") {
+    const Begun made("rate 100\nat 0.1 gpu-load 70 %\nat 0.2 gpu-load 25 ms\nat 0.4 gpu-load 0 ms");
+    std::vector<XrTime> times;
+    for (int i = 0; i < 40; ++i) { times.push_back(made.frame().predictedDisplayTime); }
+    const auto stepsIn = [&](double from_s, double to_s) {
+        std::set<XrDuration> steps;
+        for (std::size_t i = 1; i < times.size(); ++i) {
+            const double time_s = 1e-9 * static_cast<double>(times[i - 1] - kStart);
+            if (time_s >= from_s && time_s < to_s) { steps.insert((times[i] - times[i - 1]) / kPeriod); }
+        }
+        return steps;
+    };
+    CHECK(stepsIn(0.0, 0.199) == std::set<XrDuration>{1});
+    CHECK(stepsIn(0.2, 0.399) == std::set<XrDuration>{3});
+    CHECK(stepsIn(0.41, 9.0) == std::set<XrDuration>{1});
+    std::set<double> said;
+    for (const Json& line : made.logged()) { said.insert(line.value("gpu_ms", 0.0)); }
+    CHECK(said == std::set<double>{0.0, 7.0, 25.0});
+}
+
+TEST_CASE("a stretched period is as many as the frame before took") {
+    const Begun made("rate 100\nperiod stretched\nat 0.1 gpu-load 25 ms\nat 0.3 gpu-load 0 ms");
+    XrTime last = 0;
+    std::set<XrDuration> stated;
+    for (int i = 0; i < 40; ++i) {
+        const XrFrameState state = made.frame();
+        if (last != 0) { CHECK(state.predictedDisplayTime - last == state.predictedDisplayPeriod); }
+        last = state.predictedDisplayTime;
+        stated.insert(state.predictedDisplayPeriod);
+    }
+    CHECK(stated == std::set<XrDuration>{kPeriod, 3 * kPeriod});
+}
+
+TEST_CASE_FIXTURE(Leaving, "the script goes on and the session moves though every frame is refused, and the log has each with its reason") {
+    const auto refuse = [&](XrTime time) {
+        for (int i = 0; i < 2; ++i) { CHECK(endFrame(-time) == XR_ERROR_TIME_INVALID); }
+    };
+    CHECK(runOn(refuse) == kWholeLife);
+    CHECK(xrEndSession(session) == XR_SUCCESS);
+    CHECK(states() == States{XR_SESSION_STATE_IDLE, XR_SESSION_STATE_EXITING});
+    std::vector<std::string> events;
+    XrTime refused = 0;
+    for (const Json& line : logged()) {
+        CHECK_FALSE(line.contains("frame"));
+        for (const auto& event : line["events"]) { events.push_back(event); }
+        if (!line.contains("refused")) { continue; }
+        CHECK(line["refused"] == "XR_ERROR_TIME_INVALID");
+        CHECK(line["display_time_ns"] == kStart + kPeriod * refused);
+        CHECK(line["reason"] == "the time is " + std::to_string(-line["display_time_ns"].get<XrTime>()) + ", must be positive");
+        ++refused;
+    }
+    CHECK(refused == 13);
+    CHECK(events == std::vector<std::string>{"state IDLE", "state READY", "state SYNCHRONIZED", "state VISIBLE", "state FOCUSED", "exit",
+                                             "state VISIBLE", "state SYNCHRONIZED", "state STOPPING", "state IDLE", "state EXITING"});
+}
+
+TEST_CASE_FIXTURE(Leaving, "a frame that is refused and ended again moves the session once, and the log ends with its last states") {
+    for (int i = 0; i < 3; ++i) {
+        const XrTime time = waitFrame().predictedDisplayTime;
+        REQUIRE(xrBeginFrame(session, nullptr) == XR_SUCCESS);
+        CHECK(endFrame(0) == XR_ERROR_TIME_INVALID);
+        CHECK(endFrame(time) == XR_SUCCESS);
+        CHECK(states().back() == static_cast<XrSessionState>(XR_SESSION_STATE_SYNCHRONIZED + i));
+    }
+    std::vector<Json> lines = logged();
+    REQUIRE(lines.size() == 6);
+    CHECK(lines[4].contains("refused"));
+    CHECK(lines[5]["frame"] == 2);
+    while (states() != States{XR_SESSION_STATE_STOPPING}) { frame(); }
+    CHECK(xrEndSession(session) == XR_SUCCESS);
+    lines = logged();
+    CHECK(lines[lines.size() - 3].contains("frame"));
+    CHECK(lines[lines.size() - 2]["events"] == Json{"state STOPPING"});
+    CHECK(lines[lines.size() - 2]["session_state"] == "STOPPING");
+    CHECK(lines.back()["events"] == Json{"state IDLE", "state EXITING"});
+}
+
+TEST_CASE_FIXTURE(Leaving, "frames that are given up move the session, too") {
+    CHECK(runOn([](XrTime) {}) == kWholeLife);
+}
+
+TEST_CASE("states change while a frame is open, where the script says so, and the frame may still be ended") {
+    const Begun made("rate 100\nstate-changes at-begin\nat 0.2 worn off");
+    States open, closed;
+    const auto take = [&](States& into) {
+        for (const XrSessionState state : made.states()) { into.push_back(state); }
+    };
+    take(closed);
+    for (int i = 0; i < 40 && (open.empty() || open.back() != XR_SESSION_STATE_STOPPING); ++i) {
+        const XrFrameState state = made.waitFrame();
+        take(closed);
+        const XrFrameBeginInfo info{XR_TYPE_FRAME_BEGIN_INFO};
+        REQUIRE(xrBeginFrame(made.session, &info) == XR_SUCCESS);
+        take(open);
+        CHECK(made.endFrame(state.predictedDisplayTime) == XR_SUCCESS);
+        take(closed);
+    }
+    REQUIRE_FALSE(open.empty());
+    CHECK(open.front() == XR_SESSION_STATE_SYNCHRONIZED);
+    CHECK(open.back() == XR_SESSION_STATE_STOPPING);
+    CHECK(std::ranges::count(closed, XR_SESSION_STATE_FOCUSED) == 0);
+    CHECK(xrEndSession(made.session) == XR_SUCCESS);
+}
+
+TEST_CASE("a headless session has no swapchains, needs no frames, and is in focus at once") {
+    const HeadlessSession made(k1_0, {}, "rate 10\nat 0.35 focused off\nat 0.55 exit\n");
+    std::uint32_t count = 9;
+    CHECK(made.XR(xrEnumerateSwapchainFormats)(made.session, 0, &count, nullptr) == XR_SUCCESS);
+    CHECK(count == 0);
+    const XrSwapchainCreateInfo info = swapchainInfo();
+    XrSwapchain swapchain = XR_NULL_HANDLE;
+    CHECK(made.XR(xrCreateSwapchain)(made.session, &info, &swapchain) == XR_ERROR_VALIDATION_FAILURE);
+    CHECK(made.states() == States{XR_SESSION_STATE_IDLE, XR_SESSION_STATE_READY});
+    made.begin();
+    CHECK(made.states() == States{XR_SESSION_STATE_SYNCHRONIZED, XR_SESSION_STATE_VISIBLE, XR_SESSION_STATE_FOCUSED});
+    // Each xrSyncActions is a frame's time: 0, 0.1, 0.2, 0.3 s in focus.
+    for (int i = 0; i < 4; ++i) { CHECK(made.sync() == XR_SUCCESS); }
+    CHECK(made.sync() == XR_SESSION_NOT_FOCUSED);
+    CHECK(made.states() == States{XR_SESSION_STATE_VISIBLE});
+    for (int i = 0; i < 2; ++i) { CHECK(made.sync() == XR_SESSION_NOT_FOCUSED); }
+    CHECK(made.states() == States{XR_SESSION_STATE_SYNCHRONIZED, XR_SESSION_STATE_STOPPING});
+    CHECK(made.XR(xrEndSession)(made.session) == XR_SUCCESS);
+}
+
+TEST_CASE("a headless session may have frames, which nobody draws; time and states then go by them alone") {
+    const HeadlessSession made(k1_0, {}, "rate 10\nat 0 gpu-load 250 %\nat 0.15 focused off\nat 0.35 exit\n");
+    const auto begin = made.XR(xrBeginFrame);
+    XrFrameState state{XR_TYPE_FRAME_STATE};
+    CHECK(made.XR(xrWaitFrame)(made.session, nullptr, &state) == XR_ERROR_SESSION_NOT_RUNNING);
+    made.begin();
+    made.states();
+    CHECK(begin(made.session, nullptr) == XR_ERROR_CALL_ORDER_INVALID);
+    CHECK(made.endFrame(kStart) == XR_ERROR_CALL_ORDER_INVALID);
+    const States expected[] = {{}, {}, {XR_SESSION_STATE_VISIBLE}, {}, {XR_SESSION_STATE_SYNCHRONIZED}, {XR_SESSION_STATE_STOPPING}};
+    for (int frame = 0; frame < 6; ++frame) {
+        state = made.waitFrame();
+        CHECK(state.shouldRender == XR_FALSE);
+        CHECK(state.predictedDisplayTime == kStart + frame * 100'000'000);
+        CHECK(state.predictedDisplayPeriod == 100'000'000);
+        for (int i = 0; i < 2; ++i) { CHECK(made.sync() == (frame < 3 ? XR_SUCCESS : XR_SESSION_NOT_FOCUSED)); }
+        REQUIRE(begin(made.session, nullptr) == XR_SUCCESS);
+        // Its picture would need a swapchain, which there cannot be; even one that names none is refused as a layer.
+        const XrCompositionLayerQuad quad{XR_TYPE_COMPOSITION_LAYER_QUAD};
+        CHECK(made.endFrame(state.predictedDisplayTime, {headerOf(quad)}) == XR_ERROR_LAYER_INVALID);
+        REQUIRE(made.endFrame(state.predictedDisplayTime) == XR_SUCCESS);
+        CHECK(made.states() == expected[frame]);
+    }
+    CHECK(made.XR(xrEndSession)(made.session) == XR_SUCCESS);
+}
+
+TEST_CASE("a headless session begins whatever view configuration it names, and ends at once when it is asked to") {
+    for (const auto type :
+         {static_cast<XrViewConfigurationType>(0), XR_VIEW_CONFIGURATION_TYPE_PRIMARY_MONO, static_cast<XrViewConfigurationType>(4711)}) {
+        const HeadlessSession made(k1_0, {});
+        made.begin(type);
+        CHECK(made.states().back() == XR_SESSION_STATE_FOCUSED);
+        CHECK(made.XR(xrRequestExitSession)(made.session) == XR_SUCCESS);
+        CHECK(made.XR(xrEndSession)(made.session) == XR_SUCCESS);
+    }
 }
 
 }  // namespace simulated_session_test

@@ -1,19 +1,15 @@
 // Facts about the simulated headset's scripts: what they say at a time.
 #include "tests/shared_data.h"
+#include "tests/xr/simulated/folder.h"
 #include "xr/simulated/extensions.h"
 #include "xr/simulated/script/script.h"
 
 #include <doctest/doctest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <numbers>
-#include <string>
 
 TEST_SUITE_BEGIN("simulated_script");
 
@@ -35,20 +31,26 @@ bool isNear(const glm::dquat& a, const glm::dquat& b, double tolerance = 1e-12) 
 
 glm::dvec3 forwardOf(const Pose& pose) { return pose.orientation * glm::dvec3(0.0, 0.0, -1.0); }
 
-// A file beside which scripts can stand; gone with the test.
-struct Folder {
-    std::filesystem::path path = std::filesystem::temp_directory_path() / ("binosplat_script_" + std::to_string(::getpid()));
-    Folder() { std::filesystem::create_directories(path); }
-    ~Folder() { std::filesystem::remove_all(path); }
-    Folder(const Folder&) = delete;
-    Folder& operator=(const Folder&) = delete;
-    void write(const std::string& name, const std::string& text) const { std::ofstream(path / name) << text; }
+// Files beside which scripts can stand.
+struct ScriptFolder : Folder {
     [[nodiscard]] Script script(const std::string& text) const { return Script::parse(text, (path / "a.script").string()); }
 };
 
+// Where the head is at a time, and where it looks.
+struct HeadCase {
+    const char* script;
+    double time_s;
+    glm::dvec3 position, forward;
+};
+
+std::string textOf(const std::string& file) {
+    std::ifstream stream(BINOSPLAT_SOURCE_DIR + ("/" + file));
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
 }  // namespace
 
-TEST_CASE("an empty script is the resting headset") {
+TEST_CASE("an empty script is the resting headset; comments, blanks and carriage returns do not count") {
     const Script script = parse("");
     CHECK(script.rate_hz == 90.0);
     CHECK(script.size_px == glm::uvec2(1024, 1024));
@@ -65,125 +67,69 @@ TEST_CASE("an empty script is the resting headset") {
     CHECK(state.controllers[kRight].stage_from_grip.position.x > 0.0);
     CHECK(state.should_render);
     CHECK(script.eventsIn(-kForever, kForever).empty());
+    const Script spaced = parse("\xef\xbb\xbf# a comment\r\n\r\n \t rate  72 # another\r\nsize 640\t480#and another");
+    CHECK(spaced.rate_hz == 72.0);
+    CHECK(spaced.size_px == glm::uvec2(640, 480));
 }
 
-TEST_CASE("comments, blanks and carriage returns do not count") {
-    const Script script = parse("\xef\xbb\xbf# a comment\r\n\r\n \t rate  72 # another\r\nsize 640\t480#and another");
-    CHECK(script.rate_hz == 72.0);
-    CHECK(script.size_px == glm::uvec2(640, 480));
-}
-
-TEST_CASE("head keys move on straight lines") {
-    const Script script = parse("head 1 position 0 1 0\nhead 3 position 4 2 -8\n");
-    CHECK(script.at(0.0).stage_from_head.position == glm::dvec3(0.0, 1.0, 0.0));
-    CHECK(isNear(script.at(1.5).stage_from_head.position, {1.0, 1.25, -2.0}));
-    CHECK(isNear(script.at(2.0).stage_from_head.position, {2.0, 1.5, -4.0}));
-    CHECK(script.at(3.0).stage_from_head.position == glm::dvec3(4.0, 2.0, -8.0));
-    CHECK(script.at(9.0).stage_from_head.position == glm::dvec3(4.0, 2.0, -8.0));
-}
-
-TEST_CASE("orientations move on great arcs") {
+TEST_CASE("the head goes on straight lines and the shorter great arcs from key to key; what a pose leaves out stays as it was") {
+    constexpr const char* kWalk = "head 1 position 0 1 0\nhead 3 position 4 2 -8\n";
     // From ahead to a quarter turn to the left (+90 degrees about y): a third of the way is 30 degrees, looking along (-1/2, 0, -cos 30).
-    const Script script = parse("head 0 rotation 0 0 0 1\nhead 3 rotation 0 0.70710678118654752 0 0.70710678118654752");
-    CHECK(isNear(forwardOf(script.at(1.0).stage_from_head), {-0.5, 0.0, -std::sqrt(0.75)}));
-    CHECK(isNear(forwardOf(script.at(3.0).stage_from_head), {-1.0, 0.0, 0.0}));
-}
-
-TEST_CASE("orientations take the shorter arc") {
+    constexpr const char* kArc = "head 0 rotation 0 0 0 1\nhead 3 rotation 0 0.70710678118654752 0 0.70710678118654752";
     // -q is the same rotation as q: half-way between q and -q' with q' 90 degrees on is still 45 degrees.
-    const Script script = parse("head 0 rotation 0 0 0 1\nhead 1 rotation 0 -0.70710678118654752 0 -0.70710678118654752");
-    CHECK(isNear(forwardOf(script.at(0.5).stage_from_head), {-kHalfRoot, 0.0, -kHalfRoot}));
+    constexpr const char* kLongArc = "head 0 rotation 0 0 0 1\nhead 1 rotation 0 -0.70710678118654752 0 -0.70710678118654752";
+    constexpr const char* kParts = "head 0 position 1 2 3 turn 90 0\nhead 1 position 4 5 6\nhead 2 turn 0 0";
+    const double cosine = std::sqrt(0.75);
+    const glm::dvec3 ahead(0, 0, -1), left(-1, 0, 0), resting(0, 1.6, 0);
+    for (const HeadCase& one : {HeadCase{kWalk, 0.0, {0, 1, 0}, ahead},
+                                {kWalk, 1.5, {1, 1.25, -2}, ahead},
+                                {kWalk, 2.0, {2, 1.5, -4}, ahead},
+                                {kWalk, 3.0, {4, 2, -8}, ahead},
+                                {kWalk, 9.0, {4, 2, -8}, ahead},
+                                {kArc, 1.0, resting, {-0.5, 0, -cosine}},
+                                {kArc, 3.0, resting, left},
+                                {kLongArc, 0.5, resting, {-kHalfRoot, 0, -kHalfRoot}},
+                                {kParts, 1.0, {4, 5, 6}, left},
+                                {kParts, 2.0, {4, 5, 6}, ahead},
+                                // Turns go left, then up.
+                                {"head 0 turn 90 0", 0.0, resting, left},
+                                {"head 0 turn 0 90", 0.0, resting, {0, 1, 0}},
+                                {"head 0 turn 90 30", 0.0, resting, {-cosine, 0.5, 0}},
+                                // Looks go to a point of the room, from where the head is said to be before.
+                                {"head 0 position 1 2 3 look 1 0 1", 0.0, {1, 2, 3}, {0, -kHalfRoot, -kHalfRoot}},
+                                {"head 0 position 0 1 0 look 3 5 -2", 0.0, {0, 1, 0}, glm::normalize(glm::dvec3(3, 4, -2))},
+                                {"head 0 position 0 1 0 look 0 9 0", 0.0, {0, 1, 0}, {0, 1, 0}},
+                                {"head 0 position 5 1 0\nhead 1 look 6 1 0", 1.0, {5, 1, 0}, {1, 0, 0}}}) {
+        CAPTURE(one.script);
+        CAPTURE(one.time_s);
+        const Pose head = parse(one.script).at(one.time_s).stage_from_head;
+        CHECK(isNear(head.position, one.position));
+        CHECK(isNear(forwardOf(head), one.forward));
+        // Upright: the right-hand side stays level.
+        CHECK(std::abs((head.orientation * glm::dvec3(1, 0, 0)).y) < 1e-12);
+    }
+    const Script unnormalized = parse("head 0 rotation 0 3 0 3");
+    CHECK(isNear(unnormalized.at(0.0).stage_from_head.orientation, glm::dquat(kHalfRoot, 0.0, kHalfRoot, 0.0)));
 }
 
-TEST_CASE("rotations are made to length one") {
-    const Script script = parse("head 0 rotation 0 3 0 3");
-    CHECK(isNear(script.at(0.0).stage_from_head.orientation, glm::dquat(kHalfRoot, 0.0, kHalfRoot, 0.0)));
-}
-
-TEST_CASE("looks go to a point of the room upright") {
-    const Pose down = parse("head 0 position 1 2 3 look 1 0 1").at(0).stage_from_head;
-    CHECK(isNear(forwardOf(down), glm::dvec3(0.0, -1.0, -1.0) / std::sqrt(2.0)));
-    // Upright: the right-hand side stays level.
-    const Pose askew = parse("head 0 position 0 1 0 look 3 5 -2").at(0).stage_from_head;
-    CHECK(isNear(forwardOf(askew), glm::normalize(glm::dvec3(3.0, 4.0, -2.0))));
-    CHECK(std::abs((askew.orientation * glm::dvec3(1, 0, 0)).y) < 1e-12);
-    CHECK(isNear(forwardOf(parse("head 0 position 0 1 0 look 0 9 0").at(0).stage_from_head), {0.0, 1.0, 0.0}));
-    // From where the head is said to be before.
-    CHECK(isNear(forwardOf(parse("head 0 position 5 1 0\nhead 1 look 6 1 0").at(1).stage_from_head), {1.0, 0.0, 0.0}));
-}
-
-TEST_CASE("turns go left then up") {
-    CHECK(isNear(forwardOf(parse("head 0 turn 90 0").at(0).stage_from_head), {-1.0, 0.0, 0.0}));
-    CHECK(isNear(forwardOf(parse("head 0 turn 0 90").at(0).stage_from_head), {0.0, 1.0, 0.0}));
-    // Up by 30 degrees after a quarter to the left.
-    CHECK(isNear(forwardOf(parse("head 0 turn 90 30").at(0).stage_from_head), {-std::sqrt(0.75), 0.5, 0.0}));
-}
-
-TEST_CASE("what a pose leaves out stays as it was") {
-    const Script script = parse("head 0 position 1 2 3 turn 90 0\nhead 1 position 4 5 6\nhead 2 turn 0 0");
-    CHECK(isNear(forwardOf(script.at(1.0).stage_from_head), {-1.0, 0.0, 0.0}));
-    CHECK(script.at(2.0).stage_from_head.position == glm::dvec3(4.0, 5.0, 6.0));
-    CHECK(parse("head 0 turn 5 0").at(0.0).stage_from_head.position == glm::dvec3(0.0, 1.6, 0.0));
-}
-
-TEST_CASE("eyes turn outwards and stand beside the nose") {
-    const Script script = parse("ipd 0.07\neye left cant 10\neye right cant 5\nhead 0 position 0 0 0 turn 90 0");
-    const State state = script.at(0.0);
-    // The wearer looks along -x; to the left of that is +z.
-    CHECK(isNear(state.eyes[kLeft].stage_from_eye.position, {0.0, 0.0, 0.035}));
-    CHECK(isNear(state.eyes[kRight].stage_from_eye.position, {0.0, 0.0, -0.035}));
-    CHECK(isNear(forwardOf(state.eyes[kLeft].stage_from_eye), {-std::cos(10 * kDegree), 0.0, std::sin(10 * kDegree)}));
-    CHECK(isNear(forwardOf(state.eyes[kRight].stage_from_eye), {-std::cos(5 * kDegree), 0.0, -std::sin(5 * kDegree)}));
-}
-
-TEST_CASE("eye angles are left, right, up, down") {
-    const Fov fov = parse("eye right angles -40 54 44 -55").at(0.0).eyes[kRight].fov;
-    CHECK(fov == Fov{-40 * kDegree, 54 * kDegree, 44 * kDegree, -55 * kDegree});
-}
-
-TEST_CASE("angles change at their time") {
-    const Script script = parse("eye left angles -40 40 40 -40\nat 1 eye left angles -30 30 30 -30\nat 2 eye left angles -20 20 20 -20");
-    const auto left = [&](double time_s) { return script.at(time_s).eyes[kLeft].fov.left_rad / kDegree; };
-    CHECK(left(0.999) == doctest::Approx(-40.0));
-    CHECK(left(1.0) == doctest::Approx(-30.0));
-    CHECK(left(1.999) == doctest::Approx(-30.0));
-    CHECK(left(2.0) == doctest::Approx(-20.0));
-    CHECK(script.at(5.0).eyes[kRight].fov.left_rad / kDegree == doctest::Approx(-45.0));
-}
-
-TEST_CASE("LOCAL stands where the head is at time zero without its tilt") {
+TEST_CASE("LOCAL stands where the head is at time zero without its tilt, or where the script says, until it is recentred") {
     const Script script = parse("head -1 position 0 0 0 turn 0 0\nhead 1 position 2 3.2 0 turn 60 0");
     const Pose local = script.stageFromLocal();
     CHECK(isNear(local.position, {1.0, 1.6, 0.0}));
     CHECK(isNear(forwardOf(local), {-0.5, 0.0, -std::sqrt(0.75)}));
     CHECK(isNear(forwardOf(parse("head 0 turn 90 40").stageFromLocal()), {-1.0, 0.0, 0.0}));
-}
+    // Of a head that looks straight up it keeps the right.
+    CHECK(isNear(parse("head 0 turn 30 90").stageFromLocal().orientation * glm::dvec3(1, 0, 0), {std::sqrt(0.75), 0.0, -0.5}));
 
-TEST_CASE("LOCAL stands where the script says until it is recentred") {
-    const Script script =
+    const Script said =
         parse("local position 3 0.5 1 turn 90 0\nhead 0 position 0 1.6 0\nhead 2 position 2 1.6 0 turn 0 30\nat 1 recentre\nat 2 recentre");
-    CHECK(isNear(script.stageFromLocal(0.999).position, {3.0, 0.5, 1.0}));
-    CHECK(isNear(forwardOf(script.stageFromLocal(0.0)), {-1.0, 0.0, 0.0}));
-    CHECK(isNear(script.stageFromLocal(1.0).position, {1.0, 1.6, 0.0}));
-    CHECK(isNear(script.stageFromLocal(9.0).position, {2.0, 1.6, 0.0}));
-    CHECK(isNear(forwardOf(script.stageFromLocal(9.0)), {0.0, 0.0, -1.0}));
-    CHECK(script.eventsIn(0.5, 1.5).size() == 1);
-    CHECK(script.eventsIn(0.5, 1.5).at(0).kind == ScriptEvent::Kind::kRecentre);
-}
-
-TEST_CASE("what is known of the head and whether it is worn change at their time") {
-    const Script script = parse("at 1 head off\nat 2 head turn-only\nat 3 head on\nat 4 worn off\nat 5 worn on");
-    const auto known = [&](double time_s) {
-        const State state = script.at(time_s);
-        return std::pair(state.head_turn_known, state.head_place_known);
-    };
-    CHECK((known(0.5) == std::pair(true, true)));
-    CHECK((known(1.5) == std::pair(false, false)));
-    CHECK((known(2.5) == std::pair(true, false)));
-    CHECK((known(3.5) == std::pair(true, true)));
-    CHECK(script.at(3.9).worn);
-    CHECK_FALSE(script.at(4.5).worn);
-    CHECK(script.at(5.0).worn);
+    CHECK(isNear(said.stageFromLocal(0.999).position, {3.0, 0.5, 1.0}));
+    CHECK(isNear(forwardOf(said.stageFromLocal(0.0)), {-1.0, 0.0, 0.0}));
+    CHECK(isNear(said.stageFromLocal(1.0).position, {1.0, 1.6, 0.0}));
+    CHECK(isNear(said.stageFromLocal(9.0).position, {2.0, 1.6, 0.0}));
+    CHECK(isNear(forwardOf(said.stageFromLocal(9.0)), {0.0, 0.0, -1.0}));
+    CHECK(said.eventsIn(0.5, 1.5).size() == 1);
+    CHECK(said.eventsIn(0.5, 1.5).at(0).kind == ScriptEvent::Kind::kRecentre);
 }
 
 TEST_CASE("controllers move and aim from their grip") {
@@ -197,68 +143,54 @@ TEST_CASE("controllers move and aim from their grip") {
     CHECK(isNear(script.at(1.0).controllers[kLeft].stage_from_grip.position, {-0.2, 1.2, -0.35}));
 }
 
-TEST_CASE("presses last from their beginning until before their end") {
-    const Script script = parse("press right trigger 1 2\npress left a 1 2");
-    const auto right = [&](double time_s, const char* input) { return script.at(time_s).controllers[kRight].input(input); };
-    CHECK(right(0.999, "trigger/value") == 0.0);
-    CHECK(right(1.0, "trigger/value") == 1.0);
-    CHECK(right(1.5, "trigger/click") == 1.0);
-    CHECK(right(1.5, "trigger/touch") == 1.0);
-    CHECK(right(2.0, "trigger/value") == 0.0);
-    CHECK(right(1.5, "squeeze/value") == 0.0);
-    CHECK(right(1.5, "a/click") == 0.0);
-    CHECK(script.at(1.5).controllers[kLeft].input("a/click") == 1.0);
-    CHECK(script.at(1.5).controllers[kLeft].inputs.count("a/value") == 0);
-}
-
-TEST_CASE("gestures have a value and are ready") {
-    const Script script = parse("press right pinch_ext 1 2\ntouch right pinch_ext 3 4\naxis left grasp_ext 0 0\naxis left grasp_ext 1 1");
-    const auto right = [&](double time_s, const char* input) { return script.at(time_s).controllers[kRight].input(input); };
-    CHECK(right(1.5, "pinch_ext/value") == 1.0);
-    CHECK(right(1.5, "pinch_ext/ready_ext") == 1.0);
-    CHECK(right(3.5, "pinch_ext/value") == 0.0);
-    CHECK(right(3.5, "pinch_ext/ready_ext") == 1.0);
-    CHECK(script.at(0.5).controllers[kLeft].input("grasp_ext/value") == doctest::Approx(0.5));
-    CHECK(script.at(0.5).controllers[kLeft].input("grasp_ext/ready_ext") == 1.0);
-}
-
-TEST_CASE("touches do not press") {
-    const ControllerState left = parse("touch left thumbstick 0 1").at(0.5).controllers[kLeft];
-    CHECK(left.input("thumbstick/touch") == 1.0);
-    CHECK(left.input("thumbstick/click") == 0.0);
-}
-
-TEST_CASE("axes are linear between their times") {
-    const Script script = parse("axis left thumbstick 0 -1 0\naxis left thumbstick 4 1 0.5\naxis left squeeze 0 0\naxis left squeeze 1 1");
-    const auto left = [&](double time_s, const char* input) { return script.at(time_s).controllers[kLeft].input(input); };
-    CHECK(left(1.0, "thumbstick/x") == doctest::Approx(-0.5));
-    CHECK(left(1.0, "thumbstick/y") == doctest::Approx(0.125));
-    CHECK(left(9.0, "thumbstick/x") == 1.0);
-    CHECK(left(1.0, "thumbstick/touch") == 1.0);
-    CHECK(left(0.25, "squeeze/value") == doctest::Approx(0.25));
-    CHECK(left(0.25, "squeeze/touch") == 1.0);
-    CHECK(left(0.89, "squeeze/click") == 0.0);
-    CHECK(left(0.91, "squeeze/click") == 1.0);
-    CHECK(left(0.0, "squeeze/touch") == 0.0);
-}
-
-TEST_CASE("a controller that is not tracked rests") {
-    const Script script = parse("press right trigger 0 9\nat 1 controller right off\nat 2 controller right on");
-    CHECK(script.at(0.5).controllers[kRight].tracked);
-    CHECK_FALSE(script.at(1.0).controllers[kRight].tracked);
-    CHECK(script.at(1.5).controllers[kRight].input("trigger/value") == 0.0);
-    CHECK(script.at(2.0).controllers[kRight].input("trigger/value") == 1.0);
-    CHECK(script.at(1.5).controllers[kLeft].tracked);
-}
-
-TEST_CASE("rendering, visibility and focus change at their times") {
-    const Script script = parse("at 1 should-render off\nat 2 visible off\nat 2 should-render on\nat 3 focused off");
-    CHECK(script.at(0.9).should_render);
-    CHECK_FALSE(script.at(1.0).should_render);
-    CHECK(script.at(2.0).should_render);
-    CHECK_FALSE(script.at(2.0).visible);
-    CHECK(script.at(2.0).focused);
-    CHECK_FALSE(script.at(3.0).focused);
+TEST_CASE("presses last from their beginning until before their end, touches do not press, gestures are ready, and axes are linear") {
+    struct InputCase {
+        const char* script;
+        Side side;
+        const char* input;
+        double time_s, value;
+    };
+    constexpr const char* kPress = "press right trigger 1 2\npress left a 1 2\ntouch left thumbstick 0 1";
+    constexpr const char* kAxes =
+        "axis left thumbstick 0 -1 0\naxis left thumbstick 4 1 0.5\naxis left squeeze 0 0\naxis left squeeze 1 1\n"
+        "axis right grasp_ext 0 0\naxis right grasp_ext 1 1\npress right pinch_ext 1 2\ntouch right pinch_ext 3 4";
+    constexpr const char* kUntracked = "press right trigger 0 9\nat 1 controller right off\nat 2 controller right on";
+    for (const InputCase& one : {InputCase{kPress, kRight, "trigger/value", 0.999, 0.0},
+                                 {kPress, kRight, "trigger/value", 1.0, 1.0},
+                                 {kPress, kRight, "trigger/click", 1.5, 1.0},
+                                 {kPress, kRight, "trigger/touch", 1.5, 1.0},
+                                 {kPress, kRight, "trigger/value", 2.0, 0.0},
+                                 {kPress, kRight, "squeeze/value", 1.5, 0.0},
+                                 {kPress, kRight, "a/click", 1.5, 0.0},
+                                 {kPress, kLeft, "a/click", 1.5, 1.0},
+                                 {kPress, kLeft, "thumbstick/touch", 0.5, 1.0},
+                                 {kPress, kLeft, "thumbstick/click", 0.5, 0.0},
+                                 {kAxes, kLeft, "thumbstick/x", 1.0, -0.5},
+                                 {kAxes, kLeft, "thumbstick/y", 1.0, 0.125},
+                                 {kAxes, kLeft, "thumbstick/x", 9.0, 1.0},
+                                 {kAxes, kLeft, "thumbstick/touch", 1.0, 1.0},
+                                 {kAxes, kLeft, "squeeze/value", 0.25, 0.25},
+                                 {kAxes, kLeft, "squeeze/touch", 0.25, 1.0},
+                                 {kAxes, kLeft, "squeeze/click", 0.89, 0.0},
+                                 {kAxes, kLeft, "squeeze/click", 0.91, 1.0},
+                                 {kAxes, kLeft, "squeeze/touch", 0.0, 0.0},
+                                 {kAxes, kRight, "grasp_ext/value", 0.5, 0.5},
+                                 {kAxes, kRight, "grasp_ext/ready_ext", 0.5, 1.0},
+                                 {kAxes, kRight, "pinch_ext/value", 1.5, 1.0},
+                                 {kAxes, kRight, "pinch_ext/ready_ext", 1.5, 1.0},
+                                 {kAxes, kRight, "pinch_ext/value", 3.5, 0.0},
+                                 {kAxes, kRight, "pinch_ext/ready_ext", 3.5, 1.0},
+                                 // A controller that is not tracked rests.
+                                 {kUntracked, kRight, "trigger/value", 1.5, 0.0},
+                                 {kUntracked, kRight, "trigger/value", 2.0, 1.0}}) {
+        INFO(one.script, " ", one.input, " at ", one.time_s);
+        CHECK(parse(one.script).at(one.time_s).controllers[one.side].input(one.input) == doctest::Approx(one.value));
+    }
+    CHECK(parse(kPress).at(1.5).controllers[kLeft].inputs.count("a/value") == 0);
+    const Script untracked = parse(kUntracked);
+    CHECK(untracked.at(0.5).controllers[kRight].tracked);
+    CHECK_FALSE(untracked.at(1.0).controllers[kRight].tracked);
+    CHECK(untracked.at(1.5).controllers[kLeft].tracked);
 }
 
 TEST_CASE("events happen once in the frame that reaches them") {
@@ -277,7 +209,7 @@ TEST_CASE("events happen once in the frame that reaches them") {
     CHECK(std::string(nameOf(ScriptEvent::Kind::kExit)) == "exit");
 }
 
-TEST_CASE("frames are chosen by number") {
+TEST_CASE("frames are chosen by number, extensions and the mask are switched, and a load is by what was drawn") {
     const auto chosen = [](const std::string& text) {
         const Script script = parse(text);
         std::string frames;
@@ -292,16 +224,16 @@ TEST_CASE("frames are chosen by number") {
     CHECK(chosen("frames every 4") == "048");
     CHECK(chosen("frames from 3 to 5") == "345");
     CHECK(chosen("frames from 1 to 8 every 3") == "147");
-}
-
-TEST_CASE("extensions and the mask can be switched") {
     const Script script = parse("extension XR_KHR_visibility_mask off\nvisibility-mask on");
     CHECK_FALSE(script.allowsExtension("XR_KHR_visibility_mask"));
     CHECK(script.allowsExtension("XR_KHR_vulkan_enable2"));
     CHECK(script.visibility_mask);
+    const Script loaded = parse("at 1 gpu-load 4 ms-per-megapixel");
+    CHECK(loaded.gpu_load.at(0.0).ms(10.0, 2.0) == 0.0);
+    CHECK(loaded.gpu_load.at(1.0).ms(10.0, 2.0) == doctest::Approx(8.0));
 }
 
-TEST_CASE("headset files give size, distance, canting and angles") {
+TEST_CASE("headset files give size, distance, canting, angles and insets, and every one of the project is read") {
     const Script script = Script::parse("headset index.toml\nipd 0.064", std::string(BINOSPLAT_SOURCE_DIR) + "/configs/headsets/a.script");
     CHECK(script.system_name == "Valve Index");
     CHECK(script.size_px == glm::uvec2(2468, 2740));
@@ -310,29 +242,6 @@ TEST_CASE("headset files give size, distance, canting and angles") {
     CHECK(state.eyes[kLeft].fov.left_rad == doctest::Approx(-51.9821 * kDegree));
     CHECK(state.eyes[kRight].fov.down_rad == doctest::Approx(-54.6016 * kDegree));
     CHECK(isNear(forwardOf(state.eyes[kLeft].stage_from_eye), {-std::sin(5 * kDegree), 0.0, -std::cos(5 * kDegree)}));
-}
-
-TEST_CASE("an inset has an angle and sizes, which follow from the eyes' where nobody says them") {
-    const Script usual = Script::parse("size 1000 800", "a.script");
-    CHECK(usual.contextSizePx() == glm::uvec2(500, 400));
-    // tan 20 is 0.36397.
-    CHECK(usual.insetSizePx() == glm::uvec2(364, 292));
-    const Script small = Script::parse("size 1000 800\ninset 10 context 300 200", "a.script");
-    CHECK(small.contextSizePx() == glm::uvec2(300, 200));
-    CHECK(small.insetSizePx() == glm::uvec2(177, 142));
-    CHECK(Script::parse("inset 10 size 300 200", "a.script").insetSizePx() == glm::uvec2(300, 200));
-}
-
-TEST_CASE("insets lie where a headset's lenses have their middles, while there is no gaze") {
-    Script script = Script::parse("eye-tracking off", "a.script");
-    script.lens_centres_rad = {glm::dvec2(0.1, -0.2), glm::dvec2(-0.1, -0.2)};
-    const Fov left = script.findInset(script.at(0.0), kLeft), right = script.findInset(script.at(0.0), kRight);
-    CHECK(0.5 * (left.left_rad + left.right_rad) == doctest::Approx(0.1));
-    CHECK(0.5 * (left.up_rad + left.down_rad) == doctest::Approx(-0.2));
-    CHECK(0.5 * (right.left_rad + right.right_rad) == doctest::Approx(-0.1));
-}
-
-TEST_CASE("every headset of the project is read") {
     std::size_t headsets = 0;
     for (const auto& entry : std::filesystem::directory_iterator(std::string(BINOSPLAT_SOURCE_DIR) + "/configs/headsets")) {
         INFO(entry.path().string());
@@ -340,49 +249,67 @@ TEST_CASE("every headset of the project is read") {
         ++headsets;
     }
     CHECK(headsets >= 10);
+
+    const ScriptFolder folder;
+    const auto readWith = [&](const std::string& inset) {
+        folder.write(
+            "h.toml",
+            "name = \"n\"\nsource = \"s\"\nsize = \"100x100\"\ncanting_deg = 0\neye_distance_m = 0.06\n[left]\nleft = -40\nright = 40\n"
+            "up = 40\ndown = -40\n[right]\nleft = -40\nright = 40\nup = 40\ndown = -40\n" +
+                inset);
+        return folder.script("headset h.toml");
+    };
+    const Script full = readWith("[inset]\nhalf_angle_deg = 15\nsize = \"60x50\"\ncontext_size = \"40x30\"\n");
+    CHECK(full.inset.half_angle_rad == doctest::Approx(0.2617994));
+    CHECK(full.insetSizePx() == glm::uvec2(60, 50));
+    CHECK(full.contextSizePx() == glm::uvec2(40, 30));
+    CHECK(readWith("[inset]\nhalf_angle_deg = 15\n").contextSizePx() == glm::uvec2(50, 50));
+    CHECK(readWith("").inset.half_angle_rad == doctest::Approx(0.3490659));
+}
+
+TEST_CASE("insets lie where a headset's lenses have their middles, while there is no gaze") {
+    Script script = parse("eye-tracking off");
+    script.lens_centres_rad = {glm::dvec2(0.1, -0.2), glm::dvec2(-0.1, -0.2)};
+    const Fov left = script.findInset(script.at(0.0), kLeft), right = script.findInset(script.at(0.0), kRight);
+    CHECK(0.5 * (left.left_rad + left.right_rad) == doctest::Approx(0.1));
+    CHECK(0.5 * (left.up_rad + left.down_rad) == doctest::Approx(-0.2));
+    CHECK(0.5 * (right.left_rad + right.right_rad) == doctest::Approx(-0.1));
 }
 
 TEST_CASE("recorded motion starts where the head line says and keeps its tilt") {
-    const Folder folder;
+    const ScriptFolder folder;
     // A recording that faces a quarter turn to the left and moves 1 m ahead of there: that is ahead of the wearer, too. Its second
     // pose also looks up by 60 degrees.
     folder.write("m.csv",
                  "time_s,x,y,z,qx,qy,qz,qw\n10,5,1,5,0,0.70710678118654752,0,0.70710678118654752\n"
                  "11,4,1.5,5,0.35355339059327373,0.61237243569579447,-0.35355339059327373,0.61237243569579447\n");
-    const Script script = folder.script("head 0 position 0 1.6 0\nhead-motion m.csv start 2");
-    CHECK(isNear(script.at(0.0).stage_from_head.position, {0.0, 1.6, 0.0}));
-    CHECK(isNear(forwardOf(script.at(2.0).stage_from_head), {0.0, 0.0, -1.0}));
-    CHECK(isNear(script.at(2.5).stage_from_head.position, {0.0, 1.85, -0.5}, 1e-9));
-    CHECK(isNear(script.at(9.0).stage_from_head.position, {0.0, 2.1, -1.0}, 1e-9));
-    CHECK(isNear(forwardOf(script.at(3.0).stage_from_head), {0.0, std::sqrt(0.75), -0.5}, 1e-9));
-}
-
-TEST_CASE("a recording that begins tilted stays tilted as it was") {
-    const Folder folder;
     // Looks up by 60 degrees at first and moves a metre up: up in STAGE, too, and not along the tilted head's axes.
-    folder.write("m.csv", "0,0,0,0,0.5,0,0,0.86602540378443865\n1,0,1,0,0,0,0,1\n");
-    const Script script = folder.script("head 0 position 0 1.6 0\nhead-motion m.csv");
-    CHECK(isNear(forwardOf(script.at(0.0).stage_from_head), {0.0, std::sqrt(0.75), -0.5}, 1e-9));
-    CHECK(isNear(script.at(1.0).stage_from_head.position, {0.0, 2.6, 0.0}, 1e-9));
-    CHECK(isNear(forwardOf(script.at(1.0).stage_from_head), {0.0, 0.0, -1.0}, 1e-9));
-}
-
-TEST_CASE("Unity recordings are mirrored") {
-    const Folder folder;
-    // Left-handed with z ahead: a positive turn about y looks right, and +z is ahead.
-    folder.write("m.csv", "0,0,0,0,0,0,0,1\n1,1,0,2,0,0.70710678118654752,0,0.70710678118654752\n");
-    const State state = folder.script("head 0 position 0 0 0\nhead-motion m.csv axes unity").at(1.0);
-    CHECK(isNear(state.stage_from_head.position, {1.0, 0.0, -2.0}));
-    CHECK(isNear(forwardOf(state.stage_from_head), {1.0, 0.0, 0.0}));
-}
-
-TEST_CASE("the beginning of a recording can be skipped") {
-    const Folder folder;
-    folder.write("m.csv", "0,0,0,0,0,0,0,1\n2,2,0,0,0,0,0,1\n4,2,0,8,0,0,0,1\n");
-    const Script script = folder.script("head 0 position 0 0 0\nhead-motion m.csv skip 1");
-    CHECK(isNear(script.at(0.0).stage_from_head.position, {0.0, 0.0, 0.0}));
-    CHECK(isNear(script.at(1.0).stage_from_head.position, {1.0, 0.0, 0.0}));
-    CHECK(isNear(script.at(2.0).stage_from_head.position, {1.0, 0.0, 4.0}));
+    folder.write("tilted.csv", "0,0,0,0,0.5,0,0,0.86602540378443865\n1,0,1,0,0,0,0,1\n");
+    // Of Unity: left-handed with z ahead, so a positive turn about y looks right, and +z is ahead.
+    folder.write("unity.csv", "0,0,0,0,0,0,0,1\n1,1,0,2,0,0.70710678118654752,0,0.70710678118654752\n");
+    folder.write("long.csv", "0,0,0,0,0,0,0,1\n2,2,0,0,0,0,0,1\n4,2,0,8,0,0,0,1\n");
+    constexpr const char* kStanding = "head 0 position 0 1.6 0\nhead-motion m.csv start 2";
+    constexpr const char* kTilted = "head 0 position 0 1.6 0\nhead-motion tilted.csv";
+    constexpr const char* kUnity = "head 0 position 0 0 0\nhead-motion unity.csv axes unity";
+    constexpr const char* kSkipped = "head 0 position 0 0 0\nhead-motion long.csv skip 1";
+    const glm::dvec3 ahead(0, 0, -1), upwards(0, std::sqrt(0.75), -0.5);
+    for (const HeadCase& one : {HeadCase{kStanding, 0.0, {0, 1.6, 0}, ahead},
+                                {kStanding, 2.0, {0, 1.6, 0}, ahead},
+                                {kStanding, 3.0, {0, 2.1, -1}, upwards},
+                                {kStanding, 9.0, {0, 2.1, -1}, upwards},
+                                {kTilted, 0.0, {0, 1.6, 0}, upwards},
+                                {kTilted, 1.0, {0, 2.6, 0}, ahead},
+                                {kUnity, 1.0, {1, 0, -2}, {1, 0, 0}},
+                                {kSkipped, 0.0, {0, 0, 0}, ahead},
+                                {kSkipped, 1.0, {1, 0, 0}, ahead},
+                                {kSkipped, 2.0, {1, 0, 4}, ahead}}) {
+        CAPTURE(one.script);
+        CAPTURE(one.time_s);
+        const Pose head = folder.script(one.script).at(one.time_s).stage_from_head;
+        CHECK(isNear(head.position, one.position, 1e-9));
+        CHECK(isNear(forwardOf(head), one.forward, 1e-9));
+    }
+    CHECK(isNear(folder.script(kStanding).at(2.5).stage_from_head.position, {0.0, 1.85, -0.5}, 1e-9));
 }
 
 TEST_CASE("recordings in ticks are read" * binosplat::test::needsSharedData()) {
@@ -399,7 +326,7 @@ TEST_CASE("recordings in ticks are read" * binosplat::test::needsSharedData()) {
     CHECK(script.at(0.0).stage_from_head.position == glm::dvec3(0.0, 1.6, 0.0));
 }
 
-TEST_CASE("the same time gives the same state") {
+TEST_CASE("the same time gives the same state, and every script that comes along is one") {
     const Script script = Script::load(std::string(BINOSPLAT_SOURCE_DIR) + "/configs/simulated/walk.script");
     const State once = script.at(1.7);
     (void)script.at(3.0);
@@ -407,34 +334,17 @@ TEST_CASE("the same time gives the same state") {
     CHECK(once.stage_from_head.position == again.stage_from_head.position);
     CHECK(once.controllers[kRight].stage_from_aim.orientation == again.controllers[kRight].stage_from_aim.orientation);
     CHECK(script.eventsIn(-kForever, kForever).back().kind == ScriptEvent::Kind::kExit);
+    std::size_t count = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(std::string(BINOSPLAT_SOURCE_DIR) + "/configs/simulated")) {
+        CAPTURE(entry.path().string());
+        CHECK_NOTHROW(Script::load(entry.path()));
+        ++count;
+    }
+    CHECK(count >= 2);
 }
 
-TEST_CASE("the gaze moves from key to key on the head and may be lost") {
-    const Script script = parse("head 0 turn 90 0\ngaze 1 0 0\ngaze 2 20 -10\nat 3 gaze degraded\nat 4 gaze off\nat 5 gaze on\n");
-    const auto onHead = [](const State& state) {
-        return transform(inverse(state.stage_from_head), transform(state.device(kGaze).stage_from_aim, {0, 0, -1}));
-    };
-    CHECK(glm::distance(onHead(script.at(0.0)), {0, 0, -1}) < 1e-9);
-    const double yaw = glm::radians(10.0), pitch = glm::radians(-5.0);
-    CHECK(glm::distance(onHead(script.at(1.5)), {-std::sin(yaw) * std::cos(pitch), std::sin(pitch), -std::cos(yaw) * std::cos(pitch)}) <
-          1e-9);
-    CHECK(script.at(2.5).gaze_is_good);
-    CHECK_FALSE(script.at(3.5).gaze_is_good);
-    CHECK(script.at(3.5).device(kGaze).tracked);
-    CHECK_FALSE(script.at(4.5).device(kGaze).tracked);
-    CHECK(script.at(5.5).device(kGaze).tracked);
-    CHECK(parse("").gaze.tracker == EyeTracking::kOn);
-    CHECK(glm::distance(onHead(parse("").at(1.0)), {0, 0, -1}) < 1e-9);
-    CHECK_FALSE(parse("eye-tracking refused").at(0.0).device(kGaze).tracked);
-}
-
-TEST_CASE("the documented example is the file") {
-    const std::string root = BINOSPLAT_SOURCE_DIR;
-    const auto readAll = [](const std::string& path) {
-        std::ifstream stream(path);
-        return std::string{std::istreambuf_iterator<char>(stream), {}};
-    };
-    const std::string page = readAll(root + "/docs/simulated_script.md"), example = readAll(root + "/configs/simulated/walk.script");
+TEST_CASE("the documented example is the file, and every command and extension is documented") {
+    const std::string page = textOf("docs/simulated_script.md"), example = textOf("configs/simulated/walk.script");
     REQUIRE(example.size() > 100);
     CHECK(page.find("```\n" + example + "```\n") != std::string::npos);
     // The list of commands comes from the message about one that does not exist.
@@ -452,25 +362,11 @@ TEST_CASE("the documented example is the file") {
         begin = end + 2;
     }
     CHECK(commands == 32);
-}
-
-TEST_CASE("every extension of the runtime is documented") {
-    std::ifstream stream(std::string(BINOSPLAT_SOURCE_DIR) + "/docs/openxr_runtime.md");
-    const std::string page{std::istreambuf_iterator<char>(stream), {}};
+    const std::string runtime = textOf("docs/openxr_runtime.md");
     for (const Extension& extension : kExtensions) {
         INFO(extension.name);
-        CHECK(page.find(std::string("`").append(extension.name).append("`")) != std::string::npos);
+        CHECK(runtime.find(std::string("`").append(extension.name).append("`")) != std::string::npos);
     }
-}
-
-TEST_CASE("every script that comes along is one") {
-    std::size_t count = 0;
-    for (const auto& entry : std::filesystem::directory_iterator(std::string(BINOSPLAT_SOURCE_DIR) + "/configs/simulated")) {
-        CAPTURE(entry.path().string());
-        CHECK_NOTHROW(Script::load(entry.path()));
-        ++count;
-    }
-    CHECK(count >= 2);
 }
 
 }  // namespace simulated_script_test

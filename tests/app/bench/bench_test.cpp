@@ -1,0 +1,443 @@
+// Facts about `bench`: what it plans, how it judges what it measured, and what its runs write.
+#include "app/bench/bench_plan.h"
+#include "app/bench/bench_results.h"
+#include "app/load.h"
+#include "engine/picture/image_io.h"
+#include "tests/app/options/parsed.h"
+#include "tests/engine/picture/lpips_weights.h"
+#include "tests/run_program.h"
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+
+TEST_SUITE_BEGIN("bench");
+
+namespace bench_test {
+
+namespace fs = std::filesystem;
+using namespace binosplat;
+using namespace binosplat::test;
+
+namespace {
+
+const fs::path kConfigs = fs::path(BINOSPLAT_SOURCE_DIR) / "configs" / "bench";
+using Names = std::vector<std::string>;
+
+struct Bench : Workplace {
+    // A config in b.toml, and more words of the command line.
+    [[nodiscard]] BenchOptions options(const std::string& toml, const std::string& words = "") const {
+        write("b.toml", toml);
+        return parse<BenchOptions>(fmt::format("bench --out out --config {} {}", (path / "b.toml").string(), words));
+    }
+    [[nodiscard]] BenchPlan plan(const std::string& toml, const std::string& words = "") const { return planBench(options(toml, words)); }
+    [[nodiscard]] std::string planError(const std::string& toml, const std::string& words = "") const {
+        return errorOf([&] { static_cast<void>(plan(toml, words)); });
+    }
+    [[nodiscard]] nlohmann::json results(const std::string& file) const { return nlohmann::json::parse(bytesOf(file)).at("results"); }
+};
+
+Names methodsOf(const BenchPlan& plan) {
+    Names names;
+    for (const BenchMethod& method : plan.methods) { names.push_back(method.name); }
+    return names;
+}
+
+BenchResult makeResult(const std::string& scene, Mode mode, std::uint64_t splats, double total_ms) {
+    BenchResult result;
+    result.series = std::string("s");
+    result.scene = scene;
+    result.mode = mode;
+    result.splats = splats;
+    result.size_px = {8, 8};
+    result.total_ms = total_ms;
+    return result;
+}
+
+BenchResult withError(double total_ms, double mean_square) {
+    BenchResult result = makeResult("a", Mode::kPaper, 1, total_ms);
+    result.quality = {{"all", 64, mean_square, {}, {}, {}}};
+    return result;
+}
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+}  // namespace
+
+TEST_CASE("a level fits if its splats do, which take less memory with fewer colours and as discs") {
+    const auto choose = [](const std::string& options) {
+        const RunOptions run = renderOptions(options);
+        return levelChoice(run.load, run.memory_limit_mib);
+    };
+    CHECK(!choose("--lod 1").fits);  // as fine as there is
+    CHECK(choose("--lod 1").level == 1u);
+    const LevelChoice discs = choose("--memory-limit 3 --flatten");
+    CHECK(discs.fits(65536, 0));  // 48 bytes a splat
+    CHECK(!discs.fits(65537, 0));
+    CHECK(!discs.fits(65536, 1));
+    CHECK(!discs.fits(65536, 3));  // 140 and more
+    CHECK(!discs.fits(std::uint64_t{1} << 60, 3));
+    CHECK(!choose("--memory-limit 3").fits(65536, 0));  // 52 bytes
+    CHECK(choose("--memory-limit 3 --flatten --sh-degree 0").fits(65536, 3));
+}
+
+TEST_CASE("every config of the configs folder is a plan, whose scenes the command line may replace") {
+    int count = 0;
+    for (const fs::directory_entry& entry : fs::directory_iterator(kConfigs)) {
+        const BenchPlan plan = planBench(parse<BenchOptions>("bench --out out --config " + entry.path().string()));
+        CHECK(!plan.scenes.empty());
+        CHECK(!plan.series.empty());
+        ++count;
+    }
+    CHECK(count > 0);
+    const std::string demo = (kConfigs / "demo.toml").string();
+    CHECK(planBench(parse<BenchOptions>("bench a.ply b.ply --out out --config " + demo)).scenes == Names{"a.ply", "b.ply"});
+    const Bench bench;
+    CHECK(methodsOf(bench.plan("", "a.ply")) == Names{"two-pass", "shared", "reproject", "paper", "predicted"});
+    bench.checkRefused("bench --out out", 2, "SCENE");
+    bench.checkRefused("bench missing.ply --out out", 1, "missing.ply");
+    CHECK_FALSE(bench.holds("out"));
+}
+
+TEST_CASE("methods sweep their settings, and views draw a scene's splats in several ways") {
+    const Bench bench;
+    const BenchOptions options = bench.options(
+        "[bench]\nscenes = [\"builtin:fence\"]\ntwin = true\nscores = [\"psnr\"]\n[stereo]\nmargin = 16\n"
+        "[[methods]]\nname = \"p\"\nmode = \"predicted\"\nbudget = [0, 0.5]\ndepth = [\"mean\", \"sum\"]\ngap_px = 3\n"
+        "order = \"distance\"\n"
+        "[[methods]]\nname = \"letter\"\nmode = \"paper\"\nresampling = \"forward\"\nper_eye = true\n"
+        "[[views]]\nname = \"whole\"\nscene = [\"a.ply\", \"b\"]\n"
+        "[[views]]\nname = \"flat\"\nscene = \"b\"\nflatten = true\n"
+        "[[views]]\nname = \"near\"\nscene = \"b\"\neye = [1, 2, 3]\nfov_x = 90\nnear = 0.5\n"
+        "[[views]]\nname = \"dimmed\"\nscene = \"b\"\nantialiased = true\n");
+    const BenchPlan plan = planBench(options);
+    CHECK(methodsOf(plan) == Names{"two-pass", "shared", "p budget=0 depth=mean", "p budget=0 depth=sum", "p budget=0.5 depth=mean",
+                                   "p budget=0.5 depth=sum", "letter", "mono"});
+    const StereoOptions &swept = plan.methods[4].stereo, &letter = plan.methods[6].stereo;
+    CHECK(swept.warp.budget == 0.5);
+    CHECK(swept.warp.gap_px == 3);
+    CHECK(swept.order == Order::kDistance);
+    CHECK(swept.warp.margin_px == 16);
+    CHECK_FALSE(swept.warp.forward);
+    CHECK_FALSE(swept.per_eye);
+    CHECK(letter.warp.forward);
+    CHECK(letter.per_eye);
+    CHECK_FALSE(plan.methods[0].stereo.order);
+    CHECK(!plan.ssim);
+    const auto viewsIn = [&](const std::string& scene) {
+        std::string names;
+        for (const DrawnViews& drawn : viewsOf(plan, scene, options.run)) {
+            names += drawn.run.load.flatten ? "flattened:" : drawn.run.load.antialiased ? "antialiased:" : "trained:";
+            for (const BenchView& view : drawn.views) { names += " " + view.name; }
+            names += "; ";
+        }
+        return names;
+    };
+    CHECK(viewsIn("some/b") == "trained: whole near; flattened: flat; antialiased: dimmed; ");
+    CHECK(viewsIn("/some/where/a.ply") == "trained: whole; ");
+    CHECK(viewsIn("builtin:fence") == "trained: ; ");
+    const RunOptions near = viewsOf(plan, "b", options.run).at(0).views.at(1).run;
+    CHECK(near.camera.near == 0.5);
+    CHECK(near.camera.eye == glm::dvec3(1.0, 2.0, 3.0));
+}
+
+TEST_CASE("size, camera, headset and repeats of the command line take the place of the config's") {
+    const Bench bench;
+    const std::string fence = "[bench]\nscenes = [\"builtin:fence\"]\n";
+    const std::string sizes = fence + "[[series]]\nname = \"a\"\nsizes = [\"64x48\", \"128x96\"]\n";
+    CHECK(bench.plan(sizes).series.at(0).sizes_px == std::vector{glm::uvec2(64, 48), glm::uvec2(128, 96)});
+    CHECK(bench.plan(sizes, "--size 32x16").series.at(0).sizes_px == std::vector{glm::uvec2(32, 16)});
+    CHECK(bench.plan(fence + "repeats = 7\n").repeats == 7);
+    CHECK(bench.plan(fence + "repeats = 7\n", "--repeats 3").repeats == 3);
+    // A config's own camera is what its series and views start from.
+    const std::string camera = "[camera]\nsize = \"256x256\"\neye = [0, 0, -1]\n" + fence +
+                               "headsets = [\"quest2\", \"index\"]\n[[series]]\nname = \"a\"\nsizes = \"64x48\"\n"
+                               "[[series]]\nname = \"b\"\n[[views]]\nname = \"near\"\nfov_x = 90\n";
+    const BenchPlan plan = bench.plan(camera);
+    CHECK(plan.series.at(0).sizes_px == std::vector{glm::uvec2(64, 48)});
+    CHECK(plan.series.at(1).sizes_px == std::vector{glm::uvec2(256, 256)});
+    CHECK(plan.views.size() == 1);
+    CHECK(plan.headsets == Names{"quest2", "index"});
+    CHECK(bench.plan(camera, "--eye 1,1,1").views.empty());
+    CHECK(bench.plan(camera, "--headset vive").headsets == Names{""});
+}
+
+TEST_CASE("LPIPS is among the scores where a config or the command line gives its weights, which nobody reads otherwise") {
+    const Bench bench;
+    writeFloats(bench.path / "w.bin", makeLpipsWeights(9));
+    const std::string head = "[bench]\nscenes = [\"builtin:fence\"]\n", weights = (bench.path / "w.bin").string();
+    const BenchPlan alone = bench.plan(head + "scores = [\"lpips\"]\nlpips = \"w.bin\"\n");
+    CHECK(alone.lpips.has_value());
+    CHECK(alone.psnr);
+    CHECK_FALSE(alone.ssim);
+    CHECK_FALSE(alone.flip);
+    CHECK(bench.plan(head + "lpips = \"w.bin\"\n").lpips.has_value());
+    CHECK_FALSE(bench.plan(head).lpips.has_value());
+    CHECK_FALSE(bench.plan(head + "scores = [\"psnr\"]\nlpips = \"none.bin\"\n").lpips.has_value());
+    const BenchPlan none = bench.plan(head + "scores = [\"none\"]\n", "--lpips " + weights);
+    CHECK(none.lpips.has_value());
+    CHECK(none.psnr);
+    CHECK(contains(bench.planError(head, "--lpips none.bin"), "none.bin: cannot be read"));
+    CHECK(contains(bench.planError(head + "lpips = \"none.bin\"\n"), "none.bin: cannot be read"));
+    CHECK(contains(bench.planError(head + "scores = [\"ssim\", \"lpips\"]\n"),
+                   "b.toml:3: scores lists lpips; name its weights with --lpips FILE or `lpips` in [bench]"));
+    CHECK(contains(bench.planError(head, "--lpips " + (bench.path / "b.toml").string()), "b.toml: has 35 bytes, must have the 2898944"));
+}
+
+TEST_CASE("what a bench would measure twice under one name is refused, and so is a wrong config, with file and line") {
+    const Bench bench;
+    const std::string scene = "[bench]\nscenes = [\"builtin:fence\", \"b.ply\"]\n";
+    for (const auto& [toml, error] : std::vector<std::pair<std::string, std::string>>{
+             {"[bench]\nscenes = [\"a\", \"a\"]\n", "scene a is named twice, names must differ"},
+             {scene + "headsets = [\"index\", \"index\"]\n", "headset index is named twice, names must differ"},
+             {scene + "[[series]]\nname = \"s\"\n[[series]]\nname = \"s\"\n", "series s is named twice, names must differ"},
+             {scene + "[[methods]]\nname = \"m\"\nmode = \"paper\"\n[[methods]]\nname = \"m\"\nmode = \"mono\"\n",
+              "method m is named twice, names must differ"},
+             {scene + "[[views]]\nname = \"v\"\n[[views]]\nname = \"v\"\nscene = \"b.ply\"\n", "view v is named twice, names must differ"},
+             {"[bench]\nrepeats = 0\n", "b.toml:2: repeats is 0, must be a whole number from 1"},
+             {"[[series]]\nsizes = [\"8x8\"]\n", "b.toml:1: name is missing"}}) {
+        CHECK_MESSAGE(contains(bench.planError(toml), error), toml);
+    }
+    CHECK(bench.planError(scene + "[[views]]\nname = \"v\"\nscene = \"builtin:fence\"\n"
+                                  "[[views]]\nname = \"v\"\nscene = \"b.ply\"\n") == "");
+}
+
+TEST_CASE("scenes have their own names, or their paths where those are equal") {
+    BenchPlan plan;
+    plan.scenes = {"a/x.ply", "b/x.ply", "c/y/", "builtin:fence"};
+    CHECK(nameIn(plan, "a/x.ply") == "a/x.ply");
+    CHECK(nameIn(plan, "c/y/") == "y");
+    CHECK(nameIn(plan, "builtin:fence") == "builtin:fence");
+    plan.views = {{"whole", {"y"}, {}}};
+    CHECK(viewsOf(plan, "c/y/", {}).at(0).views.at(0).name == "whole");
+}
+
+TEST_CASE("ratios compare modes at the same point only, by the medians of frames that took turns") {
+    CHECK(median({3.0}) == 3.0);
+    CHECK(median({5.0, 1.0, 3.0}) == 3.0);
+    CHECK(median({4.0, 1.0, 3.0, 100.0}) == 3.5);
+    std::vector<BenchResult> results{makeResult("a", Mode::kTwoPass, 1, 4.0), makeResult("a", Mode::kShared, 1, 2.0),
+                                     makeResult("a", Mode::kShared, 2, 3.0), makeResult("b,c", Mode::kMono, 1, 3.0),
+                                     makeResult("a", Mode::kShared, 1, 5.0)};
+    results[4].backbone = "3DGS";  // the same scene as discs is another point
+    compareModes(results);
+    CHECK(!results[4].ratio_to_two_pass.has_value());
+    CHECK(results[1].ratio_to_two_pass == 0.5);
+    CHECK(results[0].ratio_to_shared == 2.0);
+    CHECK(!results[2].ratio_to_two_pass.has_value());
+    CHECK(!results[3].ratio_to_shared.has_value());
+    CHECK(contains(benchCsv({"GPU", "", results}), "\"b,c\""));
+    // What slows two neighbours for a while changes no ratio.
+    results[0].frame_ms = {4.0, 8.0, 4.0};
+    results[1].frame_ms = {3.0, 6.0, 1.0};
+    compareModes(results);
+    CHECK(results[1].ratio_to_two_pass == 0.75);
+}
+
+TEST_CASE("the passes of both eyes add up, and passes to stages") {
+    const PassTimes passes{{{Role::kBoth, FrameStage::kSort, "cull"}, 1.0},
+                           {{Role::kBoth, FrameStage::kSort, "sort_depth"}, 2.0},
+                           {{Role::kDominant, FrameStage::kSplat, "project"}, 4.0},
+                           {{Role::kDominant, FrameStage::kSplat, "rasterize"}, 8.0},
+                           {{Role::kAffiliated, FrameStage::kWarp, "reproject"}, 16.0},
+                           {{Role::kAffiliated, FrameStage::kChoose, "weigh"}, 32.0},
+                           {{Role::kAffiliated, FrameStage::kChoose, "newcomers"}, 64.0},
+                           {{Role::kAffiliated, FrameStage::kChoose, "select"}, 128.0},
+                           {{Role::kAffiliated, FrameStage::kWarp, "resample"}, 256.0},
+                           {{Role::kAffiliated, FrameStage::kSplat, "rasterize"}, 512.0}};
+    CHECK(stagesOf(Mode::kPredicted, passes) ==
+          NamedTimes{{"cull+sort", 3.0}, {"dominant", 12.0}, {"reprojection", 272.0}, {"ROI choice", 224.0}, {"patch", 512.0}});
+    CHECK(stagesOf(Mode::kShared, {passes.back()}) == NamedTimes{{"affiliated", 512.0}});
+    CHECK(byPass({passes[0], passes[3], passes[9]}) == NamedTimes{{"cull", 1.0}, {"rasterize", 520.0}});
+}
+
+TEST_CASE("what moving a tile costs is told in pairs of shared's affiliated eye") {
+    BenchResult predicted = makeResult("a", Mode::kPredicted, 1, 9.0), shared = makeResult("a", Mode::kShared, 1, 10.0);
+    predicted.pass_ms = {{{Role::kAffiliated, FrameStage::kWarp, "reproject"}, 1.0},
+                         {{Role::kAffiliated, FrameStage::kChoose, "newcomers"}, 5.0},
+                         {{Role::kAffiliated, FrameStage::kWarp, "resample"}, 2.0}};
+    predicted.counters = {{"tiles_weighed_as_moved", 300}};
+    shared.pass_ms = {{{Role::kDominant, FrameStage::kSplat, "rasterize"}, 7.0},
+                      {{Role::kAffiliated, FrameStage::kSplat, "project"}, 1.5},
+                      {{Role::kAffiliated, FrameStage::kSplat, "rasterize"}, 2.5}};
+    shared.counters = {{"tile_pairs_left", 9000}, {"tile_pairs_right", 8000}};
+    // 10 us a tile, 0.5 us a pair.
+    std::vector<BenchResult> results{predicted, shared};
+    compareModes(results);
+    CHECK(results[0].move_cost.value() == doctest::Approx(20.0));
+    CHECK_FALSE(results[1].move_cost.has_value());
+    results[0].counters["tiles_weighed_as_moved"] = 0;
+    compareModes(results);
+    CHECK_FALSE(results[0].move_cost.has_value());
+}
+
+TEST_CASE("the front holds what is worth its time, and a picture that holds what is no number is not called equal") {
+    std::vector<BenchResult> results{makeResult("a", Mode::kTwoPass, 1, 9.0),
+                                     makeResult("a", Mode::kShared, 1, 8.0),
+                                     makeResult("a", Mode::kMono, 1, 1.0),
+                                     withError(4.0, 0.1),
+                                     withError(5.0, 0.1),
+                                     withError(6.0, 0.01),
+                                     withError(8.5, 0.0)};
+    markFront(results);
+    std::vector<bool> front;
+    for (const BenchResult& result : results) { front.push_back(result.on_front); }
+    CHECK(front == std::vector<bool>{false, true, false, true, false, true, false});
+    const std::string svg = benchPlot({"GPU", "", results});
+    CHECK(contains(svg, "Pareto front"));
+    CHECK(!contains(svg, "inf"));
+    CHECK(contains(benchJson({"GPU", "", results}), "\"psnr_db\": null"));
+    CHECK(std::isnan(psnrOf(std::nan(""))));
+    CHECK(psnrOf(0.0) > 1e300);
+    CHECK(!contains(benchTable({"GPU", "", {withError(1.0, std::nan(""))}}), "equal"));
+}
+
+TEST_CASE("of an error an eye sees each tile's share, and notices it from a hundredth of the contrast on") {
+    const glm::uvec2 size_px(32, 16);  // two tiles
+    const Image full{size_px, 4, std::vector<float>(4 * 512, 0.5f)};
+    Image picture = full;
+    // Squares of 0.1024 and 0.0064 a tile.
+    for (std::size_t i = 0; i < 512; ++i) { picture.values[4 * i] += i % 32 < 16 ? 0.02f : 0.005f; }
+    const SeenScores seen = measureSeen(full, picture, std::array{0.5, 1.0});
+    CHECK(seen.mean_square == doctest::Approx((0.5 * 0.1024 + 0.0064) / (3 * 512)).epsilon(1e-4));
+    CHECK(seen.psnrDb() == doctest::Approx(10.0 * std::log10(3 * 512 / 0.0576)).epsilon(1e-4));
+    CHECK(seen.noticed == 0.5);
+    CHECK(measureSeen(full, full, std::array{0.5, 1.0}).noticed == 0.0);
+    // It stands in the tables, and has a panel of its own in the plot.
+    BenchResult result = withError(1.0, 0.01);
+    CHECK(!contains(benchPlot({"GPU", "", {result}}), "of what the eye sees"));
+    result.seen = seen;
+    CHECK(contains(benchPlot({"GPU", "", {result}}), "of what the eye sees"));
+    CHECK(contains(benchTable({"GPU", "", {result}}), "an error of 44.26 dB, and notices it in 50.00 %"));
+    CHECK(contains(benchJson({"GPU", "", {result}}), "\"noticed\": 0.5"));
+    CHECK(contains(benchCsv({"GPU", "", {result}}), ",44.2597,0.5,"));
+}
+
+TEST_CASE("plots of few or bad points stay finite") {
+    BenchResult result = makeResult("a&b", Mode::kShared, 1, 0.0);
+    result.pass_ms = {{{Role::kNone, FrameStage::kSort, "cull"}, 0.0}};
+    for (const double ms : {0.0, 1.0, 2.5}) {
+        result.total_ms = ms;
+        const std::string svg = benchPlot({"GPU", "", {result}});
+        CHECK(!contains(svg, "nan"));
+        CHECK(!contains(svg, "inf"));
+        CHECK(contains(svg, "a&amp;b"));
+    }
+}
+
+#ifndef _WIN32
+TEST_CASE("a bench writes a table, JSON, CSV and a plot, and compares methods by the origin of their pixels") {
+    const Bench bench;
+    writeFloats(bench.path / "w.bin", makeLpipsWeights(9));
+    bench.write("b.toml",
+                "[bench]\nrepeats = 2\nwarm-up = 0\ntwin = true\nscores = [\"ssim\", \"lpips\"]\nlpips = \"w.bin\"\n"
+                "[[methods]]\nname = \"half\"\nmode = \"predicted\"\nbudget = 0.5\n"
+                "[[series]]\nname = \"pixels\"\nsizes = [\"96x96\", \"16x48\"]\n");
+    const std::string table = bench.go("bench builtin:step-edge --out out --config b.toml").output;
+    const nlohmann::json results = bench.results("out/bench.json");
+    REQUIRE(results.size() == 10);
+    CHECK(contains(table, "rasterize"));
+    CHECK(contains(table, "splats (2DGS)"));
+    CHECK(contains(table, "LPIPS"));
+    const std::string csv = bench.bytesOf("out/bench.csv");
+    CHECK(contains(csv.substr(0, csv.find('\n')), ",all lpips,"));
+    CHECK(bench.holds("out/bench.svg"));
+    CHECK(std::distance(fs::directory_iterator(bench.path / "out"), {}) == 3);
+    CHECK(results[0]["ratio_to_two_pass"] == 1.0);
+    CHECK(results[0]["frames"] == 2);
+    CHECK(results[0]["backbone"] == "2DGS");
+    CHECK(results[1]["mode"] == "shared");
+    // Which of the two is faster is up to the clock; the faster one has no error and nothing beats it.
+    CHECK((results[0]["on_front"] == true || results[1]["on_front"] == true));
+    CHECK(!results[1].contains("affiliated_against_full"));
+    CHECK(results[2]["method"] == "half");
+    CHECK(results[2]["stage_ms"].contains("patch"));
+    CHECK(results[3].contains("ratio_to_twin"));
+    CHECK(results[4]["mode"] == "twin");
+    const nlohmann::json& quality = results[2]["affiliated_against_full"];
+    CHECK(quality["all"]["pixels"] == 96 * 96);
+    CHECK(quality["all"]["psnr_db"] > 25.0);
+    CHECK(quality["all"]["ssim"] > 0.8);
+    CHECK(quality["all"]["lpips"] > 0.0);
+    CHECK(!quality["reprojected"].contains("lpips"));
+    CHECK(quality["patched"]["mean_square"] < 1e-6);
+    // Too small for the network: the other scores are there.
+    CHECK(!results[7]["affiliated_against_full"]["all"].contains("lpips"));
+    CHECK(results[7]["affiliated_against_full"]["all"].contains("psnr_db"));
+
+    // Scores that nobody asks for are in none of them.
+    bench.write("b.toml", "[bench]\nmodes = [\"reproject\"]\nrepeats = 1\nwarm-up = 0\nscores = [\"psnr\"]\n");
+    const std::string plain = bench.go("bench builtin:slanted-wall --size 48x48 --out plain --config b.toml").output;
+    CHECK(!contains(plain, "LPIPS"));
+    CHECK(!contains(bench.bytesOf("plain/bench.csv"), "lpips"));
+    const nlohmann::json all = bench.results("plain/bench.json")[2]["affiliated_against_full"]["all"];
+    CHECK(!all.contains("lpips"));
+    CHECK(!all.contains("ssim"));
+}
+
+TEST_CASE("a bench plays a part of a head's motion") {
+    const Bench bench;
+    bench.write("m.csv", "time_s,x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,0,1\n0.1,0.02,0,0,0,0,0,1\n0.2,0.04,0,0,0,0,0,1\n");
+    bench.write("b.toml", "[bench]\nmodes = [\"predicted\"]\n");
+    bench.go(
+        "bench builtin:step-edge --size 48x48 --config b.toml --motion m.csv "
+        "--from 0.1 --seconds 0.1 --rate 40 --every 3 --out out");
+    const nlohmann::json results = bench.results("out/motion.json");
+    REQUIRE(results.size() == 3);
+    CHECK(results[0]["frames"] == 2);
+    CHECK(results[0]["full_change"]["p99"] > 0.0);
+    CHECK(results[1]["work_rendered"]["median"] == 1.0);
+    const nlohmann::json& predicted = results[2];
+    CHECK(predicted["mode"] == "predicted");
+    CHECK(predicted["flicker"]["median"] > 0.0);
+    CHECK(predicted["psnr_db"]["run"] > 20.0);
+    CHECK(predicted["psnr_db"]["worst"] <= predicted["psnr_db"]["run"]);
+    CHECK(predicted["work_rendered"]["median"] < 1.0);
+    // The dominant eye has no error, the other one has.
+    std::istringstream csv(bench.bytesOf("out/motion.csv"));
+    std::string header, row;
+    std::getline(csv, header);
+    CHECK(header.ends_with("psnr_left_db,psnr_right_db,mse_left,mse_right,flicker_left,flicker_right,work_rendered,pixels_warped"));
+    while (std::getline(csv, row) && row.find(",predicted,") == std::string::npos) {}
+    Names cells;
+    std::istringstream split(row);
+    for (std::string cell; std::getline(split, cell, ',');) { cells.push_back(cell); }
+    REQUIRE(cells.size() >= static_cast<std::size_t>(std::count(header.begin(), header.end(), ',')) + 1);
+    CHECK(std::stod(cells[cells.size() - 6]) == 0.0);
+    CHECK(std::stod(cells[cells.size() - 5]) > 0.0);
+    CHECK(std::stod(cells.back()) > 0.0);
+    CHECK(bench.holds("out/motion.svg"));
+    bench.checkRefused("bench builtin:one-splat --motion none.csv --out none", 1, "none.csv");
+}
+
+TEST_CASE("a bench compares with photographs") {
+    const Bench bench;
+    bench.write("c.json", R"([{"img_name": "a", "width": 48, "height": 40, "fx": 48, "fy": 48, "position": [0,0,0],
+                               "rotation": [[1,0,0],[0,1,0],[0,0,1]]}])");
+    bench.write("b.toml", "[bench]\nmodes = [\"reproject\"]\n");
+    writeFloats(bench.path / "w.bin", makeLpipsWeights(9));
+    // The photograph is the scene itself, seen by one eye in the middle.
+    bench.go("render builtin:step-edge --cameras c.json --mode mono --out photo");
+    const std::string extension = extensionOf(PictureKind::kDisplay);
+    fs::create_directory(bench.path / "photos");
+    fs::rename(bench.path / "photo" / ("mono" + extension), bench.path / "photos" / ("a" + extension));
+    const std::string compare = "bench builtin:step-edge --cameras c.json --config b.toml --photos photos --out out";
+    bench.go(compare);
+    const nlohmann::json results = bench.results("out/photos.json");
+    REQUIRE(results.size() == 3);
+    CHECK(results[1]["method"] == "shared");
+    CHECK(results[1]["psnr_db_to_photo"] > 50.0);  // 8 bits
+    CHECK(results[1]["psnr_db_lost"] == 0.0);
+    CHECK(results[2]["psnr_db_lost"] > 0.0);
+    CHECK(!results[2].contains("lpips_to_photo"));
+    bench.go(compare + " --lpips w.bin");
+    const nlohmann::json with_lpips = bench.results("out/photos.json");
+    CHECK(with_lpips[1]["lpips_lost"] == 0.0);
+    CHECK(with_lpips[2]["lpips_to_photo"] > with_lpips[1]["lpips_to_photo"]);
+    fs::remove_all(bench.path / "photos");
+    bench.checkRefused(compare, 1, "photos/a");
+}
+#endif
+
+}  // namespace bench_test

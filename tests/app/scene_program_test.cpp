@@ -1,0 +1,73 @@
+// What the program says of a scene, and how it takes one of several levels.
+#include "tests/engine/scene/ply_files.h"
+#include "tests/run_program.h"
+#ifdef BINOSPLAT_SOG
+#include "tests/engine/scene/streamed_scenes.h"
+#endif
+
+#include <doctest/doctest.h>
+
+TEST_SUITE_BEGIN("scene_program");
+
+namespace scene_program_test {
+
+using namespace binosplat;
+using namespace binosplat::test;
+
+TEST_CASE("info says what a scene is made of, and what would take less memory") {
+    const Workplace work;
+    PlyText ply = makePly(0, true);
+    for (const char* name : {"scale_0", "scale_1", "scale_2"}) { ply[name].values.assign(3, std::log(0.01)); }
+    for (Column& column : ply.columns) { column.values.resize(3000, column.values[0]); }
+    for (std::size_t i = 0; i < 3000; ++i) {  // a patch
+        ply["x"].values[i] = 0.05 * static_cast<double>(i % 60);
+        ply["y"].values[i] = 0.05 * static_cast<double>(i / 60);
+    }
+    ply["z"].values[0] = 30.0;
+    ply["opacity"].values[1] = -9.0;
+    ply["opacity"].values[2] = 9.0;
+    work.write("a.ply", ply.bytes());
+    const std::string info = work.go("info a.ply").output;
+    for (const char* row :
+         {"axes               the file does not say; taken as a training's: x right, y down, z front; right-handed\n",
+          "colour space       the file does not say; taken as a training's: display-encoded (sRGB)\n",
+          "  0.03 %  1 splats: opacity under 1/255, never seen\n", "  0.03 %  1 splats: over 99 % opaque\n",
+          "  0.00 %  0 splats: thinner than a millimetre (the shortest axis, ", "  0.00 %  0 splats: larger than a tenth of the size\n",
+          "  0.03 %  1 splats: floaters: seen, but alone (fewer than 5 splats within", "(0.1 MiB) on the GPU, 52 a splat",
+          "if too much      convert --crop="}) {
+        CAPTURE(row);
+        CHECK(contains(info, row));
+    }
+    CHECK_FALSE(contains(info, "--sh-degree"));
+    // What is proposed can be done.
+    const std::size_t at = info.find("--crop=");
+    (void)work.go("convert a.ply b.ply " + info.substr(at, info.find(' ', at) - at));
+    work.write("sh.ply", makePly(9).bytes());
+    CHECK(contains(work.go("info sh.ply").output, "--sh-degree 0: "));
+    CHECK(contains(work.go("info builtin:one-splat").output, "colour space       display-encoded (sRGB)\n"));
+}
+
+#ifdef BINOSPLAT_SOG
+TEST_CASE("the program loads the level that --lod names and says which levels there are") {
+    const Folder folder;
+    const Workplace work;
+    const std::string source = writeStreamed(folder, "scene", makeLodMeta());
+    const Outcome info = work.go("info '" + source + "'");
+    CHECK(contains(info.output, "levels of detail   0: 16 splats (loaded)\n                   1: 8 splats\n"));
+    CHECK(contains(info.output, "environment: 8 splats (loaded)"));
+    CHECK(contains(work.go("info --lod 1 '" + source + "'").output, "1: 8 splats (loaded)"));
+    (void)work.go("convert --lod 1 '" + source + "' coarse.ply");
+    checkSameScene(loadScene((work.path / "coarse.ply").string()), loadScene(source, 0, nullptr, {}, {1, {}}));
+    // The report says what the program chose.
+    (void)work.go("render '" + source + "' --mode mono --size 16x16 --out seen");
+    const std::string report = work.bytesOf("seen/report.json");
+    CHECK(contains(report, "\"lod\": 0,"));
+    CHECK(contains(report, "\"sh-degree\": 1,"));
+    CHECK(contains(report, "\"antialiased\": false"));
+    work.checkRefused("info --lod 2 '" + source + "'", 1, "levels of detail, 0 (the finest) to 1\n");
+    work.checkRefused("info --lod fine '" + source + "'", 1, "--lod");
+    work.checkRefused("scene one-splat --lod 0 --out a.ply", 2, "--lod");
+}
+#endif
+
+}  // namespace scene_program_test

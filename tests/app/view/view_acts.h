@@ -1,0 +1,153 @@
+// Somebody who wears the simulated headset and does one thing after the other.
+#pragma once
+
+#include "engine/geometry.h"
+#include "tests/app/view/panel/panel_sketch.h"
+#include "tests/app/view/view_runs.h"
+
+#include <map>
+
+namespace binosplat::test {
+
+// Where the viewer's panel hangs, in STAGE and OpenXR's axes.
+struct Panel {
+    glm::dvec3 middle;
+    glm::dquat orientation;
+};
+inline const glm::dvec2 kPanelMetres(0.468, 0.585);
+
+// Before a head that looks along -z, as docs/simulated_script.md says.
+inline Panel panelBefore(const glm::dvec3& head = {0.0, 1.6, 0.0}) {
+    const glm::dvec3 to_head(0.45, 0.1, 0.9), out = glm::normalize(to_head);
+    const glm::dvec3 right = glm::normalize(glm::cross(glm::dvec3(0.0, 1.0, 0.0), out));
+    return {head - to_head, glm::quat_cast(glm::dmat3(right, glm::cross(out, right), out))};
+}
+inline Panel panelOf(const ViewRun& run, std::size_t frame) {
+    const LoggedPose pose = stagePose(run.panels(frame).at(0));
+    return {pose.position, pose.orientation};
+}
+
+// Beside all widgets of the pages View and Method.
+inline const glm::dvec2 kBeside(0.9, 0.95);
+
+// Poses of hands: one that looks at a place, and one 30 cm before a place of the panel that points straight at it.
+inline std::string lookingAt(const glm::dvec3& at, const glm::dvec3& look) {
+    return fmt::format("position {} {} {} look {} {} {}", at.x, at.y, at.z, look.x, look.y, look.z);
+}
+inline std::string pointingAt(const Panel& panel, const glm::dvec2& share) {
+    const glm::dvec3 on_panel((share.x - 0.5) * kPanelMetres.x, (0.5 - share.y) * kPanelMetres.y, 0.3);
+    const glm::dvec3 at = panel.middle + panel.orientation * on_panel;
+    const glm::dquat& q = panel.orientation;
+    return fmt::format("position {:.6f} {:.6f} {:.6f} rotation {:.6f} {:.6f} {:.6f} {:.6f}", at.x, at.y, at.z, q.x, q.y, q.z, q.w);
+}
+// At the floor.
+inline const std::string kLeftDown = "position -0.2 1.2 -0.35 turn 0 -80", kRightDown = "position 0.2 1.2 -0.35 turn 0 -80";
+
+// A script that grows. The left hand points at the floor.
+class Acts {
+public:
+    explicit Acts(const std::string& begin, const glm::dvec3& head = {0.0, 1.6, 0.0})
+        : panel(panelBefore(head)),
+          text_(begin),
+          poses_{{"head", fmt::format("position {} {} {} turn 0 0", head.x, head.y, head.z)},
+                 {"controller left", kLeftDown},
+                 {"controller right", "position 0.2 1.2 -0.35 turn 0 0"}} {
+        for (const auto& [who, pose] : poses_) { text_ += fmt::format("{} 0 {}\n", who, pose); }
+    }
+
+    double now_s = 0.2;  // the session has the input
+    Panel panel;
+
+    Acts& wait(double seconds) {
+        now_s += seconds;
+        return *this;
+    }
+    // When what is to be looked at begins; nothing else happens for so long.
+    double look(double seconds = 0.1) {
+        const double begin_s = now_s;
+        now_s += seconds;
+        return begin_s;
+    }
+    Acts& at(const std::string& event) {
+        text_ += fmt::format("at {:.3f} {}\n", now_s, event);
+        return *this;
+    }
+    // Of "head", "controller left" or "controller right".
+    Acts& move(const std::string& who, const std::string& pose, double seconds = 0.02) {
+        text_ += fmt::format("{0} {1:.3f} {2}\n{0} {3:.3f} {4}\n", who, now_s, poses_[who], now_s + seconds, pose);
+        poses_[who] = pose;
+        return wait(seconds + 0.001);
+    }
+    // These three go on while time passes: an input such as "right trigger", and a stick or pad such as "left thumbstick".
+    Acts& hold(const std::string& input, double seconds) {
+        text_ += fmt::format("press {} {:.3f} {:.3f}\n", input, now_s, now_s + seconds);
+        return *this;
+    }
+    Acts& push(const std::string& stick, const glm::dvec2& to, double seconds) {
+        for (const auto& [time_s, place] :
+             {std::pair(0.0, glm::dvec2(0.0)), std::pair(0.01, to), std::pair(seconds, to), std::pair(seconds + 0.01, glm::dvec2(0.0))}) {
+            text_ += fmt::format("axis {} {:.3f} {} {}\n", stick, now_s + time_s, place.x, place.y);
+        }
+        return *this;
+    }
+    Acts& pull(const std::string& input, const std::vector<std::pair<double, double>>& values) {
+        for (const auto& [time_s, value] : values) { text_ += fmt::format("axis {} {:.3f} {}\n", input, now_s + time_s, value); }
+        return *this;
+    }
+    Acts& press(const std::string& input, double seconds = 0.05) { return hold(input, seconds).wait(2.0 * seconds); }
+    // The right hand, at a place of the panel.
+    Acts& point(const glm::dvec2& share) { return move("controller right", pointingAt(panel, share)).wait(0.03); }
+    Acts& click(const glm::dvec2& share, const std::string& input = "right trigger") { return point(share).press(input); }
+
+    // The whole, if the wearer leaves now.
+    [[nodiscard]] std::string script() const { return text_ + fmt::format("at {:.3f} exit\n", now_s); }
+
+private:
+    std::string text_;
+    std::map<std::string, std::string> poses_;
+};
+
+// Both eyes of a frame against what `binosplat render` makes of the fence and the head's logged pose. The wearer stood at `start` in the
+// scene, looking along its z, when the head was at (0, 1.6, 0).
+inline void checkAgreesWithRender(const Workplace& work, const ViewRun& run, std::size_t frame, const glm::dvec3& start,
+                                  const std::string& arguments) {
+    CAPTURE(frame);
+    const LoggedPose head = poseOf(run.frames.at(frame).at("head"));
+    const auto inScene = [](const glm::dvec3& v) { return glm::dvec3(v.x, -v.y, -v.z); };
+    const glm::dvec3 eye = start + inScene(head.position - glm::dvec3(0.0, 1.6, 0.0));
+    const glm::dvec3 look = eye + inScene(head.orientation * glm::dvec3(0, 0, -1)), up = inScene(head.orientation * glm::dvec3(0, 1, 0));
+    const auto numbers = [](const glm::dvec3& v) { return fmt::format("{:.9f},{:.9f},{:.9f}", v.x, v.y, v.z); };
+    const Outcome rendered = work.run(fmt::format("render builtin:fence --out expected --eye {} --look {} --up {} {}", numbers(eye),
+                                                  numbers(look), numbers(up), arguments));
+    INFO(rendered.errors);
+    REQUIRE(rendered.exit_code == 0);
+    for (const int side : {kLeft, kRight}) {
+        const Image expected = readPicture(work.path / "expected" / (side == kLeft ? "left.png" : "right.png"));
+        CAPTURE(side);
+        CHECK(compare(run.eye(frame, side), expected).psnrDb() > 50.0);
+        // Which it would not for the other eye.
+        CHECK(compare(run.eye(frame, 1 - side), expected).psnrDb() < 30.0);
+    }
+}
+
+// Few splats where any picture will do.
+inline const std::string kWall = "builtin:slanted-wall --load-first --hide-hands",
+                         kOneSplat = "builtin:one-splat --load-first --hide-hands";
+
+// Where the wearer was when *Keep this one* was clicked, in the axes of the only scene of which places were kept.
+struct KeptPlace {
+    glm::dvec3 eye, look, up;
+};
+inline std::vector<KeptPlace> keptPlaces(const Workplace& work) {
+    std::vector<KeptPlace> kept;
+    for (const auto& file : std::filesystem::directory_iterator(work.base / "config" / "binosplat" / "scenes")) {
+        if (!file.path().string().ends_with(".viewpoints.txt")) { continue; }
+        std::ifstream numbers(file.path());
+        for (KeptPlace p{}; numbers >> p.eye.x >> p.eye.y >> p.eye.z >> p.look.x >> p.look.y >> p.look.z >> p.up.x >> p.up.y >> p.up.z;) {
+            kept.push_back(p);
+        }
+    }
+    return kept;
+}
+
+}  // namespace binosplat::test

@@ -1,0 +1,74 @@
+// Facts about what frames do that may wait, as two layers count it (tests/faults/waits.h): those of a viewer that runs do nothing.
+#include "tests/app/view/view_runs.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <sstream>
+
+TEST_SUITE_BEGIN("view_quiet");
+
+namespace view_quiet_test {
+
+using namespace binosplat::test;
+
+namespace {
+
+// A snap turn, a step, the panel away and back again, a hand that points at it; then the session is lost.
+const std::string kStay =
+    "rate 45\nsize 64 64\nframes none\nhead 0 position 0 1.6 0\nhead 4 position 0.2 1.6 -0.1 turn 15 0\n"
+    "axis right thumbstick 1.2 0 0\naxis right thumbstick 1.21 1 0\naxis right thumbstick 1.3 1 0\naxis right thumbstick 1.31 0 0\n"
+    "axis left thumbstick 1.6 0 0\naxis left thumbstick 1.61 0 1\naxis left thumbstick 1.9 0 1\naxis left thumbstick 1.91 0 0\n"
+    "press left y 2.2 2.25\npress left y 2.5 2.55\ncontroller right 2.7 position 0.2 1.2 -0.35\n"
+    "controller right 2.8 position 0.2 1.2 -0.35 look -0.45 1.5 -0.9\nat 3.2 lose-session\nat 3.6 exit\n";
+const std::string kWatched =
+    "XDG_CONFIG_HOME=\"$PWD/../config\" DISPLAY= WAYLAND_DISPLAY= BINOSPLAT_VALIDATION=1 VK_ADD_LAYER_PATH='" BINOSPLAT_FAULT_LAYER
+    "' VK_INSTANCE_LAYERS=VK_LAYER_BINOSPLAT_faults XR_API_LAYER_PATH='" BINOSPLAT_FAULT_LAYER
+    "/openxr' XR_ENABLE_API_LAYERS=XR_APILAYER_BINOSPLAT_faults BINOSPLAT_FAULT_WAITS=waits.txt "
+    "BINOSPLAT_FAULT_TICKS=1";  // frames take no time, so that none is drawn smaller to be quicker
+
+// What frames make or wait for between two times, until somebody mends it.
+struct Known {
+    double begin_s, end_s;
+    const char* kinds;
+};
+constexpr Known kKnown[]{
+    {0.0, 1.0, "buffer fence-of-this-frame memory"},
+    // Of what a snap turn brings into view nothing is known: what is visible is counted first, with the device at rest.
+    {1.2, 1.3, "fence-of-last-frame fence-of-this-frame"},
+    // Dear ImGui makes larger buffers when the panel draws more than ever before: here a mark where the hand points.
+    {2.7, 2.9, "buffer memory"},
+    {3.2, 9.0, "buffer fence-of-this-frame memory queue swapchain"},
+};
+
+}  // namespace
+
+TEST_CASE("no frame of a running viewer waits or makes anything after the first second, until its session is lost") {
+    for (const std::string mode : {"temporal", "predicted"}) {
+        CAPTURE(mode);
+        const Workplace work;
+        const ViewRun run = runView(work, "stay", kStay, "builtin:slanted-wall --load-first --mode " + mode, kWatched);
+        INFO(run.outcome.output << run.outcome.errors);
+        CHECK(run.outcome.exit_code == 0);
+        CHECK(run.outcome.errors.empty());
+        std::map<const Known*, std::set<std::string>> found;
+        std::ifstream file(work.path / "waits.txt");
+        std::size_t frames = 0;
+        for (std::string line; std::getline(file, line); ++frames) {
+            const double time_s = static_cast<double>(frames) / 45.0;
+            const Known* const known =
+                std::ranges::find_if(kKnown, [&](const Known& one) { return time_s >= one.begin_s && time_s < one.end_s; });
+            std::istringstream words(line.substr(line.find(' ') + 1));
+            CHECK_MESSAGE((known != std::end(kKnown) || line == std::to_string(frames)), line);
+            for (std::string kind, count; words >> kind >> count;) { found[known].insert(kind); }
+        }
+        CHECK(frames == run.frames.size());
+        CHECK(run.panels(frames * 2 / 3).empty());
+        // All of it, or it is known no more.
+        for (const Known& known : kKnown) { CHECK(fmt::format("{}", fmt::join(found[&known], " ")) == known.kinds); }
+    }
+}
+
+}  // namespace view_quiet_test

@@ -1,0 +1,66 @@
+// Commands whose SCENE is an address, run as a program.
+#include "engine/picture/image_io.h"
+#include "engine/scene/ply.h"
+#include "engine/scene/procedural.h"
+#include "tests/engine/web/web_runs.h"
+#include "tests/run_program.h"
+
+TEST_SUITE_BEGIN("web_program");
+
+namespace web_program_test {
+
+using namespace binosplat;
+using namespace binosplat::test;
+
+namespace {
+
+// With a cache beside its folder.
+std::string environmentOf(const Workplace& work) {
+    return fmt::format("no_proxy=127.0.0.1 XDG_CACHE_HOME='{0}/caches' XDG_CONFIG_HOME='{0}/config'", work.base.string());
+}
+
+}  // namespace
+
+TEST_CASE("render, bench, info, convert and view take an address, and the user's cache keeps what --cache-limit lets it") {
+    const Workplace work;
+    writePly(makeBuiltin("builtin:slanted-wall", 0), (work.path / "wall.ply").string());
+    const auto done = [&](const std::string& arguments) {
+        const Outcome outcome = work.go(arguments, environmentOf(work));
+        CHECK(outcome.errors.empty());
+        return outcome.output;
+    };
+    const std::string camera = " --mode mono --size 64x64 --eye=0,0,-1 --look=0,0,1", near = done("info wall.ply");
+    const std::string picture = std::string("/mono") + extensionOf(PictureKind::kDisplay);
+    done("render wall.ply --out near" + camera);
+    done("convert wall.ply near.spz");
+    WebServer server([bytes = work.bytesOf("wall.ply")](const WebRequest&) { return answer("200 OK", "ETag: \"1\"\r\n", bytes); });
+    const std::string address = server.at("/wall.ply");
+    CHECK(replaced(done("info " + address + " --cache-limit 0"), address, "wall.ply") == near);
+    CHECK(filesIn(work.base / "caches/binosplat/web").empty());
+    done("render " + address + " --out far" + camera);
+    CHECK(filesIn(work.base / "caches/binosplat/web").size() == 2);
+    CHECK_FALSE(work.bytesOf("far" + picture).empty());
+    CHECK(work.bytesOf("far" + picture) == work.bytesOf("near" + picture));
+    done("convert " + address + " far.spz");
+    CHECK(work.bytesOf("far.spz") == work.bytesOf("near.spz"));
+    work.write("one.toml", "[bench]\nmodes = [\"mono\"]\nscores = [\"none\"]\nwarm-up = 0\nrepeats = 1\n");
+    CHECK(contains(done("bench " + address + " --out bench --config one.toml --size 64x64"), "wall.ply"));
+#ifdef BINOSPLAT_OPENXR
+    // Also by itself, as a file is.
+    work.go(address + " --simulate --frames 2 --load-first --mode mono --hide-panel --hide-hands --out seen", environmentOf(work));
+#endif
+    server.stop();
+    CHECK(contains(done("info " + address), address + ": cannot be reached ("));
+}
+
+TEST_CASE("what is wrong with an address is one line, and nothing is left") {
+    const Workplace work;
+    const WebServer server({{"/page", std::string("<html></html>")}});
+    const std::string missing = server.at("/none.ply"), page = server.at("/page");
+    work.checkRefused("render " + missing + " --out out", 1, "binosplat: " + missing, environmentOf(work));
+    work.checkRefused("info " + page, 1, "binosplat: " + page, environmentOf(work));
+    work.checkRefused("convert https:///a a.ply", 1, "binosplat: https:///a", environmentOf(work));
+    CHECK(work.isEmpty());
+}
+
+}  // namespace web_program_test

@@ -1,0 +1,267 @@
+// Scenes that move, on the device: the frame of the time, what lies between two, and what is late or broken.
+#include "engine/stream/moving_scene.h"
+
+#include "engine/error.h"
+#include "tests/engine/frame/frame_runs.h"
+#include "tests/engine/scene/ply_files.h"
+#include "tests/engine/stream/moving_frames.h"
+#include "tests/nightly.h"
+
+#include <atomic>
+
+TEST_SUITE_BEGIN("moving_scene");
+
+namespace moving_scene_test {
+
+using namespace binosplat;
+using namespace binosplat::test;
+
+namespace {
+
+constexpr int kFrames = 6;
+constexpr double kRate = 10.0;
+
+std::array<Eye, 2> atelierEyes() {
+    const View view = *builtinView("atelier");
+    return stereoPair({lookAt(view.eye, view.look, view.up), intrinsicsFromFovX(glm::radians(view.fov_x_deg), {160, 160}), {160, 160}},
+                      0.063);
+}
+
+FrameSettings settingsOf(Mode mode, bool keep_past = false) {
+    FrameSettings settings;
+    settings.mode = mode;
+    settings.keep_past = keep_past;
+    return settings;
+}
+
+Image pictureOf(StereoFrame& frame) {
+    (void)frame.render(atelierEyes(), settingsOf(Mode::kShared));
+    return frame.readPicture(kLeft);
+}
+
+Image pictureOf(const Context& context, const Scene& scene) {
+    KeptFrame frame(context, scene);
+    return pictureOf(frame);
+}
+
+// At the middle of a scene frame.
+double timeOf(double frame) { return (frame + 0.5) / kRate; }
+
+// Until the scene of the time is shown, or what there is of it.
+template <typename Is>
+void updateUntil(MovingScene& scene, const Is& is) {
+    do {
+        scene.update({}, 0.0);
+        std::this_thread::yield();
+    } while (!is());
+}
+
+// The worst of the frames after the first eight, from so far behind the view: four frames of display for each of the scene.
+double worstFromPasts(MovingScene& moving, double back_m, int frames) {
+    KeptFrame temporal(Gpu::shared(), moving.scene()), full(Gpu::shared(), moving.scene());
+    std::array<Eye, 2> eyes = atelierEyes();
+    for (Eye& eye : eyes) { eye.world_from_camera.position.z -= back_m; }
+    double worst_db = 1000.0;
+    for (int step = 0; step < frames; ++step) {
+        moving.setTime(static_cast<double>(step) / (4.0 * kRate));
+        moving.settle({});
+        (void)temporal.render(eyes, settingsOf(Mode::kTemporal, true));
+        if (step < 8) { continue; }
+        (void)full.render(eyes, settingsOf(Mode::kShared));
+        worst_db = std::min(worst_db, psnrDb(picturesOf(temporal), picturesOf(full)));
+    }
+    MESSAGE("worst frame " << worst_db << " dB");
+    return worst_db;
+}
+
+struct Sliding : Gpu {
+    Sliding() { writeSliding(folder.file("slide"), kFrames); }
+    [[nodiscard]] std::unique_ptr<MovingScene> open(MovingSettings settings = {}) const {
+        settings.rate_hz = kRate;
+        return std::make_unique<MovingScene>(context(), SceneSeries(folder.file("slide")), std::move(settings));
+    }
+    [[nodiscard]] std::string fileOf(int frame) const { return folder.file(fmt::format("slide/frame_{:04}.ply", frame + 1)); }
+
+    Folder folder;
+};
+
+}  // namespace
+
+TEST_CASE_FIXTURE(Sliding,
+                  "each frame of a moving scene is, to the bit, what its file is; before the first and after the last it begins again") {
+    const auto moving = open();
+    CHECK(moving->seconds() == doctest::Approx(kFrames / kRate));
+    KeptFrame frame(context(), moving->scene());
+    for (const int at : {0, 3, 2, 5, 6, 13, -1}) {
+        CAPTURE(at);
+        moving->setTime(timeOf(at));
+        CHECK(moving->frameAt(timeOf(at)) == static_cast<std::size_t>((at + kFrames) % kFrames));
+        moving->settle({});
+        CHECK(pictureOf(frame).values == pictureOf(context(), loadScene(fileOf((at + kFrames) % kFrames))).values);
+    }
+    CHECK(moving->isSettled());
+    CHECK(moving->counters().scene_frames_late == 0);
+    CHECK(moving->counters().splats_read == 8000);
+    CHECK(moving->takeLines().empty());
+}
+
+TEST_CASE_FIXTURE(Sliding, "between two frames there is what lies between their splats, if asked for") {
+    const auto moving = open({.blend = true});
+    KeptFrame frame(context(), moving->scene());
+    moving->setTime(2.25 / kRate);
+    moving->settle({});
+    const Image between = pictureOf(frame), wanted = pictureOf(context(), slidingAtelier(2.25));
+    CHECK(compare(between, wanted).psnrDb() > 60.0);
+    CHECK(compare(between, pictureOf(context(), slidingAtelier(2.0))).psnrDb() < 50.0);
+    // Files need not end as they begin.
+    moving->setTime((kFrames - 0.5) / kRate);
+    moving->settle({});
+    CHECK(pictureOf(frame).values == pictureOf(context(), loadScene(fileOf(kFrames - 1))).values);
+}
+
+TEST_CASE_FIXTURE(Sliding, "frames go on while the next is read, which is late at most once") {
+    for (const bool blend : {false, true}) {
+        CAPTURE(blend);
+        const auto moving = open({.blend = blend});
+        KeptFrame frame(context(), moving->scene());
+        for (const double at : {0.5, 1.5, 2.5, 4.5, 7.5}) {
+            moving->setTime(at / kRate);
+            updateUntil(*moving, [&] {
+                return moving->frameAt(at / kRate) == static_cast<std::size_t>(at) % kFrames && (pictureOf(frame), moving->isSettled());
+            });
+            const int shown = static_cast<int>(at) % kFrames;
+            CHECK(compare(pictureOf(frame), pictureOf(context(), slidingAtelier(blend ? shown + 0.5 : shown))).psnrDb() > 60.0);
+        }
+        CHECK(moving->counters().frames_waited_for_loading == 0);
+        CHECK(moving->counters().scene_frames_late <= 4);
+    }
+}
+
+TEST_CASE_FIXTURE(Sliding, "a frame that is not there in time is late, counted once, and shown when it comes") {
+    std::atomic<bool> holds = false;
+    MovingSettings settings;
+    settings.memory_bytes = 1;  // the next ones alone
+    settings.draw_as = [&](Scene&, LoadNotes&) { holds.wait(true); };
+    const auto moving = open(std::move(settings));
+    KeptFrame frame(context(), moving->scene());
+    moving->setTime(timeOf(0));
+    updateUntil(*moving, [&] { return moving->isSettled() || (pictureOf(frame), moving->isSettled()); });
+    const Image first = pictureOf(frame);
+    holds = true;
+    for (int i = 0; i < 5; ++i) {
+        moving->setTime(timeOf(5));
+        moving->update({}, 0.0);
+        CHECK(pictureOf(frame).values == first.values);
+    }
+    CHECK(moving->counters().scene_frames_late == 1);
+    holds = false;
+    holds.notify_all();
+    updateUntil(*moving, [&] { return pictureOf(frame).values != first.values; });
+    CHECK(pictureOf(frame).values == pictureOf(context(), loadScene(fileOf(5))).values);
+    CHECK(moving->counters().scene_frames_late == 1);
+}
+
+TEST_CASE_FIXTURE(Sliding, "in place of a broken frame the one before stays, and one line says so; pictures are not made of it") {
+    std::ofstream(fileOf(2), std::ios::binary | std::ios::trunc) << "ply\nbroken";
+    const auto moving = open();
+    KeptFrame frame(context(), moving->scene());
+    std::vector<std::string> lines;
+    for (int at = 0; at < 4; ++at) {
+        moving->setTime(timeOf(at));
+        updateUntil(*moving, [&] {
+            pictureOf(frame);
+            for (std::string& line : moving->tryTakeLines()) { lines.push_back(std::move(line)); }
+            return at == 2 ? !moving->isSettled() && !lines.empty() : moving->isSettled();
+        });
+        CHECK(pictureOf(frame).values == pictureOf(context(), loadScene(fileOf(at == 2 ? 1 : at))).values);
+    }
+    CHECK(lines.size() == 1);
+    moving->setTime(timeOf(2));
+    CHECK_THROWS_AS(moving->settle({}), Error);
+    moving->setTime(timeOf(4));
+    moving->settle({});
+    CHECK(pictureOf(frame).values == pictureOf(context(), loadScene(fileOf(4))).values);
+}
+
+TEST_CASE_FIXTURE(Sliding, "frames may have more splats or fewer, as far as the sizes of files let expect") {
+    writePly(slidingAtelier(2, 12'000), fileOf(2));
+    writePly(slidingAtelier(3, 1'000), fileOf(3));
+    const auto moving = open({.memory_bytes = 1});
+    KeptFrame frame(context(), moving->scene());
+    for (const int at : {0, 2, 3, 0, 3, 2, 0}) {
+        CAPTURE(at);
+        moving->setTime(timeOf(at));
+        moving->settle({});
+        const Scene whole = loadScene(fileOf(at));
+        CHECK(moving->counters().splats_resident == whole.size());
+        CHECK(pictureOf(frame).values == pictureOf(context(), whole).values);
+    }
+    // One that has grown since its size was looked at.
+    writePly(slidingAtelier(4, 60'000), fileOf(4));
+    moving->setTime(timeOf(4));
+    CHECK_THROWS_WITH_AS(moving->settle({}), doctest::Contains("there is room for"), Error);
+}
+
+TEST_CASE_FIXTURE(Sliding, "pictures that are made from their pasts show what moves") { CHECK(worstFromPasts(*open(), 0.0, 16) > 27.0); }
+
+TEST_CASE_FIXTURE(Sliding, "for longer, too, and where it is a part of the picture" * nightly()) {
+    for (const double back_m : {1.2, 0.0}) { CHECK(worstFromPasts(*open(), back_m, 30) > 27.0); }
+}
+
+TEST_CASE_FIXTURE(Sliding, "what stays equal costs pictures that are made from their pasts nothing") {
+    for (int at = 1; at < kFrames; ++at) { writePly(slidingAtelier(0), fileOf(at)); }
+    const auto still = open();
+    KeptFrame frame(context(), still->scene());
+    (void)pictureOf(frame);
+    const std::uint64_t before = still->scene().changesRecorded();
+    for (int at = 1; at < kFrames; ++at) {
+        still->setTime(timeOf(at));
+        still->settle({});
+        CHECK(still->isSettled());
+        (void)pictureOf(frame);
+    }
+    CHECK(still->scene().changesRecorded() == before);
+}
+
+TEST_CASE_FIXTURE(Gpu, "where nearly half of the picture changes, both eyes are predicted's, and the frames after it have pasts again") {
+    MovingScene moving(context(), SceneSeries("builtin:clockwork"), {.rate_hz = kRate, .memory_bytes = 1});
+    KeptFrame temporal(context(), moving.scene()), other(context(), moving.scene());
+    const Eye middle = eyeOf(*builtinView("clockwork"), {192, 144});
+    for (const double at : {0.0, 0.2, 1.0, 1.2, 1.4}) {
+        CAPTURE(at);
+        moving.setTime(timeOf(at));
+        moving.settle({});
+        Eye eye = middle;
+        eye.world_from_camera.position.x += 0.01 * at;
+        const FrameResult result = temporal.render(stereoPair(eye, 0.063), settingsOf(Mode::kTemporal, true));
+        const FrameResult predicted = other.render(stereoPair(eye, 0.063), settingsOf(Mode::kPredicted, true));
+        const bool has_past = at != 0.0 && at != 1.0;
+        for (const int e : {kLeft, kRight}) { CHECK((temporal.readPicture(e).values == other.readPicture(e).values) == !has_past); }
+        // Of both eyes, or of the one that is not rendered in full.
+        CHECK((result.counters.targets[kLeft].tile_pairs == predicted.counters.targets[kLeft].tile_pairs) == !has_past);
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu, "frames under way have room for what changes, whether it is less or more than a past is kept for") {
+    MovingScene moving(context(), SceneSeries("builtin:clockwork"), {.rate_hz = kRate, .memory_bytes = 1});
+    KeptFrame ahead(context(), moving.scene()), waited(context(), moving.scene());
+    const Eye middle = eyeOf(*builtinView("clockwork"), {192, 144});
+    const FrameSettings settings = settingsOf(Mode::kTemporal, true);
+    for (int step = 0; step < 16; ++step) {
+        // Another frame of the scene in every second, and in three one after the other.
+        const int at = step < 8 ? step / 2 : step - 4;
+        moving.setTime(timeOf(std::min(at, 8)));
+        moving.settle({});
+        Eye eye = middle;
+        eye.world_from_camera.position.x += 0.004 * step;
+        (void)ahead.renderAhead(stereoPair(eye, 0.063), settings);
+        (void)waited.render(stereoPair(eye, 0.063), settings);
+    }
+    const std::optional<FrameResult> last = ahead.finish();
+    REQUIRE(last.has_value());
+    REQUIRE(last->counters.ahead.has_value());
+    CHECK(last->counters.ahead->frames_cut_short == 0);
+    CHECK(shownBy(ahead) == shownBy(waited));
+}
+
+}  // namespace moving_scene_test

@@ -1,0 +1,232 @@
+// Streamed scenes on the device: something to see at once, all that the eyes ask for in the end, and never more than there is room for.
+#include "engine/stream/scene_stream.h"
+
+#include "engine/scene/procedural.h"
+#include "tests/engine/frame/frame_runs.h"
+#include "tests/engine/scene/streamed_scenes.h"
+#include "tests/engine/stream/split_scene.h"
+#include "tests/run_program.h"
+#ifdef BINOSPLAT_WEB_TESTS
+#include "tests/engine/web/web_runs.h"
+#endif
+
+#include <thread>
+
+TEST_SUITE_BEGIN("scene_stream");
+
+namespace scene_stream_test {
+
+using namespace binosplat;
+using namespace binosplat::test;
+
+namespace {
+
+constexpr std::uint64_t kSplats = 40'000;
+
+std::array<Eye, 2> atelierEyes(std::uint32_t side_px = 256, double yaw_rad = 0.0) {
+    const View view = *builtinView("atelier");
+    const glm::uvec2 size_px(side_px);
+    Eye middle{lookAt(view.eye, view.look, view.up), intrinsicsFromFovX(glm::radians(view.fov_x_deg), size_px), size_px};
+    middle.world_from_camera.orientation = glm::angleAxis(yaw_rad, glm::dvec3(0.0, 1.0, 0.0)) * middle.world_from_camera.orientation;
+    return stereoPair(middle, 0.063);
+}
+
+// The atelier in 64 leaves of four levels, in a folder for all of the tests.
+std::string writtenAtelier() {
+    static const Workplace place;
+    const std::string folder = (place.path / "split").string();
+    if (place.isEmpty()) {
+        splitScene(makeBuiltin("builtin:atelier", kSplats), folder, {.leaf_splats = 1000, .levels = 4, .chunk_splats = 8000});
+    }
+    return folder;
+}
+
+FrameSettings inFull() {
+    FrameSettings settings;
+    settings.mode = Mode::kShared;
+    return settings;
+}
+
+struct Streamed : Gpu {
+    [[nodiscard]] std::unique_ptr<SceneStream> open(const StreamSettings& settings = {}) const { return open(source, settings); }
+    [[nodiscard]] std::unique_ptr<SceneStream> open(const std::string& from, const StreamSettings& settings,
+                                                    const WebSettings& web = {}) const {
+        return std::make_unique<SceneStream>(context(), std::make_unique<ChunkSource>(from, web), settings);
+    }
+    // Of the left eye, in full.
+    template <typename AnyScene>
+    [[nodiscard]] Image pictureOf(const AnyScene& scene) const {
+        KeptFrame frame(context(), scene);
+        (void)frame.render(eyes, full);
+        return frame.readPicture(kLeft);
+    }
+    // Frames until nothing changes any more.
+    template <typename PerFrame>
+    void showUntilSettled(SceneStream& stream, StereoFrame& frame, std::span<const Eye> seen, const PerFrame& per_frame) const {
+        for (int frames = 0; frames < 100'000; ++frames) {
+            stream.update(seen, 0.05);
+            per_frame(frame.render(seen, full));
+            if (stream.isSettled()) { return; }
+            std::this_thread::yield();
+        }
+        FAIL("the stream does not settle");
+    }
+
+    Folder folder;
+    std::string source = writtenAtelier();
+    std::array<Eye, 2> eyes = atelierEyes();
+    FrameSettings full = inFull();
+};
+
+}  // namespace
+
+TEST_CASE_FIXTURE(Streamed, "with room for all of it a view shows what the whole scene shows; within a budget, the nearer the more") {
+    const Image whole = pictureOf(loadScene(source));
+    const auto within = [&](const StreamSettings& settings) {
+        const auto stream = open(settings);
+        stream->settle(eyes);
+        CHECK(stream->counters().splats_resident <= settings.splat_budget);
+        return pictureOf(stream->scene());
+    };
+    const Image few = within({.splat_budget = kSplats / 8 + 64, .look_ahead_rad = 0.1}),
+                more = within({.splat_budget = kSplats / 4, .look_ahead_rad = 0.1}),
+                many = within({.splat_budget = kSplats / 2, .look_ahead_rad = 0.1}),
+                again = within({.splat_budget = kSplats / 2, .look_ahead_rad = 0.1, .loader = {.threads = 1, .kept_files = 0}});
+    CHECK(again.values == many.values);
+    CHECK(compare(few, whole).psnrDb() < compare(more, whole).psnrDb());
+    CHECK(compare(more, whole).psnrDb() < compare(many, whole).psnrDb());
+    CHECK(compare(many, whole).psnrDb() > 20.0);
+    const auto stream = open();
+    stream->settle(eyes);
+    CHECK(stream->share() == 1.0);
+    CHECK(compare(pictureOf(stream->scene()), whole).psnrDb() > 38.0);
+    CHECK(stream->counters().splats_read > kSplats / 4);
+    CHECK(stream->counters().splats_read == stream->counters().splats_resident);
+    CHECK(stream->takeLines().empty());
+}
+
+TEST_CASE_FIXTURE(Streamed,
+                  "frames go on while levels come: the coarsest of all first, then what the eyes ask for, as if it had been waited for") {
+    const auto stream = open({.splat_budget = kSplats / 2}), waited = open({.splat_budget = kSplats / 2});
+    KeptFrame frame(context(), stream->scene());
+    eyes = atelierEyes(96);
+    bool coarse_is_whole = false;
+    showUntilSettled(*stream, frame, eyes, [&](const FrameResult& result) {
+        const StreamCounters counters = stream->counters();
+        if (counters.chunks_resident > 64) { CHECK((coarse_is_whole || counters.splats_resident >= kSplats / 8)); }
+        coarse_is_whole = coarse_is_whole || counters.chunks_resident >= 64;
+        CHECK(result.counters.splats_read <= kSplats);
+        CHECK(counters.frames_waited_for_loading == 0);
+    });
+    waited->settle(eyes);
+    CHECK(stream->counters().splats_read == waited->counters().splats_resident);
+    CHECK(stream->counters().chunks_resident == 64);
+    CHECK(compare(pictureOf(stream->scene()), pictureOf(waited->scene())).psnrDb() > 60.0);
+    // All round and back: nothing is left over.
+    for (const double yaw : {1.5, 3.0, 4.5, 0.0}) {
+        showUntilSettled(*stream, frame, atelierEyes(96, yaw),
+                         [&](const FrameResult& result) { CHECK(result.counters.splats_read <= 2 * kSplats); });
+        CHECK(stream->counters().splats_read <= kSplats / 2);
+        CHECK(stream->counters().chunks_resident == 64);
+    }
+}
+
+TEST_CASE_FIXTURE(Streamed, "less memory than the finest level takes holds coarser ones") {
+    const StreamSettings little{.memory_bytes = kSplats * 160};  // pages of the finest level are not full
+    const auto stream = open(little);
+    stream->settle(eyes);
+    CHECK(stream->scene().bytes() <= little.memory_bytes);
+    CHECK(stream->counters().chunks_resident == 64);
+    CHECK(stream->counters().splats_resident < kSplats);
+    CHECK(stream->counters().splats_resident > kSplats / 8);
+}
+
+TEST_CASE_FIXTURE(Streamed, "where a chunk is missing the coarser level stays, and one line says so") {
+    const std::string broken = writeStreamed(folder, "scene", makeLodMeta());
+    std::filesystem::remove(broken + "/a/q.webp");
+    const auto stream = open(broken, {});
+    stream->settle(eyes);
+    const std::vector<std::string> lines = stream->takeLines();
+    REQUIRE(lines.size() == 1);
+    CHECK(contains(lines[0], "a/q.webp: no such file"));
+    CHECK(stream->counters().splats_resident == 8 + 8 + 8);  // c, b and the environment
+    KeptFrame frame(context(), stream->scene());
+    showUntilSettled(*stream, frame, eyes, [](const FrameResult&) {});
+    CHECK(stream->counters().splats_resident == 8 + 8 + 8);
+}
+
+#ifdef BINOSPLAT_WEB_TESTS
+TEST_CASE_FIXTURE(Streamed, "a scene at an address shows what its folder shows, and again when its server is gone") {
+    const auto local = open();
+    local->settle(eyes);
+    const Image expected = pictureOf(local->scene());
+    WebServer server(filesOf(source));
+    for (const bool is_gone : {false, true}) {
+        CAPTURE(is_gone);
+        const std::size_t asked = server.asked().size();
+        if (is_gone) { server.stop(); }
+        const auto stream = open(server.at("/lod-meta.json"), {}, webSettings(folder));
+        stream->settle(eyes);
+        CHECK(stream->counters().splats_resident == local->counters().splats_resident);
+        CHECK(pictureOf(stream->scene()).values == expected.values);
+        CHECK(stream->counters().frames_waited_for_loading == 0);
+        CHECK((server.asked().size() == asked) == is_gone);
+    }
+}
+
+TEST_CASE_FIXTURE(Streamed, "whatever a server does to a chunk, the coarser level stays until it comes, and one line says what is wrong") {
+    const WebPages files = filesOf(source);
+    const auto local = open();
+    local->settle(eyes);
+    const std::uint64_t all = local->counters().splats_resident;
+    const Image expected = pictureOf(local->scene());
+    const std::string& chunk = files.at("/0_1.sog");
+    const std::string half = chunk.substr(0, chunk.size() / 2);
+    WebAnswer cut_off = answer("200 OK", "", chunk);
+    cut_off.bytes.resize(cut_off.bytes.size() - chunk.size() + half.size());
+    cut_off.then = WebAnswer::Then::kClose;
+    struct {
+        const char* name;
+        WebAnswer answer;
+        const char* line = "";  // none: the chunk comes when it is asked for again
+    } const faults[]{{"busy", answer("429 Too Many Requests", "Retry-After: 0\r\n")},
+                     {"cuts off", cut_off},
+                     {"not there", answer("404 Not Found"), "404"},
+                     {"says less than there is", answer("200 OK", "", half), ".sog"},
+                     {"broken for good", answer("500 Internal Server Error"), "500"}};
+    for (const auto& fault : faults) {
+        CAPTURE(std::string(fault.name));
+        const bool comes = *fault.line == '\0';
+        std::atomic<int> hits = 0;
+        const WebServer server([&](const WebRequest& request) {
+            const bool is_faulty = request.path == "/0_1.sog" && (hits++ == 0 || !comes);
+            return is_faulty ? fault.answer : answerFrom(files, request);
+        });
+        WebSettings web = webSettings(folder);
+        web.cache_folder = folder.file(fmt::format("cache {}", fault.name));
+        web.fetch.attempts = comes ? 4 : 1;
+        StreamSettings impatient;
+        impatient.loader.first_pause = impatient.loader.most_pause = std::chrono::milliseconds(1);
+        const auto stream = open(server.at("/lod-meta.json"), impatient, web);
+        stream->settle(eyes);
+        CHECK(hits > 0);
+        const std::vector<std::string> lines = stream->takeLines();
+        const Image shown = pictureOf(stream->scene());
+        if (comes) {
+            CHECK(lines.empty());
+            CHECK(stream->counters().splats_resident == all);
+            CHECK(shown.values == expected.values);
+            continue;
+        }
+        CAPTURE(fmt::format("{}", fmt::join(lines, "\n")));
+        REQUIRE(lines.size() == 1);
+        CHECK(contains(lines[0], fault.line));
+        // Of those leaves the next coarser level, so that there is no hole.
+        CHECK(stream->counters().splats_resident < all);
+        CHECK(stream->counters().splats_resident > all / 2);
+        CHECK(compare(shown, expected).psnrDb() > 25.0);
+    }
+}
+#endif
+
+}  // namespace scene_stream_test

@@ -1,0 +1,34 @@
+// An empty folder for a test's files, gone with the test. For what is independent of the engine, whose tests have Workplace.
+#pragma once
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <string>
+
+namespace simulated {
+
+struct Folder {
+    std::filesystem::path path = std::filesystem::temp_directory_path() / ("binosplat_simulated_" + std::to_string(::getpid()));
+
+    Folder() { std::filesystem::create_directories(path); }
+    ~Folder() { std::filesystem::remove_all(path); }
+    Folder(const Folder&) = delete;
+    Folder& operator=(const Folder&) = delete;
+
+    void write(const std::string& name, const std::string& text) const { std::ofstream(path / name, std::ios::binary) << text; }
+    [[nodiscard]] std::string bytesOf(const std::string& name) const {
+        std::ifstream stream(path / name, std::ios::binary);
+        return {std::istreambuf_iterator<char>(stream), {}};
+    }
+    [[nodiscard]] std::set<std::string> names() const {
+        std::set<std::string> names;
+        for (const auto& entry : std::filesystem::directory_iterator(path)) { names.insert(entry.path().filename().string()); }
+        return names;
+    }
+};
+
+}  // namespace simulated
