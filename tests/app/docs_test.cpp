@@ -133,6 +133,7 @@ std::string wrongCall(std::vector<std::string> call) {
     // A file in the place of a command is viewed.
     if (call[0] == "FILE" || call[0].ends_with(".ply")) { call.insert(call.begin(), "view"); }
     std::erase(call, "OPTIONS");
+    for (std::string& word : call) { std::ranges::replace(word, '\\', '/'); }  // of Windows
     try {
         test::parseWords(call);
     } catch (const Error& error) {

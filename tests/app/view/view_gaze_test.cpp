@@ -51,16 +51,6 @@ ViewRun look(const Workplace& work, const std::string& keys, const std::string& 
     return run;
 }
 
-Image partOf(const Image& picture, glm::uvec2 from, glm::uvec2 to) {
-    Image part{to - from, picture.channels, {}};
-    for (std::uint32_t y = from.y; y < to.y; ++y) {
-        const auto channels = static_cast<std::size_t>(picture.channels);
-        const auto row = picture.values.begin() + static_cast<std::ptrdiff_t>((std::size_t{y} * picture.size_px.x + from.x) * channels);
-        part.values.insert(part.values.end(), row, row + static_cast<std::ptrdiff_t>((to.x - from.x) * channels));
-    }
-    return part;
-}
-
 std::size_t viewsOf(const ViewRun& run, std::size_t frame) { return run.layers(frame, "projection").at(0).at("views").size(); }
 
 }  // namespace

@@ -48,6 +48,21 @@ inline LoggedPose stagePose(const nlohmann::json& quad) {
     return {space.position + space.orientation * in_space.position, space.orientation * in_space.orientation};
 }
 
+inline Image partOf(const Image& picture, glm::uvec2 from, glm::uvec2 to) {
+    Image part{to - from, picture.channels, {}};
+    const auto channels = static_cast<std::size_t>(picture.channels);
+    for (std::uint32_t y = from.y; y < to.y; ++y) {
+        const auto row = picture.values.begin() + static_cast<std::ptrdiff_t>((std::size_t{y} * picture.size_px.x + from.x) * channels);
+        part.values.insert(part.values.end(), row, row + static_cast<std::ptrdiff_t>((to.x - from.x) * channels));
+    }
+    return part;
+}
+// Of a picture of both eyes, side by side.
+inline Image sideOf(const Image& both, int side) {
+    const glm::uvec2 size(both.size_px.x / 2, both.size_px.y), from(static_cast<std::uint32_t>(side) * size.x, 0);
+    return partOf(both, from, from + size);
+}
+
 // Where an eye is in STAGE, and the tangents of what it sees.
 struct LoggedEye : LoggedPose {
     double left, right, up, down;
@@ -88,14 +103,7 @@ struct ViewRun {
 
     // What the eye saw in a frame.
     [[nodiscard]] Image eye(std::size_t frame, int side) const {
-        const Image both = readPicture(out / fmt::format("frame_{:06}.png", frame));
-        Image half{{both.size_px.x / 2, both.size_px.y}, both.channels, {}};
-        const std::size_t row = std::size_t{half.size_px.x} * static_cast<std::size_t>(half.channels);
-        for (std::size_t y = 0; y < half.size_px.y; ++y) {
-            const auto from = both.values.begin() + static_cast<std::ptrdiff_t>((2 * y + static_cast<std::size_t>(side)) * row);
-            half.values.insert(half.values.end(), from, from + static_cast<std::ptrdiff_t>(row));
-        }
-        return half;
+        return sideOf(readPicture(out / fmt::format("frame_{:06}.png", frame)), side);
     }
     // How alike two frames are to the left eye, in dB.
     [[nodiscard]] double likeness(std::size_t a, std::size_t b) const { return compare(eye(a, 0), eye(b, 0)).psnrDb(); }
@@ -192,15 +200,12 @@ inline Colour colourAt(const Image& image, glm::uvec2 at) {
     const float* value = &image.values.at((std::size_t{at.y} * image.size_px.x + at.x) * static_cast<std::size_t>(image.channels));
     return {value[0], value[1], value[2]};
 }
-// Of pictures as large, or parts of them.
+// Of pictures as large, at the same place.
 template <typename Condition>
-std::size_t countPixels(const Image& a, const Image& b, const Condition& condition, glm::uvec2 from = {0, 0},
-                        glm::uvec2 to = {9999, 9999}) {
+std::size_t countPixels(const Image& a, const Image& b, const Condition& condition) {
     std::size_t found = 0;
-    for (std::uint32_t y = from.y; y < std::min(to.y, a.size_px.y); ++y) {
-        for (std::uint32_t x = from.x; x < std::min(to.x, a.size_px.x); ++x) {
-            found += condition(colourAt(a, {x, y}), colourAt(b, {x, y})) ? 1 : 0;
-        }
+    for (std::uint32_t y = 0; y < a.size_px.y; ++y) {
+        for (std::uint32_t x = 0; x < a.size_px.x; ++x) { found += condition(colourAt(a, {x, y}), colourAt(b, {x, y})) ? 1 : 0; }
     }
     return found;
 }

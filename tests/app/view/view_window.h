@@ -8,9 +8,9 @@
 #include <dlfcn.h>
 #include <doctest/doctest.h>
 #include <poll.h>
-#include <pty.h>
 #include <signal.h>
 
+#include <cstdio>
 #include <iterator>
 
 namespace binosplat::test {
@@ -23,30 +23,19 @@ inline const glm::dvec2 kPanelInWindowPx(kEyePx* static_cast<double>(kPanelPx.x)
 
 inline bool haveScreen() { return isInstalled("Xvfb", "xvfb") && isInstalled("xdotool", "xdotool"); }
 
-// A program on a terminal of its own, since there it does not keep what it prints.
+// A command of the shell, in a folder.
 class Program {
 public:
-    Program(const std::filesystem::path& folder, const std::vector<std::string>& command, const std::string& display) {
-        process_ = forkpty(&terminal_, nullptr, nullptr, nullptr);
-        if (process_ == 0) {
-            std::vector<char*> arguments;
-            for (const std::string& word : command) { arguments.push_back(const_cast<char*>(word.c_str())); }
-            arguments.push_back(nullptr);
-            const bool placed = chdir(folder.c_str()) == 0 && setenv("DISPLAY", display.c_str(), 1) == 0;
-            setenv("BINOSPLAT_VALIDATION", "1", 1);
-            setenv("SIMULATED_OPENXR_CLOCK", "real", 1);  // in lock-step it would draw as much as it can while hands are on their way
-            setenv("XDG_CONFIG_HOME", (folder.parent_path() / "config").c_str(), 1);
-            unsetenv("WAYLAND_DISPLAY");
-            if (placed) { execvp(arguments[0], arguments.data()); }
-            _exit(127);
-        }
+    Program(const std::filesystem::path& folder, const std::string& command)
+        : pipe_(popen(fmt::format("cd '{}' && echo $$ && exec {} 2>&1", folder.string(), command).c_str(), "re")) {
+        process_ = std::stoi(waitFor("\n"));
     }
     Program(const Program&) = delete;
     Program& operator=(const Program&) = delete;
     ~Program() {
+        if (ended_) { return; }
         kill(process_, SIGKILL);
-        if (!ended_) { static_cast<void>(exitCode()); }
-        close(terminal_);
+        pclose(pipe_);
     }
 
     // What it printed from the last line waited for to the end of the next that has `words` in it; empty if none comes.
@@ -56,29 +45,29 @@ public:
             if (!readMore()) { return {}; }
             found = said_.find(words, read_);
         }
-        const std::string lines = said_.substr(read_, end - read_);
-        read_ = end;
+        const std::string lines = said_.substr(read_, end + 1 - read_);
+        read_ = end + 1;
         return lines;
     }
     [[nodiscard]] int exitCode() {
         while (readMore()) {}
-        int status = 0;
-        waitpid(process_, &status, 0);
+        kill(process_, SIGKILL);  // if it hangs
         ended_ = true;
+        const int status = pclose(pipe_);
         return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
     }
     [[nodiscard]] const std::string& said() const { return said_; }
 
 private:
     bool readMore() {
-        pollfd waits{terminal_, POLLIN, 0};
+        pollfd waits{fileno(pipe_), POLLIN, 0};
         std::array<char, 4096> part{};
-        const ssize_t bytes = poll(&waits, 1, kPatienceMs) == 1 ? read(terminal_, part.data(), part.size()) : -1;
+        const ssize_t bytes = poll(&waits, 1, kPatienceMs) == 1 ? read(fileno(pipe_), part.data(), part.size()) : -1;
         if (bytes > 0) { said_.append(part.data(), static_cast<std::size_t>(bytes)); }
         return bytes > 0;
     }
 
-    int terminal_ = -1;
+    std::FILE* pipe_;
     pid_t process_ = -1;
     std::string said_;
     std::size_t read_ = 0;
@@ -88,18 +77,11 @@ private:
 // Xvfb keeps its picture in a file. It ends when everybody has left it, also if the test crashed.
 class Screen {
 public:
+    // Of numbers that are taken it complains first.
     explicit Screen(const std::filesystem::path& folder)
         : folder_(folder),
-          server_(folder,
-                  // Of numbers that are taken it complains first.
-                  {"/bin/sh", "-c",
-                   fmt::format("exec Xvfb -terminate -displayfd 1 -screen 0 {}x{}x24 -fbdir '{}' 2> /dev/null", kScreenPx.x, kScreenPx.y,
-                               folder.string())},
-                  "") {
-        std::string line = server_.waitFor("\n");
-        line.erase(std::remove_if(line.begin(), line.end(), [](char c) { return c < '0' || c > '9'; }), line.end());
-        name = ":" + line;
-    }
+          server_(folder, fmt::format("Xvfb -terminate -displayfd 1 -screen 0 {}x{}x24 -fbdir . 2> /dev/null", kScreenPx.x, kScreenPx.y)),
+          name(":" + std::to_string(std::stoi(server_.waitFor("\n")))) {}
 
     [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
     // An X window dump of 32 bits a pixel: header, colour table, rows; the header's numbers have their highest byte first.
@@ -127,11 +109,12 @@ public:
         return image;
     }
 
-    std::string name;
-
 private:
     std::filesystem::path folder_;
     Program server_;
+
+public:
+    const std::string name;
 };
 
 // What xdotool of Debian 12 cannot do, by Xlib, which GLFW takes along itself; for as long as the tests run.
@@ -156,17 +139,9 @@ public:
         const auto atomOf = [&](const char* name) {
             return find<unsigned long (*)(void*, const char*, int)>("XInternAtom")(display_, name, 0);
         };
-        // Xlib's XClientMessageEvent in an XEvent of 24 longs: a message that is sent, to which window, its kind, bits of a number, a
-        // number.
-        constexpr unsigned long kClientMessage = 33;
-        std::array<unsigned long, 24> event{kClientMessage,
-                                            0,
-                                            1,
-                                            reinterpret_cast<unsigned long>(display_),
-                                            window,
-                                            atomOf("WM_PROTOCOLS"),
-                                            32,
-                                            atomOf("WM_DELETE_WINDOW")};
+        const unsigned long protocols = atomOf("WM_PROTOCOLS"), deletes = atomOf("WM_DELETE_WINDOW");
+        // Xlib's XClientMessageEvent in an XEvent of 24 longs: its kind (33), sent, to which window, a message, bits of a number, a number.
+        std::array<unsigned long, 24> event{33, 0, 1, reinterpret_cast<unsigned long>(display_), window, protocols, 32, deletes};
         CHECK(find<int (*)(void*, unsigned long, int, long, void*)>("XSendEvent")(display_, window, 0, 0, event.data()) != 0);
         find<int (*)(void*, int)>("XSync")(display_, 0);
     }
@@ -227,16 +202,20 @@ inline unsigned long numberOfWindow(const std::string& name, const std::string& 
 }
 inline void clickCross(const std::string& window_name) { desk().connection.clickCross(numberOfWindow(window_name, "WINDOW")); }
 
+// In lock-step it would draw as much as it can while hands are on their way.
+inline std::string viewOnDesk(const std::string& arguments, int dpi = 96) {
+    return "env DISPLAY=" + desk(dpi).screen.name +
+           " WAYLAND_DISPLAY= BINOSPLAT_VALIDATION=1 SIMULATED_OPENXR_CLOCK=real XDG_CONFIG_HOME=\"$PWD/../config\" "
+           "PATH=\"$PWD/tools:$PATH\" '" BINOSPLAT_PROGRAM "' view " +
+           arguments;
+}
+
 // The viewer beside its window.
 class Viewer {
 public:
     Viewer(const Workplace& work, const std::string& script, const std::string& options = "", int dpi = 96)
-        : program_((std::ofstream(work.path / "desk.script") << script, desk(dpi), work.path),
-                   {"/bin/sh", "-c",
-                    "export PATH=\"$PWD/tools:$PATH\"; exec '" BINOSPLAT_PROGRAM "' view builtin:slanted-wall --load-first --mode mono "
-                    "--simulate desk.script --out seen " +
-                        options},
-                   desk(dpi).screen.name) {
+        : program_((std::ofstream(work.path / "desk.script") << script, work.path),
+                   viewOnDesk("builtin:slanted-wall --load-first --mode mono --simulate desk.script --out seen " + options, dpi)) {
         // While it loads, the panel has another layout.
         REQUIRE(program_.waitFor("shows builtin:slanted-wall") != "");
         // The keys go to the window that the mouse is in.

@@ -47,24 +47,15 @@ std::vector<FrameSettings> makeReprojecting(Side dominant = kLeft) {
     return all;
 }
 
-// One pixel's worth of what should not be there.
-struct Flaws {
-    std::size_t not_finite = 0, negative = 0, transparent = 0, background = 0;
-    bool operator==(const Flaws&) const = default;
-};
-
-// Of a picture of a scene that closes the view, over a magenta background.
-Flaws findFlaws(const Image& image) {
-    Flaws flaws;
+// Values that should not be there, of a picture of a scene that closes the view, over a magenta background.
+std::size_t countFlaws(const Image& image) {
+    std::size_t flaws = 0;
     for (std::size_t i = 0; i < image.pixelCount(); ++i) {
         const float* pixel = &image.values[4 * i];
-        for (int channel = 0; channel < 4; ++channel) {
-            flaws.not_finite += std::isfinite(pixel[channel]) ? 0 : 1;
-            flaws.negative += pixel[channel] < 0.0f ? 1 : 0;
-        }
+        for (int channel = 0; channel < 4; ++channel) { flaws += std::isfinite(pixel[channel]) && pixel[channel] >= 0.0f ? 0 : 1; }
         // What lies in these bytes before a pixel is written is no alpha near 1: the last channel is an inverse depth.
-        flaws.transparent += pixel[3] > 0.9f && pixel[3] < 1.1f ? 0 : 1;
-        flaws.background += pixel[0] > pixel[1] + 0.7f && pixel[2] > pixel[1] + 0.7f ? 1 : 0;
+        flaws += pixel[3] > 0.9f && pixel[3] < 1.1f ? 0 : 1;
+        flaws += pixel[0] > pixel[1] + 0.7f && pixel[2] > pixel[1] + 0.7f ? 1 : 0;
     }
     return flaws;
 }
@@ -143,7 +134,7 @@ TEST_CASE_FIXTURE(Gpu, "every pixel of the other eye is written, with parallel, 
             FrameSettings full_settings = makeSettings(Mode::kShared, dominant);
             full_settings.background = {1.0, 0.0, 1.0};
             const Image full = makeAffiliated(frame, eyes, full_settings).pictures[1 - dominant];
-            REQUIRE(findFlaws(full) == Flaws{});
+            REQUIRE(countFlaws(full) == 0);
             for (FrameSettings settings : makeReprojecting(dominant)) {
                 CAPTURE(canting_rad);
                 CAPTURE(static_cast<int>(dominant));
@@ -151,8 +142,7 @@ TEST_CASE_FIXTURE(Gpu, "every pixel of the other eye is written, with parallel, 
                 CAPTURE(settings.stereo.forward);
                 settings.background = full_settings.background;
                 const AffiliatedFrame made = makeAffiliated(frame, eyes, settings);
-                const Flaws flaws = findFlaws(made.pictures[1 - dominant]);
-                CHECK(flaws == Flaws{});
+                CHECK(countFlaws(made.pictures[1 - dominant]) == 0);
                 const double psnr_db = compare(made.pictures[1 - dominant], full).psnrDb();
                 CHECK(psnr_db >= (settings.mode == Mode::kReproject ? 15.0 : 20.0));
                 CHECK(countOf(made.result, "pixels_covered") + countOf(made.result, "pixels_gap") + countOf(made.result, "pixels_hole") ==

@@ -173,19 +173,6 @@ TEST_CASE_FIXTURE(Gpu,
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "a frame that sees something for the first time after a jump is whole at once") {
-    const ViewedScene view = viewAtelier();
-    KeptFrame frame(context(), view.scene, kNoRoom);
-    const auto waited = StereoFrame::beside(frame);
-    goAhead(frame, eyesAt(awayFrom(view.eye), 0), seeing(), 3);
-    const auto result = frame.renderAhead(eyesAt(view.eye, 0), seeing());
-    REQUIRE(result.has_value());
-    CHECK(countOf(*result, "frames_done_again") > 0);
-    CHECK(countOf(*result, "frames_cut_short") == 0);
-    waited->render(eyesAt(view.eye, 0), seeing());
-    CHECK(shownBy(frame) == shownBy(*waited));
-}
-
 TEST_CASE_FIXTURE(Gpu, "kernels that were made before change nothing in a picture") {
     const ViewedScene view = viewAtelier();
     for (const Mode mode : {Mode::kShared, Mode::kPaper, Mode::kPredicted}) {
@@ -200,18 +187,20 @@ TEST_CASE_FIXTURE(Gpu, "kernels that were made before change nothing in a pictur
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "a frame that finds no room although its eyes did not jump is counted, and the next one is whole") {
-    // Nothing moves but a wall of splats that comes out from behind the near plane.
+TEST_CASE_FIXTURE(Gpu, "a frame that finds no room is whole after a jump; otherwise it is counted, and the next one is whole") {
     const ViewedScene view = viewAtelier();
     const auto eyes = eyesAt(view.eye, 0);
-    KeptFrame frame(context(), view.scene, kNoRoom);
-    const auto waited = StereoFrame::beside(frame);
-    goAhead(frame, eyes, blind(), 3);
-    const FrameResult last = goAhead(frame, eyes, seeing(), 4);
-    CHECK(countOf(last, "frames_cut_short") > 0);
-    CHECK(countOf(last, "frames_done_again") > 0);
-    waited->render(eyes, seeing());
-    CHECK(shownBy(frame) == shownBy(*waited));
+    for (const bool jumps : {true, false}) {  // or nothing moves but a wall of splats that comes out from behind the near plane
+        CAPTURE(jumps);
+        KeptFrame frame(context(), view.scene, kNoRoom);
+        const auto waited = StereoFrame::beside(frame);
+        goAhead(frame, jumps ? eyesAt(awayFrom(view.eye), 0) : eyes, jumps ? seeing() : blind(), 3);
+        const FrameResult last = goAhead(frame, eyes, seeing(), jumps ? 1 : 4);
+        CHECK((countOf(last, "frames_cut_short") > 0) == !jumps);
+        CHECK(countOf(last, "frames_done_again") > 0);
+        waited->render(eyes, seeing());
+        CHECK(shownBy(frame) == shownBy(*waited));
+    }
 }
 
 TEST_CASE_FIXTURE(Gpu, "lists that the device has no memory for cost the picture, not the session") {

@@ -90,49 +90,40 @@ private:
     // All of it at first, then a few things at a time, so that pasts live on.
     void change() {
         FrameSettings& s = settings_;
-        const auto maybe = [&](auto&& set) {
-            if (dice_.falls(0.12)) { set(); }
+        const bool is_new = std::exchange(is_new_, false);
+        const auto when = [&](auto&& set) {
+            if (is_new || dice_.falls(0.12)) { set(); }
         };
-        const auto always = [&](auto&& set) { set(); };
-        const auto set = [&](auto&& when) {
-            when([&] { s.mode = dice_.falls(0.5) ? Mode::kTemporal : kModes[dice_.below(kModes.size())]; });
-            when([&] { s.dominant = dice_.falls(0.5) ? kLeft : kRight; });
-            when([&] { s.near = dice_.falls(0.5) ? 0.2 : dice_.between(0.01, 0.4); });
-            when([&] { s.background = dice_.falls(0.5) ? glm::dvec3(0) : glm::abs(dice_.vector(1)); });
-            when([&] { s.order = dice_.falls(0.3) ? Order::kDistance : Order::kDepth; });
-            when([&] { s.per_eye = dice_.falls(0.3); });
-            when([&] { s.half_floats = dice_.falls(0.5); });
-            when([&] { s.keep_depth = dice_.falls(0.5); });
-            when([&] { s.keep_both_depths = dice_.falls(0.3); });
-            when([&] { s.keep_moments = dice_.falls(0.1); });
-            when([&] { s.keep_classes = dice_.falls(0.3); });
-            when([&] { s.square_boxes = dice_.falls(0.5); });
-            when([&] { s.half_periphery = dice_.falls(0.5); });
-            when([&] { s.keep_past = dice_.falls(0.9); });
-            when([&] {
-                const bool both = dice_.falls(0.6);
-                for (auto& gaze : s.gazes) {
-                    gaze.reset();
-                    if (both || dice_.falls(0.3)) {
-                        gaze = Gaze{{dice_.between(-0.3, 0.3), dice_.between(-0.3, 0.3), 1}, dice_.between(0.05, 0.4)};
-                    }
+        when([&] { s.mode = dice_.falls(0.5) ? Mode::kTemporal : kModes[dice_.below(kModes.size())]; });
+        when([&] { s.dominant = dice_.falls(0.5) ? kLeft : kRight; });
+        when([&] { s.near = dice_.falls(0.5) ? 0.2 : dice_.between(0.01, 0.4); });
+        when([&] { s.background = dice_.falls(0.5) ? glm::dvec3(0) : glm::abs(dice_.vector(1)); });
+        when([&] { s.order = dice_.falls(0.3) ? Order::kDistance : Order::kDepth; });
+        when([&] { s.per_eye = dice_.falls(0.3); });
+        when([&] { s.half_floats = dice_.falls(0.5); });
+        when([&] { s.keep_depth = dice_.falls(0.5); });
+        when([&] { s.keep_both_depths = dice_.falls(0.3); });
+        when([&] { s.keep_moments = dice_.falls(0.1); });
+        when([&] { s.keep_classes = dice_.falls(0.3); });
+        when([&] { s.square_boxes = dice_.falls(0.5); });
+        when([&] { s.half_periphery = dice_.falls(0.5); });
+        when([&] { s.keep_past = dice_.falls(0.9); });
+        when([&] {
+            const bool both = dice_.falls(0.6);
+            for (auto& gaze : s.gazes) {
+                gaze.reset();
+                if (both || dice_.falls(0.3)) {
+                    gaze = Gaze{{dice_.between(-0.3, 0.3), dice_.between(-0.3, 0.3), 1}, dice_.between(0.05, 0.4)};
                 }
-            });
-            when([&] { s.stereo.budget = dice_.falls(0.2) ? 1.0 : dice_.between(0.1, 0.5); });
-            when([&] { s.stereo.forward = dice_.falls(0.3); });
-            when([&] {
-                s.stereo.depth_choice = dice_.falls(0.7) ? gpu::kDepthInverse : dice_.falls(0.5) ? gpu::kDepthMean : gpu::kDepthSum;
-            });
-            when([&] { s.stereo.tight_edges = dice_.falls(0.5); });
-            when([&] { s.stereo.center_rois = dice_.falls(0.3); });
-            when([&] { s.stereo.move_cost = dice_.falls(0.5) ? 0 : 32; });
-            when([&] { hides_ = dice_.falls(0.3); });
-        };
-        if (std::exchange(is_new_, false)) {
-            set(always);
-        } else {
-            set(maybe);
-        }
+            }
+        });
+        when([&] { s.stereo.budget = dice_.falls(0.2) ? 1.0 : dice_.between(0.1, 0.5); });
+        when([&] { s.stereo.forward = dice_.falls(0.3); });
+        when([&] { s.stereo.depth_choice = dice_.falls(0.7) ? gpu::kDepthInverse : dice_.falls(0.5) ? gpu::kDepthMean : gpu::kDepthSum; });
+        when([&] { s.stereo.tight_edges = dice_.falls(0.5); });
+        when([&] { s.stereo.center_rois = dice_.falls(0.3); });
+        when([&] { s.stereo.move_cost = dice_.falls(0.5) ? 0 : 32; });
+        when([&] { hides_ = dice_.falls(0.3); });
     }
 
     void changeEyes() {

@@ -69,19 +69,14 @@ inline ViewedScene viewGaussians(glm::uvec2 size_px, bool antialiased) {
     return view;
 }
 
-inline Image toImage(const reference::Picture& picture) {
-    Image image{picture.size_px, 4, {}};
-    for (const glm::dvec4& value : picture.rgba) {
+inline Image toImage(glm::uvec2 size_px, const std::vector<glm::dvec4>& colours) {
+    Image image{size_px, 4, {}};
+    for (const glm::dvec4& value : colours) {
         for (int channel = 0; channel < 4; ++channel) { image.values.push_back(static_cast<float>(value[channel])); }
     }
     return image;
 }
-inline Image toImage(glm::uvec2 size_px, const std::vector<glm::dvec4>& colours) {
-    reference::Picture picture;
-    picture.size_px = size_px;
-    picture.rgba = colours;
-    return toImage(picture);
-}
+inline Image toImage(const reference::Picture& picture) { return toImage(picture.size_px, picture.rgba); }
 
 // One channel each of the given values.
 template <typename... Values>

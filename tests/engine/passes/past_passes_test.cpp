@@ -160,14 +160,8 @@ void checkFirst(Gpu& gpu, const Way& way) {
     walk.go(0.0, 0.2);
     const EyeOnDevice left = walk.read(kLeft), right = walk.read(kRight);
     const std::array<Image, 2> predicted = walk.predicted(0.2);
-    for (const auto& [eye, made] : {std::pair(kLeft, &left), std::pair(kRight, &right)}) {
-        for (std::size_t i = 0; i < made->past.rgba.size(); ++i) {
-            for (int channel = 0; channel < 4; ++channel) {
-                REQUIRE(made->past.rgba[i][channel] ==
-                        static_cast<double>(predicted[eye].values[4 * i + static_cast<std::size_t>(channel)]));
-            }
-        }
-    }
+    CHECK(test::toImage(left.past.eye.size_px, left.past.rgba).values == predicted[kLeft].values);
+    CHECK(test::toImage(right.past.eye.size_px, right.past.rgba).values == predicted[kRight].values);
 
     reference::StereoSettings stereo;
     stereo.source_hidden = hidden[0];
@@ -176,7 +170,6 @@ void checkFirst(Gpu& gpu, const Way& way) {
         reference::renderStereo(way.view.scene, {walk.eyes()[0], walk.eyes()[1]}, stereo, {.background = settings.background});
     const reference::Past twin = reference::pastOf(walk.eyes()[1], pictures);
     std::size_t moved = 0, other_tiles = 0, pixels = 0, other_depths = 0, other_spreads = 0, hidden_tiles = 0;
-    const std::size_t columns = tilesOf(twin.eye.size_px).x;
     for (std::size_t t = 0; t < twin.tiles.size(); ++t) {
         const reference::PastTile& a = right.past.tiles[t];
         CHECK(a.age == 0);
@@ -202,8 +195,7 @@ void checkFirst(Gpu& gpu, const Way& way) {
         }
     }
     for (std::size_t i = 0; i < twin.pixels.size(); ++i) {
-        const std::size_t x = i % twin.eye.size_px.x, y = i / twin.eye.size_px.x;
-        const gpu::uint kind = right.kinds[y / gpu::kTileSize * columns + x / gpu::kTileSize];
+        const gpu::uint kind = right.kinds[test::tileOf(i, twin.eye.size_px)];
         const auto &a = right.past.pixels[i], &b = twin.pixels[i];
         if (kind == gpu::kTileHidden) { CHECK(!a.has_value()); }
         if (kind != 0) { continue; }
@@ -293,7 +285,7 @@ TEST_CASE_FIXTURE(Gpu, "a frame's choice is the twin's, and tiles that were rend
                 for (std::size_t q = 0; q < 4; ++q) { CHECK(test::isNear(a.errors[q], b.errors[q], 1e-6, 0.0)); }
                 rendered += kinds[e][t] == TileKind::kPredicted && a.growth > 1e-3 ? 1 : 0;
             }
-            for (std::size_t i = 0; i < twin.rgba.size(); ++i) { REQUIRE(twin.rgba[i] == made[e].past.rgba[i]); }
+            CHECK(twin.rgba == made[e].past.rgba);
         }
         CHECK(rendered > 10);
     }

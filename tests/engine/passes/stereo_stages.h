@@ -35,24 +35,27 @@ public:
           view_buffer_(gpu.upload("stereo view", std::vector{view_})),
           counters_(gpu.upload("stereo counters", std::vector{movingAll()})),
           colours_(areHalves(rows) ? gpu.upload("dominant colours", packHalves(colours)) : gpu.upload("dominant colours", colours)),
-          affiliated_(gpu.upload("affiliated colours", std::vector<gpu::uint>(wordsPerPixel() * pixelCount(), kUnwritten))),
-          depths_(gpu.upload("affiliated depths", std::vector<gpu::uint>(pixelCount(), kUnwritten))),
-          classes_(gpu.upload("classes", std::vector<gpu::uint>(std::size_t{view.size_tiles.x} * view.size_px.y, kUnwritten))),
-          tile_kinds_(gpu.upload("tile kinds", std::vector<gpu::uint>(tileCount(), 0))),
-          tile_costs_(gpu.upload("tile costs", std::vector<gpu::uint>(tileCount(), kUnwritten))),
-          tile_errors_(gpu.upload("tile errors", std::vector<gpu::uint>(tileCount(), 0))),
-          tile_depths_(gpu.upload("tile depths", std::vector<gpu::uint>(tileCount(), kUnwritten))),
-          tile_mask_(gpu.upload("tile mask", std::vector<gpu::uint>(maskWords(), 0))),
-          shown_mask_(gpu.upload("shown mask", std::vector<gpu::uint>(maskWords(), ~0u))),
-          bins_(gpu.upload("bins", std::vector<gpu::uint>(std::max(gpu::kDepthBins, gpu::kPriceBins), 0))),
+          affiliated_(gpu.allocate<gpu::uint>("affiliated colours", wordsPerPixel() * pixelCount())),
+          depths_(gpu.allocate<gpu::uint>("affiliated depths", pixelCount())),
+          classes_(gpu.allocate<gpu::uint>("classes", std::size_t{view.size_tiles.x} * view.size_px.y)),
+          tile_kinds_(gpu.allocate<gpu::uint>("tile kinds", tileCount())),
+          tile_costs_(gpu.allocate<gpu::uint>("tile costs", tileCount())),
+          tile_errors_(gpu.allocate<gpu::uint>("tile errors", tileCount())),
+          tile_depths_(gpu.allocate<gpu::uint>("tile depths", tileCount())),
+          tile_mask_(gpu.allocate<gpu::uint>("tile mask", maskWords())),
+          shown_mask_(gpu.allocate<gpu::uint>("shown mask", maskWords())),
+          bins_(gpu.allocate<gpu::uint>("bins", gpu::kDepthBins)),
           boxes_(gpu.allocate<gpu::PixelBox>("boxes", boxes)),
           box_capacity_(boxes) {
-        if (!isShared(rows)) {
+        static_assert(gpu::kDepthBins == gpu::kPriceBins);
+        fill({&affiliated_, &depths_, &classes_, &tile_costs_, &tile_depths_}, kUnwritten);
+        fill({&tile_kinds_, &tile_errors_, &tile_mask_, &bins_}, 0);
+        fill({&shown_mask_}, ~0u);
+        if (isShared(rows)) {
+            writeRows({std::vector<gpu::uint>(pixelCount(), 0), moving});
+        } else {
             moving_ = gpu.upload("moving", moving);
             arrivals_ = gpu.upload("arrivals", std::vector<gpu::uint>(pixelCount(), 0));
-        } else {
-            writeRows(1, moving);
-            writeRows(0, std::vector<gpu::uint>(pixelCount(), 0));
         }
     }
 
@@ -62,10 +65,7 @@ public:
         const Buffer range_buffer = gpu_.upload("ranges", ranges),
                      lists = gpu_.upload("lists", std::vector{makeList(visible_count), gpu::ListState{}});
         gpu_.upload(counters_, std::vector{gpu::WarpCounters{}});
-        fill(tile_errors_, tileCount(), kUnwritten);
-        fill(tile_depths_, tileCount(), kUnwritten);
-        fill(tile_mask_, maskWords(), kUnwritten);
-        fill(bins_, gpu::kPriceBins, kUnwritten);
+        fill({&tile_errors_, &tile_depths_, &tile_mask_, &bins_}, kUnwritten);
         dispatch(WeighKernel{.rectified = rectified(), .hidden_tiles = hidden_tiles, .kinds_given = 1, .may_move = may_move},
                  gpu::WeighPass{.warp = view(),
                                 .ranges = range_buffer.address<gpu::uvec2>(),
@@ -221,11 +221,7 @@ public:
     }
 
     void writeArrivals(const std::vector<gpu::uint>& arrivals) {
-        if (!isShared(rows_)) {
-            gpu_.upload(arrivals_, arrivals);
-        } else {
-            writeRows(0, arrivals);
-        }
+        isShared(rows_) ? writeRows({arrivals}) : gpu_.upload(arrivals_, arrivals);
     }
     void writeClasses(const std::vector<std::uint8_t>& classes) {
         const std::size_t row_words = view_.size_tiles.x;
@@ -290,7 +286,11 @@ private:
         const Kernel& kernel = gpu_.kernel(variant);
         gpu_.run([&](Commands& commands) { commands.dispatch(kernel, pass, groups.x, groups.y); });
     }
-    void fill(const Buffer& buffer, std::size_t count, gpu::uint value) { gpu_.upload(buffer, std::vector<gpu::uint>(count, value)); }
+    void fill(std::initializer_list<const Buffer*> buffers, gpu::uint value) {
+        gpu_.run([&](Commands& commands) {
+            for (const Buffer* buffer : buffers) { commands.buffer().fillBuffer(buffer->handle(), 0, VK_WHOLE_SIZE, value); }
+        });
+    }
     // The first or the second part of each row of colours, a word a pixel.
     [[nodiscard]] std::vector<gpu::uint> readRows(std::size_t part) {
         const std::size_t width = view_.size_px.x;
@@ -302,10 +302,15 @@ private:
         }
         return values;
     }
-    void writeRows(std::size_t part, const std::vector<gpu::uint>& values) {
+    // The first parts, or both.
+    void writeRows(const std::vector<std::vector<gpu::uint>>& parts) {
         const std::size_t width = view_.size_px.x;
         auto all = readAffiliatedWords();
-        for (std::size_t i = 0; i < values.size(); ++i) { all[(wordsPerPixel() * (i / width) + part) * width + i % width] = values[i]; }
+        for (std::size_t p = 0; p < parts.size(); ++p) {
+            for (std::size_t i = 0; i < parts[p].size(); ++i) {
+                all[(wordsPerPixel() * (i / width) + p) * width + i % width] = parts[p][i];
+            }
+        }
         gpu_.upload(affiliated_, all);
     }
 

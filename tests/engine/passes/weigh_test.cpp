@@ -73,7 +73,7 @@ std::size_t checkWeighing(Gpu& gpu, const StereoCase& c, const std::vector<TileR
     }
     // The passes that move are as large as the picture, or empty.
     const bool moves = counters.moves != 0;
-    const glm::uvec2 size_px = c.sizePx(), tiles = (size_px + 15u) / 16u;
+    const glm::uvec2 size_px = c.sizePx(), tiles = tilesOf(size_px);
     const auto sizeOf = [](const gpu::DispatchSize& size) { return glm::uvec3(size.x, size.y, size.z); };
     CHECK(counters.moved_tiles == (moves ? moved : 0));
     CHECK(sizeOf(counters.per_pixel_block) == (moves ? glm::uvec3(tiles.x, 2 * tiles.y, 1) : glm::uvec3(0)));
@@ -128,7 +128,7 @@ TEST_CASE_FIXTURE(Gpu, "weigh counts exactly over any number of tiles, from one 
     std::mt19937 random(6);
     for (const glm::uvec2 size_tiles : {glm::uvec2(1, 1), glm::uvec2(127, 1), glm::uvec2(1, 128), glm::uvec2(43, 3), glm::uvec2(33, 31)}) {
         StereoCase c = makeStill(16u * size_tiles - 7u);
-        const std::size_t tiles = std::size_t{size_tiles.x} * size_tiles.y;
+        const std::size_t tiles = test::tileCount(c.sizePx());
         CAPTURE(tiles);
         // The last without any pairs at all.
         for (const auto& [move_cost, most_pairs] :

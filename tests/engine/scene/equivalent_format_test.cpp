@@ -11,8 +11,6 @@
 
 #include <nlohmann/json.hpp>
 
-TEST_SUITE_BEGIN("equivalent_format");
-
 namespace equivalent_format_test {
 
 using namespace binosplat;

@@ -65,14 +65,15 @@ void attack(const Folder& folder, const std::vector<Target>& targets, std::size_
             std::ofstream(std::filesystem::path(seeds) / target.name, std::ios::binary) << target.wrap(target.good);
         }
         Tally tally;
-        std::size_t count = 0;
+        std::size_t count = 0, step = stride * (1 + target.good.size() / 2000);  // a long file is cut off at fewer lengths
         const Attempt attempt = [&](const std::string& what, const std::string& bytes) {
-            if (count++ % stride != 0) { return; }
+            if (count++ % step != 0) { return; }
             (void)folder.write(target.file, target.wrap(bytes));
             tally.attempt(target.name + ", " + what, [&] { checkWhole(loadScene(folder.file(target.source)), target.most_splats); });
         };
         truncate(target.good, attempt);
         if (target.must_be_whole) { CHECK_MESSAGE(tally.read == 0, target.name); }
+        step = stride;
         flipBits(target.good, target.changes, attempt);
         spliceBytes(target.good, target.changes, attempt);
         replaceNumbers(target.good, target.numbers, attempt);
@@ -192,15 +193,24 @@ std::vector<Target> sogTargets(const Folder& folder) {
          .more = {std::string(1'000'000, '['), R"({"lodLevels":1,"tree":)" + std::string(100'000, '[') + std::string(100'000, ']') + "}"}});
     for (const std::string picture : {"l.webp", "q.webp", "p.webp"}) {
         (void)writeSogFolder(folder, picture, makeSog());
-        const Target whole{.name = picture,
+        targets.push_back({.name = picture,
                            .good = makeSog().at(picture),
                            .changes = 400,
                            .must_be_whole = false,  // its last byte may be there to make an even number
                            .file = picture + "/" + picture,
                            .source = picture,
-                           .most_splats = 9};
-        targets.push_back(whole);
-        targets.push_back(partOf(whole, 0, 60));
+                           .most_splats = 9});
+        if (picture == "p.webp") { continue; }
+        targets.push_back(targets.back());
+        const auto stored = std::as_bytes(std::span(targets.back().good));
+        const std::vector<std::uint8_t> rgba = decodeWebp(stored, picture).rgba;
+        targets.back().name = "pixels of " + picture;
+        targets.back().good.assign(rgba.begin(), rgba.end());
+        targets.back().wrap = [](const std::string& pixels) {
+            std::vector<std::uint8_t> nine(pixels.begin(), pixels.end());
+            nine.resize(36);
+            return makeWebp(3, 3, nine);
+        };
     }
     for (const bool are_deflated : {false, true}) {
         const Target whole{.name = are_deflated ? "deflated bundle" : "stored bundle",

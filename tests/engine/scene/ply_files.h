@@ -155,6 +155,22 @@ inline std::string textOf(const std::string& path) {
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
+// `action` tells how far it is from 0 to 1, at least so many times, and ends when whoever is told throws.
+inline void checkProgress(std::size_t times, const std::function<void(const Progress&)>& action) {
+    std::vector<double> told;
+    action([&](double share) { told.push_back(share); });
+    CHECK(told.size() >= times);
+    CHECK(std::ranges::is_sorted(told));
+    CHECK(told.back() == 1.0);
+    struct Enough {};
+    for (const double limit : {-1.0, 0.0, 0.3, 0.5}) {
+        const auto stop = [&](double share) {
+            if (share > limit) { throw Enough(); }
+        };
+        CHECK_THROWS_AS(action(stop), Enough);
+    }
+}
+
 // A message, with the slashes in its paths that Windows writes the other way.
 inline std::string withSlashes(std::string text) {
     if constexpr (std::filesystem::path::preferred_separator != '/') { std::replace(text.begin(), text.end(), '\\', '/'); }

@@ -14,7 +14,7 @@ inline std::string gzip(const std::string& bytes) { return deflated(bytes, MAX_W
 struct SpzText {
     std::uint32_t version = 3, splats = 0;
     int sh_degree = 0, fractional_bits = 12, flags = 0;
-    std::vector<int> positions, alphas, colours, scales, rotations, sh;
+    std::vector<int> positions{}, alphas{}, colours{}, scales{}, rotations{}, sh{};
 
     [[nodiscard]] std::string bytes() const {
         std::string text = "NGSP" + littleWord(version) + littleWord(splats);

@@ -29,11 +29,12 @@ public:
         for (int i = 0; i < count; ++i) { add(corner + next() * a + next() * b + bumps * (next() - 0.5) * normal, normal); }
         return *this;
     }
-    // The sides, the top and the bottom of a box.
-    Maker& box(const glm::dvec3& low, const glm::dvec3& high, double per_square_metre = 250.0) {
+    // The sides, the top and, as the last one, the bottom of a box.
+    Maker& box(const glm::dvec3& low, const glm::dvec3& high, double per_square_metre = 250.0, bool has_bottom = true) {
         const glm::dvec3 s = high - low, x(s.x, 0, 0), y(0, s.y, 0), z(0, 0, s.z);
         wall(low, x, y, per_square_metre).wall(low, y, z, per_square_metre).wall(low, x, z, per_square_metre);
-        return wall(high, -x, -y, per_square_metre).wall(high, -y, -z, per_square_metre).wall(high, -x, -z, per_square_metre);
+        wall(high, -x, -y, per_square_metre).wall(high, -y, -z, per_square_metre);
+        return has_bottom ? wall(high, -x, -z, per_square_metre) : *this;
     }
     Maker& ball(const glm::dvec3& centre, double radius, int count) {
         std::normal_distribution<double> bell;
@@ -167,12 +168,7 @@ Maker town() {
 // A car, of which only the outside is seen, in a yard whose ground is all that there is of it.
 Maker car() {
     Maker made;
-    const auto hull = [&](const glm::dvec3& low, const glm::dvec3& high) {
-        const glm::dvec3 s = high - low, x(s.x, 0, 0), y(0, s.y, 0), z(0, 0, s.z);
-        made.wall(low, x, y, 900.0).wall(low, y, z, 900.0).wall(low, x, z, 900.0).wall(high, -x, -y, 900.0).wall(high, -y, -z, 900.0);
-    };
-    hull({-0.9, -0.9, -2.2}, {0.9, -0.2, 2.2});
-    hull({-0.7, -1.5, -1.2}, {0.7, -0.9, 1.0});
+    made.box({-0.9, -0.9, -2.2}, {0.9, -0.2, 2.2}, 900.0, false).box({-0.7, -1.5, -1.2}, {0.7, -0.9, 1.0}, 900.0, false);
     return made.sized(0.06).wall({-6, 0, -6}, {12, 0, 0}, {0, 0, 12}, 60.0, 0.03);
 }
 
