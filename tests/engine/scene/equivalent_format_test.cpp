@@ -121,7 +121,8 @@ void checkFormats(const std::vector<std::string>& sources, const std::vector<glm
                                       {source.ends_with("streamed") ? std::optional<std::uint32_t>(4) : std::nullopt, {}});
         const SceneSurvey survey = surveyScene(scene);
         const double away = 1.5 * std::max(survey.size, 0.5);
-        for (const auto& [name, least_db] : {std::pair("a.ply", 100.0), std::pair("a.spz", 40.0), std::pair("a.sog", 45.0)}) {
+        for (const auto& [name, least_db] :
+             {std::pair("a.ply", 100.0), std::pair("a.spz", scene.isGaussian3d() ? 40.0 : 42.0), std::pair("a.sog", 45.0)}) {
             CAPTURE(source);
             CAPTURE(name);
             const Folder folder;

@@ -191,7 +191,7 @@ std::vector<Target> sogTargets(const Folder& folder) {
          .source = "streamed",
          .most_splats = 32,  // of four chunks
          .more = {std::string(1'000'000, '['), R"({"lodLevels":1,"tree":)" + std::string(100'000, '[') + std::string(100'000, ']') + "}"}});
-    for (const std::string picture : {"l.webp", "q.webp", "p.webp"}) {
+    for (const std::string picture : {"l.webp", "n.webp", "q.webp", "p.webp"}) {
         (void)writeSogFolder(folder, picture, makeSog());
         targets.push_back({.name = picture,
                            .good = makeSog().at(picture),
