@@ -23,6 +23,7 @@ TEST_CASE("info says what a scene is made of, and what would take less memory") 
         ply["x"].values[i] = 0.05 * static_cast<double>(i % 60);
         ply["y"].values[i] = 0.05 * static_cast<double>(i / 60);
     }
+    ply["z"].values.assign(3000, 4.0);
     ply["z"].values[0] = 30.0;
     ply["opacity"].values[1] = -9.0;
     ply["opacity"].values[2] = 9.0;
@@ -35,7 +36,7 @@ TEST_CASE("info says what a scene is made of, and what would take less memory") 
           "  0.00 %  0 splats: thinner than a millimetre (the shortest axis, ", "  0.00 %  0 splats: larger than a tenth of the size\n",
           "  0.17 %  5 splats: floaters: seen, but alone (fewer than 5 splats within", "(0.1 MiB) on the GPU, 52 a splat",
           "if too much      convert --crop="}) {
-        CAPTURE(row);
+        CAPTURE(std::string(row));
         CHECK(contains(info, row));
     }
     CHECK_FALSE(contains(info, "--sh-degree"));
