@@ -1,8 +1,9 @@
 // Linked into every program of the sanitizer build. Drivers and loaders are not sanitized and keep some memory to the end. For the leak
 // sanitizer to know whose it is they stay loaded: a library that was unloaded has no name any more.
+#pragma GCC visibility push(default)
 extern "C" {
 
-__attribute__((visibility("default"))) int dlclose(void*);
+int dlclose(void*);
 int dlclose(void*) { return 0; }
 
 // OpenXR's loader 1.0.20 loses 1304 bytes with every instance, also where a program does nothing but create and destroy one.
@@ -18,3 +19,4 @@ const char* __lsan_default_options();
 const char* __lsan_default_options() { return "print_suppressions=0"; }
 
 }  // extern "C"
+#pragma GCC visibility pop
