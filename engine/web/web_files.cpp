@@ -103,8 +103,9 @@ std::unique_ptr<InputFile> WebFiles::open(const std::string& name, std::uint64_t
         try {
             if (copy) { return std::make_unique<InputFile>(copy->path, address, *this); }
         } catch (const Error&) {
+            // Whoever threw it out may have put it back meanwhile.
             std::error_code error;
-            if (fs::exists(copy->path, error)) { throw; }
+            if (turn + 1 == kMostTurns && fs::exists(copy->path, error)) { throw; }
         }
         settled_.erase(address);
     }
