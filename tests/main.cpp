@@ -31,7 +31,7 @@ DOCTEST_REGISTER_LISTENER("counter", 1, Counter);
 
 int main(int count, char** arguments) {
     doctest::Context context(count, arguments);
-    if (std::getenv("BINOSPLAT_NIGHTLY") != nullptr) { context.setOption("no-skip", true); }  // tests/nightly.h
+    if (std::getenv("BINOSPLAT_NIGHTLY") != nullptr) { context.setOption("no-skip", true); }  // nightly() in tests/suite.h
     const int failed = context.run();
     if (context.shouldExit() || failed != 0) { return failed; }
     if (Counter::cases == 0) {

@@ -2,24 +2,17 @@
 // of a config is refused, options_test.cpp holds.
 #include "engine/picture/image_io.h"
 #include "tests/engine/scene/gltf_files.h"
-#include "tests/nightly.h"
 #include "tests/run_program.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <utility>
 
-TEST_SUITE_BEGIN("cli");
-
-namespace cli_test {
+SUITE(cli) {
 
 namespace fs = std::filesystem;
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
 
 const fs::path kSource = BINOSPLAT_SOURCE_DIR;
 const std::string kNoDriver = "VK_DRIVER_FILES=/nonexistent/none.json VK_ICD_FILENAMES=/nonexistent/none.json";
@@ -27,8 +20,6 @@ const std::string kNoDriver = "VK_DRIVER_FILES=/nonexistent/none.json VK_ICD_FIL
 nlohmann::json reportOf(const Workplace& work, const std::string& folder) {
     return nlohmann::json::parse(work.bytesOf(folder + "/report.json"));
 }
-
-}  // namespace
 
 TEST_CASE("errors end the program with one line and the code of their kind, and leave nothing behind") {
     const Workplace work;
@@ -269,4 +260,4 @@ TEST_CASE("every kernel, one for each variant of every shader, is built and list
     CHECK(shaders == files);
 }
 
-}  // namespace cli_test
+}  // SUITE(cli)

@@ -3,20 +3,11 @@
 #include "tests/engine/picture/lpips_weights.h"
 #include "tests/engine/picture/pictures.h"
 #include "tests/run_program.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
-
-#include <limits>
 #include <sstream>
 
-TEST_SUITE_BEGIN("compare");
-
-namespace compare_test {
-
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
+SUITE(compare) {
 
 // Two pictures of waves, one of them with a value that is none, one of another size, one of one channel, and weights for LPIPS.
 struct Pictures : Workplace {
@@ -45,8 +36,6 @@ struct Pictures : Workplace {
         return lines;
     }
 };
-
-}  // namespace
 
 TEST_CASE("each score is a line with its name, LPIPS comes with its weights, and FLIP sees less from afar") {
     const Pictures pictures;
@@ -93,4 +82,4 @@ TEST_CASE("what cannot be compared is refused in one line") {
     }
 }
 
-}  // namespace compare_test
+}  // SUITE(compare)

@@ -1,18 +1,11 @@
 // `binosplat convert`, run as a program.
 #include "engine/scene/scene.h"
 #include "tests/run_program.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
 #include <fmt/format.h>
 
-TEST_SUITE_BEGIN("convert");
-
-namespace convert_test {
-
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
+SUITE(convert) {
 
 using Files = std::set<std::string>;
 
@@ -30,8 +23,6 @@ struct Converted : Workplace {
     }
     [[nodiscard]] Scene load(const std::string& name) const { return loadScene((path / name).string()); }
 };
-
-}  // namespace
 
 TEST_CASE("a scene goes through every format within what the line says that it loses, and may take the place of its own file") {
     const Converted work;
@@ -108,4 +99,4 @@ TEST_CASE("what cannot be converted leaves nothing behind") {
     CHECK(work.files() == Files{"file", "folder.spz"});
 }
 
-}  // namespace convert_test
+}  // SUITE(convert)

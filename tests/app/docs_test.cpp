@@ -2,24 +2,16 @@
 #include "app/command_line/commands_table.h"
 #include "app/command_line/option_documents.h"
 #include "tests/app/options/parsed.h"
-#include "tests/nightly.h"
 #include "tests/run_program.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
 #include <cctype>
 #include <regex>
 #include <sstream>
 
-TEST_SUITE_BEGIN("docs");
-
-namespace docs_test {
+SUITE(docs) {
 
 namespace fs = std::filesystem;
-using namespace binosplat;
-
-namespace {
 
 const fs::path kSource = BINOSPLAT_SOURCE_DIR;
 
@@ -144,8 +136,6 @@ std::string wrongCall(std::vector<std::string> call) {
     }
     return "";
 }
-
-}  // namespace
 
 TEST_CASE("the simulated runtime's folder has the same licence") {
     REQUIRE(!textOf(kSource / "LICENSE").empty());
@@ -301,4 +291,4 @@ TEST_CASE("measured results name scenes by their files, not by where they lay" *
     CHECK(files > 10);
 }
 
-}  // namespace docs_test
+}  // SUITE(docs)

@@ -1,20 +1,13 @@
 // Facts about machines that fail under the program: a device that is lost or full, a disk that is full, a signal. What fails, and where, a
 // Vulkan layer says (tests/faults), or the shell's limit of file sizes; each time one line, its exit code, and nothing left behind.
-#include "tests/nightly.h"
 #include "tests/run_program.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
 #include <fmt/format.h>
 
 #include <sstream>
 
-TEST_SUITE_BEGIN("fault");
-
-namespace fault_test {
-
-using namespace binosplat::test;
-
-namespace {
+SUITE(fault) {
 
 const std::string kShared = "render builtin:slanted-wall --size 64x48 --out out/pictures --mode shared";
 const std::string kRender = "render builtin:slanted-wall --size 64x48 --out out/pictures --mode mono";
@@ -47,8 +40,6 @@ struct Machine : Workplace {
         CHECK(files() == std::set<std::string>{"full.toml", "one.toml", "small.script"});
     }
 };
-
-}  // namespace
 
 TEST_CASE("a lost device ends a program with three, one without memory with one and the buffer's name, and a signal as a shell expects") {
     const Machine machine;
@@ -129,4 +120,4 @@ TEST_CASE("faults end the viewer in its own line, behind what the runtime says, 
 }
 #endif
 
-}  // namespace fault_test
+}  // SUITE(fault)

@@ -1,20 +1,13 @@
 // Facts about an installed program: it needs nothing of the folder it was built in.
 #include "tests/engine/web/web_server.h"
-#include "tests/nightly.h"
 #include "tests/run_program.h"
-
-#include <doctest/doctest.h>
+#include "tests/suite.h"
 
 #include <regex>
 
-TEST_SUITE_BEGIN("install");
-
-namespace install_test {
+SUITE(install) {
 
 namespace fs = std::filesystem;
-using namespace binosplat::test;
-
-namespace {
 
 // A command of the shell that is expected to end well.
 Outcome goCommand(const Workplace& work, const std::string& command) {
@@ -30,8 +23,6 @@ void install(const Workplace& work, const fs::path& prefix, const std::string& c
 }
 
 const std::string kRender = "render builtin:one-splat --size 16x16 --headset ";
-
-}  // namespace
 
 TEST_CASE("an installed program finds its headsets, from any folder and by the dynamic loader, and runs on the installed runtime" *
           nightly()) {
@@ -162,4 +153,4 @@ TEST_CASE("packages of an untagged source say which, and those of a later commit
     CHECK(version().ends_with(".dirty"));
 }
 
-}  // namespace install_test
+}  // SUITE(install)

@@ -2,19 +2,13 @@
 #include "engine/picture/image_io.h"
 #include "tests/engine/stream/moving_frames.h"
 #include "tests/run_program.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
-TEST_SUITE_BEGIN("moving_program");
-
-namespace moving_program_test {
+SUITE(moving_program) {
 
 namespace fs = std::filesystem;
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
 
 const std::string kCamera = " --size 64x64 --eye 0.4,-1.6,0.6 --look 0,-1.1,4 --up 0,-1,0 --mode shared ";
 const std::string kPath = kCamera + "--path still.csv --rate 10 ";
@@ -36,8 +30,6 @@ struct Sliding : Workplace {
         return picture(out + "/" + eye);
     }
 };
-
-}  // namespace
 
 TEST_CASE("a picture shows the first frame, and along a path time goes on with the frames, around and around") {
     const Sliding work;
@@ -100,4 +92,4 @@ TEST_CASE("hostile folders end in one line") {
     work.checkRefused("render slide" + kCamera + "--lod 1 --out o", 1, "no levels of detail");
 }
 
-}  // namespace moving_program_test
+}  // SUITE(moving_program)

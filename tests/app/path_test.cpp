@@ -2,21 +2,12 @@
 #include "engine/picture/image_io.h"
 #include "engine/picture/metrics.h"
 #include "tests/run_program.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <cmath>
-
-TEST_SUITE_BEGIN("path");
-
-namespace path_test {
-
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
+SUITE(path) {
 
 const double kPi = std::acos(-1.0);
 const std::string kScene = "render builtin:fence --size 64x48 --up 0,-1,0 --fov-x 60 ";
@@ -37,8 +28,6 @@ struct Way : Workplace {
     [[nodiscard]] nlohmann::json report() const { return nlohmann::json::parse(bytesOf("frames/report.json")); }
     [[nodiscard]] Image picture(const std::string& name) const { return readPicture(path / (name + kExtension)); }
 };
-
-}  // namespace
 
 TEST_CASE("every pose becomes a frame of both eyes, the same as one that is rendered there") {
     const Way way;
@@ -173,4 +162,4 @@ TEST_CASE("a signal on the way ends it with nothing written") {
     }
 }
 
-}  // namespace path_test
+}  // SUITE(path)

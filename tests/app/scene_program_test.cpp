@@ -3,16 +3,10 @@
 #include "tests/run_program.h"
 #ifdef BINOSPLAT_SOG
 #include "tests/engine/scene/streamed_scenes.h"
+#include "tests/suite.h"
 #endif
 
-#include <doctest/doctest.h>
-
-TEST_SUITE_BEGIN("scene_program");
-
-namespace scene_program_test {
-
-using namespace binosplat;
-using namespace binosplat::test;
+SUITE(scene_program) {
 
 TEST_CASE("info says what a scene is made of, and what would take less memory") {
     const Workplace work;
@@ -71,4 +65,4 @@ TEST_CASE("the program loads the level that --lod names and says which levels th
 }
 #endif
 
-}  // namespace scene_program_test
+}  // SUITE(scene_program)

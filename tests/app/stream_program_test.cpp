@@ -3,19 +3,12 @@
 #include "engine/scene/procedural.h"
 #include "tests/engine/stream/split_scene.h"
 #include "tests/run_program.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-TEST_SUITE_BEGIN("stream_program");
-
-namespace stream_program_test {
-
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
+SUITE(stream_program) {
 
 const std::string kCamera = " --size 64x64 --eye 0.4,-1.6,0.6 --look 0,-1.1,4 --up 0,-1,0 --mode shared ";
 
@@ -31,8 +24,6 @@ struct Streamed : Workplace {
         return bytesOf(folder + "/left" + extensionOf(PictureKind::kDisplay));
     }
 };
-
-}  // namespace
 
 TEST_CASE("a budget is what the splats of a picture keep within, of a path and of a bench, and without one the scene is loaded whole") {
     const Streamed work;
@@ -95,4 +86,4 @@ TEST_CASE("a budget is refused of a scene without levels and beside a level, and
     CHECK(work.counters("less")["chunks_resident"] == 16);
 }
 
-}  // namespace stream_program_test
+}  // SUITE(stream_program)

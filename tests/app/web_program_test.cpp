@@ -4,22 +4,14 @@
 #include "engine/scene/procedural.h"
 #include "tests/engine/web/web_runs.h"
 #include "tests/run_program.h"
+#include "tests/suite.h"
 
-TEST_SUITE_BEGIN("web_program");
-
-namespace web_program_test {
-
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
+SUITE(web_program) {
 
 // With a cache beside its folder.
 std::string environmentOf(const Workplace& work) {
     return fmt::format("no_proxy=127.0.0.1 XDG_CACHE_HOME='{0}/caches' XDG_CONFIG_HOME='{0}/config'", work.base.string());
 }
-
-}  // namespace
 
 TEST_CASE("render, bench, info, convert and view take an address, and the user's cache keeps what --cache-limit lets it") {
     const Workplace work;
@@ -63,4 +55,4 @@ TEST_CASE("what is wrong with an address is one line, and nothing is left") {
     CHECK(work.isEmpty());
 }
 
-}  // namespace web_program_test
+}  // SUITE(web_program)

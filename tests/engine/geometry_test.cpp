@@ -1,27 +1,15 @@
 // Facts about poses, cameras and eyes.
 #include "engine/geometry.h"
 #include "engine/error.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <limits>
-
-TEST_SUITE_BEGIN("geometry");
-
-namespace geometry_test {
-
-using namespace binosplat;
-
-namespace {
+SUITE(geometry) {
 
 bool isNear(const glm::dvec3& a, const glm::dvec3& b) { return glm::length(a - b) < 1e-12; }
 
 // Two poses with nothing special about them.
 const Pose kA{glm::normalize(glm::dquat(0.9, 0.1, -0.3, 0.2)), {1.0, -2.0, 3.0}};
 const Pose kB{glm::normalize(glm::dquat(-0.2, 0.5, 0.4, 0.7)), {0.5, 0.25, -4.0}};
-
-}  // namespace
 
 TEST_CASE("a pose turns a point and then moves it, a composition applies the inner one first, and an inverse cancels it") {
     // A quarter turn about z takes x to y.
@@ -89,4 +77,4 @@ TEST_CASE("the left eye is half the eye distance along the camera's -x, so that 
     }
 }
 
-}  // namespace geometry_test
+}  // SUITE(geometry)

@@ -14,8 +14,8 @@
 #include "engine/setup/text_file.h"
 #include "tests/hostile.h"
 #include "tests/run_program.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
 #include <sys/stat.h>
 
 #include <cerrno>
@@ -23,15 +23,9 @@
 #include <thread>
 #include <utility>
 
-TEST_SUITE_BEGIN("platform");
-
-namespace platform_test {
+SUITE(platform) {
 
 namespace fs = std::filesystem;
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
 
 void makePipe(const fs::path& path) { REQUIRE(::mkfifo(path.c_str(), 0600) == 0); }
 
@@ -42,8 +36,6 @@ struct Patience {
     Patience(const Patience&) = delete;
     Patience& operator=(const Patience&) = delete;
 };
-
-}  // namespace
 
 TEST_CASE("a thread's work counts, and not that of others") {
     const double before = threadSeconds();
@@ -275,4 +267,4 @@ TEST_CASE("nothing but platform_*.cpp includes a header of a system") {
     CHECK(files > 100);
 }
 
-}  // namespace platform_test
+}  // SUITE(platform)

@@ -1,22 +1,15 @@
 // Facts about the controllers that the viewer binds, and the drawings of them in docs/controls.
 #include "xr/bindings.h"
 #include "tests/run_program.h"
+#include "tests/suite.h"
 #include "tests/xr/simulated/installed.h"
 #include "xr/simulated/api/profiles.h"
 
-#include <doctest/doctest.h>
 #include <fmt/format.h>
 
-#include <set>
+SUITE(bindings) {
 
-TEST_SUITE_BEGIN("bindings");
-
-namespace bindings_test {
-
-using namespace binosplat::test;
 using namespace binosplat::xr;
-
-namespace {
 
 std::set<std::string> namesIn(const std::filesystem::path& folder) {
     std::set<std::string> names;
@@ -28,8 +21,6 @@ std::string textOf(const std::filesystem::path& file) {
     std::ifstream stream(file);
     return {std::istreambuf_iterator<char>(stream), {}};
 }
-
-}  // namespace
 
 TEST_CASE("every input and output that is bound is one of its controller") {
     for (const ProfileBindings& bindings : allProfileBindings()) {
@@ -70,4 +61,4 @@ TEST_CASE("the drawings of docs/draw.py are those in docs, and docs/headset.md s
     CHECK((textOf(work.path / "overlap.svg") == textOf(docs / "overlap.svg")));
 }
 
-}  // namespace bindings_test
+}  // SUITE(bindings)

@@ -1,17 +1,12 @@
 // Facts about the pace of displays: what the times that a runtime predicts say of frames that came late, and what says nothing.
 #include "xr/display_pace.h"
-
-#include <doctest/doctest.h>
+#include "tests/suite.h"
 
 #include <initializer_list>
 
-TEST_SUITE_BEGIN("display_pace");
-
-namespace display_pace_test {
+SUITE(display_pace) {
 
 using binosplat::xr::DisplayPace;
-
-namespace {
 
 constexpr XrDuration kPeriod = 10'000'000;
 constexpr double kQuick = 0.004, kSlow = 0.011;
@@ -28,8 +23,6 @@ struct Pace : DisplayPace {
         return lost;
     }
 };
-
-}  // namespace
 
 TEST_CASE("a frame that is displayed late has lost periods, one that comes in time has not, and one that is early has some more") {
     Pace pace;
@@ -88,4 +81,4 @@ TEST_CASE("where the runtime says what the display's period is, it is that") {
     CHECK(pace.period() == 2 * kPeriod);
 }
 
-}  // namespace display_pace_test
+}  // SUITE(display_pace)

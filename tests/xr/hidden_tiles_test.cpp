@@ -1,22 +1,12 @@
 // Facts about the tiles that a headset's lens never shows.
 #include "xr/hidden_tiles.h"
 #include "app/view/headset/lens_mask.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
+SUITE(hidden_tiles) {
 
-#include <algorithm>
-#include <array>
-#include <limits>
-
-TEST_SUITE_BEGIN("hidden_tiles");
-
-namespace hidden_tiles_test {
-
-using namespace binosplat;
 using xr::findHiddenTiles;
 using xr::HiddenMesh;
-
-namespace {
 
 // A picture of 48 x 40 pixels, three tiles by three (the last row half), that spans -1.5 to 1.5 by -1 to 1.5 in the plane.
 constexpr glm::uvec2 kSizePx(48, 40);
@@ -60,8 +50,6 @@ float lastBeforeChange(float from, const Make& make) {
     REQUIRE(value < from + 0.2f);
     return value;
 }
-
-}  // namespace
 
 TEST_CASE("a tile is hidden if all of it is, and up is up") {
     // The upper left tile exactly: x from -1.5 to -0.5, y from 0.5 to 1.5.
@@ -135,4 +123,4 @@ TEST_CASE("angles and meshes that shiver make no mask anew, others do") {
     CHECK(MaskedView(-0.4f, left_rad + 5e-4f).hidden(of_angle, 1) == byAngle(left_rad + 5e-4f));
 }
 
-}  // namespace hidden_tiles_test
+}  // SUITE(hidden_tiles)

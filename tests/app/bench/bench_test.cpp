@@ -6,21 +6,13 @@
 #include "tests/app/options/parsed.h"
 #include "tests/engine/picture/lpips_weights.h"
 #include "tests/run_program.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
-#include <cmath>
-
-TEST_SUITE_BEGIN("bench");
-
-namespace bench_test {
+SUITE(bench) {
 
 namespace fs = std::filesystem;
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
 
 const fs::path kConfigs = fs::path(BINOSPLAT_SOURCE_DIR) / "configs" / "bench";
 using Names = std::vector<std::string>;
@@ -62,8 +54,6 @@ BenchResult withError(double total_ms, double mean_square) {
 }
 
 bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
-}  // namespace
 
 TEST_CASE("a level fits if its splats do, which take less memory with fewer colours and as discs") {
     const auto choose = [](const std::string& options) {
@@ -440,4 +430,4 @@ TEST_CASE("a bench compares with photographs") {
 }
 #endif
 
-}  // namespace bench_test
+}  // SUITE(bench)

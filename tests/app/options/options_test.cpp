@@ -8,20 +8,11 @@
 #include "engine/setup/output_files.h"
 #include "tests/app/options/parsed.h"
 #include "tests/run_program.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-
-TEST_SUITE_BEGIN("options");
-
-namespace options_test {
+SUITE(options) {
 
 namespace fs = std::filesystem;
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
 
 const fs::path kSource = BINOSPLAT_SOURCE_DIR;
 
@@ -38,8 +29,6 @@ void checkRefused(const std::string& line, ExitCode code, const std::string& par
         CHECK_MESSAGE(std::string(error.what()).find(part) != std::string::npos, error.what());
     }
 }
-
-}  // namespace
 
 TEST_CASE("a scene in the place of a command is viewed, any other word is a usage error") {
     const Workplace work;
@@ -344,4 +333,4 @@ TEST_CASE("half the resolution goes with foveation, and the headset has it unles
     CHECK(view("--foveation 20").stereo.foveation_deg == 20.0);
 }
 
-}  // namespace options_test
+}  // SUITE(options)

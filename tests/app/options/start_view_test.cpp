@@ -5,18 +5,11 @@
 #include "engine/setup/output_files.h"
 #include "tests/app/options/parsed.h"
 #include "tests/run_program.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-
-TEST_SUITE_BEGIN("start_view");
-
-namespace start_view_test {
+SUITE(start_view) {
 
 namespace fs = std::filesystem;
-using namespace binosplat;
-using namespace binosplat::test;
 
 TEST_CASE("eyes look at their lenses or where they are said to") {
     Headset headset;
@@ -171,4 +164,4 @@ TEST_CASE("one stands at the first camera that sees the scene, upright along the
     CHECK(startView(loadScene("builtin:fence")).why == "at the built-in scene's own view");
 }
 
-}  // namespace start_view_test
+}  // SUITE(start_view)

@@ -1,21 +1,9 @@
 // Facts about plots: axes with round ends and few enough ticks for their labels, and names that do not lie on each other.
 #include "app/plot/plot_axis.h"
 #include "app/plot/svg_plot.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <set>
-#include <string>
-#include <vector>
-
-TEST_SUITE_BEGIN("plot_axis");
-
-namespace plot_axis_test {
-
-using namespace binosplat;
-
-namespace {
+SUITE(plot_axis) {
 
 PlotAxis axisOver(Scale scale, double low, double high) {
     PlotAxis axis(scale);
@@ -24,8 +12,6 @@ PlotAxis axisOver(Scale scale, double low, double high) {
     axis.round();
     return axis;
 }
-
-}  // namespace
 
 TEST_CASE("any range has three to ten ticks, in order, within an axis that holds the range") {
     for (const Scale scale : {Scale::kLog, Scale::kLinear}) {
@@ -82,4 +68,4 @@ TEST_CASE("names stand beside their points where there is room, and never on eac
     CHECK(namesOf(std::vector(6, std::pair(0.0, 0.0)), 10.0).size() == 1);
 }
 
-}  // namespace plot_axis_test
+}  // SUITE(plot_axis)

@@ -1,17 +1,11 @@
 // The viewer where the headset sees where its wearer looks, or takes foveated insets: it is sharp there, if the wearer lets it.
 #include "engine/scene/procedural.h"
 #include "tests/app/view/view_acts.h"
+#include "tests/suite.h"
 
 #include <tuple>
 
-TEST_SUITE_BEGIN("view_gaze");
-
-namespace view_gaze_test {
-
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
+SUITE(view_gaze) {
 
 // A right-hand picture that is tinted by what made it: tiles that were chosen for their error are magenta.
 struct Chosen {
@@ -52,8 +46,6 @@ ViewRun look(const Workplace& work, const std::string& keys, const std::string& 
 }
 
 std::size_t viewsOf(const ViewRun& run, std::size_t frame) { return run.layers(frame, "projection").at(0).at("views").size(); }
-
-}  // namespace
 
 TEST_CASE("what is rendered again follows the eyes, and goes back to the lens's middle when they are lost") {
     const Workplace work;
@@ -140,4 +132,4 @@ TEST_CASE("with foveation a headset that takes insets has one for each eye, with
     CHECK(viewsOf(runInset("without", "extension XR_VARJO_quad_views off\n" + rest, 20.0, true), 9) == 2);
 }
 
-}  // namespace view_gaze_test
+}  // SUITE(view_gaze)

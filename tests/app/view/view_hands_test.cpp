@@ -1,19 +1,11 @@
 // Facts about controllers and hands: what their buttons and sticks do, and what is seen beside the scene: rays, hands, controllers, the way
 // to another place, the vignette, the room.
 #include "tests/app/view/view_acts.h"
-
-#include <doctest/doctest.h>
+#include "tests/suite.h"
 
 #include <tuple>
 
-TEST_SUITE_BEGIN("view_hands");
-
-namespace view_hands_test {
-
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
+SUITE(view_hands) {
 
 const std::string kSmall = "rate 100\nsize 128 128\nframes every 5\n";
 // Where nobody looks at what the headset shows.
@@ -69,8 +61,6 @@ void checkSaidAt(const ViewRun& run, const std::string& line, double seconds) {
     CHECK(said_s > seconds - 0.03);
     CHECK(said_s < seconds + 0.08);
 }
-
-}  // namespace
 
 TEST_CASE("every controller and bare hands show the panel, click and are felt; what is not in the hand does nothing") {
     // One after the other, a fifth of a second each: these with B, and then with a menu button.
@@ -445,4 +435,4 @@ TEST_CASE("the room shows behind the scene where the headset and the wearer let 
     CHECK(isCorner(additive, 0.2, kLeft, green));
 }
 
-}  // namespace view_hands_test
+}  // SUITE(view_hands)

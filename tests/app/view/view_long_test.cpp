@@ -4,22 +4,13 @@
 // alive stays there, see tests/faults/live.h. Under the address sanitizer ASAN_OPTIONS=malloc_context_size=1:quarantine_size_mb=16 keeps
 // its own memory from growing: it remembers each stack that it sees, and those of drivers without frame pointers are never the same.
 #include "tests/app/view/view_acts.h"
-#include "tests/nightly.h"
-
-#include <doctest/doctest.h>
+#include "tests/suite.h"
 
 #include <cstdlib>
 #include <iterator>
 #include <span>
 
-TEST_SUITE_BEGIN("view_long");
-
-namespace view_long_test {
-
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
+SUITE(view_long) {
 
 // As slow as a viewer believes of a headset: the wearer's time costs as little as it can.
 constexpr int kRate = 10;
@@ -121,8 +112,6 @@ struct Walk : ViewRun {  // its frames are too many to be read
     std::span<const Alive> warm, later;
 };
 
-}  // namespace
-
 TEST_CASE("however long somebody walks about, nobody complains, and of the device no more is in use than at first" * nightly()) {
     const Walk walk(kValidated);
     checkClean(walk);
@@ -146,4 +135,4 @@ TEST_CASE("nor does the host's memory grow, and what was made for one scene is n
     CHECK(walk.later.back().kernels_made == walk.warm.back().kernels_made);
 }
 
-}  // namespace view_long_test
+}  // SUITE(view_long)

@@ -1,31 +1,20 @@
 // Facts about the viewer's panel: a ray points, the trigger clicks, what was chosen is so and is seen, and what was saved comes back.
 #include "tests/app/view/unchanged_shaders.h"
 #include "tests/app/view/view_acts.h"
-#include "tests/nightly.h"
+#include "tests/suite.h"
 #include "xr/simulated/extensions.h"
-
-#include <doctest/doctest.h>
 
 #include <iterator>
 
-TEST_SUITE_BEGIN("view_panel");
-
-namespace view_panel_test {
-
-using namespace binosplat;
-using namespace binosplat::test;
+SUITE(view_panel) {
 
 namespace fs = std::filesystem;
-
-namespace {
 
 const std::string kBlind = "rate 50\nsize 64 64\nframes none\n", kSmall = "rate 50\nsize 96 96\nframes every 2\n";
 const std::string kScene = kWall + " --mode mono";
 const std::string kSources = BINOSPLAT_SOURCE_DIR "/shaders";
 
 const std::string kAsHeadset = " --size 96x96 --fov-x 90 --ipd 0.063";
-
-}  // namespace
 
 TEST_CASE("what is clicked on the panel is so, beside it nothing is clicked, and settings and place are saved, and come back") {
     const Workplace work;
@@ -278,4 +267,4 @@ TEST_CASE("a runtime with no more than OpenXR 1.0 and Vulkan shows every method,
     CHECK(poseOf(targets[0].at("pose")).position.y == doctest::Approx(-1.59));
 }
 
-}  // namespace view_panel_test
+}  // SUITE(view_panel)

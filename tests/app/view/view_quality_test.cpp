@@ -1,18 +1,9 @@
 // Facts about holding the frame rate in the headset: on a device of which a layer says what frames take, and where displays are missed that
 // the device's own times do not tell of, as where a compositor or another program uses it as well.
 #include "tests/app/view/view_acts.h"
-#include "tests/nightly.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
-
-TEST_SUITE_BEGIN("view_quality");
-
-namespace view_quality_test {
-
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
+SUITE(view_quality) {
 
 const std::string kNothingElse = " --hide-panel --hide-hands --load-first ";
 
@@ -68,8 +59,6 @@ struct Governed : ViewRun {
 
     std::vector<int> widths;
 };
-
-}  // namespace
 
 TEST_CASE("where nothing fits the least settings of a quality are reached within 60 frames, which is said; off it is what was set") {
     const Workplace work;
@@ -200,4 +189,4 @@ TEST_CASE("irregular periods, frames that nobody is to see, other rates and a he
     CHECK_FALSE(run.says("missed"));
 }
 
-}  // namespace view_quality_test
+}  // SUITE(view_quality)

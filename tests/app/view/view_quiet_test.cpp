@@ -1,20 +1,10 @@
 // Facts about what frames do that may wait, as two layers count it (tests/faults/waits.h): those of a viewer that runs do nothing.
 #include "tests/app/view/view_runs.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <map>
-#include <set>
 #include <sstream>
 
-TEST_SUITE_BEGIN("view_quiet");
-
-namespace view_quiet_test {
-
-using namespace binosplat::test;
-
-namespace {
+SUITE(view_quiet) {
 
 // A snap turn, a step, the panel away and back again, a hand that points at it; then the session is lost.
 const std::string kStay =
@@ -43,8 +33,6 @@ constexpr Known kKnown[]{
     {3.2, 9.0, "buffer fence-of-this-frame memory queue swapchain"},
 };
 
-}  // namespace
-
 TEST_CASE("no frame of a running viewer waits or makes anything after the first second, until its session is lost") {
     for (const std::string mode : {"temporal", "predicted"}) {
         CAPTURE(mode);
@@ -71,4 +59,4 @@ TEST_CASE("no frame of a running viewer waits or makes anything after the first 
     }
 }
 
-}  // namespace view_quiet_test
+}  // SUITE(view_quiet)

@@ -9,22 +9,14 @@
 #include "tests/engine/stream/moving_frames.h"
 #ifdef BINOSPLAT_SOG
 #include "tests/engine/stream/split_scene.h"
+#include "tests/suite.h"
 #endif
-
-#include <doctest/doctest.h>
 
 #include <iterator>
 
-TEST_SUITE_BEGIN("view_scenes");
-
-namespace view_scenes_test {
-
-using namespace binosplat;
-using namespace binosplat::test;
+SUITE(view_scenes) {
 
 namespace fs = std::filesystem;
-
-namespace {
 
 // Scenes load in the meantime, as long as it takes them: not in lock-step, where frames come as fast as they can.
 const std::string kWhileLoading = kValidated + " SIMULATED_OPENXR_CLOCK=real";
@@ -34,8 +26,6 @@ void checkAlwaysShown(const ViewRun& run) {
     REQUIRE(run.frames.size() > 8);
     for (std::size_t frame = 4; frame + 4 < run.frames.size(); ++frame) { REQUIRE(run.layers(frame, "projection").size() == 1); }
 }
-
-}  // namespace
 
 TEST_CASE("another scene comes while this one stays, chosen or the next; one that cannot be read gives a message; both are remembered") {
     const Workplace work;
@@ -201,4 +191,4 @@ TEST_CASE("up in a trained scene is the up of its cameras, or else of its floor"
     CHECK(glm::dot(upOf(file), up) > std::cos(glm::radians(2.0)));
 }
 
-}  // namespace view_scenes_test
+}  // SUITE(view_scenes)

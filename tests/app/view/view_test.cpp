@@ -1,19 +1,8 @@
 // Facts about `binosplat view`, driven through the standard OpenXR loader by scripts of the simulated headset: what is seen, and where.
 #include "tests/app/view/view_acts.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
-
-#include <numeric>
-#include <optional>
-
-TEST_SUITE_BEGIN("view");
-
-namespace view_test {
-
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
+SUITE(view) {
 
 // An asymmetric, canted headset.
 const char* const kHeadset =
@@ -78,8 +67,6 @@ void checkAtTheBeginning(const ViewRun& run, std::size_t frame) {
 }
 
 glm::dvec3 panelInRoom(const ViewRun& run, std::size_t frame) { return poseOf(run.panels(frame).at(0).at("pose")).position; }
-
-}  // namespace
 
 TEST_CASE("in every mode a wall's edge stays straight and in its place, whatever the frusta, and depth goes along") {
     const Workplace work;
@@ -250,4 +237,4 @@ TEST_CASE("bad input is known by its exit code, and named") {
     CHECK_FALSE(std::filesystem::exists(work.path / "mine" / "frames.jsonl"));
 }
 
-}  // namespace view_test
+}  // SUITE(view)

@@ -1,16 +1,8 @@
 // Facts about `binosplat view` when the headset misbehaves: it carries on or ends cleanly, within the frames of the script.
 #include "tests/app/view/view_acts.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
-
-TEST_SUITE_BEGIN("view_trouble");
-
-namespace view_trouble_test {
-
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
+SUITE(view_trouble) {
 
 const std::string kSmall = "rate 90\nsize 64 64\nframes none\n";
 // Without the end that the script brings about, the frames would.
@@ -20,8 +12,6 @@ std::size_t countFramesWithLayers(const ViewRun& run, double until_s = 1e9) {
     return static_cast<std::size_t>(std::ranges::count_if(
         run.frames, [&](const nlohmann::json& frame) { return ViewRun::secondsOf(frame) < until_s && !frame.at("layers").empty(); }));
 }
-
-}  // namespace
 
 TEST_CASE("whatever becomes of the session, the head, the hands and the view, it carries on, and ends while the headset is off") {
     const Workplace work;
@@ -310,4 +300,4 @@ TEST_CASE("a runtime without the Vulkan extension is refused in one line") {
     CHECK(std::count(run.outcome.errors.begin(), run.outcome.errors.end(), '\n') == 1);
 }
 
-}  // namespace view_trouble_test
+}  // SUITE(view_trouble)

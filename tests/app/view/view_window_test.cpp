@@ -4,21 +4,13 @@
 #include "app/view/window/mirror_window.h"
 #include "engine/error.h"
 #include "tests/app/view/unchanged_shaders.h"
-#include "tests/nightly.h"
+#include "tests/suite.h"
 
 #include <GLFW/glfw3.h>
 
 #include <chrono>
-#include <set>
 
-TEST_SUITE_BEGIN("view_window");
-
-namespace view_window_test {
-
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
+SUITE(view_window) {
 
 const std::string kScene = "builtin:slanted-wall --load-first --mode mono";
 const std::string kSmall = "rate 60\nsize 96 96\nframes none\n";
@@ -113,8 +105,6 @@ void checkEnds(const std::string& lines, bool by_cross, int dpi = 96) {
 
 const std::string kOff = "at -1 worn off\n", kElsewhere = "at -1 visible off\n",
                   kGone = "no-headset-for 1000000 after-loss\nat 0.1 lose-session\n";
-
-}  // namespace
 
 // The linker takes these two before GLFW's own.
 extern "C" GLFWdropfun glfwSetDropCallback(GLFWwindow* window, GLFWdropfun callback) {
@@ -327,4 +317,4 @@ TEST_CASE("a picture of a frame that was given up is drawn in the next, and a wi
     CHECK(std::system(see_window.c_str()) != 0);
 }
 
-}  // namespace view_window_test
+}  // SUITE(view_window)

@@ -2,25 +2,9 @@
 // written, that no byte depends on the run, and what it costs.
 #include "tests/engine/frame/affiliated_frames.h"
 #include "tests/engine/frame/frame_runs.h"
-#include "tests/nightly.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-
-TEST_SUITE_BEGIN("affiliated");
-
-namespace affiliated_test {
-
-using namespace binosplat;
-using test::AffiliatedFrame;
-using test::countOf;
-using test::Gpu;
-using test::KeptFrame;
-using test::makeAffiliated;
-using test::ViewedScene;
-
-namespace {
+SUITE(affiliated) {
 
 ViewedScene viewAtelier(glm::uvec2 size_px = {128, 128}) { return test::viewBuiltin("builtin:atelier", size_px, 20000); }
 
@@ -71,8 +55,6 @@ std::size_t countMoved(const AffiliatedFrame& made) {
     }
     return moved;
 }
-
-}  // namespace
 
 TEST_CASE_FIXTURE(Gpu, "without a distance between the eyes, the other eye's picture is the dominant one's, byte for byte") {
     const ViewedScene view = viewAtelier();
@@ -221,8 +203,6 @@ TEST_CASE_FIXTURE(Gpu, "a predicted frame of parallel eyes keeps to 36 commands 
     }
 }
 
-namespace {
-
 // The most memory that a program holds which renders such a frame.
 std::uint64_t peakBytes(FrameSettings settings, const FrameCapacity& first) {
     const ViewedScene view = viewAtelier({384, 384});
@@ -243,8 +223,6 @@ void checkSavesMemory(const std::vector<FrameSettings>& all, const FrameCapacity
     }
 }
 
-}  // namespace
-
 TEST_CASE("making one eye from the other takes less memory than rendering both") {
     checkSavesMemory({makeSettings(Mode::kPredicted)}, FrameOptions{}.first_capacity);
 }
@@ -253,4 +231,4 @@ TEST_CASE("making one eye from the other takes less memory in every mode, whatev
     for (const FrameCapacity& first : {FrameCapacity{1, 1}, FrameOptions{}.first_capacity}) { checkSavesMemory(makeReprojecting(), first); }
 }
 
-}  // namespace affiliated_test
+}  // SUITE(affiliated)

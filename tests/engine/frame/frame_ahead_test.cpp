@@ -1,23 +1,11 @@
 // Facts about frames that are not waited for: the same pictures as of those that are, told a frame or two late, and lists with room ahead.
 #include "engine/error.h"
 #include "tests/engine/frame/frame_runs.h"
-
-#include <doctest/doctest.h>
+#include "tests/suite.h"
 
 #include <memory>
 
-TEST_SUITE_BEGIN("frame_ahead");
-
-namespace frame_ahead_test {
-
-using namespace binosplat;
-using test::countOf;
-using test::Gpu;
-using test::KeptFrame;
-using test::shownBy;
-using test::ViewedScene;
-
-namespace {
+SUITE(frame_ahead) {
 
 FrameSettings makeSettings(Mode mode, std::uint64_t mark = 0) {
     FrameSettings settings;
@@ -64,8 +52,6 @@ FrameResult goAhead(StereoFrame& frame, const std::array<Eye, 2>& eyes, const Fr
     }
     return last;
 }
-
-}  // namespace
 
 TEST_CASE_FIXTURE(Gpu, "a frame that is not waited for is the one that is, byte for byte, in every mode, also after one of another size") {
     const ViewedScene view = viewAtelier();
@@ -302,4 +288,4 @@ TEST_CASE_FIXTURE(Gpu, "a frame that goes on with another's kernels draws its ow
     CHECK(pictureOf(frame, view.eye) == expected);
 }
 
-}  // namespace frame_ahead_test
+}  // SUITE(frame_ahead)

@@ -1,24 +1,11 @@
 // Facts about frames of any kind after frames of any other: modes, sizes, angles and whatever is kept change from frame to frame, as no
 // program does it, and each picture is what a frame that knows nothing of the ones before comes to, or near the full render.
 #include "tests/engine/frame/frame_runs.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <random>
 #include <utility>
 
-TEST_SUITE_BEGIN("frame_mix");
-
-namespace frame_mix_test {
-
-using namespace binosplat;
-using test::Gpu;
-using test::KeptFrame;
-using test::ViewedScene;
-
-namespace {
+SUITE(frame_mix) {
 
 constexpr std::array kModes{Mode::kMono,  Mode::kTwoPass,   Mode::kShared,    Mode::kReproject,
                             Mode::kPaper, Mode::kPredicted, Mode::kAlternate, Mode::kTemporal};
@@ -158,8 +145,6 @@ std::vector<Image> picturesAlone(const StereoFrame& other, const std::vector<Eye
     return pictures;
 }
 
-}  // namespace
-
 TEST_CASE_FIXTURE(Gpu, "any frame may follow any other") {
     const ViewedScene room = test::viewBuiltin("builtin:atelier", {96, 80}, 8000);
     for (unsigned seed = 1; seed <= 4; ++seed) {
@@ -201,4 +186,4 @@ TEST_CASE_FIXTURE(Gpu, "any frame may follow any other") {
     }
 }
 
-}  // namespace frame_mix_test
+}  // SUITE(frame_mix)

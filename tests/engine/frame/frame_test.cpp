@@ -5,23 +5,10 @@
 #include "tests/engine/frame/frame_runs.h"
 #include "tests/engine/passes/near_thresholds.h"
 #include "tests/engine/scene/ply_files.h"
-#include "tests/nightly.h"
 #include "tests/shared_data.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-
-TEST_SUITE_BEGIN("frame");
-
-namespace frame_test {
-
-using namespace binosplat;
-using test::Gpu;
-using test::renderMono;
-using test::ViewedScene;
-
-namespace {
+SUITE(frame) {
 
 FrameSettings makeSettings(const glm::dvec3& background = glm::dvec3(0.0), bool moments = false) {
     FrameSettings settings;
@@ -97,8 +84,6 @@ Image checkAgainstTwin(Gpu& gpu, const ViewedScene& view, const FrameSettings& s
 // Of playbot, from all of it to its face.
 const View kWhole{{0.0, -0.6, -1.6}, {0.0, -0.4, 0.0}, {0.0, -1.0, 0.0}, 60.0};
 const View kNear{{0.3, -0.7, -0.8}, {0.0, -0.6, 0.0}, {0.0, -1.0, 0.0}, 90.0};
-
-}  // namespace
 
 TEST_CASE_FIXTURE(Gpu, "real scenes are rendered as the twin renders them" * test::needsSharedData()) {
     const auto data = test::sharedData();
@@ -310,4 +295,4 @@ TEST_CASE_FIXTURE(Gpu, "walls stand at their depths behind bars and edges") {
     }
 }
 
-}  // namespace frame_test
+}  // SUITE(frame)

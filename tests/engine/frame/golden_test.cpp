@@ -4,25 +4,14 @@
 #include "engine/reference/periphery.h"
 #include "engine/stream/moving_scene.h"
 #include "tests/engine/frame/frame_runs.h"
+#include "tests/suite.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <vector>
 
-TEST_SUITE_BEGIN("golden");
-
-namespace golden_test {
+SUITE(golden) {
 
 #ifdef BINOSPLAT_HAS_PNG
-
-using namespace binosplat;
-using test::Gpu;
-using test::ViewedScene;
-
-namespace {
 
 constexpr double kLeastDb = 50.0;  // 8 bits alone leave 59
 // Of a walk: a tile that float32 prices just otherwise is rendered a frame earlier or later.
@@ -83,8 +72,6 @@ Eye clockworkEye() {
     return eye;
 }
 
-}  // namespace
-
 TEST_CASE_FIXTURE(Gpu, "the golden pictures are what twin and device render, in full and where an eye that looks aside sees less") {
     const Gaze aside{{-3.0, 1.0, -2.0}, 0.0};
     Image in_full;
@@ -138,4 +125,4 @@ TEST_CASE_FIXTURE(Gpu, "the last pair of a walk past a scene that moves is what 
 
 #endif
 
-}  // namespace golden_test
+}  // SUITE(golden)

@@ -1,26 +1,9 @@
 // Facts about frames that are made from the ones before, in one picture an eye or in two: what they equal where nothing moves, and what
 // they cost. Pass by pass: past_passes_test.cpp.
 #include "tests/engine/frame/frame_runs.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <vector>
-
-TEST_SUITE_BEGIN("past_frames");
-
-namespace past_frames_test {
-
-using namespace binosplat;
-using test::countOf;
-using test::Gpu;
-using test::KeptFrame;
-using test::shownBy;
-using test::ViewedScene;
-
-namespace {
+SUITE(past_frames) {
 
 FrameSettings makeSettings(Mode mode, double budget = 0.2) {
     FrameSettings settings;
@@ -91,8 +74,6 @@ private:
     FrameSettings settings_;
     std::array<Eye, 2> eyes_;
 };
-
-}  // namespace
 
 TEST_CASE_FIXTURE(Gpu, "where no past is kept, temporal is predicted and alternate is shared, frame after frame") {
     const ViewedScene view = viewAtelier();
@@ -297,4 +278,4 @@ TEST_CASE_FIXTURE(Gpu, "in two pictures, a walk keeps its quality within the bud
     }
 }
 
-}  // namespace past_frames_test
+}  // SUITE(past_frames)

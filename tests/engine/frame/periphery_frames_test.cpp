@@ -1,24 +1,11 @@
 // Facts about frames whose eye has half the resolution where it would not see more: against the twin, and against the same frames in full.
 #include "engine/reference/periphery.h"
 #include "tests/engine/frame/frame_runs.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
+SUITE(periphery_frames) {
 
-#include <algorithm>
-#include <cmath>
-
-TEST_SUITE_BEGIN("periphery_frames");
-
-namespace periphery_frames_test {
-
-using namespace binosplat;
-using test::countOf;
-using test::Gpu;
-using test::KeptFrame;
-using test::ViewedScene;
 using Tiles = std::vector<std::uint8_t>;
-
-namespace {
 
 FrameSettings settingsFor(const Gaze& gaze) {
     FrameSettings settings;
@@ -64,8 +51,6 @@ void checkAgainstTwin(const Image& made, const reference::Picture& twin, std::pt
     CHECK(std::ranges::count_if(errors, [](double error) { return error > 256 * 3 * 1e-8; }) <= flips);
     CHECK(*std::ranges::max_element(errors) < 256 * 3 * 1e-4);
 }
-
-}  // namespace
 
 TEST_CASE_FIXTURE(Gpu, "a picture in two is the twin's, of discs and of Gaussians, also in odd sizes and behind a lens that hides parts") {
     for (const ViewedScene& view :
@@ -175,4 +160,4 @@ TEST_CASE_FIXTURE(
     CHECK(context().memoryUse().current_bytes < with_both);
 }
 
-}  // namespace periphery_frames_test
+}  // SUITE(periphery_frames)

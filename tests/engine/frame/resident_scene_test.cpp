@@ -2,24 +2,9 @@
 #include "engine/error.h"
 #include "tests/engine/frame/frame_runs.h"
 #include "tests/engine/passes/scene_pages.h"
-#include "tests/nightly.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
-
-#include <random>
-#include <set>
-
-TEST_SUITE_BEGIN("resident_scene");
-
-namespace resident_scene_test {
-
-using namespace binosplat;
-using test::countOf;
-using test::Gpu;
-using test::KeptFrame;
-using test::ViewedScene;
-
-namespace {
+SUITE(resident_scene) {
 
 FrameSettings makeSettings(Mode mode) {
     FrameSettings settings;
@@ -80,8 +65,6 @@ void checkPagesAreTheScene(const Context& context, const Scene& in_order, const 
         }
     }
 }
-
-}  // namespace
 
 TEST_CASE_FIXTURE(Gpu, "all of a scene in pages is the scene that stays, byte for byte") {
     const ViewedScene view = viewAtelier(), gaussians = test::viewGaussians({96, 80}, true);
@@ -360,4 +343,4 @@ TEST_CASE_FIXTURE(Gpu, "of a scene that is seen in part, a frame looks at the pa
     }
 }
 
-}  // namespace resident_scene_test
+}  // SUITE(resident_scene)

@@ -1,23 +1,9 @@
 // Facts about whole frames: what must not change a picture does not change a byte of it; and limits, counters, memory.
 #include "tests/engine/frame/affiliated_frames.h"
 #include "tests/engine/frame/frame_runs.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-
-TEST_SUITE_BEGIN("stereo_frame");
-
-namespace stereo_frame_test {
-
-using namespace binosplat;
-using test::Gpu;
-using test::KeptFrame;
-using test::renderMono;
-using test::renderPair;
-using test::ViewedScene;
-
-namespace {
+SUITE(stereo_frame) {
 
 FrameSettings makeSettings(Mode mode, Side dominant = kLeft) {
     FrameSettings settings;
@@ -35,8 +21,6 @@ bool isAlike(const Image& a, const Image& b) {
     const Difference difference = compare(a, b, 4);
     return difference.not_finite == 0 && difference.psnrDb() >= 80.0 && difference.shareOff() <= 0.0002;
 }
-
-}  // namespace
 
 TEST_CASE_FIXTURE(Gpu, "sharing what eyes can share changes no byte, parallel or canted, by depth or by distance, of any kind of splats") {
     ViewedScene atelier = viewAtelier();
@@ -260,4 +244,4 @@ TEST_CASE_FIXTURE(Gpu, "memory keeps to its bounds a splat, a visible splat, a p
     CHECK(viewAtelier().scene.sh_degree == 3);
 }
 
-}  // namespace stereo_frame_test
+}  // SUITE(stereo_frame)

@@ -1,26 +1,13 @@
 // The device's stereo frames are like those of the twin, which moves a wall by its disparity.
 #include "tests/engine/frame/frame_runs.h"
 #include "tests/engine/passes/stereo_cases.h"
-#include "tests/nightly.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
+SUITE(stereo_twin) {
 
-#include <algorithm>
-#include <cmath>
-
-TEST_SUITE_BEGIN("stereo_twin");
-
-namespace stereo_twin_test {
-
-using namespace binosplat;
 using reference::DepthChoice;
 using reference::PixelClass;
 using reference::TileKind;
-using test::AffiliatedFrame;
-using test::Gpu;
-using test::KeptFrame;
-
-namespace {
 
 Mode modeOf(TileChoice method) {
     return method == TileChoice::kNone ? Mode::kReproject : method == TileChoice::kPaper ? Mode::kPaper : Mode::kPredicted;
@@ -129,8 +116,6 @@ void checkEverySecond(const Context& context, std::size_t first) {
     }
 }
 
-}  // namespace
-
 TEST_CASE("the twin moves a wall by its disparity, up to the kernel's error") {
     std::vector<test::Splat> splats;
     for (int j = -30; j <= 30; ++j) {
@@ -168,4 +153,4 @@ TEST_CASE_FIXTURE(Gpu, "the device's stereo frames are the twin's, but for place
 
 TEST_CASE_FIXTURE(Gpu, "the device's other stereo frames are the twin's, too" * test::nightly()) { checkEverySecond(context(), 1); }
 
-}  // namespace stereo_twin_test
+}  // SUITE(stereo_twin)

@@ -1,17 +1,8 @@
 // What memory holds that serves one purpose after another.
 #include "engine/gpu/contents.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
-#include <random>
-
-TEST_SUITE_BEGIN("contents");
-
-namespace contents_test {
-
-using namespace binosplat;
+SUITE(contents) {
 
 TEST_CASE("parts over any others take their place there and leave the rest, as a byte-wise account has it") {
     std::mt19937 random(7);
@@ -41,4 +32,4 @@ TEST_CASE("parts over any others take their place there and leave the rest, as a
     }
 }
 
-}  // namespace contents_test
+}  // SUITE(contents)

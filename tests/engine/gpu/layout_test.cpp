@@ -11,26 +11,13 @@
 #include "tests/engine/gpu/compiled_shader.h"
 #include "tests/engine/gpu/gpu_fixture.h"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
 #include <cstddef>
 #include <filesystem>
-#include <map>
-#include <set>
 #include <span>
-#include <string>
-#include <vector>
 
-TEST_SUITE_BEGIN("layout");
-
-namespace layout_test {
+SUITE(layout) {
 
 namespace fs = std::filesystem;
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
 
 // A struct of shaders/shared by its fields; one that is left out here is missed by the comparison.
 #define AGAIN(...) AGAIN_27(AGAIN_27(AGAIN_27(__VA_ARGS__)))
@@ -139,11 +126,10 @@ std::map<std::string, ListedPass> listedPasses() {
         passes[#shader].constants[id] = nameInShader(Name##Kernel::constants()[id].field); \
     }
 #include "shaders/passes.def"
+#include "tests/suite.h"
 #undef PASS
     return passes;
 }
-
-}  // namespace
 
 TEST_CASE("every shader's structs have the fields, offsets and sizes that C++ gives them") {
     const std::vector<Layout> host = hostLayouts();
@@ -223,4 +209,4 @@ TEST_CASE("a wrong field is found") {
     CHECK(findMismatch({"Other", 12, right.fields}, {right}) == "Other is missing in the table of this test");
 }
 
-}  // namespace layout_test
+}  // SUITE(layout)

@@ -4,23 +4,16 @@
 #include "engine/passes/passes.h"
 #include "tests/engine/gpu/gpu_fixture.h"
 #include "tests/run_program.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
 #include <sys/stat.h>
 
 #include <cstring>
 #include <fstream>
-#include <string>
 
-TEST_SUITE_BEGIN("pipeline_cache");
+SUITE(pipeline_cache) {
 
-namespace pipeline_cache_test {
-
-using namespace binosplat;
-using namespace binosplat::test;
 namespace fs = std::filesystem;
-
-namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
@@ -56,8 +49,6 @@ struct Environment {
     const char* name;
     std::string before;
 };
-
-}  // namespace
 
 TEST_CASE("what is kept comes back; a file that is cut off, changed or another device's is as good as none") {
     const auto device = someDevice();
@@ -111,4 +102,4 @@ TEST_CASE("a folder that cannot be written, a file of rubbish and a pipe trouble
     for (const auto& entry : fs::directory_iterator(folder)) { CHECK(entry.path().extension() == ".pipelines"); }
 }
 
-}  // namespace pipeline_cache_test
+}  // SUITE(pipeline_cache)

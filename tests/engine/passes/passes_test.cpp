@@ -2,25 +2,11 @@
 #include "engine/passes/passes.h"
 #include "tests/engine/passes/pass_stages.h"
 #include "tests/engine/passes/scene_pages.h"
-#include "tests/nightly.h"
-
-#include <doctest/doctest.h>
+#include "tests/suite.h"
 
 #include <bit>
-#include <limits>
-#include <optional>
-#include <random>
 
-TEST_SUITE_BEGIN("passes");
-
-namespace passes_test {
-
-using namespace binosplat;
-using test::Gpu;
-using test::SceneOnDevice;
-using test::ViewedScene;
-
-namespace {
+SUITE(passes) {
 
 constexpr std::size_t kGroupWords = gpu::kCullBlock / 32;
 
@@ -226,8 +212,6 @@ Compacted compactOnDevice(Gpu& gpu, const SceneOnDevice& device, const std::vect
     return {gpu.readBack<std::uint32_t>(keys, visible.size()), gpu.readBack<std::uint32_t>(splats, visible.size())};
 }
 
-}  // namespace
-
 TEST_CASE_FIXTURE(Gpu,
                   "cull_pages finds the twin's pages, up to a hair of what each sees, and leaves none out with a splat that cull keeps") {
     checkPages(*this, 24);
@@ -326,4 +310,4 @@ TEST_CASE_FIXTURE(Gpu, "compact lists what is visible in the scene's order, with
     }
 }
 
-}  // namespace passes_test
+}  // SUITE(passes)

@@ -3,26 +3,12 @@
 // depth or a place lies on a threshold, float32 may come to the other side: such flips have a budget.
 #include "engine/frame/changes.h"
 #include "tests/engine/passes/past_stages.h"
-#include "tests/nightly.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
+SUITE(past_passes) {
 
-#include <algorithm>
-#include <cmath>
-#include <random>
-
-TEST_SUITE_BEGIN("past_passes");
-
-namespace past_passes_test {
-
-using namespace binosplat;
 using reference::TileKind;
-using test::EyeOnDevice;
-using test::Gpu;
-using test::ViewedScene;
 using Walk = test::PastWalk;
-
-namespace {
 
 constexpr double kSteps = test::kErrorSteps;
 
@@ -212,8 +198,6 @@ void checkFirst(Gpu& gpu, const Way& way) {
     CHECK(test::share(other_depths, pixels) <= 0.01);
     CHECK(test::share(other_spreads, pixels) <= 0.02);
 }
-
-}  // namespace
 
 TEST_CASE_FIXTURE(Gpu, "warp_past and warp_pixels make the twin's picture, and expect the twin's errors") {
     checkWarped(*this, {atelier(), false, true});
@@ -412,4 +396,4 @@ TEST_CASE_FIXTURE(Gpu, "mark_changed gives the twin's errors") {
     }
 }
 
-}  // namespace past_passes_test
+}  // SUITE(past_passes)

@@ -4,24 +4,9 @@
 #include "tests/engine/frame/affiliated_frames.h"
 #include "tests/engine/frame/frame_runs.h"
 #include "tests/engine/passes/stereo_cases.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-
-TEST_SUITE_BEGIN("patching");
-
-namespace patching_test {
-
-using namespace binosplat;
-using test::AffiliatedFrame;
-using test::countOf;
-using test::Gpu;
-using test::makeAffiliated;
-using test::Splat;
-
-namespace {
+SUITE(patching) {
 
 constexpr glm::uvec2 kSizePx{256, 256};
 
@@ -132,8 +117,6 @@ double psnrNear(const Image& made, const Image& full, const Eye& eye, const Gaze
 }
 
 bool isChosen(const AffiliatedFrame& made, std::size_t tile) { return made.tile_kinds[tile] == gpu::kTilePredicted; }
-
-}  // namespace
 
 TEST_CASE_FIXTURE(Gpu, "splats beyond the dominant eye's border and behind its near plane are found without a hole to show them") {
     // 0.25 before eyes 0.064 apart, 57 px of disparity: what one eye sees in its columns 210 to 238, the other has beyond 256.
@@ -308,4 +291,4 @@ TEST_CASE_FIXTURE(
     }
 }
 
-}  // namespace patching_test
+}  // SUITE(patching)

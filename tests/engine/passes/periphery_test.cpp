@@ -3,22 +3,11 @@
 #include "engine/reference/periphery.h"
 #include "tests/engine/gpu/gpu_fixture.h"
 #include "tests/engine/passes/past_stages.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
+SUITE(periphery) {
 
-#include <algorithm>
-#include <cmath>
-#include <random>
-
-TEST_SUITE_BEGIN("periphery");
-
-namespace periphery_test {
-
-using namespace binosplat;
-using test::Gpu;
 using Tiles = std::vector<std::uint8_t>;
-
-namespace {
 
 Eye wideEye(glm::uvec2 size_px) { return {Pose{}, intrinsicsFromAngles({-0.9, 0.7, 0.8, -0.85}, size_px), size_px}; }
 
@@ -207,8 +196,6 @@ void checkPast(OnDevice& device, const Eye& eye, const Eye& half, const std::vec
 const std::vector<Gaze> kGazes{{{0.0, 0.0, 1.0}, 0.0}, {{0.0, 0.0, 1.0}, 0.35}, {{-3.0, 1.0, 4.0}, 0.1}, {{1.0, 0.0, 0.0}, 0.2}};
 const std::vector<glm::uvec2> kSizes{{1, 1}, {2, 3}, {16, 16}, {17, 33}, {31, 32}, {33, 15}, {275, 403}};
 
-}  // namespace
-
 TEST_CASE_FIXTURE(Gpu, "the tiles of both pictures are the twin's, and those that are not rendered are filled as the twin fills them") {
     std::size_t half_tiles = 0, within = 0, own_tiles = 0, filled = 0, kept = 0;
     int runs = 0;
@@ -302,4 +289,4 @@ TEST_CASE("a ramp is filled as a ramp, and a flat picture is seen nowhere") {
     CHECK(std::ranges::count(reference::findOwnTiles(flat, fine, aside), 1) == 0);
 }
 
-}  // namespace periphery_test
+}  // SUITE(periphery)

@@ -3,20 +3,9 @@
 #include "engine/reference/present.h"
 #include "tests/engine/gpu/gpu_fixture.h"
 #include "tests/engine/passes/stereo_cases.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <limits>
-
-TEST_SUITE_BEGIN("present");
-
-namespace present_test {
-
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
+SUITE(present) {
 
 using Colours = std::vector<glm::vec4>;
 using Bytes = std::vector<std::uint32_t>;
@@ -117,8 +106,6 @@ struct DeviceImage {
     vk::raii::Image image;
     vk::raii::DeviceMemory memory;
 };
-
-}  // namespace
 
 TEST_CASE_FIXTURE(Gpu, "pictures of floats or half floats become the bytes of their twin, at every order of channels and encoding") {
     for (const glm::uvec2 size_px : {glm::uvec2(1, 1), glm::uvec2(15, 17), glm::uvec2(16, 16), glm::uvec2(100, 70)}) {
@@ -238,4 +225,4 @@ TEST_CASE_FIXTURE(Gpu, "smaller copies of a picture are the mean of its pixels, 
     CHECK(isNear(small[2], 225));
 }
 
-}  // namespace present_test
+}  // SUITE(present)

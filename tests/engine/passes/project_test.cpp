@@ -2,27 +2,13 @@
 #include "engine/reference/splat.h"
 #include "tests/engine/passes/pass_stages.h"
 #include "tests/engine/passes/stereo_cases.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
 #include <iterator>
-#include <limits>
-#include <map>
-#include <random>
 
-TEST_SUITE_BEGIN("project");
+SUITE(project) {
 
-namespace project_test {
-
-using namespace binosplat;
 using reference::TilePair;
-using test::Gpu;
-using test::SceneOnDevice;
-using test::TwinStages;
-using test::ViewedScene;
-
-namespace {
 
 const reference::Settings kSettings{};
 
@@ -175,8 +161,6 @@ double greatestAlpha(const reference::ProjectedSplat& splat, std::uint32_t tile,
     return greatest;
 }
 
-}  // namespace
-
 TEST_CASE_FIXTURE(Gpu, "project gives the twin's fields, up to roundings times the condition of each") {
     // Measured: reference 1.3, A and B 19, D 11 (16.1 on an NVIDIA H100), perspective 5, 1/z 3.1, offset 0.7, of Gaussians 2, in roundings.
     const std::map<std::string, double> bounds{
@@ -257,4 +241,4 @@ TEST_CASE_FIXTURE(Gpu, "under a mask project and bin make the same pairs but for
     }
 }
 
-}  // namespace project_test
+}  // SUITE(project)

@@ -2,31 +2,16 @@
 // left.
 #include "tests/engine/passes/stereo_cases.h"
 #include "tests/engine/passes/stereo_stages.h"
-#include "tests/nightly.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
-
-#include <array>
-#include <cmath>
 #include <tuple>
 
-TEST_SUITE_BEGIN("resample");
+SUITE(resample) {
 
-namespace resample_test {
-
-using namespace binosplat;
 using reference::PixelClass;
 using reference::TileKind;
-using test::Arrived;
-using test::Gpu;
-using test::Rows;
-using test::StereoCase;
-using test::StereoOnDevice;
-using test::toDevice;
 using Kinds = std::vector<TileKind>;
 using Parts = StereoOnDevice::ResampleParts;
-
-namespace {
 
 constexpr double kSteps = gpu::kErrorSteps;
 constexpr glm::vec3 kBackground(0.25f, 0.5f, 0.75f);
@@ -223,8 +208,6 @@ auto moveRows(Gpu& gpu, const StereoCase& c, const Kinds& kinds, const Way& way,
     return std::tuple(std::move(colours), std::move(depths), device.readClasses(), device.readTileErrors());
 }
 
-}  // namespace
-
 TEST_CASE_FIXTURE(Gpu,
                   "resample finds the twin's colours, depths, classes and errors in tiles that are moved, and leaves the others alone") {
     const std::array ways{Way{0, Rows::kOwn, {.errors = true}},
@@ -384,4 +367,4 @@ TEST_CASE_FIXTURE(Gpu, "resample moves nothing where nothing is worth moving, bu
     CHECK(std::ranges::all_of(device.readClasses(), [](std::uint8_t pixel_class) { return pixel_class == 0; }));
 }
 
-}  // namespace resample_test
+}  // SUITE(resample)

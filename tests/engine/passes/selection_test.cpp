@@ -2,24 +2,11 @@
 // as the twin has them, and the lists and masks that patching goes by.
 #include "engine/passes/past_passes.h"
 #include "tests/engine/passes/past_stages.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
+SUITE(selection) {
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <random>
-
-TEST_SUITE_BEGIN("selection");
-
-namespace selection_test {
-
-using namespace binosplat;
 using reference::TileKind;
-using test::Gpu;
-using test::kErrorSteps;
-
-namespace {
 
 constexpr std::size_t kVisible = 12345;
 // Of a whole picture, so that a budget of any number of pairs is exact in single precision.
@@ -284,8 +271,6 @@ std::uint64_t costOfErrors(const Tiles& tiles) {
     return cost;
 }
 
-}  // namespace
-
 TEST_CASE_FIXTURE(Gpu, "price and select take the twin's tiles, however many there are, with budgets of none, one and all") {
     std::mt19937 random(7);
     for (const glm::uvec2 size : {glm::uvec2(1, 1), glm::uvec2(31, 1), glm::uvec2(127, 1), glm::uvec2(32, 4), glm::uvec2(3, 43),
@@ -448,4 +433,4 @@ TEST_CASE_FIXTURE(Gpu, "of equal tiles with a past the first eye's are first, an
     CHECK(turn[1].list == std::vector<gpu::uint>{150});
 }
 
-}  // namespace selection_test
+}  // SUITE(selection)

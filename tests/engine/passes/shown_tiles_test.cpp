@@ -4,23 +4,11 @@
 #include "tests/engine/frame/affiliated_frames.h"
 #include "tests/engine/frame/frame_runs.h"
 #include "tests/engine/passes/stereo_cases.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
+SUITE(shown_tiles) {
 
-#include <algorithm>
-
-TEST_SUITE_BEGIN("shown_tiles");
-
-namespace shown_tiles_test {
-
-using namespace binosplat;
 using reference::TileKind;
-using test::AffiliatedFrame;
-using test::countOf;
-using test::Gpu;
-using test::ViewedScene;
-
-namespace {
 
 constexpr glm::uvec2 kSizePx(200, 152);  // 13 x 10 tiles, the last ones cut
 constexpr glm::uvec2 kTiles(13, 10);
@@ -108,8 +96,6 @@ Made makeWithTwin(StereoFrame& frame, const Scene& scene, const std::array<Eye, 
     CHECK(compare(both.made.pictures[dominant], test::toImage(both.twin.dominant), 4).psnrDb() >= 80.0);
     return both;
 }
-
-}  // namespace
 
 TEST_CASE_FIXTURE(Gpu, "eyes in full lose their hidden tiles and the pairs of these, and no byte of the others") {
     const ViewedScene view = room();
@@ -285,4 +271,4 @@ TEST_CASE_FIXTURE(Gpu, "lists may grow in a frame with masks, and where all is h
     CHECK(countOf(nothing, "tiles_patched") == 0);
 }
 
-}  // namespace shown_tiles_test
+}  // SUITE(shown_tiles)

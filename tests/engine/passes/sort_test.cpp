@@ -2,24 +2,10 @@
 // the lists that they state, room, overflow, and the sizes of the dispatches over them.
 #include "engine/passes/sort.h"
 #include "tests/engine/gpu/gpu_fixture.h"
-#include "tests/nightly.h"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
 #include <bit>
-#include <numeric>
-#include <random>
 
-TEST_SUITE_BEGIN("sort");
-
-namespace sort_test {
-
-using namespace binosplat;
-using test::Gpu;
-using test::nightly;
-
-namespace {
+SUITE(sort) {
 
 using Values = std::vector<std::uint32_t>;
 
@@ -123,6 +109,7 @@ struct SumUpPass {
 
 constexpr std::uint32_t kSumUpWords[] = {
 #include "sum_up.inc"
+#include "tests/suite.h"
 };
 
 struct Summed {
@@ -168,8 +155,6 @@ gpu::ListState listOfSum(Gpu& gpu, std::uint64_t sum, std::uint32_t capacity) {
     values.push_back(static_cast<std::uint32_t>(sum & ((1u << 20) - 1)));
     return sumUp(gpu, values, capacity).result;
 }
-
-}  // namespace
 
 TEST_CASE_FIXTURE(Gpu, "lists of sizes round a subgroup, a group and a block are sorted, whatever their keys and the bits of these") {
     for (const unsigned key_bits : {32u, 14u, 12u, 8u, 1u}) {
@@ -255,4 +240,4 @@ TEST_CASE_FIXTURE(Gpu, "dispatches over a list fold into rows beyond the groups 
     }
 }
 
-}  // namespace sort_test
+}  // SUITE(sort)

@@ -4,28 +4,12 @@
 #include "tests/engine/passes/pass_stages.h"
 #include "tests/engine/passes/stereo_cases.h"
 #include "tests/engine/passes/stereo_stages.h"
-#include "tests/nightly.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
+SUITE(stereo_passes) {
 
-#include <cmath>
-#include <numeric>
-
-TEST_SUITE_BEGIN("stereo_passes");
-
-namespace stereo_passes_test {
-
-using namespace binosplat;
 using reference::Arrival;
 using reference::TileKind;
-using test::Arrived;
-using test::Gpu;
-using test::Rows;
-using test::StereoCase;
-using test::StereoOnDevice;
-using test::toDevice;
-
-namespace {
 
 // Steps of the depth's 26 bits between two words.
 gpu::uint stepsApart(gpu::uint a, gpu::uint b) { return std::max(a >> 6, b >> 6) - std::min(a >> 6, b >> 6); }
@@ -146,8 +130,6 @@ std::pair<gpu::uint, std::vector<gpu::uint>> addTo(Gpu& gpu, glm::uvec2 size_px,
     device.addNewcomers(test::SceneOnDevice(gpu, c.scene, {eye, eye}, 0.2), order, std::vector<gpu::uint>(splats.size(), 0));
     return {device.readCounters().newcomers, device.readTileErrors()};
 }
-
-}  // namespace
 
 TEST_CASE_FIXTURE(Gpu, "reproject brings to each pixel what the twin brings there, and nothing from beside what a lens hides") {
     checkReproject(*this, {{0, false, Rows::kOwn},
@@ -292,4 +274,4 @@ TEST_CASE_FIXTURE(Gpu, "newcomers stops a tile's error at what half a word holds
     }
 }
 
-}  // namespace stereo_passes_test
+}  // SUITE(stereo_passes)

@@ -2,32 +2,18 @@
 // by hand, and against plainer algorithms.
 #include "tests/engine/passes/stereo_cases.h"
 #include "tests/engine/passes/stereo_stages.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
-#include <numeric>
-#include <random>
 #include <tuple>
 
-TEST_SUITE_BEGIN("tile_choice");
+SUITE(tile_choice) {
 
-namespace tile_choice_test {
-
-using namespace binosplat;
 using reference::Borders;
 using reference::DepthChoice;
 using reference::InverseDepthBounds;
 using reference::PixelClass;
 using reference::Resolved;
 using reference::TileKind;
-using test::Gpu;
-using test::StereoCase;
-using test::StereoOnDevice;
-using test::toDevice;
-
-namespace {
 
 // Parallel eyes 0.1 apart, of 100 px focal length: 10 px of disparity for a unit of inverse depth.
 StereoCase makePlainCase(glm::uvec2 size_px, Side dominant = kLeft) {
@@ -89,8 +75,6 @@ std::size_t checkComponents(Gpu& gpu, glm::uvec2 size_px, const Mask& mask, int 
     CHECK(after == words);
     return components;
 }
-
-}  // namespace
 
 TEST_CASE_FIXTURE(Gpu, "depth_bounds counts depths beyond its range as the last, and pixels of little weight or no depth not at all") {
     StereoCase c = makePlainCase({20, 10});
@@ -256,4 +240,4 @@ TEST_CASE_FIXTURE(Gpu, "components with more groups than boxes marks the tiles o
     }
 }
 
-}  // namespace tile_choice_test
+}  // SUITE(tile_choice)

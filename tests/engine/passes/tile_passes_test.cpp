@@ -1,21 +1,11 @@
 // Facts about the passes over tiles, tile_ranges and rasterize, each started from what the twin's pass before it left.
 #include "tests/engine/passes/pass_stages.h"
 #include "tests/engine/passes/stereo_cases.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
+SUITE(tile_passes) {
 
-#include <algorithm>
-#include <random>
-
-TEST_SUITE_BEGIN("tile_passes");
-
-namespace tile_passes_test {
-
-using namespace binosplat;
 using reference::TilePair;
-using test::Gpu;
-
-namespace {
 
 const reference::Settings kSettings{};
 const glm::vec3 kBackground(0.25f, 0.5f, 0.75f);
@@ -135,8 +125,6 @@ std::vector<gpu::uint> wordsOnDevice(Gpu& gpu, Raster& raster, const RasterizeKe
     raster.run(variant);
     return gpu.readBack<gpu::uint>(rows, 4 * raster.pixels);
 }
-
-}  // namespace
 
 TEST_CASE_FIXTURE(Gpu, "tile_ranges looks through any number of pairs, and past those of no tile") {
     const std::uint32_t count = 5000000;
@@ -258,4 +246,4 @@ TEST_CASE_FIXTURE(Gpu, "rasterize leaves the word that each pixel moves by, and 
     CHECK(test::share(other_spread, pixels) <= 0.0005);
 }
 
-}  // namespace tile_passes_test
+}  // SUITE(tile_passes)

@@ -1,25 +1,12 @@
 // Facts about weigh: what a tile costs, which tiles are not worth moving, and whether anything is.
 #include "tests/engine/passes/stereo_cases.h"
 #include "tests/engine/passes/stereo_stages.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
+SUITE(weigh) {
 
-#include <algorithm>
-#include <random>
-
-TEST_SUITE_BEGIN("weigh");
-
-namespace weigh_test {
-
-using namespace binosplat;
 using reference::TileKind;
 using reference::TileRange;
-using test::Gpu;
-using test::StereoCase;
-using test::StereoOnDevice;
-using test::toDevice;
-
-namespace {
 
 constexpr std::size_t kVisible = 5000;
 
@@ -98,8 +85,6 @@ StereoCase makeStill(glm::uvec2 size_px) {
                   std::vector(pixels, 0.0)};
     return c;
 }
-
-}  // namespace
 
 TEST_CASE_FIXTURE(Gpu, "weigh finds the twin's costs and kinds, for eyes of every kind and whatever moving costs") {
     std::size_t other = 0;
@@ -200,4 +185,4 @@ TEST_CASE_FIXTURE(Gpu, "weigh renders what the dominant eye cannot see, as a hea
     }
 }
 
-}  // namespace weigh_test
+}  // SUITE(weigh)

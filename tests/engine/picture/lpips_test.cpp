@@ -5,23 +5,13 @@
 #include "tests/engine/picture/lpips_weights.h"
 #include "tests/engine/picture/pictures.h"
 #include "tests/shared_data.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
 #include <unistd.h>
 
-#include <limits>
-#include <optional>
-#include <string>
-
-TEST_SUITE_BEGIN("lpips");
-
-namespace lpips_test {
+SUITE(lpips) {
 
 namespace fs = std::filesystem;
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInfinity = std::numeric_limits<float>::infinity();
 
@@ -54,8 +44,6 @@ std::optional<fs::path> trainedWeights() {
     }
     return *data / "lpips" / "squeeze_v0.1.bin";
 }
-
-}  // namespace
 
 TEST_CASE("the distance is that of the network's description, at every size across the boundaries of pooling") {
     // Computed in float64 with a loop for every index. Each pooling halves odd sides and even ones.
@@ -141,4 +129,4 @@ TEST_CASE("the views of teddy are as far apart as another program says" * needsS
 }
 #endif
 
-}  // namespace lpips_test
+}  // SUITE(lpips)

@@ -3,19 +3,9 @@
 #include "engine/error.h"
 #include "engine/picture/pair_metrics.h"
 #include "tests/engine/picture/pictures.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
-
-#include <limits>
-
-TEST_SUITE_BEGIN("metrics");
-
-namespace metrics_test {
-
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
+SUITE(metrics) {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -24,8 +14,6 @@ bool passesBudget(const Image& a, const Image& b) {
     const Difference difference = compare(a, b);
     return difference.psnrDb() > 50.0 && difference.shareOff() < 0.001 && difference.not_finite == 0;
 }
-
-}  // namespace
 
 TEST_CASE("equal pictures have an infinite PSNR and no difference, and so have empty ones") {
     for (const Image& image : {makeWaves({17, 33}, 0.0), Image{}}) {
@@ -122,4 +110,4 @@ TEST_CASE("a blur in one eye alone is a gap in sharpness, and one in both eyes i
     CHECK(sharpnessGap({makeTexture(0, 0.8f), makeTexture(5, 0.6f)}, full) == doctest::Approx(0.25).epsilon(1e-3));
 }
 
-}  // namespace metrics_test
+}  // SUITE(metrics)

@@ -3,24 +3,14 @@
 #include "engine/picture/image_io.h"
 #include "engine/picture/netpbm.h"
 #include "tests/run_program.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
-
-#include <array>
-#include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <limits>
 
-TEST_SUITE_BEGIN("picture_io");
-
-namespace picture_io_test {
+SUITE(picture_io) {
 
 namespace fs = std::filesystem;
-using namespace binosplat;
-using binosplat::test::Workplace;
-
-namespace {
 
 // Every value differs from its neighbours, some lie outside 0 to 1.
 Image makeRamp(glm::uvec2 size_px, int channels) {
@@ -36,8 +26,6 @@ Image makeDisplay(glm::uvec2 size_px) {
     for (std::size_t i = 0; i < image.pixelCount() * 4; ++i) { image.values.push_back(static_cast<float>(i % 9) / 8.0f); }
     return image;
 }
-
-}  // namespace
 
 TEST_CASE("a value becomes the nearest of a display's, whatever it is") {
     for (const auto& [value, level] : {std::pair(-1.0f, 0),
@@ -174,4 +162,4 @@ TEST_CASE("files that end early or are something else are errors") {
     }
 }
 
-}  // namespace picture_io_test
+}  // SUITE(picture_io)

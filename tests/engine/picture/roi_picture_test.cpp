@@ -3,19 +3,9 @@
 #include "engine/error.h"
 #include "shaders/shared/constants.h"
 #include "tests/engine/picture/pictures.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-
-TEST_SUITE_BEGIN("roi_picture");
-
-namespace roi_picture_test {
-
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
+SUITE(roi_picture) {
 
 glm::vec3 tinted(PixelOrigin origin, float grey) { return (1.0f - kTintShare) * glm::vec3(grey) + kTintShare * tintOf(origin); }
 
@@ -25,8 +15,6 @@ bool isAt(const Image& image, std::uint32_t x, std::uint32_t y, const glm::vec3&
 
 constexpr PixelOrigin kTintedOrigins[]{PixelOrigin::kGap, PixelOrigin::kHole, PixelOrigin::kEdgeRoi, PixelOrigin::kCenterRoi,
                                        PixelOrigin::kPredictedRoi};
-
-}  // namespace
 
 TEST_CASE("tiles are tinted up to their last pixel, and what is reprojected stays as it is") {
     // 3 x 2 tiles over 33 x 17 pixels: the last column and the last row of tiles are one pixel wide.
@@ -86,4 +74,4 @@ TEST_CASE("lists that do not fit are refused") {
     CHECK(pixelOrigins({0, 0}, {}, {}).empty());
 }
 
-}  // namespace roi_picture_test
+}  // SUITE(roi_picture)

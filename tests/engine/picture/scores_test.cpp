@@ -4,21 +4,9 @@
 #include "engine/picture/flip.h"
 #include "engine/picture/ssim.h"
 #include "tests/engine/picture/pictures.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
-TEST_SUITE_BEGIN("scores");
-
-namespace scores_test {
-
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
+SUITE(scores) {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInfinity = std::numeric_limits<float>::infinity();
 
@@ -70,8 +58,6 @@ double colourScore(double distance) {
 bool isNear(const glm::vec3& a, const glm::vec3& b, float tolerance) {
     return glm::all(glm::lessThanEqual(glm::abs(a - b), glm::vec3(tolerance)));
 }
-
-}  // namespace
 
 TEST_CASE("a score is the same from either side, in a mirror and on any number of threads, and best for what a display shows alike") {
     const Image a = makeWaves({50, 200}, 0.0), b = makeWaves({50, 200}, 0.3);
@@ -250,4 +236,4 @@ TEST_CASE("colours have the figures of their standards, there and back") {
     }
 }
 
-}  // namespace scores_test
+}  // SUITE(scores)

@@ -1,22 +1,14 @@
 // Facts about the twins of reuse over time: pictures for which the answer is worked out by hand.
 #include "engine/reference/past.h"
 #include "tests/engine/reference/reference_scenes.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
 #include <complex>
 #include <numbers>
 
-TEST_SUITE_BEGIN("past_reference");
+SUITE(past_reference) {
 
-namespace past_reference_test {
-
-using namespace binosplat;
 using namespace binosplat::reference;
-
-namespace {
 
 constexpr double kLeastGrowth = 1.9e-7;  // of a pixel that moved, squared
 
@@ -52,8 +44,6 @@ double depthAt(const WarpedPast& warped, std::size_t pixel) { return warped.pict
 
 using Kinds = std::vector<TileKind>;
 constexpr TileKind kNone = TileKind::kNone, kChosen = TileKind::kPredicted;
-
-}  // namespace
 
 TEST_CASE("the kernel of repeated sampling keeps sums, and makes no frequency stronger at any shift") {
     for (int step = 0; step <= 200; ++step) {
@@ -266,4 +256,4 @@ TEST_CASE("a tile that is rendered again says how far off it was, for each frame
     CHECK(past.tiles[2].growth == 0.0);  // nothing is left there
 }
 
-}  // namespace past_reference_test
+}  // SUITE(past_reference)

@@ -4,24 +4,14 @@
 #include "engine/reference/harmonics.h"
 #include "engine/reference/reach.h"
 #include "tests/engine/reference/reference_scenes.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
 #include <numbers>
-#include <numeric>
-#include <set>
 
-TEST_SUITE_BEGIN("reference");
+SUITE(reference) {
 
-namespace reference_test {
-
-using namespace binosplat;
-using namespace binosplat::test;
 using reference::Picture;
 using reference::Settings;
-
-namespace {
 
 constexpr glm::uvec2 kSize{101, 101};
 constexpr float kRootHalf = 0.70710678f;
@@ -49,8 +39,6 @@ glm::dvec4 rgbaAt(const Picture& picture, std::uint32_t x, std::uint32_t y) { re
 double depthAt(const Picture& picture, std::uint32_t x, std::uint32_t y) { return picture.depth[std::size_t{y} * picture.size_px.x + x]; }
 
 doctest::Approx near(double value) { return doctest::Approx(value).epsilon(1e-6); }
-
-}  // namespace
 
 TEST_CASE("no pixel at which a splat is met is left out by cull, by its box, by the runs of its rows or by bin, and bin adds no tile") {
     Scene scene = makeCloud(500, 6);
@@ -273,4 +261,4 @@ TEST_CASE("spherical harmonics are orthonormal over the sphere") {
     }
 }
 
-}  // namespace reference_test
+}  // SUITE(reference)

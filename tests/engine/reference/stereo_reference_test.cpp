@@ -1,21 +1,11 @@
 // Facts about the twins of the stereo passes by themselves: small pictures for which the answer is worked out by hand.
 #include "engine/reference/stereo.h"
 #include "tests/engine/reference/reference_scenes.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
+SUITE(stereo_reference) {
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
-TEST_SUITE_BEGIN("stereo_reference");
-
-namespace stereo_reference_test {
-
-using namespace binosplat;
 using namespace binosplat::reference;
-
-namespace {
 
 // Parallel eyes 0.1 apart, of 100 px focal length: pixels go 10 px to the left for a unit of inverse depth.
 EyePair parallelEyes(glm::uvec2 size_px) {
@@ -66,8 +56,6 @@ Weighed weighStrip(const std::vector<std::uint32_t>& pairs, std::uint32_t move_c
     return weigh(far, rangesOf(pairs), parallelEyes(size_px),
                  {.budget = budget, .move_cost = move_cost, .target_hidden = std::move(hidden)});
 }
-
-}  // namespace
 
 TEST_CASE("spread codes are half octaves from 2^-13 to 4; what is less is none, what is more the last") {
     for (std::uint32_t code = 1; code <= 31; ++code) {
@@ -349,4 +337,4 @@ TEST_CASE("the budget ends where it would if all errors were seen whole, and wha
     CHECK(chosen({9, 8, 8, 5, 5, 1}, 0) == "......");
 }
 
-}  // namespace stereo_reference_test
+}  // SUITE(stereo_reference)

@@ -6,21 +6,14 @@
 #include "tests/engine/scene/hostile_scenes.h"
 #ifdef BINOSPLAT_SOG
 #include "tests/engine/scene/sog_scenes.h"
+#include "tests/suite.h"
 #endif
-
-#include <doctest/doctest.h>
 
 #include <chrono>
 
-TEST_SUITE_BEGIN("changing_file");
-
-namespace changing_file_test {
+SUITE(changing_file) {
 
 namespace fs = std::filesystem;
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
 
 // Loads while `change` happens once; the message, or "read".
 std::string load(const std::string& path, const std::function<void()>& change, Scene* scene = nullptr) {
@@ -51,8 +44,6 @@ std::vector<std::string> writeFiles(const Folder& folder) {
 #endif
     return paths;
 }
-
-}  // namespace
 
 TEST_CASE("a file that is cut off, grows or is written to while it is read is refused; one that is removed or replaced is read as it was") {
     const Folder folder;
@@ -93,4 +84,4 @@ TEST_CASE("a SOG folder that loses a picture while it is read is refused in one 
 }
 #endif
 
-}  // namespace changing_file_test
+}  // SUITE(changing_file)

@@ -1,17 +1,11 @@
 // The scene that moves, against the truth that procedural.h states.
 #include "engine/scene/procedural.h"
 #include "tests/engine/scene/ply_files.h"
+#include "tests/suite.h"
 
 #include <numbers>
 
-TEST_SUITE_BEGIN("clockwork");
-
-namespace clockwork_test {
-
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
+SUITE(clockwork) {
 
 constexpr std::uint64_t kSplats = 10'000;
 constexpr double kTurn = 2.0 * std::numbers::pi;
@@ -59,8 +53,6 @@ Motion motionOf(const glm::dvec3& p, double frame) {
     const bool is_pendulum = p.y > -0.13 && std::abs(p.z - kPivot.z) < 0.021;
     return {.thing = is_pendulum ? "pendulum" : "unknown", .pivot = kPivot, .angle = glm::radians(20.0) * std::sin(2.0 * turn)};
 }
-
-}  // namespace
 
 TEST_CASE("clockwork has the same splats in every frame, repeats after 120, and three fifths of it are still to the last bit") {
     CHECK(kClockworkFrames == 120);
@@ -173,4 +165,4 @@ TEST_CASE("clockwork has exactly the splats asked for, finer ones if there are m
     CHECK(builtinFrameCount("castle") == 1);
 }
 
-}  // namespace clockwork_test
+}  // SUITE(clockwork)

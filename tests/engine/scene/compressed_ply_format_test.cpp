@@ -1,19 +1,11 @@
 // PlayCanvas compressed PLY: values worked out by hand, a real file, and headers that do not fit.
 #include "tests/engine/scene/hostile_scenes.h"
 #include "tests/shared_data.h"
+#include "tests/suite.h"
 
-TEST_SUITE_BEGIN("compressed_ply_format");
-
-namespace compressed_ply_format_test {
-
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
+SUITE(compressed_ply_format) {
 
 double shown(const Scene& scene, std::size_t at) { return 0.5 + 0.28209479 * static_cast<double>(scene.sh[at]); }
-
-}  // namespace
 
 TEST_CASE("words lie between the bounds of their chunk") {
     const Folder folder;
@@ -126,4 +118,4 @@ TEST_CASE("chunks with bounds that are no numbers lose their splats alone") {
     CHECK(notes.skipped_not_finite == 256);
 }
 
-}  // namespace compressed_ply_format_test
+}  // SUITE(compressed_ply_format)

@@ -6,17 +6,12 @@
 #include "engine/scene/sog_files.h"
 #include "engine/scene/survey.h"
 #include "tests/engine/scene/scene_measures.h"
-#include "tests/nightly.h"
 #include "tests/shared_data.h"
+#include "tests/suite.h"
 
 #include <nlohmann/json.hpp>
 
-namespace equivalent_format_test {
-
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
+namespace binosplat::test::equivalent_format_suite {
 
 double norm(const glm::dmat3& matrix) {
     return std::sqrt(glm::dot(matrix[0], matrix[0]) + glm::dot(matrix[1], matrix[1]) + glm::dot(matrix[2], matrix[2]));
@@ -74,8 +69,6 @@ double psnrDb(const Scene& a, const Scene& b, const glm::dvec3& place, const glm
     return -10.0 * std::log10(squares / (3.0 * static_cast<double>(first.rgba.size())));
 }
 
-}  // namespace
-
 TEST_CASE("playbot and angel are the same scenes as SOG and as PLY, whose writer kept opacities off 1" * needsSharedData()) {
     const auto data = sharedData();
     if (!data) { return; }
@@ -111,8 +104,6 @@ TEST_CASE("a bundle has the files and keys that other writers' have" * needsShar
     }
 }
 
-namespace {
-
 void checkFormats(const std::vector<std::string>& sources, const std::vector<glm::dvec3>& directions) {
     const auto data = sharedData();
     if (!data) { return; }
@@ -139,8 +130,6 @@ void checkFormats(const std::vector<std::string>& sources, const std::vector<glm
     }
 }
 
-}  // namespace
-
 TEST_CASE("scenes of every format that is read go through every format that is written, as the same pictures" * needsSharedData()) {
     std::vector<std::string> sources{"formats/minimal.ksplat", "formats/minimal.splat", "playbot/playbot_streamed"};
 #ifdef BINOSPLAT_GLTF
@@ -155,4 +144,4 @@ TEST_CASE("larger scenes go through every format that is written, as the same pi
                  {{0, -0.3, -1}, {0.8, -0.5, 0.5}, {-1, 0.2, 0.3}});
 }
 
-}  // namespace equivalent_format_test
+}  // namespace binosplat::test::equivalent_format_suite

@@ -1,13 +1,9 @@
 // The inputs that fuzzing kept, replayed.
 #include "tests/engine/scene/ply_files.h"
 #include "tests/fuzz/targets.h"
+#include "tests/suite.h"
 
-TEST_SUITE_BEGIN("fuzz_corpus");
-
-namespace fuzz_corpus_test {
-
-using namespace binosplat;
-using namespace binosplat::test;
+SUITE(fuzz_corpus) {
 
 TEST_CASE("every kept input is read or refused in one line") {
     std::size_t inputs = 0, bytes = 0;
@@ -25,4 +21,4 @@ TEST_CASE("every kept input is read or refused in one line") {
     CHECK(bytes < 400'000);
 }
 
-}  // namespace fuzz_corpus_test
+}  // SUITE(fuzz_corpus)

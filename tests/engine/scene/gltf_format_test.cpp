@@ -5,18 +5,12 @@
 #include "tests/engine/scene/gltf_files.h"
 #include "tests/engine/scene/scene_measures.h"
 #include "tests/shared_data.h"
+#include "tests/suite.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <nlohmann/json.hpp>
 
-TEST_SUITE_BEGIN("gltf_format");
-
-namespace gltf_format_test {
-
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
+SUITE(gltf_format) {
 
 std::string quoted(const glm::dmat4& matrix) {
     std::string text;
@@ -43,8 +37,6 @@ void checkAlike(const Scene& a, const Scene& b) {
     for (std::size_t i = 0; i < a.sh.size(); ++i) { CHECK(a.sh[i] == doctest::Approx(b.sh[i]).epsilon(1e-5)); }
     for (std::size_t i = 0; i < a.size(); ++i) { CHECK(a.opacities[i] == doctest::Approx(b.opacities[i]).epsilon(1e-6)); }
 }
-
-}  // namespace
 
 TEST_CASE("a glTF holds what a PLY of the same splats holds, whatever its buffers are") {
     const Folder folder;
@@ -309,4 +301,4 @@ TEST_CASE("a glTF that does not fit is named with its place") {
     CHECK(loadScene(folder.write("many.glb", many.glb())).size() == 6000);
 }
 
-}  // namespace gltf_format_test
+}  // SUITE(gltf_format)

@@ -4,21 +4,14 @@
 #include "tests/engine/scene/hostile_scenes.h"
 #include "tests/engine/scene/ksplat_files.h"
 #include "tests/hostile.h"
-#include "tests/nightly.h"
 #ifdef BINOSPLAT_SOG
 #include "tests/engine/scene/streamed_scenes.h"
+#include "tests/suite.h"
 #endif
 
 #include <cstdlib>
 
-TEST_SUITE_BEGIN("hostile_scene");
-
-namespace hostile_scene_test {
-
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
+SUITE(hostile_scene) {
 
 // A good file, or a part of one, that is broken, and how.
 struct Target {
@@ -147,13 +140,10 @@ std::vector<Target> sceneTargets() {
 
 constexpr std::size_t kFew = kSanitized ? 1 : 7;  // no divisor of what there is of each kind
 
-}  // namespace
-
 TEST_CASE("broken files of every format but SOG, some of them") { attack(Folder(), sceneTargets(), kFew, 4, 512); }
 TEST_CASE("broken files of every format but SOG" * nightly()) { attack(Folder(), sceneTargets(), 1, 4, 512); }
 
 #ifdef BINOSPLAT_SOG
-namespace {
 
 // With codebooks of two entries, which keep the text short.
 SogText withShortText(SogText files) {
@@ -246,10 +236,8 @@ void attackSog(std::size_t stride) {
     attack(folder, sogTargets(folder), stride, 8, 768);
 }
 
-}  // namespace
-
 TEST_CASE("broken SOG scenes, some of them") { attackSog(kFew); }
 TEST_CASE("broken SOG scenes" * nightly()) { attackSog(1); }
 #endif
 
-}  // namespace hostile_scene_test
+}  // SUITE(hostile_scene)

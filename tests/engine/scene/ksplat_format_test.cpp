@@ -1,15 +1,9 @@
 // .ksplat: values in every level and degree, buckets and sections, and what does not fit.
 #include "tests/engine/scene/ksplat_files.h"
 #include "tests/shared_data.h"
+#include "tests/suite.h"
 
-TEST_SUITE_BEGIN("ksplat_format");
-
-namespace ksplat_format_test {
-
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
+SUITE(ksplat_format) {
 
 void checkContents(const Scene& scene, const KsplatText& text, int sh_degree) {
     REQUIRE(scene.size() == KsplatText::kSplats * text.degrees.size());
@@ -41,8 +35,6 @@ void checkContents(const Scene& scene, const KsplatText& text, int sh_degree) {
         }
     }
 }
-
-}  // namespace
 
 TEST_CASE("a .ksplat of each level gives what its bytes mean: sections of each degree, and room that is not used is passed over") {
     const Folder folder;
@@ -111,4 +103,4 @@ TEST_CASE("a .ksplat that does not fit is named") {
     CHECK(contains(loadError(folder.write("cut.ksplat", good.substr(0, good.size() - 1))), "bytes are left of"));
 }
 
-}  // namespace ksplat_format_test
+}  // SUITE(ksplat_format)

@@ -3,15 +3,9 @@
 #include "engine/scene/describe.h"
 #include "engine/scene/procedural.h"
 #include "tests/engine/scene/scene_measures.h"
+#include "tests/suite.h"
 
-TEST_SUITE_BEGIN("ply");
-
-namespace ply_test {
-
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
+SUITE(ply) {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN(), kInfinity = std::numeric_limits<double>::infinity();
 
@@ -27,8 +21,6 @@ Scene writtenAndRead(const Folder& folder, const Scene& scene) {
     writePly(scene, folder.file("again.ply"));
     return loadScene(folder.file("again.ply"));
 }
-
-}  // namespace
 
 TEST_CASE("a PLY's numbers arrive activated, in every encoding") {
     const Folder folder;
@@ -482,4 +474,4 @@ TEST_CASE("ascii values that are no numbers are named, with their splat, and a f
     CHECK(contains(loadError(folder, binary.substr(0, binary.size() - 1)), "ends in splat 2 of 3"));
 }
 
-}  // namespace ply_test
+}  // SUITE(ply)

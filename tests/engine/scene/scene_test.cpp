@@ -3,15 +3,9 @@
 #include "engine/scene/procedural.h"
 #include "engine/scene/scene_series.h"
 #include "tests/engine/scene/ply_files.h"
+#include "tests/suite.h"
 
-TEST_SUITE_BEGIN("scene");
-
-namespace scene_test {
-
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
+SUITE(scene) {
 
 void checkSound(const Scene& scene, std::uint64_t splats) {
     REQUIRE(scene.size() == splats);
@@ -60,8 +54,6 @@ struct Garden : Folder {
         return counts;
     }
 };
-
-}  // namespace
 
 TEST_CASE("every built-in scene is sound, repeats exactly and has a view") {
     for (const BuiltinInfo& info : listBuiltins()) {
@@ -268,4 +260,4 @@ TEST_CASE("two moving scenes in one folder, and formats that differ, are refused
     CHECK(series.load(2, notes).size() == 3);
 }
 
-}  // namespace scene_test
+}  // SUITE(scene)

@@ -1,16 +1,8 @@
 // SOG: values worked out by hand in both versions and both wrappings, and everything that does not fit.
 #include "tests/engine/scene/sog_scenes.h"
+#include "tests/suite.h"
 
-#include <random>
-
-TEST_SUITE_BEGIN("sog_format");
-
-namespace sog_format_test {
-
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
+SUITE(sog_format) {
 
 void checkContents(const Scene& scene, const LoadNotes& notes, bool version1) {
     REQUIRE(scene.size() == 8);
@@ -40,8 +32,6 @@ void checkContents(const Scene& scene, const LoadNotes& notes, bool version1) {
     CHECK(notes.three_scales);
     CHECK(notes.median_flatness == doctest::Approx(std::exp(-1.0 / 32.0)).epsilon(1e-4));
 }
-
-}  // namespace
 
 TEST_CASE("a WebP picture among other chunks is found, and gives back the bytes that were stored") {
     std::mt19937 random(3);
@@ -223,4 +213,4 @@ TEST_CASE("a bundle's files may come in any order, and among others; archives th
     CHECK(contains(loadError(folder.write("a.sog", std::string("PK\x03\x04") + std::string(100, 'x'))), "not a whole zip archive"));
 }
 
-}  // namespace sog_format_test
+}  // SUITE(sog_format)

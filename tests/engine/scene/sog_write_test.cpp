@@ -4,17 +4,9 @@
 #include "engine/scene/sog.h"
 #include "engine/scene/sog_pack.h"
 #include "tests/engine/scene/scene_measures.h"
+#include "tests/suite.h"
 
-#include <set>
-
-TEST_SUITE_BEGIN("sog_write");
-
-namespace sog_write_test {
-
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
+SUITE(sog_write) {
 
 Scene throughSog(const Folder& folder, const Scene& scene, LoadNotes* notes = nullptr) {
     writeSog(scene, folder.file("a.sog"));
@@ -22,8 +14,6 @@ Scene throughSog(const Folder& folder, const Scene& scene, LoadNotes* notes = nu
     std::filesystem::remove(folder.file("a.sog"));
     return back;
 }
-
-}  // namespace
 
 TEST_CASE("a codebook keeps few numbers as they are, and of many it keeps what is nearest in squares") {
     const std::vector<float> few{3.0f, -1.0f, 3.0f, 1e9f, 0.25f};
@@ -202,4 +192,4 @@ TEST_CASE("whoever waits for a large scene hears how far it is and may stop it; 
     CHECK(folder.fileCount() == 0);
 }
 
-}  // namespace sog_write_test
+}  // SUITE(sog_write)

@@ -1,14 +1,8 @@
 // .splat files: values worked out by hand, and what is not taken for one.
 #include "tests/engine/scene/hostile_scenes.h"
+#include "tests/suite.h"
 
-TEST_SUITE_BEGIN("splat_format");
-
-namespace splat_format_test {
-
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
+SUITE(splat_format) {
 
 const std::string kPlain = splatRow({1, 2, 3}, {0.5f, 0.25f, 0.125f}, {255, 0, 51, 204, 255, 128, 128, 128});
 
@@ -17,8 +11,6 @@ std::string repeat(const std::string& row, int count) {
     for (int i = 0; i < count; ++i) { rows += row; }
     return rows;
 }
-
-}  // namespace
 
 TEST_CASE("a .splat is read row by row, whatever its name") {
     const Folder folder;
@@ -78,4 +70,4 @@ TEST_CASE("other files are not taken for a .splat") {
     }
 }
 
-}  // namespace splat_format_test
+}  // SUITE(splat_format)

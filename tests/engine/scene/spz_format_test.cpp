@@ -3,15 +3,9 @@
 #include "engine/scene/spz.h"
 #include "tests/engine/scene/scene_measures.h"
 #include "tests/engine/scene/spz_files.h"
+#include "tests/suite.h"
 
-TEST_SUITE_BEGIN("spz_format");
-
-namespace spz_format_test {
-
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
+SUITE(spz_format) {
 
 Scene loadBytes(const Folder& folder, const std::string& bytes, LoadNotes* notes = nullptr) {
     return loadScene(folder.write("scene.bin", bytes), 0, notes);
@@ -22,8 +16,6 @@ SpzText makeVersion4(int flags = 0) {
     spz.version = 4, spz.flags = flags;
     return spz;
 }
-
-}  // namespace
 
 TEST_CASE("both versions give what their bytes mean, in axes right, down, forward") {
     const Folder folder;
@@ -273,4 +265,4 @@ TEST_CASE("a container that does not fit is named") {
     CHECK(contains(errorWith(32 + 96, "xxxx"), "stream 0: broken"));
 }
 
-}  // namespace spz_format_test
+}  // SUITE(spz_format)

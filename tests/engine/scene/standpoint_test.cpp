@@ -2,20 +2,11 @@
 #include "engine/scene/standpoint.h"
 #include "engine/scene/floor_plane.h"
 #include "engine/scene/procedural.h"
-#include "tests/nightly.h"
+#include "tests/suite.h"
 
-#include <algorithm>
-#include <cmath>
 #include <functional>
-#include <random>
 
-TEST_SUITE_BEGIN("standpoint");
-
-namespace standpoint_test {
-
-using namespace binosplat;
-
-namespace {
+SUITE(standpoint) {
 
 const glm::dvec3 kUp(0, -1, 0);
 
@@ -301,8 +292,6 @@ void checkKinds(bool has_floaters, double tilt, double heading) {
     }
 }
 
-}  // namespace
-
 TEST_CASE("every kind of scene is looked at from where people would stand, as it is, and turned with floaters") {
     checkKinds(false, 0.0, 0.0);
     checkKinds(true, 0.3, 2.5);
@@ -407,4 +396,4 @@ TEST_CASE("splats that nobody sees, and those that are equal, place nobody at in
     CHECK(glm::distance(point.view.eye, point.view.look) < 10.0);
 }
 
-}  // namespace standpoint_test
+}  // SUITE(standpoint)

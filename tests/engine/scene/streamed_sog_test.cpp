@@ -1,19 +1,13 @@
 // Streamed SOG: a level is its chunks, splat by splat; the choice of a level; progress; and what does not fit.
 #include "engine/scene/lod_meta.h"
 #include "tests/engine/scene/streamed_scenes.h"
+#include "tests/suite.h"
 
 #ifndef _WIN32
 #include <sys/resource.h>
 #endif
 
-TEST_SUITE_BEGIN("streamed_sog");
-
-namespace streamed_sog_test {
-
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
+SUITE(streamed_sog) {
 
 Scene loadLevel(const std::string& source, std::uint32_t level, LoadNotes* notes = nullptr) {
     return loadScene(source, 0, notes, {}, {level, {}});
@@ -37,8 +31,6 @@ void addSplats(Scene& whole, const Scene& part, std::size_t first, std::size_t c
 }
 
 void addWhole(Scene& whole, const Scene& part) { addSplats(whole, part, 0, part.size()); }
-
-}  // namespace
 
 TEST_CASE("a level is its chunks in their order, with the environment behind") {
     const Folder folder;
@@ -321,4 +313,4 @@ TEST_CASE("chunks that are missing or broken are named before any is decoded") {
     CHECK(contains(error(), "scene/a/meta.json: not JSON"));
 }
 
-}  // namespace streamed_sog_test
+}  // SUITE(streamed_sog)

@@ -1,15 +1,8 @@
 // What is counted in a scene: shares of splats that cost more than they show, floaters, and what would take less memory.
 #include "engine/scene/survey.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
-
-TEST_SUITE_BEGIN("survey");
-
-namespace survey_test {
-
-using namespace binosplat;
-
-namespace {
+SUITE(survey) {
 
 void addSplat(Scene& scene, const glm::vec3& position, const glm::vec3& scales, float opacity) {
     scene.positions.push_back(position);
@@ -28,8 +21,6 @@ Scene makePatch() {
     }
     return scene;
 }
-
-}  // namespace
 
 TEST_CASE("opacities, thicknesses and sizes are counted against their bounds") {
     Scene scene;  // a thousand splats in a cube of a side of 9, one unit apart, a centimetre large
@@ -80,4 +71,4 @@ TEST_CASE("scenes of no splat and of one place are surveyed") {
     CHECK(survey.floaters == 0);
 }
 
-}  // namespace survey_test
+}  // SUITE(survey)

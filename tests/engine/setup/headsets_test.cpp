@@ -4,19 +4,11 @@
 #include "engine/setup/output_files.h"
 #include "shaders/shared/constants.h"
 #include "tests/run_program.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <set>
-
-TEST_SUITE_BEGIN("headsets");
-
-namespace headsets_test {
+SUITE(headsets) {
 
 namespace fs = std::filesystem;
-using namespace binosplat;
-using namespace binosplat::test;
 
 TEST_CASE("every headset of the repository is one that a person could wear, and says who measured it") {
     std::set<std::string> names;
@@ -113,4 +105,4 @@ TEST_CASE("a headset's file may name its lenses' centres, and mistakes in it are
     for (const auto& [text, message] : mistakes) { CHECK_THROWS_WITH_AS((void)read(text), doctest::Contains(message), Error); }
 }
 
-}  // namespace headsets_test
+}  // SUITE(headsets)

@@ -5,21 +5,14 @@
 #include "engine/setup/settings.h"
 #include "engine/setup/values.h"
 #include "tests/hostile.h"
-#include "tests/nightly.h"
 #include "tests/run_program.h"
+#include "tests/suite.h"
 #include "xr/simulated/files/toml_guard.h"
 
 #include <fstream>
 #include <iterator>
 
-TEST_SUITE_BEGIN("hostile_setup");
-
-namespace hostile_setup_test {
-
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
+SUITE(hostile_setup) {
 
 struct TextAttempts {
     std::string name;
@@ -112,8 +105,6 @@ void breakAll(int changes) {
     }
 }
 
-}  // namespace
-
 TEST_CASE("broken settings, headsets, cameras and head motion are read or refused") { breakAll(50); }
 
 TEST_CASE("and so are more of them" * nightly()) { breakAll(1000); }
@@ -170,4 +161,4 @@ TEST_CASE("cameras as deep as a file can be are refused") {
     attempts.attempt("deeply nested in a camera", R"([{"width":)" + deep + "}]");
 }
 
-}  // namespace hostile_setup_test
+}  // SUITE(hostile_setup)

@@ -2,20 +2,11 @@
 #include "engine/error.h"
 #include "engine/setup/head_motion.h"
 #include "tests/shared_data.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
 #include <numbers>
-#include <string>
 
-TEST_SUITE_BEGIN("motion");
-
-namespace motion_test {
-
-using namespace binosplat;
-
-namespace {
+SUITE(motion) {
 
 constexpr double kQuarter = std::numbers::pi / 2.0;
 const std::string kHeader = "timestamp,x,y,z,qx,qy,qz,qw\n";
@@ -28,8 +19,6 @@ bool near(const glm::dvec3& a, const glm::dvec3& b) { return glm::length(a - b) 
 
 glm::dvec3 forwardOf(const Pose& pose) { return pose.orientation * glm::dvec3(0.0, 0.0, 1.0); }
 glm::dvec3 downOf(const Pose& pose) { return pose.orientation * glm::dvec3(0.0, 1.0, 0.0); }
-
-}  // namespace
 
 TEST_CASE("the axes of OpenXR and of Unity become the camera's") {
     const glm::dvec3 right(1.0, 0.0, 0.0), up(0.0, 1.0, 0.0), back(0.0, 0.0, 1.0);
@@ -189,4 +178,4 @@ TEST_CASE("the shared recording reads, and its wearer walks forward" * test::nee
     CHECK(motion.samples().front().world_from_head.position.z == doctest::Approx(0.09279076));
 }
 
-}  // namespace motion_test
+}  // SUITE(motion)

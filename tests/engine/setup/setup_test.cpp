@@ -7,25 +7,16 @@
 #include "engine/setup/settings.h"
 #include "engine/setup/values.h"
 #include "tests/run_program.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
-
-TEST_SUITE_BEGIN("setup");
-
-namespace setup_test {
+SUITE(setup) {
 
 namespace fs = std::filesystem;
-using namespace binosplat;
-using binosplat::test::Workplace;
-
-namespace {
 
 fs::path writeFile(const fs::path& path, const std::string& text) {
     writeText(path, text);
     return path;
 }
-
-}  // namespace
 
 TEST_CASE("a camera file is world-from-camera, its rows as they are written, and resizing an eye keeps what it sees") {
     const Workplace work;
@@ -89,4 +80,4 @@ TEST_CASE("output files appear together or not at all, and a run that fails keep
     CHECK(fs::file_size(folder / "two") == 1);
 }
 
-}  // namespace setup_test
+}  // SUITE(setup)

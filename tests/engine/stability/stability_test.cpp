@@ -3,24 +3,11 @@
 #include "engine/stability/extreme_scenes.h"
 #include "engine/stability/run_case.h"
 #include "tests/engine/frame/frame_runs.h"
-#include "tests/nightly.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
+SUITE(stability) {
 
-#include <algorithm>
-#include <cmath>
-#include <set>
-
-TEST_SUITE_BEGIN("stability");
-
-namespace stability_test {
-
-using namespace binosplat;
 using namespace binosplat::stability;
-using test::Gpu;
-using test::nightly;
-
-namespace {
 
 test::PairOfValues render(const Context& context, const Stage& stage, Mode mode) {
     FrameSettings settings;
@@ -46,8 +33,6 @@ void checkSeesOnlyTheFirst(const Context& context, const Stage& stage, std::size
         CHECK(render(context, stage, mode) == render(context, keepFirst(stage, count), mode));
     }
 }
-
-}  // namespace
 
 TEST_CASE_FIXTURE(Gpu, "every case is finite, repeats and keeps to its bounds beside the twin, in every mode" * nightly()) {
     std::set<std::string> names;
@@ -139,4 +124,4 @@ TEST_CASE_FIXTURE(Gpu, "what misses a bound fails") {
     CHECK(misses([](Sequence& s) { s.equal_from = 3; }));
 }
 
-}  // namespace stability_test
+}  // SUITE(stability)

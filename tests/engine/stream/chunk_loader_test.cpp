@@ -7,20 +7,10 @@
 #include "tests/run_program.h"
 #ifdef BINOSPLAT_WEB_TESTS
 #include "tests/engine/web/web_runs.h"
+#include "tests/suite.h"
 #endif
 
-#include <map>
-#include <numeric>
-#include <set>
-
-TEST_SUITE_BEGIN("chunk_loader");
-
-namespace chunk_loader_test {
-
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
+SUITE(chunk_loader) {
 
 constexpr std::chrono::milliseconds kPatience(60'000);
 
@@ -58,8 +48,6 @@ std::vector<LeafLevel> placesOf(const std::vector<LoadedPart>& parts) {
     for (const LoadedPart& part : parts) { places.push_back(part.at); }
     return places;
 }
-
-}  // namespace
 
 TEST_CASE("what is wished for comes whole, the coarsest level before any finer one") {
     ChunkLoader loader(open(writtenSplit()), {});
@@ -189,4 +177,4 @@ TEST_CASE("a server that goes away in the middle is waited for: one line, and th
 }
 #endif
 
-}  // namespace chunk_loader_test
+}  // SUITE(chunk_loader)

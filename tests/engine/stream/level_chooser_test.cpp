@@ -1,21 +1,10 @@
 // What leaves of a streamed scene are to show: by size and place, within a budget, and steadily.
 #include "engine/stream/level_chooser.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
 #include <numbers>
-#include <random>
-#include <set>
 
-TEST_SUITE_BEGIN("level_chooser");
-
-namespace level_chooser_test {
-
-using namespace binosplat;
-
-namespace {
+SUITE(level_chooser) {
 
 constexpr std::uint32_t kNone = LevelChoices::kNone;
 
@@ -65,8 +54,6 @@ std::uint64_t splatsOf(const std::vector<LodLeaf>& leaves, const std::vector<std
     for (std::size_t l = 0; l < leaves.size(); ++l) { sum += levels[l] == kNone ? 0 : leaves[l].levels[levels[l]].splats.count; }
     return sum;
 }
-
-}  // namespace
 
 TEST_CASE("the coarsest level of every leaf comes first, the nearest in view before the others") {
     Chooser field(makeField(8));
@@ -207,4 +194,4 @@ TEST_CASE("leaves of odd shape, count and place are no trouble") {
     CHECK(Chooser({}).choose(eyeAt(glm::dvec3(0.0)), within(1000)).levels.empty());
 }
 
-}  // namespace level_chooser_test
+}  // SUITE(level_chooser)

@@ -3,21 +3,11 @@
 
 #include "engine/error.h"
 #include "tests/engine/stream/moving_frames.h"
+#include "tests/suite.h"
 
 #include <glm/gtc/packing.hpp>
 
-#include <doctest/doctest.h>
-
-#include <random>
-
-TEST_SUITE_BEGIN("scene_frames");
-
-namespace scene_frames_test {
-
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
+SUITE(scene_frames) {
 
 // As the device would read it.
 Scene unpacked(const SceneFrame& frame, const SceneTraits& traits) {
@@ -59,8 +49,6 @@ Scene withoutSh(Scene scene) {
     limitShDegree(scene, 0, notes);
     return scene;
 }
-
-}  // namespace
 
 TEST_CASE("what stayed as it was is one page in both frames, and differs nowhere") {
     const Scene scene = withoutSh(slidingAtelier(0));
@@ -174,4 +162,4 @@ TEST_CASE("splats in another order, or of another number, do not correspond") {
     CHECK_FALSE(correspond({}, {}, traits));
 }
 
-}  // namespace scene_frames_test
+}  // SUITE(scene_frames)

@@ -2,19 +2,11 @@
 #include "engine/stream/series_loader.h"
 
 #include "tests/engine/stream/moving_frames.h"
-
-#include <doctest/doctest.h>
+#include "tests/suite.h"
 
 #include <atomic>
 
-TEST_SUITE_BEGIN("series_loader");
-
-namespace series_loader_test {
-
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
+SUITE(series_loader) {
 
 constexpr std::size_t kScenes = 12;
 
@@ -38,8 +30,6 @@ void waitUntil(const Is& is) {
 void want(SeriesLoader& loader, const std::vector<std::size_t>& scenes) {
     waitUntil([&] { return loader.tryWant(scenes); });
 }
-
-}  // namespace
 
 TEST_CASE("with room for all every frame is read once, in order, and stays") {
     std::mutex mutex;
@@ -92,4 +82,4 @@ TEST_CASE("within a limit the next ones are there, and what is needed last makes
     }
 }
 
-}  // namespace series_loader_test
+}  // SUITE(series_loader)

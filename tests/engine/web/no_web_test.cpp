@@ -1,13 +1,9 @@
 // A build without network says so.
 #include "engine/web/web_files.h"
 #include "tests/engine/scene/ply_files.h"
+#include "tests/suite.h"
 
-TEST_SUITE_BEGIN("no_web");
-
-namespace no_web_test {
-
-using namespace binosplat;
-using namespace binosplat::test;
+SUITE(no_web) {
 
 TEST_CASE("a scene at an address names the build that reads it") {
     const Folder folder;
@@ -16,4 +12,4 @@ TEST_CASE("a scene at an address names the build that reads it") {
                          doctest::Contains("this build has no network"), Error);
 }
 
-}  // namespace no_web_test
+}  // SUITE(no_web)

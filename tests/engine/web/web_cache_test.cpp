@@ -1,15 +1,10 @@
 // What is kept on the disk: asked about, not fetched again; there when the server is gone; within its limit; and whole, whoever uses it.
 #include "tests/engine/web/web_runs.h"
+#include "tests/suite.h"
 
-TEST_SUITE_BEGIN("web_cache");
-
-namespace web_cache_test {
+SUITE(web_cache) {
 
 namespace fs = std::filesystem;
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
 
 const std::string kPly = makePly(45).bytes(), kOther = makePly(9).bytes();
 
@@ -30,8 +25,6 @@ fs::path noteOf(const Folder& folder) {
 }
 
 void setAge(const fs::path& file, int hours) { fs::last_write_time(file, fs::file_time_type::clock::now() - std::chrono::hours(hours)); }
-
-}  // namespace
 
 TEST_CASE("a file that has not changed is sent once, and one that has takes the place of the one that was kept") {
     const Folder folder;
@@ -182,4 +175,4 @@ TEST_CASE("several at once use one cache, even one in which nothing may stay") {
     }
 }
 
-}  // namespace web_cache_test
+}  // SUITE(web_cache)

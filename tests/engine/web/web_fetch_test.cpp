@@ -1,16 +1,8 @@
 // Servers that are busy, cut off, lie, lead elsewhere or vanish: the scene all the same, or one plain line and nothing left behind.
 #include "tests/engine/web/web_runs.h"
+#include "tests/suite.h"
 
-#include <random>
-
-TEST_SUITE_BEGIN("web_fetch");
-
-namespace web_fetch_test {
-
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
+SUITE(web_fetch) {
 
 const std::string kPly = makePly(45).bytes();
 
@@ -41,8 +33,6 @@ std::string errorOf(const WebAnswer& given, WebSettings (*settings)(const Folder
     CHECK(filesIn(folder.file("cache")).empty());
     return message.substr(std::min(message.size(), server.at("/a.ply: ").size()));
 }
-
-}  // namespace
 
 TEST_CASE("a server that is busy or cuts off is asked again") {
     const Folder folder;
@@ -267,4 +257,4 @@ TEST_CASE("who waits for a file may give up at any time") {
     CHECK(filesIn(folder.file("cache")).empty());
 }
 
-}  // namespace web_fetch_test
+}  // SUITE(web_fetch)

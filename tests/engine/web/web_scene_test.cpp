@@ -7,22 +7,14 @@
 #endif
 #include "engine/scene/address.h"
 #include "tests/engine/web/web_runs.h"
+#include "tests/suite.h"
 
-TEST_SUITE_BEGIN("web_scene");
-
-namespace web_scene_test {
-
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
+SUITE(web_scene) {
 
 std::vector<std::string> sorted(std::vector<std::string> names) {
     std::ranges::sort(names);
     return names;
 }
-
-}  // namespace
 
 TEST_CASE("an address begins with http or https; a name in its folder cannot lead out of it") {
     CHECK(isAddress("http://a/b.ply"));
@@ -140,4 +132,4 @@ TEST_CASE("of a streamed scene the files of the level that is read are fetched, 
 }
 #endif
 
-}  // namespace web_scene_test
+}  // SUITE(web_scene)

@@ -1,22 +1,13 @@
 // Somebody else's server, over TLS: whose certificate is trusted, and how many connections the files of a scene take.
 #include "tests/engine/scene/sog_scenes.h"
 #include "tests/engine/web/web_runs.h"
+#include "tests/suite.h"
 #include "tests/xr/simulated/installed.h"
 
-#include <array>
 #include <csignal>
 #include <cstdio>
-#include <optional>
-#include <set>
 
-TEST_SUITE_BEGIN("web_tls");
-
-namespace web_tls_test {
-
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
+SUITE(web_tls) {
 
 // A program that runs beside the test, for at most a minute.
 class Beside {
@@ -54,8 +45,6 @@ int freePort() {
     return std::stoi(address.substr(address.rfind(':') + 1));
 }
 
-}  // namespace
-
 TEST_CASE("a server is refused whose certificate is not valid; one with HTTP/2 sends all files of a scene over one connection") {
     if (!isInstalled("openssl", "openssl") || !isInstalled("nghttpd", "nghttp2-server")) { return; }
     const Folder folder;
@@ -85,4 +74,4 @@ TEST_CASE("a server is refused whose certificate is not valid; one with HTTP/2 s
     CHECK(connections.size() == 1);
 }
 
-}  // namespace web_tls_test
+}  // SUITE(web_tls)

@@ -1,6 +1,5 @@
 // docs/test_your_openxr_program.md as a stranger follows it: the folder of the simulated runtime built alone and installed, a program that
 // was not written for it run by the page's script, its frame log read and compared.
-#include <doctest/doctest.h>
 #include <sys/wait.h>
 
 #include <cstdlib>
@@ -8,20 +7,12 @@
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
-#include "tests/nightly.h"
+#include "tests/suite.h"
 #include "tests/xr/simulated/installed.h"
 #include "xr/simulated/compose/picture_file.h"
 
-TEST_SUITE_BEGIN("simulated_recipe");
-
-namespace simulated_recipe_test {
-
-using binosplat::test::nightly;
-
-namespace {
+SUITE(simulated_recipe) {
 
 namespace fs = std::filesystem;
 
@@ -95,8 +86,6 @@ Run compareRuns(const std::string& expected, const std::string& actual, const st
 }
 
 bool contains(const Run& run, const char* part) { return run.output.find(part) != std::string::npos; }
-
-}  // namespace
 
 TEST_CASE("the folder builds alone and installs a library that its manifest finds, where the page says" * nightly()) {
     REQUIRE(fs::exists(installedManifest()));
@@ -227,4 +216,4 @@ TEST_CASE("the tool that compares logs says what differs, within what it was tol
     }
 }
 
-}  // namespace simulated_recipe_test
+}  // SUITE(simulated_recipe)

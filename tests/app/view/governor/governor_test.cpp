@@ -1,22 +1,13 @@
 // Facts about holding the frame rate, on machines that are made up: what a frame costs is a function of time, budget and resolution.
 #include "app/view/governor/governor.h"
 #include "app/view/governor/splat_budget.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <functional>
-#include <vector>
 
-TEST_SUITE_BEGIN("governor");
-
-namespace governor_test {
-
-using namespace binosplat;
-
-namespace {
+SUITE(governor) {
 
 constexpr double kPeriodMs = 1000.0 / 90.0;
 const GovernedSettings kWish{0.22, 1.0}, kAll{1.0, 1.0};
@@ -117,8 +108,6 @@ void checkCalm(const Run& run, const std::vector<double>& upheavals_s, std::size
 Over constantly(double value) {
     return [=](double) { return value; };
 }
-
-}  // namespace
 
 TEST_CASE("off, the settings are the wearer's, whatever they cost, and so they are where the device has no times, which a message says") {
     const Run off({.quality = Quality::kOff, .seconds = 5.0, .ms = constantly(40.0), .fixed = 1.0});
@@ -371,4 +360,4 @@ TEST_CASE("a streamed scene has as many splats as frames have time for, between 
     CHECK(small.splats() == 1000);
 }
 
-}  // namespace governor_test
+}  // SUITE(governor)

@@ -3,21 +3,13 @@
 #include "engine/platform.h"
 #include "tests/app/view/panel/panel_sketch.h"
 #include "tests/run_program.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
 #include <fmt/format.h>
 
-#include <cmath>
-
-TEST_SUITE_BEGIN("letters");
-
-namespace letters_test {
+SUITE(letters) {
 
 namespace fs = std::filesystem;
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
 
 // Where the vector font is, if this machine has it.
 std::string vectorFont() {
@@ -53,8 +45,6 @@ std::vector<std::string> signsOf(PanelSketch& sketch, const std::string& word) {
     }
     return signs;
 }
-
-}  // namespace
 
 TEST_CASE("letters are half a degree high where the panel hangs, and Latin, Greek and Cyrillic are there") {
     REQUIRE_FALSE(vectorFont().empty());
@@ -244,4 +234,4 @@ TEST_CASE("a font is taken only if the tables it has lie within it") {
     CHECK_FALSE(isFont("ttcf" + number(0x00010000) + number(1) + number(0x7fffffff) + moved));
 }
 
-}  // namespace letters_test
+}  // SUITE(letters)

@@ -7,27 +7,17 @@
 #include "engine/platform.h"
 #include "tests/app/view/panel/panel_sketch.h"
 #include "tests/run_program.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
 #include <fmt/format.h>
 #include <imgui_internal.h>
 
-#include <cmath>
-
-TEST_SUITE_BEGIN("panel");
-
-namespace panel_test {
+SUITE(panel) {
 
 namespace fs = std::filesystem;
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
 
 using Page = PanelPage;
 constexpr std::array kPages{Page::kView, Page::kScenes, Page::kMethod, Page::kTime};
-
-}  // namespace
 
 TEST_CASE("on each page every widget lies on the panel, none on another, 1.5 degrees high at least, and what is used most twice that") {
     const double half_px = 0.5 * 1.5 * kPanelPx.x / 26.0;
@@ -390,4 +380,4 @@ TEST_CASE("the rates that the headset offers can be chosen, and left to it; wher
     for (const auto& [name, place] : sketch.draw().places) { CHECK(with.at(name) == place); }
 }
 
-}  // namespace panel_test
+}  // SUITE(panel)

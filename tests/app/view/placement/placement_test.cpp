@@ -7,18 +7,10 @@
 #include "app/view/settings/view_settings.h"
 #include "tests/app/options/parsed.h"
 #include "tests/run_program.h"
+#include "tests/suite.h"
 #include "xr/convert.h"
 
-#include <doctest/doctest.h>
-
-TEST_SUITE_BEGIN("placement");
-
-namespace placement_test {
-
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
+SUITE(placement) {
 
 constexpr double kPi = 3.14159265358979323846;
 
@@ -33,8 +25,6 @@ const Similarity kSome{glm::normalize(glm::dquat(0.9, 0.1, -0.3, 0.2)), {1.0, -2
 
 // A quarter turn about x, upwards.
 const glm::dquat kUpwards = glm::angleAxis(0.5 * kPi, glm::dvec3(1, 0, 0));
-
-}  // namespace
 
 TEST_CASE("OpenXR's axes become ours: up is -y, ahead is z, and back again without loss") {
     checkNear(xr::fromXr(XrVector3f{1.0f, 2.0f, 3.0f}), {1.0, -2.0, -3.0});
@@ -264,4 +254,4 @@ TEST_CASE("a config that places the scene in part, or by what is no number, is r
     }
 }
 
-}  // namespace placement_test
+}  // SUITE(placement)

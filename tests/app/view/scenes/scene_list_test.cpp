@@ -11,23 +11,17 @@
 #include "app/view/scenes/viewpoints.h"
 #include "engine/error.h"
 #include "tests/run_program.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
 
 #include <future>
 #include <thread>
 
-TEST_SUITE_BEGIN("scene_list");
-
-namespace scene_list_test {
+SUITE(scene_list) {
 
 namespace fs = std::filesystem;
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
 
 // A user of one's own, with scenes.
 struct Home : Workplace {
@@ -48,8 +42,6 @@ const SceneEntry& entryOf(const SceneList& list, const std::string& name) {
     REQUIRE(found != list.entries.end());
     return *found;
 }
-
-}  // namespace
 
 TEST_CASE("numbers in names count as numbers, capitals do not count, and every two names have an order") {
     const std::vector<std::string> ordered{"",    "2",       "10",        "a",          "A1", "a2",       "a02b",
@@ -313,4 +305,4 @@ TEST_CASE("the rate is that of displays with a new picture") {
     CHECK(met.metHz() == doctest::Approx(50.0));
 }
 
-}  // namespace scene_list_test
+}  // SUITE(scene_list)

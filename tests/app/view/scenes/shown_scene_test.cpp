@@ -13,26 +13,17 @@
 
 #ifdef BINOSPLAT_SOG
 #include "tests/engine/scene/sog_scenes.h"
+#include "tests/suite.h"
 #endif
 
-#include <doctest/doctest.h>
 #include <sys/stat.h>
 
-#include <algorithm>
-#include <cmath>
 #include <fstream>
-#include <set>
 #include <thread>
 
-TEST_SUITE_BEGIN("shown_scene");
-
-namespace shown_scene_test {
+SUITE(shown_scene) {
 
 namespace fs = std::filesystem;
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
 
 struct Shown : Gpu, Workplace {
     using Workplace::run, Workplace::write;
@@ -65,8 +56,6 @@ bool same(const Similarity& a, const Similarity& b) {
     return glm::length(a.position - b.position) < 1e-6 && std::abs(a.scale - b.scale) < 1e-6 &&
            std::abs(std::abs(glm::dot(a.orientation, b.orientation)) - 1.0) < 1e-6;
 }
-
-}  // namespace
 
 TEST_CASE_FIXTURE(Shown, "a file that is no scene gives one line, and what was shown stays") {
     ShownScene scenes(context(), options, log);
@@ -324,4 +313,4 @@ TEST_CASE_FIXTURE(Shown, "another method is drawn once its kernels are there, ma
     CHECK(drawsWithoutCompiling());
 }
 
-}  // namespace shown_scene_test
+}  // SUITE(shown_scene)

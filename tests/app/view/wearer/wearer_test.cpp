@@ -5,19 +5,11 @@
 #include "app/view/wearer/gaze_follower.h"
 #include "app/view/wearer/teleport.h"
 #include "app/view/wearer/wearer_controls.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
 #include <utility>
 
-TEST_SUITE_BEGIN("wearer");
-
-namespace wearer_test {
-
-using namespace binosplat;
-
-namespace {
+SUITE(wearer) {
 
 // A hand that points straight at a place of a panel, half a metre before it.
 xr::Hand pointingAt(const PanelInRoom& panel, const glm::dvec2& from_middle_m, bool clicks = false) {
@@ -113,8 +105,6 @@ double angleBetween(const glm::dvec3& a, const glm::dvec3& b) {
 const std::array<Pose, 2> kEyes{Pose{glm::angleAxis(glm::radians(-5.0), glm::dvec3(0, 1, 0)), {-0.03, 0.0, 0.0}},
                                 Pose{{1, 0, 0, 0}, {0.03, 0.0, 0.0}}};
 const glm::dvec3 kAside = glm::normalize(glm::dvec3(0.3, -0.2, 1.0));
-
-}  // namespace
 
 TEST_CASE("both hands point, and the one that clicked last is the pointer until the other one clicks or it misses") {
     Pointing pointing;
@@ -464,4 +454,4 @@ TEST_CASE("a blink changes nothing, a gaze that stays lost goes back to the lens
     CHECK(angleBetween(gazes[kRight]->direction, kAside) < 1e-6);
 }
 
-}  // namespace wearer_test
+}  // SUITE(wearer)

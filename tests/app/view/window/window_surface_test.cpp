@@ -1,17 +1,8 @@
 // Facts about what a window takes of what displays offer.
 #include "app/view/window/window_surface.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
-
-#include <vector>
-
-TEST_SUITE_BEGIN("window_surface");
-
-namespace window_surface_test {
-
-using namespace binosplat;
-
-namespace {
+SUITE(window_surface) {
 
 constexpr vk::Extent2D kWindow{1337, 720};
 
@@ -22,8 +13,6 @@ vk::SurfaceCapabilitiesKHR able(vk::Extent2D current, vk::Extent2D least, vk::Ex
     capabilities.maxImageExtent = most;
     return capabilities;
 }
-
-}  // namespace
 
 TEST_CASE("pictures are as large as the compositor says, or as the window where it does not") {
     CHECK(windowExtent(able({1300, 700}, {1, 1}, {4096, 4096}), kWindow) == vk::Extent2D(1300, 700));
@@ -60,4 +49,4 @@ TEST_CASE("a window is opaque where it can be") {
     CHECK(windowAlpha(Alpha::ePostMultiplied) == Alpha::ePostMultiplied);
 }
 
-}  // namespace window_surface_test
+}  // SUITE(window_surface)

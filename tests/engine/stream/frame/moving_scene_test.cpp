@@ -5,18 +5,11 @@
 #include "tests/engine/frame/frame_runs.h"
 #include "tests/engine/scene/ply_files.h"
 #include "tests/engine/stream/moving_frames.h"
-#include "tests/nightly.h"
+#include "tests/suite.h"
 
 #include <atomic>
 
-TEST_SUITE_BEGIN("moving_scene");
-
-namespace moving_scene_test {
-
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
+SUITE(moving_scene) {
 
 constexpr int kFrames = 6;
 constexpr double kRate = 10.0;
@@ -84,8 +77,6 @@ struct Sliding : Gpu {
 
     Folder folder;
 };
-
-}  // namespace
 
 TEST_CASE_FIXTURE(Sliding,
                   "each frame of a moving scene is, to the bit, what its file is; before the first and after the last it begins again") {
@@ -264,4 +255,4 @@ TEST_CASE_FIXTURE(Gpu, "frames under way have room for what changes, whether it 
     CHECK(shownBy(ahead) == shownBy(waited));
 }
 
-}  // namespace moving_scene_test
+}  // SUITE(moving_scene)

@@ -8,18 +8,12 @@
 #include "tests/run_program.h"
 #ifdef BINOSPLAT_WEB_TESTS
 #include "tests/engine/web/web_runs.h"
+#include "tests/suite.h"
 #endif
 
 #include <thread>
 
-TEST_SUITE_BEGIN("scene_stream");
-
-namespace scene_stream_test {
-
-using namespace binosplat;
-using namespace binosplat::test;
-
-namespace {
+SUITE(scene_stream) {
 
 constexpr std::uint64_t kSplats = 40'000;
 
@@ -77,8 +71,6 @@ struct Streamed : Gpu {
     std::array<Eye, 2> eyes = atelierEyes();
     FrameSettings full = inFull();
 };
-
-}  // namespace
 
 TEST_CASE_FIXTURE(Streamed, "with room for all of it a view shows what the whole scene shows; within a budget, the nearer the more") {
     const Image whole = pictureOf(loadScene(source));
@@ -229,4 +221,4 @@ TEST_CASE_FIXTURE(Streamed, "whatever a server does to a chunk, the coarser leve
 }
 #endif
 
-}  // namespace scene_stream_test
+}  // SUITE(scene_stream)

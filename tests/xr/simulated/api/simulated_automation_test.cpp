@@ -1,16 +1,9 @@
 // XR_EXT_conformance_automation on the simulated runtime, where a program's own test moves inputs, poses and profiles from inside, and
 // XR_EXT_eye_gaze_interaction: where the wearer looks, as the script says it, or such a test.
+#include "tests/suite.h"
 #include "tests/xr/simulated/api/simulated_fixture.h"
 
-#include <cmath>
-
-TEST_SUITE_BEGIN("simulated_automation");
-
-namespace simulated_automation_test {
-
-using namespace binosplat::test;
-
-namespace {
+SUITE(simulated_automation) {
 
 constexpr const char* kXbox = "/interaction_profiles/microsoft/xbox_controller";
 constexpr const char* kEyes = "/interaction_profiles/ext/eye_gaze_interaction";
@@ -125,8 +118,6 @@ XrBool32 supportsGaze(const std::string& script, const Extensions& extensions) {
     REQUIRE(xrGetSystemProperties(made.instance, made.system, &properties) == XR_SUCCESS);
     return eyes.supportsEyeGazeInteraction;
 }
-
-}  // namespace
 
 TEST_CASE_FIXTURE(AutomationFixture, "what is set is read after the next xrSyncActions, and the script goes on with the rest") {
     synchronize();
@@ -335,4 +326,4 @@ TEST_CASE("a program's own test moves the gaze from inside") {
     CHECK(setActive(made.session, made.path(kSimple), eyes, XR_TRUE) == XR_ERROR_PATH_UNSUPPORTED);
 }
 
-}  // namespace simulated_automation_test
+}  // SUITE(simulated_automation)

@@ -1,21 +1,11 @@
 // Extensions of the simulated runtime that need no graphics, in headless sessions and without a loader, and objects that end in every
 // order.
+#include "tests/suite.h"
 #include "tests/xr/simulated/api/simulated_direct.h"
 
-#include <algorithm>
-#include <cmath>
 #include <functional>
-#include <limits>
-#include <map>
-#include <set>
 
-TEST_SUITE_BEGIN("simulated_extensions");
-
-namespace simulated_extensions_test {
-
-using namespace binosplat::test;
-
-namespace {
+SUITE(simulated_extensions) {
 
 constexpr auto kError = XR_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
 constexpr auto kInfo = XR_DEBUG_UTILS_MESSAGE_SEVERITY_INFO_BIT_EXT;
@@ -151,8 +141,6 @@ struct Everything : HeadlessSession {
         if (!gone.contains("reference space") && !gone.contains("action space")) { locate(action_space, reference_space, kStart); }
     }
 };
-
-}  // namespace
 
 TEST_CASE("time is converted to CLOCK_MONOTONIC and back") {
     const HeadlessSession made(k1_0, {XR_KHR_CONVERT_TIMESPEC_TIME_EXTENSION_NAME});
@@ -509,4 +497,4 @@ TEST_CASE("objects end in every order, each once, and with their parents") {
     }
 }
 
-}  // namespace simulated_extensions_test
+}  // SUITE(simulated_extensions)

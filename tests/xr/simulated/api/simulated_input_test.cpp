@@ -1,14 +1,9 @@
 // Chapter 11 of OpenXR on the simulated runtime: action sets, actions, suggested bindings, what actions read from the script's controllers,
 // and haptics.
+#include "tests/suite.h"
 #include "tests/xr/simulated/api/simulated_fixture.h"
 
-TEST_SUITE_BEGIN("simulated_input");
-
-namespace simulated_input_test {
-
-using namespace binosplat::test;
-
-namespace {
+SUITE(simulated_input) {
 
 constexpr auto kBoolean = XR_ACTION_TYPE_BOOLEAN_INPUT;
 
@@ -54,8 +49,6 @@ struct InputFixture : SessionFixture {
 private:
     int shown = 2;
 };
-
-}  // namespace
 
 TEST_CASE_FIXTURE(InstanceFixture, "an action set has two names of its own, an action has two in its set, a type and known hands") {
     XrActionSet other_set = XR_NULL_HANDLE;
@@ -398,4 +391,4 @@ TEST_CASE_FIXTURE(SessionFixture, "suggested paths are converted to the action's
     }
 }
 
-}  // namespace simulated_input_test
+}  // SUITE(simulated_input)

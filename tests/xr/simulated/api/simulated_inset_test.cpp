@@ -1,18 +1,10 @@
 // Foveated insets (XR_VARJO_quad_views, and 1.1) on the simulated runtime: where they are, how large, and that of them the wearer sees.
+#include "tests/suite.h"
 #include "tests/xr/simulated/api/simulated_direct.h"
 #include "tests/xr/simulated/api/simulated_painter.h"
 #include "xr/simulated/compose/picture_file.h"
 
-#include <array>
-#include <cmath>
-
-TEST_SUITE_BEGIN("simulated_inset");
-
-namespace simulated_inset_test {
-
-using namespace binosplat::test;
-
-namespace {
+SUITE(simulated_inset) {
 
 constexpr auto kInset = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO_WITH_FOVEATED_INSET;
 const Extensions kQuad{XR_VARJO_QUAD_VIEWS_EXTENSION_NAME};
@@ -100,8 +92,6 @@ char colourAt(const simulated::RgbPicture& picture, std::uint32_t x, std::uint32
     const auto is = [&](int r, int g, int b) { return pixel[0] == r && pixel[1] == g && pixel[2] == b; };
     return is(255, 0, 0) ? 'r' : is(0, 255, 0) ? 'g' : is(0, 0, 255) ? 'b' : '?';
 }
-
-}  // namespace
 
 TEST_CASE("the inset is listed where the program may name it, one of 1.1 also of a headset of two views; the script may take it away") {
     using Types = std::vector<XrViewConfigurationType>;
@@ -225,4 +215,4 @@ TEST_CASE("no lens hides anything of an inset") {
     CHECK(get(kStereo, 2) == XR_ERROR_VALIDATION_FAILURE);
 }
 
-}  // namespace simulated_inset_test
+}  // SUITE(simulated_inset)

@@ -1,22 +1,15 @@
 // Chapters 4 to 6 of OpenXR on the simulated runtime, and XR_KHR_vulkan_enable2: the library, instances, systems, view configurations,
 // paths, names of values, Vulkan's instances and devices.
+#include "tests/suite.h"
 #include "tests/xr/simulated/api/simulated_direct.h"
 
 #include <unistd.h>
 
-#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
-#include <set>
 
-TEST_SUITE_BEGIN("simulated_instance");
-
-namespace simulated_instance_test {
-
-using namespace binosplat::test;
-
-namespace {
+SUITE(simulated_instance) {
 
 // What is said on standard error, with explanations on.
 template <class Body>
@@ -43,8 +36,6 @@ XrResult tryScript(const std::string& script, const Extensions& extensions = {})
     const Headset headset(script);
     return tryInstance(instanceInfo(extensions));
 }
-
-}  // namespace
 
 TEST_CASE("the library shows one function, which negotiates version 1, and 1.1 or what its loader can do with") {
     const Direct runtime;
@@ -443,4 +434,4 @@ TEST_CASE("the older extension has functions of its own, and needs no extensions
     checkArguments([&](XrInstance of, auto* place) { return getRequirements(of, 1, place); }, made.instance, &requirements);
 }
 
-}  // namespace simulated_instance_test
+}  // SUITE(simulated_instance)

@@ -1,17 +1,10 @@
 // Section 10.6 of OpenXR on the simulated runtime: the layers of xrEndFrame, also of XR_KHR_composition_layer_cylinder, _equirect2 and
 // _cube, and what of them reaches the wearer's eyes and the log.
+#include "tests/suite.h"
 #include "tests/xr/simulated/api/simulated_painter.h"
 #include "xr/simulated/compose/picture_file.h"
 
-#include <cmath>
-
-TEST_SUITE_BEGIN("simulated_layer");
-
-namespace simulated_layer_test {
-
-using namespace binosplat::test;
-
-namespace {
+SUITE(simulated_layer) {
 
 using Json = nlohmann::json;
 using Texel = std::array<std::uint8_t, 4>;
@@ -84,8 +77,6 @@ struct SurroundFixture : SessionFixture {
         return {both.bytes[i], both.bytes[i + 1], both.bytes[i + 2], 255};
     }
 };
-
-}  // namespace
 
 TEST_CASE_FIXTURE(FlatFixture, "layers are of a known type, some eye's, of poses of length 1, and as many as the system says") {
     const auto showQuad = [&] { return show(&quad); };
@@ -269,4 +260,4 @@ TEST_CASE("without their extensions these layers are none, and there are no cube
     CHECK(xrCreateSwapchain(plain.session, &info, &swapchain) == XR_ERROR_FEATURE_UNSUPPORTED);
 }
 
-}  // namespace simulated_layer_test
+}  // SUITE(simulated_layer)

@@ -1,18 +1,10 @@
 // Every input and output of every interaction profile on the simulated runtime, moved by XR_EXT_conformance_automation and read back, and
 // what may be bound with which version and extensions. There is no loader here; sessions are headless.
+#include "tests/suite.h"
 #include "tests/xr/simulated/api/simulated_direct.h"
 #include "xr/simulated/api/profiles.h"
 
-#include <cmath>
-#include <set>
-
-TEST_SUITE_BEGIN("simulated_profiles");
-
-namespace simulated_profiles_test {
-
-using namespace binosplat::test;
-
-namespace {
+SUITE(simulated_profiles) {
 
 using simulated::Profile;
 
@@ -142,8 +134,6 @@ struct Binding {
     bool of_1_0 = false, of_1_1 = true;
     XrActionType type = XR_ACTION_TYPE_BOOLEAN_INPUT;
 };
-
-}  // namespace
 
 TEST_CASE("every input of every profile is read as it is moved, each by itself, every pose where it is put, while its device is there") {
     for (const Profile& profile : simulated::listProfiles()) {
@@ -328,4 +318,4 @@ TEST_CASE("what a path depends on is read as the registry writes it: + is and, a
     CHECK(simulated::Enabled{true, {}}.meets("A+C,XR_VERSION_1_1"));
 }
 
-}  // namespace simulated_profiles_test
+}  // SUITE(simulated_profiles)

@@ -1,29 +1,22 @@
 // Programs that were not written for the simulated runtime: openxr_runtime_list and, of Khronos, hello_xr. What these do and see on it,
 // also where it is lost, and that runs in lock-step repeat bit for bit. BINOSPLAT_WRITE_GOLDENS=1 makes the golden picture anew.
 #include "tests/shared_data.h"
+#include "tests/suite.h"
 #include "tests/xr/simulated/api/simulated_fixture.h"
 #include "tests/xr/simulated/installed.h"
 #include "xr/simulated/compose/picture_file.h"
 
 #include <sys/wait.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
 
-TEST_SUITE_BEGIN("simulated_runtime");
+SUITE(simulated_runtime) {
 
-namespace simulated_runtime_test {
-
-using namespace binosplat::test;
 using simulated::kLeft;
 using simulated::kRight;
 using simulated::RgbPicture;
-
-namespace {
 
 using Json = nlohmann::json;
 
@@ -120,8 +113,6 @@ glm::dvec2 centreOfBlue(const RgbPicture& picture) {
     REQUIRE(count > 0.0);
     return sum / count;
 }
-
-}  // namespace
 
 TEST_CASE("openxr_runtime_list finds it") {
     if (!isInstalled("openxr_runtime_list", "libopenxr-utils")) { return; }
@@ -279,4 +270,4 @@ TEST_CASE("a cube ahead has its disparity and is upright, and controllers are se
     for (std::size_t i = 0; i < empty.bytes.size(); ++i) { REQUIRE(empty.bytes[i] == empty.bytes[i % 3]); }
 }
 
-}  // namespace simulated_runtime_test
+}  // SUITE(simulated_runtime)

@@ -1,19 +1,12 @@
 // Chapter 9 and section 10.4 of OpenXR on the simulated runtime: the life of a session, its frame loop, the pace of its frames by script,
 // how either ends early, and sessions without graphics (XR_MND_headless; there is no loader then).
+#include "tests/suite.h"
 #include "tests/xr/simulated/api/simulated_direct.h"
 
-#include <algorithm>
 #include <atomic>
-#include <set>
 #include <thread>
 
-TEST_SUITE_BEGIN("simulated_session");
-
-namespace simulated_session_test {
-
-using namespace binosplat::test;
-
-namespace {
+SUITE(simulated_session) {
 
 using Json = nlohmann::json;
 
@@ -56,8 +49,6 @@ XrResult failureOf(const SessionFixture& made) {
     }
     return result;
 }
-
-}  // namespace
 
 TEST_CASE_FIXTURE(VulkanFixture, "a session wants a graphics binding and a system; its objects and events end with it") {
     XrGraphicsBindingVulkan2KHR graphics = binding(), second = graphics;
@@ -464,4 +455,4 @@ TEST_CASE("a headless session begins whatever view configuration it names, and e
     }
 }
 
-}  // namespace simulated_session_test
+}  // SUITE(simulated_session)

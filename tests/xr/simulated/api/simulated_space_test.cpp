@@ -1,17 +1,9 @@
 // Chapter 7 and section 10.3 of OpenXR on the simulated runtime: spaces, views and the visibility mask. What Debian's loader, of 1.0, does
 // not know is asked without it, in headless sessions.
+#include "tests/suite.h"
 #include "tests/xr/simulated/api/simulated_direct.h"
 
-#include <algorithm>
-#include <cmath>
-
-TEST_SUITE_BEGIN("simulated_space");
-
-namespace simulated_space_test {
-
-using namespace binosplat::test;
-
-namespace {
+SUITE(simulated_space) {
 
 constexpr auto kFloor = XR_REFERENCE_SPACE_TYPE_LOCAL_FLOOR;
 constexpr auto kHidden = XR_VISIBILITY_MASK_TYPE_HIDDEN_TRIANGLE_MESH_KHR;
@@ -42,8 +34,6 @@ struct Mask {
     float left() const { return std::ranges::min(vertices, {}, &XrVector2f::x).x; }
     float right() const { return std::ranges::max(vertices, {}, &XrVector2f::x).x; }
 };
-
-}  // namespace
 
 TEST_CASE_FIXTURE(SessionFixture, "reference spaces are VIEW, LOCAL and STAGE, each at a pose; the stage alone has bounds") {
     const auto types = checkList<XrReferenceSpaceType>([&](auto... step) { return xrEnumerateReferenceSpaces(session, step...); });
@@ -271,4 +261,4 @@ TEST_CASE("spaces are located all at once, as one by one") {
     checkArguments(locateSpaces, made.session, &info, &locations);
 }
 
-}  // namespace simulated_space_test
+}  // SUITE(simulated_space)

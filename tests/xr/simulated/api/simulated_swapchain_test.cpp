@@ -1,16 +1,10 @@
 // Section 10.1 of OpenXR on the simulated runtime: swapchains, and the layouts in which XR_KHR_vulkan_enable2 hands their images over.
+#include "tests/suite.h"
 #include "tests/xr/simulated/api/simulated_painter.h"
 
-#include <set>
 #include <string_view>
 
-TEST_SUITE_BEGIN("simulated_swapchain");
-
-namespace simulated_swapchain_test {
-
-using namespace binosplat::test;
-
-namespace {
+SUITE(simulated_swapchain) {
 
 constexpr XrSwapchainUsageFlags kWritten = XR_SWAPCHAIN_USAGE_UNORDERED_ACCESS_BIT, kMutable = XR_SWAPCHAIN_USAGE_MUTABLE_FORMAT_BIT;
 constexpr XrSwapchainImageWaitInfo kWait{XR_TYPE_SWAPCHAIN_IMAGE_WAIT_INFO, nullptr, XR_INFINITE_DURATION};
@@ -51,8 +45,6 @@ std::vector<std::uint32_t> turnsOf(const std::string& images, int times) {
     }
     return found;
 }
-
-}  // namespace
 
 TEST_CASE_FIXTURE(SessionFixture, "formats are enumerated, sRGB first, and a swapchain is refused for what it cannot be") {
     const auto formats = checkList<std::int64_t>([&](auto... step) { return xrEnumerateSwapchainFormats(session, step...); });
@@ -244,4 +236,4 @@ TEST_CASE("images come in as many, and in the order, as the script says") {
     CHECK(in_turn < 30);
 }
 
-}  // namespace simulated_swapchain_test
+}  // SUITE(simulated_swapchain)

@@ -1,4 +1,5 @@
 // The simulated runtime called from many threads at once: every function may be, except for the handles that one of them destroys.
+#include "tests/suite.h"
 #include "tests/xr/simulated/api/simulated_fixture.h"
 
 #include <atomic>
@@ -10,13 +11,7 @@
 #include <queue>
 #include <thread>
 
-TEST_SUITE_BEGIN("simulated_threads");
-
-namespace simulated_threads_test {
-
-using namespace binosplat::test;
-
-namespace {
+SUITE(simulated_threads) {
 
 constexpr int kThreads = 8, kRounds = 25;
 
@@ -39,8 +34,6 @@ void inThreads(int threads, const std::function<void(int)>& work) {
         });
     }
 }
-
-}  // namespace
 
 TEST_CASE_FIXTURE(VulkanFixture, "of many threads that make a session one gets it, and a path is one number for all") {
     const XrGraphicsBindingVulkan2KHR graphics = binding();
@@ -175,4 +168,4 @@ TEST_CASE_FIXTURE(SessionFixture,
     CHECK(failures.count == 0);
 }
 
-}  // namespace simulated_threads_test
+}  // SUITE(simulated_threads)

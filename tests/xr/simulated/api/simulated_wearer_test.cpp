@@ -1,22 +1,15 @@
 // Facts about the way from an application's swapchain images through the runtime to the wearer's eyes, pixel by pixel.
+#include "tests/suite.h"
 #include "tests/xr/simulated/api/simulated_painter.h"
 #include "xr/simulated/compose/compose.h"
 #include "xr/simulated/compose/picture_file.h"
 
 #include <glm/gtc/packing.hpp>
 
-#include <cmath>
-#include <set>
+SUITE(simulated_wearer) {
 
-TEST_SUITE_BEGIN("simulated_wearer");
-
-namespace simulated_wearer_test {
-
-using namespace binosplat::test;
 using simulated::kLeft;
 using simulated::kRight;
-
-namespace {
 
 using Bytes4 = std::array<std::uint8_t, 4>;
 using Halves4 = std::array<std::uint16_t, 4>;
@@ -64,8 +57,6 @@ Rgb at(const simulated::RgbPicture& both, simulated::Side side, std::uint32_t x,
     const std::size_t i = 3 * (std::size_t{y} * both.size_px.x + x + side * both.size_px.x / 2);
     return {both.bytes[i], both.bytes[i + 1], both.bytes[i + 2]};
 }
-
-}  // namespace
 
 TEST_CASE_FIXTURE(Wearer, "every format comes through, encoded as its format says, halves as light") {
     const std::vector<Bytes4> texels{{200, 100, 50, 255}, {1, 2, 3, 255}, {0, 128, 255, 0}, {77, 88, 99, 128}};
@@ -179,4 +170,4 @@ TEST_CASE("a picture drawn for another pose is turned to where it belongs") {
     CHECK(at(seen, kLeft, 3, 1)[0] == 0);
 }
 
-}  // namespace simulated_wearer_test
+}  // SUITE(simulated_wearer)

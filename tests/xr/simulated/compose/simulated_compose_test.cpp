@@ -1,22 +1,17 @@
 // Facts about what the simulated wearer sees: pixels and blending derived by hand.
+#include "tests/suite.h"
 #include "tests/xr/simulated/folder.h"
 #include "xr/simulated/compose/compose.h"
 #include "xr/simulated/compose/picture_file.h"
 
-#include <doctest/doctest.h>
 #include <glm/gtc/packing.hpp>
 
-#include <cmath>
 #include <cstring>
 #include <stdexcept>
 
-TEST_SUITE_BEGIN("simulated_compose");
-
-namespace simulated_compose_test {
+SUITE(simulated_compose) {
 
 using namespace simulated;
-
-namespace {
 
 const double kEighth = std::atan(1.0);
 const Fov kSquareFov{-kEighth, kEighth, kEighth, -kEighth};  // tangents from -1 to 1
@@ -97,8 +92,6 @@ Rgb lookAt(const Layer& layer, double yaw_rad, double pitch_rad, const glm::dvec
     eye.stage_from_eye = {glm::angleAxis(yaw_rad, glm::dvec3(0, 1, 0)) * glm::angleAxis(pitch_rad, glm::dvec3(1, 0, 0)), place};
     return at(compose(eye, {layer}), 32, 32);
 }
-
-}  // namespace
 
 TEST_CASE("every sRGB byte comes back") {
     for (int byte = 0; byte < 256; ++byte) { CHECK(encoded(decoded(byte)) == byte); }
@@ -378,4 +371,4 @@ TEST_CASE("the room shows as far as alpha lets it or is added") {
     CHECK(seen({quad(green, {0, 0, -2}, {9, 9}), blended(quad(blue, {0, 0, -1}, {9, 9}), true)}, room) == Rgb{0, 188, 188});
 }
 
-}  // namespace simulated_compose_test
+}  // SUITE(simulated_compose)

@@ -1,23 +1,16 @@
 // Facts about the simulated runtime's log of frames.
+#include "tests/suite.h"
 #include "tests/xr/simulated/folder.h"
 #include "xr/simulated/compose/old_output.h"
 #include "xr/simulated/log/frame_log.h"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
-#include <vector>
 
-TEST_SUITE_BEGIN("simulated_log");
-
-namespace simulated_log_test {
+SUITE(simulated_log) {
 
 using namespace simulated;
 using Json = nlohmann::json;
-
-namespace {
 
 // As an earlier run left it.
 std::string frameLine(const std::string& picture) {
@@ -25,8 +18,6 @@ std::string frameLine(const std::string& picture) {
     record.picture = picture;
     return makeFrameLine(record) + "\n";
 }
-
-}  // namespace
 
 TEST_CASE("a frame is one line of JSON, whose numbers read back as they were") {
     FrameRecord record;
@@ -69,8 +60,6 @@ TEST_CASE("lines are there before the log is closed") {
     CHECK(std::filesystem::file_size(path) > 0);
 }
 
-namespace {
-
 namespace fs = std::filesystem;
 
 // A folder that an earlier run wrote to, among others.
@@ -92,8 +81,6 @@ struct UsedFolder : Folder {
         CHECK(names() == before);
     }
 };
-
-}  // namespace
 
 TEST_CASE("a folder is emptied of what an earlier run's log names and of nothing else") {
     const std::set<std::string> others{"frame_12.png",      "frame_00000a.png", "frame_000000.jpg", "my_frame_000000.png",
@@ -165,4 +152,4 @@ TEST_CASE("a run's files do not replace others") {
     }
 }
 
-}  // namespace simulated_log_test
+}  // SUITE(simulated_log)

@@ -1,19 +1,14 @@
 // Facts about scripts with mistakes: each is named with its file and line, and nothing crashes.
+#include "tests/suite.h"
 #include "tests/xr/simulated/folder.h"
 #include "xr/simulated/script/script.h"
-
-#include <doctest/doctest.h>
 
 #include <initializer_list>
 #include <utility>
 
-TEST_SUITE_BEGIN("simulated_script_errors");
-
-namespace simulated_script_errors_test {
+SUITE(simulated_script_errors) {
 
 using namespace simulated;
-
-namespace {
 
 std::string messageOf(const std::string& text, const std::string& name = "a.script") {
     try {
@@ -36,10 +31,10 @@ void refuseAll(std::initializer_list<std::pair<std::string, std::string>> mistak
 
 struct ScriptFolder : Folder {
     [[nodiscard]] std::string messageOf(const std::string& text) const {
-        return simulated_script_errors_test::messageOf(text, (path / "a.script").string());
+        return simulated_script_errors_suite::messageOf(text, (path / "a.script").string());
     }
     void refuses(const std::string& text, const std::string& part) const {
-        simulated_script_errors_test::refuses(text, part, (path / "a.script").string());
+        simulated_script_errors_suite::refuses(text, part, (path / "a.script").string());
     }
     // A file with this text, as the script's line names it.
     void refusesFile(const std::string& line, const std::string& file, const std::string& text, const std::string& part) const {
@@ -74,8 +69,6 @@ std::size_t countRefused(const Texts& texts) {
     }
     return refused;
 }
-
-}  // namespace
 
 TEST_CASE("what stands on no line, or too little or too much of it, is said with the line") {
     refuseAll({{"rate 90\n\n# so\nhed 0 position 0 0 0", "a.script:4: hed is not a command, must be one of: aim, at, axis"},
@@ -316,4 +309,4 @@ TEST_CASE("headsets and recordings cut off anywhere are read or refused") {
     }
 }
 
-}  // namespace simulated_script_errors_test
+}  // SUITE(simulated_script_errors)

@@ -1,23 +1,15 @@
 // Facts about the simulated headset's scripts: what they say at a time.
 #include "tests/shared_data.h"
+#include "tests/suite.h"
 #include "tests/xr/simulated/folder.h"
 #include "xr/simulated/extensions.h"
 #include "xr/simulated/script/script.h"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
 #include <numbers>
 
-TEST_SUITE_BEGIN("simulated_script");
-
-namespace simulated_script_test {
+SUITE(simulated_script) {
 
 using namespace simulated;
-
-namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 const double kHalfRoot = std::sqrt(0.5);
@@ -47,8 +39,6 @@ std::string textOf(const std::string& file) {
     std::ifstream stream(BINOSPLAT_SOURCE_DIR + ("/" + file));
     return {std::istreambuf_iterator<char>(stream), {}};
 }
-
-}  // namespace
 
 TEST_CASE("an empty script is the resting headset; comments, blanks and carriage returns do not count") {
     const Script script = parse("");
@@ -369,4 +359,4 @@ TEST_CASE("the documented example is the file, and every command and extension i
     }
 }
 
-}  // namespace simulated_script_test
+}  // SUITE(simulated_script)
