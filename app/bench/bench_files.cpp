@@ -48,6 +48,7 @@ Json fieldsOf(const BenchResult& r) {
             {"height", r.size_px.y},
             {"method", r.method},
             {"mode", modeNameOf(r)},
+            {"resolution", r.resolution},
             {"frames", r.frames},
             {"gpu_total_ms", r.total_ms},
             {"gpu_total_least_ms", r.least_ms},

@@ -11,7 +11,7 @@ namespace {
 
 bool isMethodKey(const std::string& key) {
     const OptionRow<RunOptions>* row = findRunRow(key);
-    return key == "name" || (row != nullptr && (row->text.commands & kMethods) != 0);
+    return key == "name" || key == "resolution" || (row != nullptr && (row->text.commands & kMethods) != 0);
 }
 
 // A method under construction: its name so far, and one value for each key.
@@ -27,7 +27,7 @@ std::vector<Combination> extend(const std::vector<Combination>& combinations, co
         for (const std::string& item : setting.items) {
             Combination& one = extended.emplace_back(combination);
             one.settings[key] = Setting{setting.origin, {item}};
-            if (setting.items.size() > 1) { one.name += fmt::format(" {}={}", key, item); }
+            if (setting.items.size() > 1) { one.name += key == "resolution" ? "@" + item : fmt::format(" {}={}", key, item); }
         }
     }
     return extended;
@@ -44,7 +44,10 @@ std::vector<BenchMethod> readMethods(const SettingsTable& table, const RunOption
         if (key != "name") { combinations = extend(combinations, key, setting); }
     }
     std::vector<BenchMethod> methods;
-    for (const Combination& one : combinations) { methods.push_back({one.name, runOptions(one.settings, base).stereo}); }
+    for (Combination& one : combinations) {
+        const auto resolution = one.settings.extract("resolution");
+        methods.push_back({one.name, runOptions(one.settings, base).stereo, resolution ? readNumber(resolution.mapped(), 0.1, 1.0) : 1.0});
+    }
     return methods;
 }
 

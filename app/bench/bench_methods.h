@@ -1,4 +1,4 @@
-// The methods that a bench compares: each a mode with settings of its own.
+// The methods that a bench compares: each a mode with settings of its own, in pictures of the full size or of less.
 #pragma once
 
 #include "app/options/options.h"
@@ -11,11 +11,16 @@ namespace binosplat {
 struct BenchMethod {
     std::string name;
     StereoOptions stereo;
+    double resolution = 1.0;  // of width and height; scores are those of the pictures scaled up, as a compositor does
+
+    // True if both eyes are as two full renders have them.
+    [[nodiscard]] bool isExact() const { return rendersBothInFull(stereo.mode) && resolution == 1.0; }
 };
 
 // One [[methods]] table: name, mode, and any of depth, order, resampling, per-eye, margin, budget, gap-px, center-roi, edge-bounds,
-// edge-samples, hole-error, newcomer-error and move-cost. Missing keys are as in `base`. A key with an array stands for a method per entry,
-// several such keys for every combination, each named "name key=value ...". Throws Error with file and line.
+// edge-samples, hole-error, newcomer-error and move-cost, and resolution. Missing keys are as in `base`. A key with an array stands for a
+// method per entry, several such keys for every combination, each named "name key=value ...", or "name@0.6" by its resolution. Throws Error
+// with file and line.
 std::vector<BenchMethod> readMethods(const SettingsTable& table, const RunOptions& base);
 
 // A mode with the settings of `base`, named as the mode.

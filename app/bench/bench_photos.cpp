@@ -163,17 +163,17 @@ void benchPhotos(const BenchOptions& options, const BenchPlan& plan) {
             const FileCamera& camera = cameras[i * options.every];
             const Image photo = readPicture(photos[i]);
             const Cameras eyes = besidePhoto(resize(camera.eye, photo.size_px), eye_distance, affiliated);
-            const Image full = frames.render(eyes, options.run.camera, shared.stereo).frame->readPicture(affiliated);
+            const Image full = frames.render(eyes, options.run.camera, shared).readPicture(affiliated);
             for (const BenchMethod& method : plan.methods) {
                 if (method.stereo.mode == Mode::kMono) { continue; }
                 for (std::uint32_t warm_up = 0; i == 0 && warm_up < plan.warm_up; ++warm_up) {
-                    frames.render(eyes, options.run.camera, method.stereo);
+                    frames.render(eyes, options.run.camera, method);
                 }
-                const auto [result, frame] = frames.render(eyes, options.run.camera, method.stereo);
-                const Image picture = frame->readPicture(affiliated);
+                const MethodFrames::Rendered rendered = frames.render(eyes, options.run.camera, method);
+                const Image picture = rendered.readPicture(affiliated);
                 const PhotoScores scores = compareWithPhoto(picture, photo, plan.lpips ? &*plan.lpips : nullptr);
-                rows.push_back({nameIn(plan, source), camera.name, method.name, method.stereo.mode, result.gpu_total_ms, scores.psnr_db,
-                                scores.ssim, compare(picture, full).mean_square, scores.lpips});
+                rows.push_back({nameIn(plan, source), camera.name, method.name, method.stereo.mode, rendered.result.gpu_total_ms,
+                                scores.psnr_db, scores.ssim, compare(picture, full).mean_square, scores.lpips});
             }
             progress.show(static_cast<double>(i + 1) / static_cast<double>(photos.size()));
         }

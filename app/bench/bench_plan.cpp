@@ -92,7 +92,8 @@ BenchSeries readSeries(const SettingsTable& table, glm::uvec2 default_size_px) {
 }
 
 BenchView readView(const SettingsTable& table, const RunOptions& base) {
-    refuseUnknown(table, {"name", "scene", "eye", "look", "up", "fov-x", "near", "ipd", "metres-per-unit", "flatten", "antialiased"});
+    refuseUnknown(table,
+                  {"name", "scene", "size", "eye", "look", "up", "fov-x", "near", "ipd", "metres-per-unit", "flatten", "antialiased"});
     Settings settings = table.settings;
     BenchView view;
     if (const auto name = settings.extract("name")) { view.name = readText(name.mapped()); }
@@ -106,7 +107,8 @@ BenchView readView(const SettingsTable& table, const RunOptions& base) {
 void addReferences(BenchPlan& plan, const RunOptions& run) {
     std::vector<BenchMethod> methods;
     for (const Mode mode : {Mode::kTwoPass, Mode::kShared}) {
-        const auto there = std::ranges::find(plan.methods, mode, [](const BenchMethod& method) { return method.stereo.mode; });
+        const auto there = std::ranges::find_if(
+            plan.methods, [&](const BenchMethod& method) { return method.stereo.mode == mode && method.resolution == 1.0; });
         if (there == plan.methods.end()) { methods.push_back(plainMethod(mode, run)); }
     }
     plan.methods.insert(plan.methods.begin(), methods.begin(), methods.end());

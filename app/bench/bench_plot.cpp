@@ -38,7 +38,9 @@ std::vector<PlotPanel> errorPanels(const BenchRun& run, const char* y_label, std
         for (std::size_t i = begin; i < end; ++i) {
             const BenchResult& result = run.results[i];
             const std::optional<double> psnr_db = psnrDbOf(result);
-            if (result.mode && rendersBothInFull(*result.mode)) { panel.marks.push_back({result.method + " (no error)", result.total_ms}); }
+            if (result.mode && rendersBothInFull(*result.mode) && result.resolution == 1.0) {
+                panel.marks.push_back({result.method + " (no error)", result.total_ms});
+            }
             if (!psnr_db) { continue; }
             PlotLine& line = lineOf(panel, modeNameOf(result));
             line.joined = false;
@@ -91,7 +93,7 @@ std::vector<PlotPanel> scalingPanels(const BenchRun& run, const Group& group) {
         if (groupOf(result) != group) { continue; }
         const double x = against_splats ? static_cast<double>(result.splats) : pixelsOf(result);
         lineOf(totals, result.method).points.emplace_back(x, result.total_ms);
-        if (result.mode != Mode::kShared) { continue; }
+        if (result.mode != Mode::kShared || result.resolution < 1.0) { continue; }
         for (const auto& [name, ms] : byPass(result.pass_ms)) { lineOf(passes, name).points.emplace_back(x, ms); }
     }
     return {totals, passes};

@@ -40,6 +40,7 @@ BenchResult summarize(const Runner& runner, const BenchPoint& point) {
     result.backbone = point.scene.isGaussian3d() ? "3DGS" : "2DGS";
     result.size_px = point.cameras.middle.size_px;
     result.method = runner.method.name;
+    result.resolution = runner.method.resolution;
     result.dominant = runner.method.stereo.dominant;
     result.frames = static_cast<std::uint32_t>(result.frame_ms.size());
     for (const auto& [label, ms] : addUp(runner.last.gpu_ms)) {
@@ -84,7 +85,7 @@ FrameResult renderTwin(const BenchPoint& point) {
 Image renderFull(const StereoOptions& stereo, const BenchPoint& point, MethodFrames& frames) {
     BenchMethod shared = plainMethod(Mode::kShared, point.run);
     shared.stereo.order = stereo.order;
-    return frames.render(point.cameras, point.run.camera, shared.stereo, true).frame->readPicture(1 - shared.stereo.dominant);
+    return frames.render(point.cameras, point.run.camera, shared, true).readPicture(1 - shared.stereo.dominant);
 }
 
 // Measures memory and pictures of a method, before its frames are timed.
@@ -93,9 +94,9 @@ Runner prepare(const BenchMethod& method, const BenchPoint& point, const BenchPl
     runner.method = method;
     BenchResult& result = runner.result;
     result.mode = method.stereo.mode;
-    result.peak_gpu_bytes = frames.peakAlone(point.cameras, point.run.camera, method.stereo);
-    const auto [compared, frame] = frames.render(point.cameras, point.run.camera, method.stereo, true);
-    runner.compared = compared;
+    result.peak_gpu_bytes = frames.peakAlone(point.cameras, point.run.camera, method);
+    const MethodFrames::Rendered rendered = frames.render(point.cameras, point.run.camera, method, true);
+    runner.compared = rendered.result;
     const auto measure = [&](const Image& whole, const Image& picture, const Eye& eye, const std::optional<Gaze>& gaze,
                              std::span<const std::uint32_t> tile_kinds, std::span<const std::uint8_t> pixel_classes) {
         if (gaze) { result.seen = measureSeen(whole, picture, reference::findSharesThere(eye, {gaze->direction, gaze->clear_rad})); }
@@ -103,24 +104,40 @@ Runner prepare(const BenchMethod& method, const BenchPoint& point, const BenchPl
                                         {plan.ssim, plan.flip, eye.intrinsics.fx, plan.lpips ? &*plan.lpips : nullptr});
     };
     const std::array<std::optional<Gaze>, 2> gazes = gazesOf(point.cameras, method.stereo);
-    if (plan.psnr && reprojects(method.stereo.mode)) {
+    if (plan.psnr && (reprojects(method.stereo.mode) || (method.stereo.mode != Mode::kMono && method.resolution < 1.0))) {
         const auto affiliated = static_cast<std::size_t>(1 - method.stereo.dominant);
-        measure(full, frame->readPicture(static_cast<int>(affiliated)), point.cameras.eyes[affiliated], gazes[affiliated],
-                frame->readTileKinds(), frame->readPixelClasses());
-        if (!compared.counters.warped) { result.quality.resize(1); }  // both eyes were rendered
+        const bool has_origins = reprojects(method.stereo.mode) && method.resolution == 1.0;
+        measure(full, rendered.readPicture(static_cast<int>(affiliated)), point.cameras.eyes[affiliated], gazes[affiliated],
+                has_origins ? rendered.frame->readTileKinds() : std::vector<std::uint32_t>(),
+                has_origins ? rendered.frame->readPixelClasses() : std::vector<std::uint8_t>());
+        if (!has_origins || !rendered.result.counters.warped) { result.quality.resize(1); }
     } else if (plan.psnr && method.stereo.mode == Mode::kMono && method.stereo.half_periphery) {
-        const Image picture = frame->readPicture(0);
-        StereoOptions sharp = method.stereo;
-        sharp.half_periphery = false;
-        const Image own_full = frames.render(point.cameras, point.run.camera, sharp, true).frame->readPicture(0);
+        const Image picture = rendered.readPicture(0);
+        BenchMethod sharp = method;
+        sharp.stereo.half_periphery = false;
+        sharp.resolution = 1.0;
+        const Image own_full = frames.render(point.cameras, point.run.camera, sharp, true).readPicture(0);
         measure(own_full, picture, point.cameras.middle, gazes[0], {}, {});
         result.quality.resize(1);  // no pixel comes from another eye
     }
     return runner;
 }
 
+// The same eyes in smaller pictures.
+Cameras atResolution(const Cameras& cameras, double resolution) {
+    const auto smaller = [&](const Eye& eye) {
+        return resize(eye, glm::max(glm::uvec2(glm::round(resolution * glm::dvec2(eye.size_px))), glm::uvec2(1)));
+    };
+    Cameras all = cameras;
+    all.middle = smaller(cameras.middle);
+    for (Eye& eye : all.eyes) { eye = smaller(eye); }
+    return all;
+}
+
 // True if both can share buffers. A frame of `predicted` also remembers the settings of the previous one.
-bool needSame(const StereoOptions& a, const StereoOptions& b) {
+bool needSame(const BenchMethod& one, const BenchMethod& other) {
+    const StereoOptions &a = one.stereo, &b = other.stereo;
+    if (one.resolution != other.resolution) { return false; }
     if (a.mode != b.mode || a.half_periphery != b.half_periphery) { return false; }
     if (a.mode == Mode::kPredicted || hasPast(a.mode) || hasPast(b.mode)) { return a == b; }
     return !reprojects(a.mode) || (a.warp.center_rois == b.warp.center_rois &&
@@ -129,31 +146,33 @@ bool needSame(const StereoOptions& a, const StereoOptions& b) {
 
 }  // namespace
 
-StereoFrame& MethodFrames::frameFor(const StereoOptions& stereo) {
-    const auto there = std::ranges::find_if(frames_, [&](const Entry& entry) { return needSame(entry.first_asked, stereo); });
+StereoFrame& MethodFrames::frameFor(const BenchMethod& method) {
+    const auto there = std::ranges::find_if(frames_, [&](const Entry& entry) { return needSame(entry.first_asked, method); });
     if (there != frames_.end()) { return *there->frame; }
-    return *frames_.emplace_back(Entry{stereo, std::make_unique<StereoFrame>(context_, scene_)}).frame;
+    return *frames_.emplace_back(Entry{method, std::make_unique<StereoFrame>(context_, scene_)}).frame;
 }
 
-MethodFrames::Rendered MethodFrames::render(const Cameras& cameras, const CameraOptions& camera, const StereoOptions& stereo, bool compared,
-                                            bool keep_past) {
+MethodFrames::Rendered MethodFrames::render(const Cameras& full_cameras, const CameraOptions& camera, const BenchMethod& method,
+                                            bool compared, bool keep_past) {
     stopIfInterrupted();
+    const StereoOptions& stereo = method.stereo;
+    const Cameras cameras = atResolution(full_cameras, method.resolution);
     FrameSettings settings = frameSettings(camera, stereo, scene_.usualOrder());
     settings.gazes = gazesOf(cameras, stereo);
     settings.keep_classes = settings.square_boxes = compared;
     settings.keep_past = keep_past;
     settings.half_floats = !compared;  // as in the viewer
     settings.keep_depth = false;       // nobody reads it here, so a mode pays for it only if it needs it itself
-    StereoFrame& frame = frameFor(stereo);
+    StereoFrame& frame = frameFor(method);
     const std::span<const Eye> eyes = settings.mode == Mode::kMono ? std::span(&cameras.middle, 1) : std::span<const Eye>(cameras.eyes);
-    return {frame.render(eyes, settings), &frame};
+    return {frame.render(eyes, settings), &frame, full_cameras.middle.size_px};
 }
 
-std::uint64_t MethodFrames::peakAlone(const Cameras& cameras, const CameraOptions& camera, const StereoOptions& stereo) {
+std::uint64_t MethodFrames::peakAlone(const Cameras& cameras, const CameraOptions& camera, const BenchMethod& method) {
     frames_.clear();
     MemoryUse& use = context_.memoryUse();
     use.peak_bytes = use.current_bytes.load();
-    return render(cameras, camera, stereo).result.peak_gpu_bytes;
+    return render(cameras, camera, method).result.peak_gpu_bytes;
 }
 
 void warmUp(const Context& context, std::uint32_t rounds, const std::function<void()>& round) {
@@ -178,12 +197,12 @@ std::vector<BenchResult> benchPoint(const Context& context, const BenchPoint& po
         runners.push_back(prepare(method, point, plan, frames, full_by_order.at(method.stereo.order)));
     }
     warmUp(context, plan.warm_up, [&] {
-        for (Runner& runner : runners) { frames.render(point.cameras, camera, runner.method.stereo); }
+        for (Runner& runner : runners) { frames.render(point.cameras, camera, runner.method); }
     });
     Runner twin;
     twin.method.name = "float64 twin, one eye";
     for (std::uint32_t i = 0; i < plan.repeats; ++i) {
-        for (Runner& runner : runners) { runner.count(frames.render(point.cameras, camera, runner.method.stereo).result); }
+        for (Runner& runner : runners) { runner.count(frames.render(point.cameras, camera, runner.method).result); }
     }
     if (plan.twin && point.live == nullptr) {
         for (std::uint32_t i = 0; i < plan.repeats; ++i) { twin.count(renderTwin(point)); }

@@ -5,6 +5,7 @@
 #include "app/bench/bench_results.h"
 #include "app/options/camera_options.h"
 #include "engine/frame/stereo_frame.h"
+#include "engine/picture/resize.h"
 #include "engine/scene/scene.h"
 #include "engine/stream/live_scene.h"
 
@@ -24,23 +25,27 @@ public:
     struct Rendered {
         FrameResult result;
         StereoFrame* frame;
+        glm::uvec2 size_px;  // that is asked of a full picture
+
+        // At the full size.
+        [[nodiscard]] Image readPicture(int eye) const { return scaleUp(frame->readPicture(eye), size_px); }
     };
     // `compared`: for pictures that are read and compared, with the origin of each pixel
     // and counters that cost time; otherwise as in the viewer. `keep_past`: see
     // FrameSettings.
-    Rendered render(const Cameras& cameras, const CameraOptions& camera, const StereoOptions& stereo, bool compared = false,
+    Rendered render(const Cameras& full_cameras, const CameraOptions& camera, const BenchMethod& method, bool compared = false,
                     bool keep_past = false);
 
     // The program's peak memory, in bytes, while it holds only this method's buffers, as in the viewer. Frees the buffers of all other
     // methods.
-    std::uint64_t peakAlone(const Cameras& cameras, const CameraOptions& camera, const StereoOptions& stereo);
+    std::uint64_t peakAlone(const Cameras& cameras, const CameraOptions& camera, const BenchMethod& method);
 
 private:
     struct Entry {
-        StereoOptions first_asked;
+        BenchMethod first_asked;
         std::unique_ptr<StereoFrame> frame;
     };
-    StereoFrame& frameFor(const StereoOptions& stereo);
+    StereoFrame& frameFor(const BenchMethod& method);
 
     const Context& context_;
     const GpuScene& scene_;

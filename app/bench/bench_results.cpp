@@ -14,8 +14,8 @@ namespace binosplat {
 namespace {
 
 const BenchResult* findMode(const std::vector<BenchResult>& results, const BenchResult& like, std::optional<Mode> mode) {
-    const auto found =
-        std::ranges::find_if(results, [&](const BenchResult& other) { return other.mode == mode && samePoint(other, like); });
+    const auto found = std::ranges::find_if(
+        results, [&](const BenchResult& other) { return other.mode == mode && other.resolution == 1.0 && samePoint(other, like); });
     return found == results.end() ? nullptr : &*found;
 }
 
@@ -41,8 +41,8 @@ std::optional<double> moveCost(const BenchResult& predicted, const BenchResult* 
 bool isPair(const BenchResult& result) { return result.mode && result.mode != Mode::kMono; }
 
 std::optional<double> meanSquareOf(const BenchResult& result) {
-    if (result.mode && rendersBothInFull(*result.mode)) { return 0.0; }
     const OriginScores* all = scoresOf(result, "all");
+    if (all == nullptr && result.resolution == 1.0 && result.mode && rendersBothInFull(*result.mode)) { return 0.0; }
     return isPair(result) && all != nullptr ? std::optional(all->mean_square) : std::nullopt;
 }
 

@@ -25,6 +25,7 @@ inline constexpr const char* kOrigins[] = {"all", "reprojected", "interpolated",
 struct BenchResult {
     std::string series, scene, view, headset, method;
     std::optional<Mode> mode;  // empty: the twin
+    double resolution = 1.0;   // see BenchMethod
     Side dominant = kLeft;
     std::string backbone;  // what the splats are drawn as: 2DGS or 3DGS
     std::uint64_t splats = 0;

@@ -2,7 +2,7 @@
 #include "app/bench/motion_point.h"
 
 #include "engine/picture/metrics.h"
-#include "engine/picture/pair_metrics.h"
+#include "engine/picture/visible_errors.h"
 
 #include <algorithm>
 #include <cmath>
@@ -90,14 +90,14 @@ MotionPoint::MotionPoint(const Context& context, const GpuScene& scene, const Ru
 std::vector<FrameResult> MotionPoint::time(const Cameras& cameras) {
     std::vector<FrameResult> results;
     for (const MethodHistory& sequence : sequences_) {
-        results.push_back(frames_.render(cameras, camera_, sequence.method.stereo, false, true).result);
+        results.push_back(frames_.render(cameras, camera_, sequence.method, false, true).result);
     }
     return results;
 }
 
 void MotionPoint::pass(const Cameras& cameras) {
     for (const MethodHistory& sequence : sequences_) {
-        if (hasPast(sequence.method.stereo.mode)) { frames_.render(cameras, camera_, sequence.method.stereo, false, true); }
+        if (hasPast(sequence.method.stereo.mode)) { frames_.render(cameras, camera_, sequence.method, false, true); }
     }
 }
 
@@ -105,8 +105,8 @@ void MotionPoint::rememberStill(const Cameras& cameras) {
     for (const MethodHistory& sequence : sequences_) {
         shared_.stereo.order = sequence.method.stereo.order;
         if (still_.contains(shared_.stereo.order)) { continue; }
-        const auto [rendered, frame] = frames_.render(cameras, camera_, shared_.stereo);
-        still_[shared_.stereo.order] = {frame->readPicture(kLeft), frame->readPicture(kRight)};
+        const MethodFrames::Rendered still = frames_.render(cameras, camera_, shared_);
+        still_[shared_.stereo.order] = {still.readPicture(kLeft), still.readPicture(kRight)};
     }
 }
 
@@ -116,35 +116,34 @@ void MotionPoint::play(const Cameras& cameras, std::size_t number, double time_s
         shared_.stereo.order = sequence.method.stereo.order;
         FullRender& full = full_by_order[shared_.stereo.order];
         if (full.pairs == 0.0) {
-            const auto [rendered, frame] = frames_.render(cameras, camera_, shared_.stereo);
-            full = {{frame->readPicture(kLeft), frame->readPicture(kRight)}, std::max(pairsOf(rendered), 1.0)};
+            const MethodFrames::Rendered both = frames_.render(cameras, camera_, shared_);
+            full = {{both.readPicture(kLeft), both.readPicture(kRight)}, std::max(pairsOf(both.result), 1.0)};
         }
         const FullRender& before = full_before_[shared_.stereo.order];
-        const Mode mode = sequence.method.stereo.mode;
-        const auto [rendered, frame] = frames_.render(cameras, camera_, sequence.method.stereo, false, true);
+        const MethodFrames::Rendered rendered = frames_.render(cameras, camera_, sequence.method, false, true);
         MotionFrame row;
         row.point = name_;
         row.method = sequence.method.name;
-        row.mode = mode;
+        row.mode = sequence.method.stereo.mode;
+        row.exact = sequence.method.isExact();
         row.number = number;
         row.time_s = time_s;
-        setTimes(row, rendered);
-        row.work_rendered = pairsOf(rendered) / full.pairs;
+        setTimes(row, rendered.result);
+        row.work_rendered = pairsOf(rendered.result) / full.pairs;
         std::array<Image, 2> pictures;
         for (const int eye : {kLeft, kRight}) {
             const auto e = static_cast<std::size_t>(eye);
             row.full_change += 0.5 * meanChange(full.eyes[e], before.eyes[e]);
-            if (rendersBothInFull(mode)) { continue; }
-            pictures[e] = frame->readPicture(eye);
+            if (row.exact) { continue; }
+            pictures[e] = rendered.readPicture(eye);
             Image error = subtract(pictures[e], full.eyes[e]);
             row.mean_square[e] = compare(pictures[e], full.eyes[e]).mean_square;
             row.flicker[e] = meanChange(error, sequence.error[e]);
-            row.tile_steps = std::max(row.tile_steps, tileSteps(error));
             sequence.error[e] = std::move(error);
         }
-        if (!rendersBothInFull(mode)) {
-            row.pixels_warped = pixelsWarped(rendered);
-            row.sharpness_gap = sharpnessGap(pictures, full.eyes);
+        if (!row.exact) {
+            row.pixels_warped = pixelsWarped(rendered.result);
+            row.visible = findVisibleErrors(pictures, full.eyes);
             if (const auto still = still_.find(shared_.stereo.order); still != still_.end()) {
                 const Moved moved = compareMoved(pictures, full.eyes, still->second);
                 row.moved_share = moved.share;

@@ -44,6 +44,9 @@ double stageMs(const MotionFrame& frame, const std::string& stage) { return sumO
 // The number of first frames whose errors do not count if there are more: a method that reuses its past has none, or little, in these.
 constexpr std::size_t kSettling = 10;
 
+// The share of all tiles whose PSNR says how bad the worst ones are.
+constexpr double kWorstTiles = 0.001;
+
 std::vector<const MotionFrame*> steadyFrames(const Sequence& sequence) {
     const bool settles = sequence.frames.back()->number >= kSettling;
     std::vector<const MotionFrame*> frames;
@@ -72,7 +75,30 @@ std::vector<double> flickerOf(const Sequence& sequence) {
     return values;
 }
 
-bool isLossy(const Sequence& sequence) { return !rendersBothInFull(sequence.frames[0]->mode); }
+// What shows of the errors, over the steady frames: means, the worst frame's bad tiles, and the worst tiles of all.
+struct Visible {
+    double bad = 0.0, worst_bad = 0.0, worst_tiles = 0.0, edge = 0.0, seam = 0.0, rival = 0.0;
+};
+Visible visibleOf(const Sequence& sequence) {
+    const std::vector<const MotionFrame*> frames = steadyFrames(sequence);
+    const auto count = static_cast<double>(frames.size());
+    Visible all;
+    std::vector<float> squares;
+    for (const MotionFrame* frame : frames) {
+        const VisibleErrors& visible = frame->visible;
+        const double bad = visible.badShare();
+        all.bad += bad / count;
+        all.worst_bad = std::max(all.worst_bad, bad);
+        all.edge += visible.edge / count;
+        all.seam += visible.seam / count;
+        all.rival += visible.rival / count;
+        squares.insert(squares.end(), visible.tile_squares.begin(), visible.tile_squares.end());
+    }
+    all.worst_tiles = worstTiles(std::move(squares), kWorstTiles);
+    return all;
+}
+
+bool isLossy(const Sequence& sequence) { return !sequence.frames[0]->exact; }
 
 Json statisticsJson(const std::vector<double>& values) {
     if (values.empty()) { return Json(); }
@@ -121,7 +147,8 @@ std::string motionCsv(const MotionRun& run) {
     std::string csv = "device,motion,point,method,mode,time_s,gpu_total_ms";
     for (const char* stage : kStages) { csv += fmt::format(",{} ms", stage); }
     csv +=
-        ",mean_square,psnr_db,flicker,full_change,tile_steps,sharpness_gap,psnr_left_db,psnr_right_db,mse_left,mse_right,flicker_left,"
+        ",mean_square,psnr_db,flicker,full_change,bad_share,worst_tiles_db,edge,seam,rival,psnr_left_db,psnr_right_db,mse_left,mse_right,"
+        "flicker_left,"
         "flicker_right,work_rendered,pixels_warped";
     const bool is_streamed = std::ranges::any_of(run.frames, [](const MotionFrame& frame) { return frame.streaming.has_value(); });
     if (is_streamed) { csv += ",splats_read,splats_resident,chunks_resident,frames_waited_for_loading,scene_frames_late"; }
@@ -131,8 +158,11 @@ std::string motionCsv(const MotionRun& run) {
         csv += fmt::format("{},{},{},{},{},{:.6f},{:.6g}", csvCell(run.device), csvCell(run.motion), csvCell(frame.point),
                            csvCell(frame.method), nameOf(frame.mode), frame.time_s, frame.total_ms);
         for (const char* stage : kStages) { csv += fmt::format(",{:.6g}", stageMs(frame, stage)); }
-        csv += fmt::format(",{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}", frame.worseSquare(), psnrOf(frame.worseSquare()),
-                           frame.worseFlicker(), frame.full_change, frame.tile_steps, frame.sharpness_gap);
+        csv += fmt::format(",{:.6g},{:.6g},{:.6g},{:.6g}", frame.worseSquare(), psnrOf(frame.worseSquare()), frame.worseFlicker(),
+                           frame.full_change);
+        const VisibleErrors& visible = frame.visible;
+        csv += fmt::format(",{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}", visible.badShare(), psnrOf(worstTiles(visible.tile_squares, kWorstTiles)),
+                           visible.edge, visible.seam, visible.rival);
         const auto& [left, right] = frame.mean_square;
         csv += fmt::format(",{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{}", psnrOf(left), psnrOf(right), left, right,
                            frame.flicker[0], frame.flicker[1], frame.work_rendered, frame.pixels_warped);
@@ -175,8 +205,12 @@ std::string motionJson(const MotionRun& run) {
                 json["moved_share"] = statisticsJson(valuesOf(steadyFrames(sequence), &MotionFrame::moved_share));
             }
             json["flicker"] = statisticsJson(flickerOf(sequence));
-            json["tile_steps"] = statisticsJson(valuesOf(sequence.frames, &MotionFrame::tile_steps));
-            json["sharpness_gap"] = statisticsJson(valuesOf(sequence.frames, &MotionFrame::sharpness_gap));
+            const Visible visible = visibleOf(sequence);
+            json["bad_share"] = {{"mean", visible.bad}, {"worst", visible.worst_bad}};
+            json["worst_tiles_db"] = psnrJson(visible.worst_tiles);
+            json["edge"] = visible.edge;
+            json["seam"] = visible.seam;
+            json["rival"] = visible.rival;
         }
         json["work_rendered"] = statisticsJson(valuesOf(sequence.frames, &MotionFrame::work_rendered));
         json["full_change"] = statisticsJson(valuesOf(sequence.frames, &MotionFrame::full_change));
@@ -192,20 +226,26 @@ std::string motionTable(const MotionRun& run) {
     for (const Sequence& sequence : sequencesOf(run)) {
         if (sequence.point != point) {
             point = sequence.point;
-            table += fmt::format("\n{}, {} poses; PSNR of the run, and what 95 % of the frames and all reach in both eyes\n", point,
-                                 sequence.frames.size());
-            table += fmt::format("  {:<28} {:>10} {:>10} {:>10} {:>8} {:>8} {:>8} {:>10} {:>10} {:>10}{}\n", "method", "ms median",
-                                 "ms p95", "ms worst", "dB run", "dB 95", "dB worst", "flicker", "p95", "p99",
+            table += fmt::format(
+                "\n{}, {} poses; PSNR of the run, and what 95 % of the frames and all reach in both eyes; tiles under 30 dB, mean and "
+                "worst "
+                "frame; the worst 0.1 % of tiles; lost edges; steps between tiles; sharpness that differs between the eyes\n",
+                point, sequence.frames.size());
+            table += fmt::format("  {:<28} {:>10} {:>10} {:>10} {:>6} {:>8} {:>8} {:>8} {:>10} {:>7} {:>7} {:>8} {:>6} {:>7} {:>6}{}\n",
+                                 "method", "ms median", "ms p95", "ms worst", "work", "dB run", "dB 95", "dB worst", "flicker", "bad %",
+                                 "worst %", "dB tiles", "edge %", "seam", "rival",
                                  moves ? fmt::format(" {:>9} {:>8}", "dB moved", "worst") : "");
         }
         const std::vector<double> times = valuesOf(sequence.frames, &MotionFrame::total_ms), errors = steadySquares(sequence),
                                   flicker = flickerOf(sequence);
-        table += fmt::format("  {:<28} {:>10.3f} {:>10.3f} {:>10.3f}", sequence.method, median(times), percentile(times, 0.95),
-                             std::ranges::max(times));
+        table += fmt::format("  {:<28} {:>10.3f} {:>10.3f} {:>10.3f} {:>6.3f}", sequence.method, median(times), percentile(times, 0.95),
+                             std::ranges::max(times), median(valuesOf(sequence.frames, &MotionFrame::work_rendered)));
         if (isLossy(sequence)) {
-            table += fmt::format(" {:>8} {:>8} {:>8} {:>10.6f} {:>10.6f} {:>10.6f}", psnrText(runSquare(sequence)),
-                                 psnrText(percentile(errors, 0.95)), psnrText(std::ranges::max(errors)), median(flicker),
-                                 percentile(flicker, 0.95), percentile(flicker, 0.99));
+            const Visible visible = visibleOf(sequence);
+            table += fmt::format(" {:>8} {:>8} {:>8} {:>10.6f} {:>7.2f} {:>7.2f} {:>8} {:>6.2f} {:>7.3f} {:>6.3f}",
+                                 psnrText(runSquare(sequence)), psnrText(percentile(errors, 0.95)), psnrText(std::ranges::max(errors)),
+                                 median(flicker), 100.0 * visible.bad, 100.0 * visible.worst_bad, psnrText(visible.worst_tiles),
+                                 100.0 * visible.edge, 255.0 * visible.seam, visible.rival);
             if (const std::vector<double> moved = movedSquares(sequence); !moved.empty()) {
                 table += fmt::format(" {:>9} {:>8}", psnrText(movedRunSquare(sequence)), psnrText(std::ranges::max(moved)));
             }
@@ -231,17 +271,22 @@ std::string motionPlot(const MotionRun& run) {
     };
     for (const MotionFrame& frame : run.frames) {
         add(frame.point + ": time", "GPU time of the pair, ms", frame, frame.total_ms);
-        if (rendersBothInFull(frame.mode)) { continue; }
+        if (frame.exact) { continue; }
         add(frame.point + ": error", "PSNR of the worse eye, dB", frame, psnrOf(frame.worseSquare()));
     }
-    // Error against run time: from the run's PSNR down to the worst frame's.
+    // Error against run time: from the run's PSNR down to the worst frame's, and from the mean share of bad tiles up to the worst frame's.
+    const std::string x_label = "median GPU time of the pair, ms";
     for (const Sequence& sequence : sequencesOf(run)) {
         const double square = runSquare(sequence);
         if (!isLossy(sequence) || !(square > 0.0)) { continue; }
         PlotPanel& panel = panelOf(sequence.point + ": run", "PSNR of the run, down to the worst frame's, dB");
-        panel.x_label = "median GPU time of the pair, ms";
+        panel.x_label = x_label;
         const double time_ms = median(valuesOf(sequence.frames, &MotionFrame::total_ms));
         lineOf(panel, sequence.method).points = {{time_ms, psnrOf(square)}, {time_ms, psnrOf(std::ranges::max(steadySquares(sequence)))}};
+        PlotPanel& tiles = panelOf(sequence.point + ": bad tiles", "tiles under 30 dB, up to the worst frame, %");
+        tiles.x_label = x_label;
+        const Visible visible = visibleOf(sequence);
+        lineOf(tiles, sequence.method).points = {{time_ms, 100.0 * visible.bad}, {time_ms, 100.0 * visible.worst_bad}};
     }
     return drawPlot("Measured on " + run.device + " with " + run.motion, panels);
 }

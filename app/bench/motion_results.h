@@ -3,6 +3,7 @@
 
 #include "app/bench/bench_results.h"
 #include "engine/frame/counters.h"
+#include "engine/picture/visible_errors.h"
 
 #include <algorithm>
 #include <array>
@@ -18,6 +19,7 @@ struct MotionFrame {
     std::string point;  // scene and view
     std::string method;
     Mode mode = Mode::kShared;
+    bool exact = false;      // both eyes are full renders
     std::size_t number = 0;  // of the frame, from 0
     double time_s = 0.0;     // of the segment
     double total_ms = 0.0;
@@ -29,8 +31,7 @@ struct MotionFrame {
     // the first frame.
     std::array<double, 2> flicker{};
     double full_change = 0.0;  // of the full renders, mean of both eyes
-    // engine/picture/pair_metrics.h; the greater of both eyes' steps.
-    double tile_steps = 0.0, sharpness_gap = 0.0;
+    VisibleErrors visible;
     // The pixels that the scene's motion has changed since the previous frame, seen from this pose (kLeastMoved): their share in both
     // pictures, and their mean squared error, if there are any.
     double moved_share = 0.0;
@@ -53,7 +54,8 @@ struct MotionRun {
 
 std::string motionCsv(const MotionRun& run);
 // Medians, 95th and 99th percentiles and worst frames by point and method; for the error the PSNR that as many frames reach in both eyes,
-// and the run's, from both eyes' mean square. Errors are of all frames after the tenth, or of all if there are no more.
+// and the run's, from both eyes' mean square; and what shows of them (engine/picture/visible_errors.h). Errors are of all frames after the
+// tenth, or of all if there are no more.
 std::string motionJson(const MotionRun& run);
 std::string motionTable(const MotionRun& run);
 std::string motionPlot(const MotionRun& run);

@@ -323,10 +323,11 @@ TEST_CASE("a bench writes a table, JSON, CSV and a plot, and compares methods by
     bench.write("b.toml",
                 "[bench]\nrepeats = 2\nwarm-up = 0\ntwin = true\nscores = [\"ssim\", \"lpips\"]\nlpips = \"w.bin\"\n"
                 "[[methods]]\nname = \"half\"\nmode = \"predicted\"\nbudget = 0.5\n"
+                "[[methods]]\nname = \"small\"\nmode = \"shared\"\nresolution = 0.5\n"
                 "[[series]]\nname = \"pixels\"\nsizes = [\"96x96\", \"16x48\"]\n");
     const std::string table = bench.go("bench builtin:step-edge --out out --config b.toml").output;
     const nlohmann::json results = bench.results("out/bench.json");
-    REQUIRE(results.size() == 10);
+    REQUIRE(results.size() == 12);
     CHECK(contains(table, "rasterize"));
     CHECK(contains(table, "splats (2DGS)"));
     CHECK(contains(table, "LPIPS"));
@@ -343,8 +344,11 @@ TEST_CASE("a bench writes a table, JSON, CSV and a plot, and compares methods by
     CHECK(!results[1].contains("affiliated_against_full"));
     CHECK(results[2]["method"] == "half");
     CHECK(results[2]["stage_ms"].contains("patch"));
-    CHECK(results[3].contains("ratio_to_twin"));
-    CHECK(results[4]["mode"] == "twin");
+    CHECK(results[3]["resolution"] == 0.5);
+    CHECK(results[3]["affiliated_against_full"].size() == 1);
+    CHECK(results[3]["affiliated_against_full"]["all"]["psnr_db"] > 20.0);
+    CHECK(results[4].contains("ratio_to_twin"));
+    CHECK(results[5]["mode"] == "twin");
     const nlohmann::json& quality = results[2]["affiliated_against_full"];
     CHECK(quality["all"]["pixels"] == 96 * 96);
     CHECK(quality["all"]["psnr_db"] > 25.0);
@@ -353,8 +357,8 @@ TEST_CASE("a bench writes a table, JSON, CSV and a plot, and compares methods by
     CHECK(!quality["reprojected"].contains("lpips"));
     CHECK(quality["patched"]["mean_square"] < 1e-6);
     // Too small for the network: the other scores are there.
-    CHECK(!results[7]["affiliated_against_full"]["all"].contains("lpips"));
-    CHECK(results[7]["affiliated_against_full"]["all"].contains("psnr_db"));
+    CHECK(!results[8]["affiliated_against_full"]["all"].contains("lpips"));
+    CHECK(results[8]["affiliated_against_full"]["all"].contains("psnr_db"));
 
     // Scores that nobody asks for are in none of them.
     bench.write("b.toml", "[bench]\nmodes = [\"reproject\"]\nrepeats = 1\nwarm-up = 0\nscores = [\"psnr\"]\n");
@@ -369,13 +373,18 @@ TEST_CASE("a bench writes a table, JSON, CSV and a plot, and compares methods by
 TEST_CASE("a bench plays a part of a head's motion") {
     const Bench bench;
     bench.write("m.csv", "time_s,x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,0,1\n0.1,0.02,0,0,0,0,0,1\n0.2,0.04,0,0,0,0,0,1\n");
-    bench.write("b.toml", "[bench]\nmodes = [\"predicted\"]\n");
+    bench.write("b.toml", "[bench]\nmodes = [\"predicted\"]\n[[methods]]\nname = \"shared\"\nmode = \"shared\"\nresolution = [0.4, 0.5]\n");
     bench.go(
         "bench builtin:step-edge --size 48x48 --config b.toml --motion m.csv "
         "--from 0.1 --seconds 0.1 --rate 40 --every 3 --out out");
     const nlohmann::json results = bench.results("out/motion.json");
-    REQUIRE(results.size() == 3);
+    REQUIRE(results.size() == 5);
     CHECK(results[0]["frames"] == 2);
+    CHECK(!results[0].contains("psnr_db"));
+    CHECK(results[4]["method"] == "shared@0.5");
+    CHECK(results[4]["psnr_db"]["run"] > 20.0);
+    CHECK(results[4]["bad_share"]["worst"] >= results[4]["bad_share"]["mean"]);
+    CHECK(results[4]["rival"] >= 0.0);
     CHECK(results[0]["full_change"]["p99"] > 0.0);
     CHECK(results[1]["work_rendered"]["median"] == 1.0);
     const nlohmann::json& predicted = results[2];

@@ -1,7 +1,8 @@
 // Facts about the picture comparer, among them that it fails what must fail.
 #include "engine/picture/metrics.h"
 #include "engine/error.h"
-#include "engine/picture/pair_metrics.h"
+#include "engine/picture/resize.h"
+#include "engine/picture/visible_errors.h"
 #include "tests/engine/picture/pictures.h"
 #include "tests/suite.h"
 
@@ -84,30 +85,66 @@ TEST_CASE("pictures of other sizes or too few channels are refused") {
     CHECK_THROWS_AS(compare(makeGrey({4, 4}, 3, 0.0f), makeGrey({4, 4}, 1, 0.0f)), Error);
 }
 
-TEST_CASE("errors that end where tiles do are steps, and others are not") {
-    Image error = makeGrey({64, 48}, 3, 0.0f);
-    CHECK(tileSteps(error) == 0.0);
-    for (std::uint32_t y = 16; y < 32; ++y) {
-        for (std::uint32_t x = 32; x < 48; ++x) { setPixel(error, x, y, {0.3f, 0.0f, 0.0f}); }
-    }
-    // Four borders of 16 pixels, in one channel of three, of 3 x 48 + 2 x 64 pairs across borders.
-    CHECK(tileSteps(error) == doctest::Approx(0.3 * 64 / (3 * (3 * 48 + 2 * 64))));
-    const auto wave = [](std::uint32_t x, std::uint32_t) { return glm::vec3(0.1f * static_cast<float>(x % 2)); };
-    CHECK(std::abs(tileSteps(makePicture({64, 48}, wave))) < 0.005);
+TEST_CASE("each way to be wrong that a wearer notices has a figure of its own") {
+    // A wall with a pattern, and an edge every 40 pixels.
+    const auto patternAt = [](std::uint32_t x) {
+        return x / 40 % 2 == 1 ? 0.5f + 0.02f * std::sin(1.5707963f * static_cast<float>(x)) : 0.375f;
+    };
+    const auto draw = [&](auto&& change) {
+        return makePicture({128, 64}, [&](std::uint32_t x, std::uint32_t y) { return glm::vec3(change(x, y, patternAt(x))); });
+    };
+    const Image full = draw([](std::uint32_t, std::uint32_t, float grey) { return grey; });
+    const auto errorsOf = [&](const Image& left, const Image& right) { return findVisibleErrors({left, right}, {full, full}); };
+
+    const VisibleErrors none = errorsOf(full, full);
+    CHECK(none.tile_squares == std::vector<float>(64, 0.0f));
+    CHECK((none.badShare() == 0.0 && none.edge == 0.0 && none.seam == 0.0 && none.rival == 0.0));
+
+    const Image shifted = draw([&](std::uint32_t x, std::uint32_t, float) { return x / 40 % 2 == 1 ? patternAt(x) : patternAt(x + 1); });
+    const VisibleErrors edges = errorsOf(shifted, shifted);
+    CHECK(edges.edge > 0.3);
+    CHECK(edges.badShare() == 0.0);
+    CHECK(edges.seam < 1e-4);
+    CHECK(edges.rival == 0.0);
+
+    const auto isTile = [](std::uint32_t x, std::uint32_t y) { return x / 16 == 3 && y / 16 == 1; };
+    const Image blurred = draw([&](std::uint32_t x, std::uint32_t y, float grey) { return isTile(x, y) ? 0.5f : grey; });
+    const VisibleErrors rivals = errorsOf(blurred, full);
+    CHECK(rivals.rival > 0.3);
+    CHECK(rivals.badShare() == 0.0);
+    CHECK(rivals.edge == 0.0);
+    CHECK(rivals.seam < 4e-4);  // a tenth of a step of 255
+    CHECK(errorsOf(blurred, blurred).rival == 0.0);
+
+    const Image stepped =
+        draw([](std::uint32_t x, std::uint32_t y, float grey) { return grey + ((x / 16 + y / 16) % 2 == 0 ? 0.02f : 0.0f); });
+    const VisibleErrors seams = errorsOf(stepped, stepped);
+    CHECK(seams.seam == doctest::Approx(0.02).epsilon(0.02));  // 5 steps of 255
+    CHECK(seams.badShare() == 0.0);
+    CHECK(seams.edge == 0.0);
+    CHECK(seams.rival < 0.01);
+
+    const Image streaked = draw([](std::uint32_t x, std::uint32_t y, float grey) { return x < 16 ? (y % 8 < 4 ? 0.3f : 0.5f) : grey; });
+    const VisibleErrors streaks = errorsOf(streaked, streaked);
+    CHECK(streaks.badShare() == doctest::Approx(1.0 / 8.0));
+    CHECK(worstTiles(streaks.tile_squares, 1.0 / 8.0) > kBadTileSquare);
+    CHECK(worstTiles(streaks.tile_squares, 1.0) == doctest::Approx(worstTiles(streaks.tile_squares, 1.0 / 8.0) / 8.0));
+    CHECK(streaks.edge < 0.01);
+    CHECK(streaks.rival == 0.0);
 }
 
-TEST_CASE("a blur in one eye alone is a gap in sharpness, and one in both eyes is none") {
-    const auto makeTexture = [](std::uint32_t shift_px, float contrast) {
-        return makePicture({128, 32}, [&](std::uint32_t x, std::uint32_t y) {
-            const std::uint32_t at = (x + shift_px) * 7919 + y * 104729;
-            return glm::vec3(0.5f + contrast * (static_cast<float>(at % 97) / 97.0f - 0.5f));
-        });
-    };
-    // The right eye sees it 5 pixels farther left.
-    const std::array full{makeTexture(0, 0.8f), makeTexture(5, 0.8f)};
-    CHECK(sharpnessGap(full, full) == 0.0);
-    CHECK(sharpnessGap({makeTexture(0, 0.4f), makeTexture(5, 0.4f)}, full) == doctest::Approx(0.0).epsilon(1e-4));
-    CHECK(sharpnessGap({makeTexture(0, 0.8f), makeTexture(5, 0.6f)}, full) == doctest::Approx(0.25).epsilon(1e-3));
+TEST_CASE("a picture is scaled up by a cubic that keeps constants, and ramps within its borders") {
+    CHECK(scaleUp(makeWaves({17, 9}, 0.0), {17, 9}).values == makeWaves({17, 9}, 0.0).values);
+    const Image ramp =
+        makePicture({20, 10}, [](std::uint32_t x, std::uint32_t y) { return glm::vec3(glm::dvec3(0.02 * x, 0.03 * y, 0.5)); });
+    const Image scaled = scaleUp(ramp, {50, 25});
+    CHECK(scaled.size_px == glm::uvec2(50, 25));
+    for (const glm::uvec2 at : {glm::uvec2(10, 10), glm::uvec2(23, 12), glm::uvec2(40, 17)}) {
+        const glm::vec3 expected(glm::dvec3(0.02 * ((at.x + 0.5) * 0.4 - 0.5), 0.03 * ((at.y + 0.5) * 0.4 - 0.5), 0.5));
+        CHECK(glm::length(colourOf(scaled, at.x, at.y) - expected) < 1e-6f);
+    }
+    CHECK(colourOf(scaled, 0, 0).z == doctest::Approx(0.5f));
+    CHECK_THROWS_AS(scaleUp(ramp, {19, 25}), Error);
 }
 
 }  // SUITE(metrics)
