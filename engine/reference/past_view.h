@@ -53,6 +53,9 @@ public:
         return is_hidden ? std::nullopt : past_.pixels[indexOf(at)];
     }
 
+    // Whether a lens hides it or not.
+    [[nodiscard]] std::optional<MovingPixel> own(const glm::ivec2& at) const { return past_.pixels[indexOf(at)]; }
+
     // What the past shows at a place.
     struct Seen {
         std::optional<MovingPixel> pixel;

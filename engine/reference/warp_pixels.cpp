@@ -4,7 +4,8 @@
 namespace binosplat::reference {
 namespace {
 
-constexpr int kSteps = 3;
+constexpr int kSteps = 3, kFrontReach = 2;
+constexpr std::uint32_t kMixedCode = 21;
 constexpr double kUnseenError = 1.0;
 
 struct Found {
@@ -25,6 +26,18 @@ Found search(const PastView& view, const glm::dvec2& wanted_px, double guess) {
     }
     if (found.agrees) { found.place_px = view.place(wanted_px, found.seen.inverse_depth).place_px; }
     return found;
+}
+
+// The inverse depth of the nearest content around a place.
+double frontAround(const PastView& view, const glm::dvec2& place_px) {
+    const glm::ivec2 middle(glm::floor(glm::clamp(place_px, glm::dvec2(0.0), glm::dvec2(view.last))));
+    double nearest = 0.0;
+    for (int y = -kFrontReach; y <= kFrontReach; ++y) {
+        for (int x = -kFrontReach; x <= kFrontReach; ++x) {
+            if (const auto pixel = view.own(middle + glm::ivec2(x, y))) { nearest = std::max(nearest, pixel->inverse_depth); }
+        }
+    }
+    return view.now_from_past.move(glm::dvec2(middle) + 0.5, nearest).inverse_depth;
 }
 
 // Catmull and Rom's weights (1974) of the samples at -1, 0, 1, 2 for a place `t` after sample 0.
@@ -70,7 +83,15 @@ Sample sampleAround(const PastView& view, const glm::dvec2& place_px) {
 PixelFromPast makePixel(const PastView& view, const glm::dvec2& wanted_px, double near, double far) {
     const Found from_near = search(view, wanted_px, near), from_far = search(view, wanted_px, far);
     const bool takes_near = from_near.agrees && (!from_far.agrees || from_near.seen.inverse_depth >= from_far.seen.inverse_depth);
-    const Found& found = takes_near ? from_near : from_far;
+    Found found = takes_near ? from_near : from_far;
+    // A pixel that blends two depths moves with what stands in front of it.
+    if (found.agrees) {
+        const EyeChange::Moved place = view.place(wanted_px, frontAround(view, found.place_px));
+        if (place.in_front && view.isInside(place.place_px)) {
+            const PastView::Seen there = view.look(place.place_px);
+            if (there.pixel && there.pixel->spread >= kMixedCode) { found = {there, place.place_px, true}; }
+        }
+    }
     const std::uint32_t code = found.seen.pixel ? found.seen.pixel->spread : 0;
     const double spread = kOwnSpread * spreadOf(code) * found.seen.inverse_depth + 0.5 * (near - far);
     const glm::dvec2 off_px = view.uncertainMove(wanted_px, spread);

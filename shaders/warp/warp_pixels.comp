@@ -46,6 +46,21 @@ bool search(PastView view, vec2 wanted_px, float guess, out Seen seen, out vec2 
     return found;
 }
 
+// The nearest content around a place, as the picture that is made sees its inverse depth.
+float frontAround(PastView view, vec2 place_px) {
+    const ivec2 last = ivec2(view.past_size_px) - 1, middle = ivec2(clamp(place_px, vec2(0), vec2(last)));
+    uint nearest = 0;
+    [[unroll]] for (int y = -kFrontReach; y <= kFrontReach; ++y) {
+        [[unroll]] for (int x = -kFrontReach; x <= kFrontReach; ++x) {
+            const ivec2 at = clamp(middle + ivec2(x, y), ivec2(0), last);
+            nearest = max(nearest, pass.source_words.at[at.y * (last.x + 1) + at.x]);
+        }
+    }
+    if (nearest == 0) { return 0; }
+    const float inverse_depth = inverseDepthOf(nearest);
+    return inverse_depth / max(moveOfPixel(view.now_from_past, vec2(middle) + 0.5, inverse_depth).z, 1e-6);
+}
+
 // Makes one pixel; returns its expected squared error.
 float makePixel(PastView view, uvec2 pixel, vec2 depths) {
     const vec2 wanted_px = vec2(pixel) + 0.5;
@@ -56,9 +71,20 @@ float makePixel(PastView view, uvec2 pixel, vec2 depths) {
     const bool takes_near = near_found && (!far_found || from_near.inverse_depth >= from_far.inverse_depth);
     Seen seen = from_far;
     if (takes_near) { seen = from_near; }
-    const vec2 place_px = takes_near ? near_px : far_px;
-    const vec2 disparity_px = disparity(view, wanted_px);
+    vec2 place_px = takes_near ? near_px : far_px;
     const bool found = near_found || far_found;
+    // A pixel that blends two depths moves with what stands in front, so that a silhouette keeps its shape.
+    if (found) {
+        const vec3 with_front = movePixelAnywhere(view.past_from_now, wanted_px, frontAround(view, place_px));
+        if (with_front.z > 0 && isInPast(view, with_front.xy)) {
+            const Seen there = look(view, with_front.xy, wanted_px);
+            if ((there.word & kSpreadBits) >= kMixedCode) {
+                seen = there;
+                place_px = with_front.xy;
+            }
+        }
+    }
+    const vec2 disparity_px = disparity(view, wanted_px);
     const float own = kSpreadWeight * sqrt(varianceShareOf(seen.word)) * seen.inverse_depth;
     const vec2 uncertain_px = uncertainMove(disparity_px, own + 0.5 * (depths.y - depths.x));
     const Sample one = sampleAround(place_px, ivec2(view.past_size_px), uncertain_px);
