@@ -94,6 +94,10 @@ std::span<const OptionRow<RunOptions>> runRows() {
         {{"budget", "stereo", kTried, "FRACTION",
           "share of work for patching the warped picture: of an eye's (predicted), of both eyes' (temporal)"},
          field::number<kStereo, kWarp, &StereoSettings::budget>(0.0, 1.0)},
+        {{"error-bound", "stereo", kTried, "DB",
+          "temporal mode: tiles expected to be under this PSNR are rendered again first, with --budget as the most work of a frame; 0: "
+          "off"},
+         field::number<kStereo, kWarp, &StereoSettings::error_bound_db>(0.0, 60.0)},
         {{"move-cost", "stereo", kTried, "PAIRS", "predicted mode: tiles that meet at most this many splats are rendered, not warped"},
          field::count<kStereo, kWarp, &StereoSettings::move_cost>(0, kMaxMoveCost)},
         {{"depth", "stereo", kTried, "KIND", "depth that reprojects a pixel: D, D/A or A/I"},

@@ -46,6 +46,7 @@ std::map<std::string, std::uint64_t> FrameCounters::named() const {
             names["work_patched"] = warped->work->patched;
             names["work_saved_by_moving"] = warped->work->saved_by_moving;
         }
+        if (warped->tiles_over_bound) { names["tiles_over_bound"] = *warped->tiles_over_bound; }
         names["hole_components"] = warped->hole_components;
         names["splats_newcomers"] = warped->splats_newcomers;
         names["stereo_bytes"] = warped->bytes;

@@ -32,6 +32,7 @@ struct WarpedCounters {
     std::uint64_t tiles_shown = 0;  // of pictures that are made from others
     std::uint64_t tiles_patched = 0, tiles_edge = 0, tiles_center = 0, tiles_predicted = 0;
     std::optional<Work> work;
+    std::optional<std::uint64_t> tiles_over_bound;  // if errors are bounded: tiles that the budget leaves above the bound
     std::uint64_t hole_components = 0, splats_newcomers = 0, bytes = 0;
 };
 

@@ -140,6 +140,7 @@ void planTemporal(FramePlan& plan, const FrameSettings& settings, std::span<cons
     if (in_two) { splitTargets(plan, settings); }
     for (const int e : order) { makeInTwo(plan, e); }
     plan.budget = settings.stereo.budget;
+    plan.error_bound_db = settings.stereo.error_bound_db;
     plan.steps.push_back({Step::Kind::kChoose, 0});
     renderChosen(plan, order, list, true);
     if (!in_two) { return; }
@@ -294,6 +295,7 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
     if (is_new && source.eye.size_px != target.eye.size_px) {
         makeFromPast(target, Past{source.eye, source.picture}, settings, static_cast<std::size_t>(second));
         plan.budget = settings.stereo.budget;
+        plan.error_bound_db = settings.stereo.error_bound_db;
         plan.steps.push_back({Step::Kind::kPast, second});
         plan.steps.push_back({Step::Kind::kChoose, 0});
     } else if (is_new || reprojects(mode)) {

@@ -87,6 +87,7 @@ struct FramePlan {
     glm::dvec3 background{0.0};
     bool square_boxes = true;
     double budget = 0.0;                    // of the choice among what pasts have left: a share of the work of the targets that have one
+    double error_bound_db = 0.0;            // of that choice: StereoSettings
     int dominant = 0;                       // of the targets
     bool keeps_past = false;                // later frames are made from this one
     std::optional<int> spare_picture = {};  // the room's picture for the frame after this one

@@ -37,7 +37,8 @@ void FrameRecorder::begin(Commands& commands, const FramePlan& plan) const {
         if (target.past) {
             state.targets[t].past = pastViewOf(target.eye, target.past->eye, plan.near, glm::vec3(plan.background));
             state.targets[t].past_blocks = {.per_group = {.x = 0, .y = 1, .z = 1}, .count = 0};
-            state.targets[t].warp = warpViewOf({}, target.eye.size_px, 0, {.choice = target.choice, .budget = plan.budget});
+            state.targets[t].warp = warpViewOf({}, target.eye.size_px, 0,
+                                               {.choice = target.choice, .budget = plan.budget, .error_bound_db = plan.error_bound_db});
         }
         if (!target.warp) { continue; }
         const StereoSettings& settings = target.warp->settings;

@@ -57,12 +57,14 @@ void countPast(const FrameFacts& frame, FrameResult& result) {
     WarpedCounters& counters = result.counters.warped.emplace();
     std::uint64_t shown = 0;
     WarpedCounters::Work work;
+    if (frame.plan.error_bound_db > 0.0) { counters.tiles_over_bound = 0; }
     for (std::size_t t = 0; t < frame.plan.targets.size(); ++t) {
         if (!frame.plan.targets[t].past) { continue; }
         const TargetState& state = frame.state.targets[t];
         const WarpBuffers& buffers = frame.room.warp(static_cast<int>(t));
         counters.tiles_patched += state.chosen_tiles.count;
         counters.tiles_predicted += state.warp_counters.predicted_tiles;
+        if (counters.tiles_over_bound) { *counters.tiles_over_bound += state.warp_counters.waiting_tiles; }
         counters.bytes += buffers.bytes();
         work.full += state.warp_counters.picture_cost;
         work.patched += state.warp_counters.chosen_cost;

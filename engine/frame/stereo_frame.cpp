@@ -86,7 +86,10 @@ FrameResult StereoFrame::render(std::span<const Eye> eyes, const FrameSettings& 
     finish();
     prepare(eyes, settings);
     renderUntilComplete(settings, append);
-    return take(flight());
+    FrameResult result = take(flight());
+    // A bound lets frames choose what lists have room for.
+    if (plan_.error_bound_db > 0.0) { room_.makeRoomAhead(plan_, state_); }
+    return result;
 }
 
 void StereoFrame::makeRoom(std::span<const Eye> eyes, const FrameSettings& settings) {

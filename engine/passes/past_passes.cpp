@@ -18,6 +18,9 @@ auto viewOf(const PastInputs& in) {
     return in.buffers.state.address<gpu::WarpView>(FrameBuffers::targetField(in.index, offsetof(TargetState, warp)));
 }
 
+// Pairs that surely have room, as far as tiles cost what they did when they were rendered last. Lists grow when so much is needed.
+gpu::uint mostCost(const FrameCapacity& capacity) { return capacity.pairs - capacity.pairs / 8; }
+
 }  // namespace
 
 gpu::PastView pastViewOf(const Eye& now, const Eye& past, double near, const glm::vec3& background) {
@@ -104,6 +107,7 @@ void PastPasses::recordChoice(Commands& commands, std::span<const PastInputs> ey
                                   .past_tiles = in.target.tiles.address<gpu::PastTile>(),
                                   .is_last = &in == &eyes.back() ? 1u : 0u,
                                   .area = in.area,
+                                  .most_cost = mostCost(in.buffers.capacity()),
                                   .gaze = in.gaze ? eyeGazeOf(*in.gaze, in.lens) : gpu::EyeGaze{}};
         commands.dispatch(kernels_.get(PriceKernel{.foveated = in.gaze.has_value(), .past = true}), pass,
                           groupsOver(in.warp.tileCount(), gpu::kWarpGroup));

@@ -2,6 +2,7 @@
 #include "engine/passes/warp_passes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 namespace binosplat {
@@ -26,7 +27,8 @@ gpu::WarpView warpViewOf(const EyeRelation& relation, glm::uvec2 size_px, gpu::u
             .move_cost = settings.move_cost,
             .budget = static_cast<float>(settings.budget),
             .hole_error = static_cast<float>(settings.hole_error),
-            .newcomer_error = static_cast<float>(settings.newcomer_error)};
+            .newcomer_error = static_cast<float>(settings.newcomer_error),
+            .error_bound = settings.error_bound_db > 0.0 ? static_cast<float>(std::pow(10.0, -0.05 * settings.error_bound_db)) : 0.0f};
 }
 
 gpu::WarpCounters firstCountersOf(const StereoSettings& settings, glm::uvec2 size_px) {
@@ -295,6 +297,7 @@ void WarpRecorder::price() {
         .past_tiles = in_.leaves_past ? in_.target.tiles.address<gpu::PastTile>() : gpu::DeviceAddress<gpu::PastTile>{},
         .is_last = 1,
         .area = 1.0f,
+        .most_cost = 0,
         .gaze = in_.target_gaze ? eyeGazeOf(*in_.target_gaze, in_.target_lens) : gpu::EyeGaze{}};
     dispatch(PriceKernel{.foveated = in_.target_gaze.has_value()}, pass, tileGroups());
 }

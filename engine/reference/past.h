@@ -48,7 +48,8 @@ std::array<double, 6> lagrangeWeights(double t);
 // Iterative Image Warping), and sampled with four. Such a search always finds something, so a place counts only if the past's pixel there,
 // moved forwards, meets the pixel that it is wanted for; of two that count, the nearer is taken. If the eyes stand so far apart that near
 // content may come from beyond a block's neighbours, as when the past is the other eye's picture, the nearest that comes along that way is
-// looked for first.
+// looked for first. A pixel that blends two depths moves with the nearer: its place is looked up once more with the nearest depth around
+// what was found, and counts if what lies there does blend.
 struct WarpedPast {
     Past picture;
     std::vector<std::uint8_t> one_by_one;  // by blocks: 1 if its pixels are made so
@@ -72,6 +73,10 @@ void growErrors(std::span<PastTile> tiles);
 // Also price: the worth of rendering a tile: the squared error of all its pixels, times the frames since it was rendered. For an
 // error that grows by the frame that is the area under its growth, which rendering it saves (Whittle's index).
 double worthOf(const PastTile& tile);
+// price, under a bound of errors: of the tile's price, so that one of which the past did not see a quarter of the pixels comes first, then
+// those a quarter of which is off by more than `error_bound`, an amplitude.
+inline constexpr std::uint32_t kOverPrice = 512, kNewPrice = 1023;
+std::uint32_t priceUnderBound(std::uint32_t price, const PastTile& tile, double error_bound);
 // Also price: the cost of a tile: besides its pairs, a workgroup and the writing of its pixels.
 std::uint64_t costOf(const PastTile& tile);
 
@@ -83,6 +88,9 @@ struct PricedTiles {
     std::span<const std::uint64_t> costs;
 };
 void selectTogether(std::span<const PricedTiles> pictures, std::uint64_t budget_cost);
+// price, under a bound of errors: the budget is what tiles above the bound cost and a twentieth of all work, at most `budget_cost` but for
+// those of kNewPrice.
+std::uint64_t budgetUnderBound(std::span<const PricedTiles> pictures, std::uint64_t budget_cost, std::uint64_t picture_cost);
 
 // rasterize and tile_ranges: puts the tiles of `full` that are rendered over the warped ones. Their error turns out, and is measured for
 // each frame since they were last rendered; not for a tile without pairs, nor for one that is new. `costs`: pairs of each

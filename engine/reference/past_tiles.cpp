@@ -46,6 +46,14 @@ void markChanged(std::span<PastTile> tiles, glm::uvec2 size_px, std::span<const 
     }
 }
 
+std::uint32_t priceUnderBound(std::uint32_t price, const PastTile& tile, double error_bound) {
+    double unseen = 0.0;  // in pixels; one that the past did not see has an error of 1
+    for (const double grown : tile.grown) { unseen += std::min(grown, kCellPixels); }
+    if (unseen >= 0.25 * kTilePixels) { return kNewPrice; }
+    const bool is_over = std::ranges::any_of(tile.errors, [&](double error) { return error > error_bound; });
+    return std::min((is_over ? kOverPrice : 0) + price / 2, kNewPrice - 1);
+}
+
 double worthOf(const PastTile& tile) {
     double squares = 0.0;
     for (const double error : tile.errors) { squares += kChannels * kCellPixels * error * error; }

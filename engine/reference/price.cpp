@@ -13,7 +13,7 @@ std::vector<std::optional<std::uint32_t>> price(std::span<const TileKind> kinds,
                                                 std::span<const std::uint64_t> costs, std::span<const double> seen_shares) {
     // A hundredth of the whole range in each pixel of a tile.
     constexpr double kLeastSeen = 0.01 * 0.01 * kTileSize * kTileSize;
-    constexpr double kMostSteps = 0x1p31 - 1.0, kBinsPerOctave = 16.0, kFirstOctave = -23.0, kBins = 1024.0;
+    constexpr double kMostSteps = 0x1p31 - 1.0, kBinsPerOctave = 16.0, kFirstOctave = -23.0, kBins = 1023.0;
     std::vector<std::optional<std::uint32_t>> prices(kinds.size());
     for (std::size_t t = 0; t < kinds.size(); ++t) {
         const double steps = std::min(std::floor(errors[t] * 0x1p20), kMostSteps);

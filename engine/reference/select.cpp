@@ -45,6 +45,17 @@ void select(std::vector<TileKind>& kinds, std::span<const std::optional<std::uin
     }
 }
 
+std::uint64_t budgetUnderBound(std::span<const PricedTiles> pictures, std::uint64_t budget_cost, std::uint64_t picture_cost) {
+    std::uint64_t over = 0, unseen = 0;
+    for (const PricedTiles& picture : pictures) {
+        for (std::size_t t = 0; t < picture.prices.size(); ++t) {
+            over += picture.prices[t] >= kOverPrice ? picture.costs[t] : 0;
+            unseen += picture.prices[t] == kNewPrice ? picture.costs[t] : 0;
+        }
+    }
+    return std::max(std::min(budget_cost, over + picture_cost / 20), unseen);
+}
+
 void selectTogether(std::span<const PricedTiles> pictures, std::uint64_t budget_cost) {
     std::map<std::uint32_t, std::uint64_t, std::greater<>> cost_of_price;
     for (const PricedTiles& picture : pictures) {

@@ -17,7 +17,7 @@ layout(constant_id = 1) const bool kPast = false;  // errors are those that the 
 const uint kBinsPerThread = kPriceBins / kWarpGroup;
 
 // 16 bins per octave, the greatest quotients last: exponent and four bits of the mantissa.
-uint binOf(float error_per_pair) { return min(max(floatBitsToUint(error_per_pair) >> 19, 104u << 4) - (104u << 4), kPriceBins - 1); }
+uint binOf(float error_per_pair) { return min(max(floatBitsToUint(error_per_pair) >> 19, 104u << 4) - (104u << 4), kNewBin - 1); }
 
 // What rendering a tile is worth in a picture that is made from a past: its expected squared error, times the frames that it has waited. An
 // error that grows by the frame loses its area under that growth when it is mended (a Whittle index), and so every tile gets its turn.
@@ -36,6 +36,16 @@ PastTile withGrowth(PastTile tile) {
     return tile;
 }
 
+// The bin of a tile under a bound: by two bins in one, those above it before the others and those that nobody saw before before all.
+uint binUnderBound(uint bin, PastTile tile, float share) {
+    // Errors of pixels that were seen may be greater than those of others, and count as these.
+    const uvec4 unseen = min(tile.grown, uvec4(kUnseenError * kErrorSteps * kCellSize * kCellSize));
+    const float pixels = (float(unseen.x) + float(unseen.y) + float(unseen.z) + float(unseen.w)) / (kUnseenError * kErrorSteps);
+    if (pixels >= kNewShare * kTileSize * kTileSize) { return kNewBin; }
+    const bool is_over = any(greaterThan(sqrt(share) * tile.errors, vec4(pass.warp.at[0].error_bound)));
+    return min((is_over ? kOverBin : 0) + bin / 2, kNewBin - 1);
+}
+
 // True if later pictures are made from this one, which has no past itself: no row of it is a mean of others, since nothing would say so.
 bool leavesTiles() { return !kPast && any(notEqual(uvec2(pass.past_tiles), uvec2(0))); }
 
@@ -51,8 +61,9 @@ void leaveTile(uint tile) {
 
 // A tile's price word: the bin of its error, and its cost. Adds the cost to the price list.
 uint priceOf(uint tile, uvec2 size_tiles) {
+    PastTile its;
     if (kPast) {
-        const PastTile its = withGrowth(pass.past_tiles.at[tile]);
+        its = withGrowth(pass.past_tiles.at[tile]);
         pass.past_tiles.at[tile].errors = its.errors;
         const bool hidden = pass.tile_kinds.at[tile] == kTileHidden;
         pass.tile_errors.at[tile] = hidden ? 0 : errorOfPast(its);
@@ -71,16 +82,18 @@ uint priceOf(uint tile, uvec2 size_tiles) {
     const uint cost = pass.tile_costs.at[tile];
     const float seen = share * float(error);
     const bool unnoticed = kFoveated && share < 1 && seen < kLeastSeenError * kErrorSteps;
-    const uint bin = binOf(worth / float(cost)), seen_bin = binOf(share * worth / float(cost));
+    const uint bin = binOf(worth / float(cost));
+    uint seen_bin = binOf(share * worth / float(cost));
     // The list counts errors as if all were seen whole, so that what a pair must be worth does not fall with what is not seen. Not so with
     // a past: errors that are not seen and not rendered grow from frame to frame, and would leave nothing to those that are seen.
+    if (kPast && pass.warp.at[0].error_bound > 0) { seen_bin = binUnderBound(seen_bin, its, share); }
     const uint listed_bin = kPast ? seen_bin : bin;
     if (!kPast || !unnoticed) { atomicAdd(pass.price_bins.at[listed_bin], cost); }
     return unnoticed ? 0 : seen_bin << 22 | (seen_bin < listed_bin ? kSeenInPart : 0) | cost;
 }
 
 // Greatest bins first: each thread holds kBinsPerThread of them.
-void findLastBin(uint budget) {
+void findLastBin(float share, uint picture_cost) {
     const uint first = kPriceBins - 1 - threadIndex() * kBinsPerThread;
     uint costs[kBinsPerThread];
     uint own = 0;
@@ -90,6 +103,14 @@ void findLastBin(uint budget) {
     }
     uint total;
     uint before = scanGroup(own, total);
+    float wanted = share * float(picture_cost);
+    if (kPast && pass.warp.at[0].error_bound > 0) {
+        uint over;
+        scanGroup(first >= kOverBin ? own : 0, over);
+        wanted = max(min(wanted, float(over) + kWithinBound * float(picture_cost)), float(pass.price_bins.at[kNewBin]));
+        wanted = min(wanted, float(pass.most_cost));
+    }
+    const uint budget = wanted < 4e9 ? uint(wanted) : 4000000000u;
     [[unroll]] for (uint b = 0; b < kBinsPerThread; ++b) {
         if (before <= budget && before + costs[b] > budget) {
             pass.budget.at[0].last_bin = first - b;
@@ -108,6 +129,5 @@ void main() {
     const uint tile = gl_WorkGroupID.x * kWarpGroup + gl_LocalInvocationIndex;
     if (tile < size_tiles.x * size_tiles.y) { pass.tile_prices.at[tile] = priceOf(tile, size_tiles); }
     if (!isLastGroup(pass.masked_tiles) || pass.is_last == 0) { return; }
-    const float budget = pass.warp.at[0].budget * float(kPast ? atomicOr(pass.budget.at[0].picture_cost, 0) : pass.budget.at[0].picture_cost);
-    findLastBin(budget < 4e9 ? uint(budget) : 4000000000u);
+    findLastBin(pass.warp.at[0].budget, kPast ? atomicOr(pass.budget.at[0].picture_cost, 0) : pass.budget.at[0].picture_cost);
 }

@@ -41,7 +41,7 @@ uint costBefore(uint first_tile, End end) {
     return total;
 }
 
-bool isChosen(uint tile, uint tiles) {
+bool isChosen(uint tile, uint tiles, out bool waits) {
     const End end = End(pass.budget.at[0].last_bin, pass.budget.at[0].left_for_last);
     const uint price = tile < tiles ? pass.tile_prices.at[tile] : 0;
     const bool is_last = isOfLast(price, end);
@@ -52,18 +52,21 @@ bool isChosen(uint tile, uint tiles) {
     if (total > 0) { before += costBefore(min(gl_WorkGroupID.x * kWarpGroup, tiles), end); }
     if (kPast && is_last) { atomicAdd(pass.budget.at[0].saved_cost, before < end.left ? cost : 0); }
     const bool fits = kPast ? before < end.left : before + cost <= end.left;
-    return is_last ? fits : price != 0 && price >> 22 > end.bin;
+    const bool chosen = is_last ? fits : price != 0 && price >> 22 > end.bin;
+    waits = !chosen && price >> 22 >= kOverBin;
+    return chosen;
 }
 
 void main() {
     const uvec2 size_tiles = pass.warp.at[0].size_tiles;
     const uint tiles = size_tiles.x * size_tiles.y;
     const uint tile = gl_WorkGroupID.x * kWarpGroup + threadIndex();
+    bool waits = false;
     uint kind = tile < tiles ? pass.tile_kinds.at[tile] : kTileHidden;
     if (kPredicted && !kPast && pass.counters.at[0].moves == 0) {
         kind = kind == 0 ? kTileCheap : kind;
     } else if (kPredicted) {
-        kind = isChosen(tile, tiles) ? kTilePredicted : kind;
+        kind = isChosen(tile, tiles, waits) ? kTilePredicted : kind;
     }
     const bool selected = kind != 0 && kind != kTileHidden;
     if (kPredicted && selected) { pass.tile_kinds.at[tile] = kind; }
@@ -72,7 +75,8 @@ void main() {
     const uint count = subgroupBallotBitCount(lanes);
     const uint cost = kPredicted ? subgroupAdd(selected ? pass.tile_costs.at[tile] : 0) : 0;
     const uint predicted = subgroupAdd(kind == kTilePredicted ? 1 : 0), cheap = subgroupAdd(kind == kTileCheap ? 1 : 0);
-    const uint edges = subgroupAdd(kind == kTileEdge ? 1 : 0);
+    const uint edges = subgroupAdd(kind == kTileEdge ? 1 : 0), waiting = kPast ? subgroupAdd(waits ? 1 : 0) : 0;
+    if (kPast && waiting > 0 && subgroupElect()) { atomicAdd(pass.counters.at[0].waiting_tiles, waiting); }
     uint place = 0;
     if (subgroupElect() && count > 0) {
         place = atomicAdd(pass.masked_tiles.at[0].needed, count);

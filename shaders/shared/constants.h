@@ -115,6 +115,13 @@ BINOSPLAT_CONSTANT uint kResumePart = 8;
 // The price list of price: bins of 1/16 octave of expected error per pair, from 2^-23 steps upwards; more than any quotient of two words
 // needs.
 BINOSPLAT_CONSTANT uint kPriceBins = 1024;
+// Under a bound, the upper half is for tiles that are expected to be above it, and the last one for those that the past did not see: for
+// fewer than this share of its pixels. They are rendered whatever the budget, so that nothing on the screen is stretched from a border.
+BINOSPLAT_CONSTANT uint kOverBin = kPriceBins / 2;
+BINOSPLAT_CONSTANT uint kNewBin = kPriceBins - 1;
+BINOSPLAT_CONSTANT float kNewShare = 0.25f;
+// The share of an eye's work that goes to tiles within the bound: expectations are not exact, and so every tile gets its turn.
+BINOSPLAT_CONSTANT float kWithinBound = 0.05f;
 // The highest cost of a tile in the price list, in pairs: ten bits of the word hold the bin, and one says that the tile would be in a
 // higher bin if its error were seen whole.
 BINOSPLAT_CONSTANT uint kMaxTileCost = 0x1fffffu;
@@ -174,6 +181,10 @@ BINOSPLAT_CONSTANT float kPastSameDepth = 0.25f;
 // A pixel of the past that lands this close to where it is wanted is what is seen there (half a pixel, and rounding).
 BINOSPLAT_CONSTANT float kPastAgrees = 0.51f;
 BINOSPLAT_CONSTANT uint kPastSteps = 3;
+// A pixel whose inverse depth spreads by an eighth of it blends what stands in front with what lies behind: it moves with the nearest
+// content of the words this far around.
+BINOSPLAT_CONSTANT uint kMixedCode = 21;
+BINOSPLAT_CONSTANT int kFrontReach = 2;
 // The squared error, in three channels, of a pixel that the past did not see.
 BINOSPLAT_CONSTANT float kUnseenError = 1.0f;
 // The least squared error that a warped pixel takes on, (1/4000)^2 in three channels, so that every tile gets its turn.

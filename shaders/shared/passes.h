@@ -264,9 +264,10 @@ struct PricePass {
     // With a past: in, and tile_errors and tile_costs are written from it. If later pictures are made from this one: out, written from
     // those. Otherwise null.
     PastTiles past_tiles;
-    uint is_last;  // 1: no other picture shares the budget after this one
-    float area;    // of a pixel, in pixels of the eye's own picture: the weight of an error in it
-    EyeGaze gaze;  // if it is known where the target looks
+    uint is_last;    // 1: no other picture shares the budget after this one
+    float area;      // of a pixel, in pixels of the eye's own picture: the weight of an error in it
+    uint most_cost;  // under a bound, in pairs: what lists have room for
+    EyeGaze gaze;    // if it is known where the target looks
 };
 
 // select: the tiles to render, as a list and as a mask.

@@ -136,6 +136,7 @@ struct WarpView {
     float budget;          // predicted: the share of an eye's work that is spent on tiles with an error
     float hole_error;      // predicted: the weight of a hole's expected difference
     float newcomer_error;  // predicted: the weight of full coverage by splats that the source does not see
+    float error_bound;     // with a past: tiles a quarter of which is expected to be off by more amplitude come first; 0: none do
 };
 BINOSPLAT_ARRAY_OF(WarpView, WarpViews);
 
@@ -211,6 +212,7 @@ struct WarpCounters {
     uint pays;                      // 1: warping pays, or would have paid in a frame that could not
     uint last_bin;                  // of the price list: the one in which the budget ends
     uint left_for_last;             // of the budget; all ones: it does not end
+    uint waiting_tiles;             // above a bound, but the budget is not enough for them
     uvec4 borders_px;               // paper: left, top, right, bottom
     DispatchSize per_pixel_block;   // workgroups over the pixels, 16x8 each; none if nothing is warped
     DispatchSize per_row;           // the same over the rows

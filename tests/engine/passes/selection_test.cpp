@@ -68,6 +68,8 @@ struct How {
     bool predicted = true, moves = true;
     Eye seen = {};  // all eyes are like this one, if it is known where they look
     std::optional<Gaze> gaze = {};
+    double error_bound = 0.0;
+    gpu::uint most_cost = gpu::kMaxItems;
 };
 How withCost(std::uint64_t budget_cost) { return {.budget = static_cast<double>(budget_cost) / kPictureCost}; }
 
@@ -92,6 +94,7 @@ std::vector<Chosen> chooseOnDevice(Gpu& gpu, const std::vector<Tiles>& eyes, con
         view.size_px = how.gaze ? how.seen.size_px : 16u * eye.size;
         view.size_tiles = eye.size;
         view.budget = static_cast<float>(how.budget);
+        view.error_bound = static_cast<float>(how.error_bound);
         gpu::WarpCounters counters{};
         counters.moves = how.moves && !has_past ? 1 : 0;
         counters.picture_cost = how.moves && !has_past ? how.picture_cost : 0;
@@ -123,6 +126,7 @@ std::vector<Chosen> chooseOnDevice(Gpu& gpu, const std::vector<Tiles>& eyes, con
                                       .past_tiles = has_past ? of.past.address<gpu::PastTile>() : gpu::DeviceAddress<gpu::PastTile>{},
                                       .is_last = e + 1 == buffers.size() ? 1u : 0u,
                                       .area = 1.0f,
+                                      .most_cost = how.most_cost,
                                       .gaze = how.gaze ? eyeGazeOf(*how.gaze, how.seen.intrinsics) : gpu::EyeGaze{}};
             commands.dispatch(price, pass, of.groups, 1);
         }
@@ -236,10 +240,14 @@ void checkChoice(Gpu& gpu, const std::vector<Tiles>& eyes, const How& how) {
             // Of a tile that is as good as on a border of prices either is right, and what is seen of an error is not known to the last
             // digit.
             const gpu::uint bin = got[e].prices[t] >> 22, its = prices[e][t].value_or(bin);
-            const bool is_rough = how.gaze || isOnBorder(std::floor(errors[t] * kErrorSteps), static_cast<double>(costs[t]));
+            const bool is_rough =
+                how.error_bound == 0.0 && (how.gaze || isOnBorder(std::floor(errors[t] * kErrorSteps), static_cast<double>(costs[t])));
             if (prices[e][t] && is_rough && std::max(bin, its) - std::min(bin, its) == 1) {
                 prices[e][t] = bin;
                 ++rough;
+            }
+            if (how.error_bound > 0.0 && prices[e][t]) {
+                prices[e][t] = reference::priceUnderBound(*prices[e][t], test::tileOf(got[e].past[t]), how.error_bound);
             }
             words.push_back(prices[e][t] ? *prices[e][t] << 22 | static_cast<gpu::uint>(costs[t]) : 0);
             if (prices[e][t]) { bins[*prices[e][t]] += static_cast<gpu::uint>(costs[t]); }
@@ -251,7 +259,11 @@ void checkChoice(Gpu& gpu, const std::vector<Tiles>& eyes, const How& how) {
     for (std::size_t e = 0; e < eyes.size(); ++e) { priced.push_back({expected[e].kinds, prices[e], expected[e].costs}); }
     if (has_past) {
         CHECK(got[0].counters.picture_cost == picture_cost);
-        reference::selectTogether(priced, static_cast<std::uint64_t>(static_cast<float>(how.budget) * static_cast<float>(picture_cost)));
+        auto budget_cost = static_cast<std::uint64_t>(static_cast<float>(how.budget) * static_cast<float>(picture_cost));
+        if (how.error_bound > 0.0) {
+            budget_cost = std::min<std::uint64_t>(reference::budgetUnderBound(priced, budget_cost, picture_cost), how.most_cost);
+        }
+        reference::selectTogether(priced, budget_cost);
     } else {
         const auto budget_cost = static_cast<std::uint64_t>(how.budget * how.picture_cost);
         reference::select(expected[0].kinds, prices[0], expected[0].costs, budget_cost);
@@ -261,6 +273,9 @@ void checkChoice(Gpu& gpu, const std::vector<Tiles>& eyes, const How& how) {
         std::size_t other = 0;
         for (std::size_t t = 0; t < kinds.size(); ++t) { other += got[e].kinds[t] == kinds[t] ? 0 : 1; }
         CHECK(other <= (how.gaze ? 1 + kinds.size() / 100 : 0));
+        gpu::uint waiting = 0;
+        for (std::size_t t = 0; t < kinds.size(); ++t) { waiting += prices[e][t] >= reference::kOverPrice && kinds[t] == 0 ? 1 : 0; }
+        if (how.error_bound > 0.0) { CHECK(got[e].counters.waiting_tiles == waiting); }
         checkLists(got[e], eyes[e].size);
     }
 }
@@ -396,13 +411,15 @@ TEST_CASE_FIXTURE(Gpu, "price counts of an error what the twin's eye sees, where
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "of tiles with a past price and select take the twin's of both eyes, for any budget and wherever these look") {
+TEST_CASE_FIXTURE(Gpu,
+                  "of tiles with a past price and select take the twin's of both eyes, for any budget and bound, and wherever these look") {
     std::mt19937 random(11);
     for (const auto& [left, right] : {std::pair(glm::uvec2(1, 1), glm::uvec2(1, 1)), std::pair(glm::uvec2(16, 8), glm::uvec2(16, 8)),
                                       std::pair(glm::uvec2(43, 9), glm::uvec2(43, 9)), std::pair(glm::uvec2(20, 17), glm::uvec2(5, 3))}) {
         for (const double budget : {0.0, 0.001, 0.1, 0.3, 0.9, 1.0}) {
             checkChoice(*this, {drawPast(left, random), drawPast(right, random)}, {.budget = budget});
             checkChoice(*this, {drawPast(left, random)}, {.budget = budget});
+            checkChoice(*this, {drawPast(left, random), drawPast(right, random)}, {.budget = budget, .error_bound = 0.04});
         }
     }
     Eye eye = test::makeEye({43 * 16, 20 * 16});
@@ -431,6 +448,27 @@ TEST_CASE_FIXTURE(Gpu, "of equal tiles with a past the first eye's are first, an
     const auto turn = chooseOnDevice(*this, dear, {.budget = 0.001});
     CHECK(turn[0].list.empty());
     CHECK(turn[1].list == std::vector<gpu::uint>{150});
+    // Under a bound what is good enough stays but for a twentieth of the work, however much the budget would allow; what nobody saw before
+    // is rendered without any, as far as lists have room.
+    std::vector<Tiles> bounded = equal;
+    bounded[0].past[20].errors = gpu::vec4(0.01f, 0.11f, 0.01f, 0.01f);
+    bounded[1].past[30].errors = bounded[1].past[40].errors = gpu::vec4(0.2f);
+    bounded[1].past[40].grown = gpu::uvec4(static_cast<gpu::uint>(kErrorSteps * 20.0));
+    How how{.budget = 1.0, .error_bound = 0.105};
+    checkChoice(*this, bounded, how);
+    const auto over = chooseOnDevice(*this, bounded, how);
+    const auto has = [](const Chosen& chosen, gpu::uint tile) { return std::ranges::count(chosen.list, tile) == 1; };
+    CHECK((has(over[0], 20) && has(over[1], 30) && has(over[1], 40)));
+    CHECK(over[0].list.size() + over[1].list.size() == 3 + 20);
+    how.budget = 0.0;
+    checkChoice(*this, bounded, how);
+    const auto unpaid = chooseOnDevice(*this, bounded, how);
+    CHECK(unpaid[0].list.empty());
+    CHECK(unpaid[1].list == std::vector<gpu::uint>{40});
+    CHECK(unpaid[0].counters.waiting_tiles + unpaid[1].counters.waiting_tiles == 2);
+    how.most_cost = 0;
+    checkChoice(*this, bounded, how);
+    CHECK(chooseOnDevice(*this, bounded, how)[1].list.empty());
 }
 
 }  // SUITE(selection)
