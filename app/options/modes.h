@@ -10,7 +10,10 @@ namespace binosplat {
 // periphery just ignore it.
 void requirePeriphery(const StereoOptions& stereo);
 
+// In a headset, unless asked otherwise: turning the head swaps no splats, and canted eyes have one order.
+inline constexpr Order kWearersOrder = Order::kDistance;
+
 // A frame's settings from the options.
-FrameSettings frameSettings(const CameraOptions& camera, const StereoOptions& stereo, Order usual = Order::kDepth);
+FrameSettings frameSettings(const CameraOptions& camera, const StereoOptions& stereo, Order usual);
 
 }  // namespace binosplat

@@ -86,12 +86,12 @@ bool SceneRenderer::dropDepth(ConnectedHeadset& headset) {
     return std::exchange(takes_depth_, false);
 }
 
-FrameSettings SceneRenderer::settingsOfFrame(ConnectedHeadset& headset, const ViewSettings& settings, double scale, const FrameViews& views,
-                                             Order usual_order) {
+FrameSettings SceneRenderer::settingsOfFrame(ConnectedHeadset& headset, const ViewSettings& settings, double scale,
+                                             const FrameViews& views) {
     StereoOptions stereo = settings.stereo;
     stereo.warp.budget = governor_.settings().budget;
     if (headset.inset) { stereo.half_periphery = false; }  // the runtime overlays the inset
-    FrameSettings frame = frameSettings(options_.camera, stereo, usual_order);
+    FrameSettings frame = frameSettings(options_.camera, stereo, kWearersOrder);
     // In the wearer's metres, however large the scene is.
     frame.near = options_.camera.near * scale;
     frame.units_per_metre = scale;
@@ -115,7 +115,7 @@ FrameSettings SceneRenderer::settingsOfFrame(ConnectedHeadset& headset, const Vi
 void SceneRenderer::prepare(ConnectedHeadset& headset, ShownScene& shown, const Similarity& scene_from_room, const ViewSettings& settings,
                             const FrameViews& views) {
     LoadedScene& scene = *shown.get();
-    frame_ = settingsOfFrame(headset, settings, scene_from_room.scale, views, scene.gpu_scene.usualOrder());
+    frame_ = settingsOfFrame(headset, settings, scene_from_room.scale, views);
     eyes_.clear();
     inset_eyes_.clear();
     for (const int e : drawnEyes()) {

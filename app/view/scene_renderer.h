@@ -74,7 +74,7 @@ private:
         return frame_.mode == Mode::kMono ? std::span(kEyes).subspan(static_cast<std::size_t>(frame_.dominant), 1) : std::span(kEyes);
     }
     [[nodiscard]] FrameSettings settingsOfFrame(ConnectedHeadset& headset, const ViewSettings& settings, double scale,
-                                                const FrameViews& views, Order usual_order);
+                                                const FrameViews& views);
     // Presents the eyes of `frame` into `images`.
     void recordEyes(Commands& commands, EyeImages& images, const StereoFrame& frame, bool tint, MirrorWindow* window);
     // Fits the splats of a streamed scene to the frame time, unless the user sets a number.

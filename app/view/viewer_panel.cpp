@@ -79,7 +79,6 @@ void Viewer::layOutPanel(bool hung, double step_seconds) {
     status.can_pass_through = instance_.canSeeThrough();
     status.tools = controls_.choices();
     if (connection_.headset() != nullptr) { status.refresh_rates = headset().refresh_rates; }
-    if (status.has_scene) { status.usual_order = scenes_.get()->gpu_scene.usualOrder(); }
     if (status.has_scene) {
         status.facts = describeFacts(scenes_.get()->facts, 1.0 / state_.sceneFromRoom().scale);
         status.place = shownPlace();

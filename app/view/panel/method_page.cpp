@@ -1,4 +1,5 @@
 // All methods and their costs.
+#include "app/options/modes.h"
 #include "app/options/option_table.h"
 #include "app/report/report.h"
 #include "app/view/panel/panel_pages.h"
@@ -40,7 +41,7 @@ SliderRange sliderOf(const OptionRow<Owner>& row) {
     return {*row.field.least, row.field.slider_most.value_or(*row.field.most)};
 }
 
-void drawMethod(PanelWidgets& widgets, ViewSettings& settings, Order usual_order) {
+void drawMethod(PanelWidgets& widgets, ViewSettings& settings) {
     RunOptions options;
     options.stereo = settings.stereo;
     StereoOptions& stereo = options.stereo;
@@ -53,7 +54,7 @@ void drawMethod(PanelWidgets& widgets, ViewSettings& settings, Order usual_order
     const float width = ImGui::GetContentRegionAvail().x;
     widgets.checkbox("Centre ROI (paper)", &stereo.warp.center_rois);
     ImGui::SameLine(0.4f * width);
-    bool by_distance = stereo.order.value_or(usual_order) == Order::kDistance;
+    bool by_distance = stereo.order.value_or(kWearersOrder) == Order::kDistance;
     if (widgets.checkbox("Sort by distance", &by_distance)) { stereo.order = by_distance ? Order::kDistance : Order::kDepth; }
     ImGui::SameLine(0.75f * width);
     bool foveated = stereo.foveation_deg > 0.0;
@@ -161,7 +162,7 @@ void drawStages(const FrameResult& frame) {
 
 void drawMethodPage(PanelWidgets& widgets, ViewSettings& settings, const PanelStatus& status, PanelRequests& requests) {
     ImGui::PushItemWidth(ImGui::GetContentRegionAvail().x * kSliderShare);
-    drawMethod(widgets, settings, status.usual_order);
+    drawMethod(widgets, settings);
     drawResolution(widgets, settings);
     choose(widgets, "Frame rate", *findViewRow("quality"), settings, 4);
     ImGui::PopItemWidth();

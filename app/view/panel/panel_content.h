@@ -47,7 +47,6 @@ struct PanelStatus {
     std::string scene;
     std::string state;                                       // why the headset shows nothing; empty: it shows something
     bool has_scene = false;                                  // there is something to see
-    Order usual_order = Order::kDepth;                       // the scene's, unless the wearer chooses one
     std::optional<double> loading;                           // share done, while a scene is on its way
     const FrameResult* frame = nullptr;                      // the last one; null before the first
     std::vector<float> frame_ms;                             // wall-clock time from frame to frame, oldest first

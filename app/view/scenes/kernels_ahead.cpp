@@ -63,7 +63,7 @@ void makeKernelsAt(std::uint32_t width_px, StereoFrame& small, const CameraOptio
         const bool canted = (variant & 1) != 0, hides = (variant & 2) != 0;
         const std::array<Eye, 2> eyes = smallEyes(width_px, canted);
         between();
-        FrameSettings settings = frameSettings(camera, ahead.stereo);
+        FrameSettings settings = frameSettings(camera, ahead.stereo, kWearersOrder);
         settings.half_floats = true;
         settings.keep_past = true;
         settings.keep_depth = settings.keep_both_depths = ahead.with_depth;
