@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,15 @@ void printRow(const char* name, fmt::format_string<Args...> format, Args&&... ar
 
 void printQuantiles(const char* name, const std::array<float, 5>& quantiles) {
     printRow(name, "{:.4g}  {:.4g}  {:.4g}  {:.4g}  {:.4g}", quantiles[0], quantiles[1], quantiles[2], quantiles[3], quantiles[4]);
+}
+
+// With four digits, or as many as tell thousandths of `size`.
+std::string inDigits(const glm::dvec3& place, double size) {
+    const auto digitsOf = [&](double value) {
+        const double more = size > 0.0 && value != 0.0 ? std::ceil(std::log10(std::abs(value) / size)) : 0.0;
+        return static_cast<int>(std::clamp(4.0 + more, 4.0, 17.0));
+    };
+    return fmt::format("{:.{}g},{:.{}g},{:.{}g}", place.x, digitsOf(place.x), place.y, digitsOf(place.y), place.z, digitsOf(place.z));
 }
 
 std::string nameKind(const Scene& scene, const LoadNotes& notes) {
@@ -71,9 +81,10 @@ void printDeviceMemory(const Scene& scene, const LoadNotes& notes, const SceneSu
         ways.push_back(fmt::format("--lod {}: {:.1f} MiB", notes.level + 1, mebibytes(bytesOf(splats, scene.sh_degree))));
     }
     if (scene.sh_degree > 0) { ways.push_back(fmt::format("--sh-degree 0: {:.1f} MiB", mebibytes(bytesOf(scene.size(), 0)))); }
-    if (scene.size() > 1) {
-        ways.push_back(fmt::format("convert --crop={:.3g},{:.3g},{:.3g},{:.3g} keeps half of the splats", survey.middle.x, survey.middle.y,
-                                   survey.middle.z, survey.half_radius));
+    if (survey.half_radius > 0.0) {
+        // The numbers are rounded, by less than what is added.
+        ways.push_back(fmt::format("convert --crop={},{:.4g} keeps half of the splats", inDigits(survey.middle, survey.half_radius),
+                                   1.002 * survey.half_radius));
     }
     for (std::size_t i = 0; i < ways.size(); ++i) { printRow(i == 0 ? "  if too much" : "", "{}", ways[i]); }
 }
@@ -102,7 +113,8 @@ void runInfo(const InfoOptions& options) {
     printRow("splats in file", "{}", notes.splats_in_file);
     printRow("skipped", "{} not finite, {} with a rotation of length zero", notes.skipped_not_finite, notes.skipped_zero_rotation);
     const glm::vec3 &low = summary.min_position, &high = summary.max_position;
-    printRow("bounds", "{:.4g},{:.4g},{:.4g} to {:.4g},{:.4g},{:.4g}", low.x, low.y, low.z, high.x, high.y, high.z);
+    const double extent = glm::distance(glm::dvec3(low), glm::dvec3(high));
+    printRow("bounds", "{} to {}", inDigits(glm::dvec3(low), extent), inDigits(glm::dvec3(high), extent));
     printRow("SH degree", "{} (file: {})", summary.sh_degree, notes.sh_degree_in_file);
     for (int band = 1; band <= summary.sh_degree; ++band) {
         printRow("", "band {}: {} splats", band, summary.splats_using_band[static_cast<std::size_t>(band)]);

@@ -34,9 +34,21 @@ TEST_CASE("info says what a scene is made of, and what would take less memory") 
         CHECK(contains(info, row));
     }
     CHECK_FALSE(contains(info, "--sh-degree"));
-    // What is proposed can be done.
-    const std::size_t at = info.find("--crop=");
-    (void)work.go("convert a.ply b.ply " + info.substr(at, info.find(' ', at) - at));
+    // What is proposed can be done, far from the origin, too, and where all is small.
+    for (const auto& [scale, away] : {std::pair(1.0, 0.0), {1.0, 40000.0}, {1e-4, 0.5}}) {
+        CAPTURE(away);
+        PlyText moved = ply;
+        for (const char* name : {"x", "y", "z"}) {
+            for (double& value : moved[name].values) { value = scale * value + away; }
+        }
+        work.write("moved.ply", moved.bytes());
+        const std::string text = work.go("info moved.ply").output;
+        const std::size_t at = text.find("--crop=");
+        (void)work.go("convert moved.ply half.ply " + text.substr(at, text.find(' ', at) - at));
+        const auto kept = static_cast<double>(loadScene((work.path / "half.ply").string()).size());
+        CHECK(kept >= 1500.0);
+        CHECK(kept < 1600.0);
+    }
     work.write("sh.ply", makePly(9).bytes());
     CHECK(contains(work.go("info sh.ply").output, "--sh-degree 0: "));
     CHECK(contains(work.go("info builtin:one-splat").output, "colour space       display-encoded (sRGB)\n"));
