@@ -90,10 +90,11 @@ void printDeviceMemory(const Scene& scene, const LoadNotes& notes, const SceneSu
 }
 
 // The start view, and the reason for it.
-std::string describeStart(const Scene& scene) {
-    const auto [view, why] = startView(scene);
-    return fmt::format("{:.4g},{:.4g},{:.4g} looking at {:.4g},{:.4g},{:.4g}, {}", view.eye.x, view.eye.y, view.eye.z, view.look.x,
-                       view.look.y, view.look.z, why);
+void printStart(const Scene& scene) {
+    const auto [view, why, up_why] = startView(scene);
+    const double distance = glm::distance(view.eye, view.look);
+    printRow("start", "{} looking at {}, {}", inDigits(view.eye, distance), inDigits(view.look, distance), why);
+    printRow("up", "{}: {}", inDigits(0.001 * glm::round(1000.0 * view.up) + 0.0, 1.0), up_why);
 }
 
 }  // namespace
@@ -129,7 +130,7 @@ void runInfo(const InfoOptions& options) {
     printQuantiles("  aspect", summary.aspect_quantiles);
     printRow("memory", "{} bytes ({:.1f} MiB) on the host", summary.host_bytes, mebibytes(summary.host_bytes));
     printDeviceMemory(scene, notes, survey);
-    printRow("start", "{}", describeStart(scene));
+    printStart(scene);
     for (const std::string& phrase : summary.left_out) { printRow("left out", "{}", phrase); }
     for (const std::string& line : notes.lines) { printRow("note", "{}", line); }
 }

@@ -43,6 +43,12 @@ Intrinsics intrinsicsFromFovX(double fov_x_rad, glm::uvec2 size_px) {
     return {f, f, 0.5 * size_px.x, 0.5 * size_px.y};
 }
 
+bool isInPicture(const Eye& eye, const glm::dvec3& point_camera) {
+    const glm::dvec3& p = point_camera;
+    const double u = eye.intrinsics.fx * p.x / p.z + eye.intrinsics.cx, v = eye.intrinsics.fy * p.y / p.z + eye.intrinsics.cy;
+    return p.z > 0.0 && u >= 0.0 && v >= 0.0 && u < eye.size_px.x && v < eye.size_px.y;
+}
+
 glm::dvec3 middleOf(std::span<const Eye> eyes) {
     glm::dvec3 sum(0.0);
     for (const Eye& eye : eyes) { sum += eye.world_from_camera.position; }

@@ -47,6 +47,9 @@ struct Eye {
     double own_pixel_px = 1.0;
 };
 
+// True of what is before the eye and within its picture; a point in camera space.
+bool isInPicture(const Eye& eye, const glm::dvec3& point_camera);
+
 enum Side : int { kLeft = 0, kRight = 1 };
 
 // The middle between all eyes; for one eye exactly its own place.

@@ -3,7 +3,7 @@
 
 #include "app/options/camera_options.h"
 #include "engine/error.h"
-#include "engine/scene/floor_plane.h"
+#include "engine/scene/floor_choice.h"
 #include "engine/scene/scene_folder.h"
 
 #include <algorithm>
@@ -18,17 +18,13 @@ constexpr double kUsualFovXDegrees = 60.0;
 constexpr double kLeastSeen = 0.02;
 constexpr std::size_t kMostForCameras = 4096;
 
-bool isSeen(const Eye& eye, const glm::dvec3& point) {
-    const glm::dvec3 c = transform(inverse(eye.world_from_camera), point);
-    const Intrinsics& k = eye.intrinsics;
-    const double x = k.fx * c.x / c.z + k.cx, y = k.fy * c.y / c.z + k.cy;
-    return c.z > 0.0 && x >= 0.0 && y >= 0.0 && x < eye.size_px.x && y < eye.size_px.y;
-}
-
 std::optional<std::size_t> firstThatSees(const std::vector<FileCamera>& cameras, const Scene& scene) {
     const std::vector<SplatSample> samples = sampleSplats(scene, kMostForCameras);
     for (std::size_t i = 0; i < cameras.size(); ++i) {
-        const auto seen = std::ranges::count_if(samples, [&](const SplatSample& sample) { return isSeen(cameras[i].eye, sample.centre); });
+        const Eye& eye = cameras[i].eye;
+        const Pose camera_from_world = inverse(eye.world_from_camera);
+        const auto seen = std::ranges::count_if(
+            samples, [&](const SplatSample& sample) { return isInPicture(eye, transform(camera_from_world, sample.centre)); });
         if (seen > 0 && static_cast<double>(seen) >= kLeastSeen * static_cast<double>(samples.size())) { return i; }
     }
     return std::nullopt;
@@ -38,10 +34,19 @@ std::optional<StartView> viewAtCamera(const Scene& scene, const SceneCameras& ow
     const std::optional<std::size_t> first = firstThatSees(own.cameras, scene);
     if (!first) { return std::nullopt; }
     const FileCamera& camera = own.cameras[*first];
-    const std::optional<glm::dvec3> up = wish.up ? wish.up : upOfCameras(own.cameras);
-    const char* const whose = wish.up ? "given" : up ? "the mean of all cameras'" : "this camera's, as they look every way";
-    return StartView{viewFrom(camera.eye.world_from_camera, up, scene, wish.fov_x_deg),
-                     fmt::format("at camera {} ({}) of {}; up is {}", *first, camera.name, own.file.string(), whose)};
+    const std::string at = fmt::format("at camera {} ({}) of {}", *first, camera.name, own.file.string());
+    const auto with = [&](const std::optional<glm::dvec3>& up, const char* up_why) {
+        return StartView{viewFrom(camera.eye.world_from_camera, up, scene, wish.fov_x_deg), at, up_why};
+    };
+    if (wish.up) { return with(wish.up, "given"); }
+    if (const auto up = upOfCameras(own.cameras)) { return with(up, "the mean of all cameras'"); }
+    // Those of a drone that look straight down have theirs in every direction.
+    glm::dvec3 sum(0.0);
+    for (const FileCamera& each : own.cameras) { sum += each.eye.world_from_camera.position; }
+    if (const auto up = upBeneath(scene, sum / static_cast<double>(own.cameras.size()))) {
+        return with(up, "of the floor beneath the cameras, as they look every way");
+    }
+    return with({}, "this camera's, as they look every way");
 }
 
 }  // namespace
@@ -78,7 +83,7 @@ View viewFrom(const Pose& world_from_camera, const std::optional<glm::dvec3>& up
 
 StartView startView(const Scene& scene, const StandpointWish& wish) {
     if (const std::optional<View> view = isBuiltin(scene.name) ? builtinView(scene.name) : std::nullopt) {
-        return {*view, "at the built-in scene's own view"};
+        return {*view, "at the built-in scene's own view", "the built-in scene's own"};
     }
     const SceneCameras own = scene.name.empty() ? SceneCameras{} : readSceneCameras(scene.name);
     if (const auto at_camera = viewAtCamera(scene, own, wish)) { return *at_camera; }
@@ -89,7 +94,7 @@ StartView startView(const Scene& scene, const StandpointWish& wish) {
     } else if (!own.cameras.empty()) {
         why += fmt::format("; not at a camera: none of {} sees the scene", own.file.string());
     }
-    return {judged.view, why};
+    return {judged.view, why, judged.up_why};
 }
 
 View startView(const Scene& scene, const CameraOptions& camera, double metres_per_unit) {
@@ -100,7 +105,7 @@ View startView(const Scene& scene, const CameraOptions& camera, double metres_pe
     }
     View view;
     if (camera.eye && camera.look && !isBuiltin(scene.name)) {
-        view = {*camera.eye, *camera.look, {0.0, scene.y_up ? 1.0 : -1.0, 0.0}, fov_x_deg};
+        view = {*camera.eye, *camera.look, hintsOf(scene).usual, fov_x_deg};
     } else {
         view = startView(scene, {fov_x_deg, metres_per_unit, camera.up}).view;
     }

@@ -29,7 +29,7 @@ View viewFrom(const Pose& world_from_camera, const std::optional<glm::dvec3>& up
 
 struct StartView {
     View view;
-    std::string why;  // one line
+    std::string why, up_why;  // one line each
 };
 
 // The built-in scene's own view; or that of the first of the scene's cameras (found by its name) that sees it; or one derived from

@@ -200,6 +200,8 @@ Scene readCompressedPly(InputFile& file, LoadNotes& notes, const Progress& progr
     if (progress) { progress(1.0); }
     Scene scene = builder.finish(notes);
     scene.antialiased = header.antialiased;
+    scene.vertical_axis = header.vertical_axis;
+    if (header.vertical_axis >= 0) { notes.axes = fmt::format("{} is vertical (named by the file)", "xyz"[header.vertical_axis]); }
     return scene;
 }
 

@@ -11,19 +11,15 @@ namespace binosplat {
 
 namespace {
 
-constexpr int kTries = 1500;                 // of either kind
-constexpr std::size_t kFewForFloor = 256;    // fewer make no floor
-constexpr std::size_t kMostAtFirst = 2048;   // samples that a try is judged by
-constexpr std::size_t kKept = 12;            // tries that are fitted
-constexpr double kAlikeCosine = 0.9962;      // 5 degrees
-constexpr double kThickness = 0.01;          // of the size, to each side
-constexpr double kLeastShare = 0.08;         // of all splats; twice that where up would not be about the usual one
-constexpr double kTiltedCosine = 0.9397;     // 20 degrees
-constexpr double kMostBehind = 0.15;         // of the others
-constexpr double kLeastAcross = 0.03;        // of the size: standard deviation, as of a corridor an eighth as wide as long
-constexpr double kUsualCosine = 0.70710678;  // 45 degrees
-constexpr double kMoreThanUsual = 3.0, kLeastUnusualShare = 0.3, kLeastUnusualReach = 1.3;
-constexpr double kHoversFrom = 0.1;  // of the size
+constexpr int kTries = 1500;                // of either kind
+constexpr std::size_t kFewForFloor = 256;   // fewer make no floor
+constexpr std::size_t kMostAtFirst = 2048;  // samples that a try is judged by
+constexpr std::size_t kKept = 12;           // tries that are fitted
+constexpr double kAlikeCosine = 0.9962;     // 5 degrees
+constexpr double kThickness = 0.01;         // of the size, to each side
+constexpr double kLeastShare = 0.08;        // of all splats
+constexpr double kMostBehind = 0.15;        // of the others
+constexpr double kLeastAcross = 0.03;       // of the size: standard deviation, as of a corridor an eighth as wide as long
 
 struct Plane {
     glm::dvec3 normal{0.0};
@@ -108,26 +104,27 @@ std::vector<Plane> tryPlanes(const std::vector<SplatSample>& samples, double thi
     return tried;
 }
 
+bool isLike(const Plane& a, const Plane& b, const glm::dvec3& middle, double thickness) {
+    const double side = glm::dot(a.normal, b.normal) < 0.0 ? -1.0 : 1.0;
+    const double apart = glm::dot(a.normal - side * b.normal, middle) - a.height + side * b.height;
+    return side * glm::dot(a.normal, b.normal) > kAlikeCosine && std::abs(apart) < 2.0 * thickness;
+}
+
 // Those with the most splats, each unlike the others: a table full of things is tried a hundred times before the ground beneath it.
-std::vector<Plane> bestOf(std::vector<Plane> tried, const glm::dvec3& middle, double thickness) {
+std::vector<Plane> bestOf(std::vector<Plane> tried, std::size_t most, const glm::dvec3& middle, double thickness) {
     std::ranges::sort(tried, std::greater<>(), &Plane::inliers);
     std::vector<Plane> kept;
     for (const Plane& plane : tried) {
-        const auto isLike = [&](const Plane& other) {
-            const double side = glm::dot(plane.normal, other.normal) < 0.0 ? -1.0 : 1.0;
-            const double apart = glm::dot(plane.normal - side * other.normal, middle) - plane.height + side * other.height;
-            return std::abs(glm::dot(plane.normal, other.normal)) > kAlikeCosine && std::abs(apart) < 2.0 * thickness;
-        };
-        if (std::ranges::any_of(kept, isLike)) { continue; }
-        kept.push_back(plane);
-        if (kept.size() == kKept) { break; }
+        if (kept.size() == most) { break; }
+        if (std::ranges::none_of(kept, [&](const Plane& other) { return isLike(plane, other, middle, thickness); })) {
+            kept.push_back(plane);
+        }
     }
     return kept;
 }
 
-// As a floor or a ceiling; empty where splats lie on both sides, or the plane is a strip.
-std::optional<FloorPlane> asFloor(const std::vector<SplatSample>& samples, const Plane& plane, const glm::dvec3& usual, double size,
-                                  double thickness) {
+// Empty where splats lie on both sides, or the plane is a strip.
+std::optional<FloorPlane> asFloor(const std::vector<SplatSample>& samples, const Plane& plane, double size, double thickness) {
     std::size_t above = 0, below = 0;
     glm::dvec3 sum(0.0);
     for (const SplatSample& sample : samples) {
@@ -138,9 +135,7 @@ std::optional<FloorPlane> asFloor(const std::vector<SplatSample>& samples, const
     }
     const double share = static_cast<double>(plane.inliers) / static_cast<double>(samples.size());
     const std::size_t others = above + below, behind = std::min(above, below);
-    const bool is_tilted = std::abs(glm::dot(plane.normal, usual)) < kTiltedCosine;
-    if (share < (is_tilted ? 2.0 : 1.0) * kLeastShare || others == 0 ||
-        static_cast<double>(behind) > kMostBehind * static_cast<double>(others)) {
+    if (share < kLeastShare || others == 0 || static_cast<double>(behind) > kMostBehind * static_cast<double>(others)) {
         return std::nullopt;
     }
     const glm::dvec3 mean = sum / static_cast<double>(plane.inliers);
@@ -160,36 +155,6 @@ std::optional<FloorPlane> asFloor(const std::vector<SplatSample>& samples, const
     return FloorPlane{up,        rest_is_above ? plane.height : -plane.height,
                       thickness, share,
                       false,     static_cast<double>(behind) / static_cast<double>(others)};
-}
-
-// How far from the middle of the floor its splats lie, in terms of how far those do that stand on it.
-double reachBeyond(const std::vector<SplatSample>& samples, const FloorPlane& floor) {
-    std::array<std::vector<double>, 2> distances;
-    glm::dvec3 middle(0.0);
-    const auto isFloor = [&](const SplatSample& sample) {
-        return std::abs(glm::dot(sample.centre, floor.up) - floor.height) < floor.thickness;
-    };
-    std::array<std::vector<double>, 3> along;
-    for (const SplatSample& sample : samples) {
-        if (!isFloor(sample)) { continue; }
-        for (int axis = 0; axis < 3; ++axis) { along[static_cast<std::size_t>(axis)].push_back(sample.centre[axis]); }
-    }
-    for (int axis = 0; axis < 3; ++axis) { middle[axis] = findQuantile(along[static_cast<std::size_t>(axis)], 0.5); }
-    for (const SplatSample& sample : samples) {
-        const glm::dvec3 from = sample.centre - middle;
-        distances[isFloor(sample) ? 1 : 0].push_back(glm::length(from - glm::dot(from, floor.up) * floor.up));
-    }
-    return distances[0].empty() ? 0.0 : findQuantile(distances[1], 0.9) / std::max(findQuantile(distances[0], 0.9), 1e-300);
-}
-
-// True if only possible floaters begin at the floor: things float in front of a wall, but stand on a floor.
-bool hovers(const std::vector<SplatSample>& samples, const FloorPlane& floor, double size) {
-    std::vector<double> heights;
-    for (const SplatSample& sample : samples) {
-        const double height = glm::dot(sample.centre, floor.up) - floor.height;
-        if (height > 2.0 * floor.thickness) { heights.push_back(height); }
-    }
-    return heights.empty() || findQuantile(heights, 0.05) > kHoversFrom * size;
 }
 
 }  // namespace
@@ -217,34 +182,26 @@ double findQuantile(std::vector<double>& values, double share) {
     return values[static_cast<std::size_t>(rank)];
 }
 
-std::optional<FloorPlane> findFloorPlane(const std::vector<SplatSample>& samples, const glm::dvec3& usual) {
-    if (samples.size() < kFewForFloor) { return std::nullopt; }
+std::vector<FloorPlane> findPlanes(const std::vector<SplatSample>& samples) {
+    if (samples.size() < kFewForFloor) { return {}; }
     glm::dvec3 middle;
     const double size = sizeOf(samples, middle), thickness = kThickness * size;
-    if (!(size > 0.0) || !std::isfinite(size)) { return std::nullopt; }
-    std::vector<Plane> tried = tryPlanes(samples, thickness);
-    // Those about the usual up and the others each have their best.
-    std::array<std::optional<FloorPlane>, 2> best;
-    for (const bool is_usual : {true, false}) {
-        std::vector<Plane> of_kind;
-        std::ranges::copy_if(tried, std::back_inserter(of_kind),
-                             [&](const Plane& plane) { return (std::abs(glm::dot(plane.normal, usual)) >= kUsualCosine) == is_usual; });
-        double best_score = 0.0;
-        for (const Plane& plane : bestOf(std::move(of_kind), middle, thickness)) {
-            std::optional<FloorPlane> floor = asFloor(samples, fit(samples, plane, thickness), usual, size, thickness);
-            if (!floor || (std::abs(glm::dot(floor->up, usual)) >= kUsualCosine) != is_usual) { continue; }
-            if (is_usual && glm::dot(floor->up, usual) < 0.0) {
-                *floor = {-floor->up, -floor->height, thickness, floor->share, true, floor->behind};
-            }
-            const double score = floor->share * (1.0 - 0.5 * floor->behind / kMostBehind) * (floor->is_ceiling ? 0.5 : 1.0);
-            if (score > best_score) { best_score = score, best[is_usual ? 0 : 1] = floor; }
-        }
+    if (!(size > 0.0) || !std::isfinite(size)) { return {}; }
+    // Those about each of the axes have their best: elsewhere there may be many more that are better tries, but no floors.
+    std::array<std::vector<Plane>, 3> about;
+    for (const Plane& plane : tryPlanes(samples, thickness)) {
+        const glm::dvec3 along = glm::abs(plane.normal);
+        about[along.x > along.y && along.x > along.z ? 0 : along.y > along.z ? 1 : 2].push_back(plane);
     }
-    auto& [usual_one, other] = best;
-    if (other && hovers(samples, *other, size)) { other.reset(); }
-    if (usual_one && other && other->share >= kMoreThanUsual * usual_one->share) { return other; }
-    if (usual_one || !other) { return usual_one; }
-    return other->share >= kLeastUnusualShare && reachBeyond(samples, *other) >= kLeastUnusualReach ? other : std::nullopt;
+    std::vector<Plane> fitted;
+    for (std::vector<Plane>& planes : about) {
+        for (const Plane& plane : bestOf(std::move(planes), kKept, middle, thickness)) { fitted.push_back(fit(samples, plane, thickness)); }
+    }
+    std::vector<FloorPlane> found;
+    for (const Plane& plane : bestOf(std::move(fitted), 3 * kKept, middle, thickness)) {
+        if (const std::optional<FloorPlane> floor = asFloor(samples, plane, size, thickness)) { found.push_back(*floor); }
+    }
+    return found;
 }
 
 }  // namespace binosplat

@@ -1,4 +1,4 @@
-// The floor of a scene that does not say where up is: the plane that most of its splats lie in, with the rest on one side.
+// Planes that a scene may stand on: many of its splats lie in each, with the rest on one side.
 #pragma once
 
 #include "engine/scene/scene.h"
@@ -28,8 +28,8 @@ struct FloorPlane {
     double behind;     // of the other samples lie beyond it
 };
 
-// Empty where there is none. Planes within 45 degrees of `usual` count for more: on another one things must stand, not hover before it as
-// before a wall, and it must hold three times as many splats or, where there is none of these, three in ten and reach far beyond them.
-std::optional<FloorPlane> findFloorPlane(const std::vector<SplatSample>& samples, const glm::dvec3& usual);
+// All planes, whatever their direction, that hold many of the splats with most of the others on one side, taken as floors. Each is unlike
+// the others; floor_choice.h chooses.
+std::vector<FloorPlane> findPlanes(const std::vector<SplatSample>& samples);
 
 }  // namespace binosplat

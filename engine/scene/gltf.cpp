@@ -183,6 +183,7 @@ Scene readGltf(InputFile& file, LoadNotes& notes, const Progress& progress) {
     if (progress) { progress(1.0); }
     Scene scene = builder.finish(notes);
     scene.y_up = true;
+    scene.vertical_axis = 1;
     notes.axes = "x left, y up, z front; right-handed (glTF's own)";
     notes.colour_space = document.is_linear ? "lin_rec709_display (named by the file)" : "srgb_rec709_display (named by the file)";
     scene.by_distance = document.by_distance;

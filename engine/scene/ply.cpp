@@ -131,6 +131,8 @@ Scene readPly(InputFile& file, LoadNotes& notes, const Progress& progress) {
     if (progress) { progress(1.0); }
     Scene scene = builder.finish(notes);
     scene.antialiased = header.antialiased && layout.three_scales;
+    scene.vertical_axis = header.vertical_axis;
+    if (header.vertical_axis >= 0) { notes.axes = fmt::format("{} is vertical (named by the file)", "xyz"[header.vertical_axis]); }
     if (activated) {
         notes.lines.push_back(fmt::format(
             "{}: all scales are positive and all opacities lie within 0 to 1: it looks as if it was written with the activations "

@@ -105,6 +105,9 @@ bool equalsIgnoringCase(std::string_view a, std::string_view b) {
 // `words` of a comment line. Says nothing of what it does not know.
 void readComment(std::span<const std::string_view> words, Header& header) {
     if (words.size() == 2 && words[1].starts_with("postshot.anti_aliasing=")) { header.antialiased = words[1].ends_with("=1"); }
+    if (words.size() == 4 && equalsIgnoringCase(words[1], "vertical") && equalsIgnoringCase(words[2], "axis:")) {
+        header.vertical_axis = equalsIgnoringCase(words[3], "x") ? 0 : equalsIgnoringCase(words[3], "z") ? 2 : -1;
+    }
     if (words.size() != 3) { return; }
     if (equalsIgnoringCase(words[1], "SplatRenderMode:")) { header.antialiased = equalsIgnoringCase(words[2], "mip"); }
     if (equalsIgnoringCase(words[1], "antialiased")) { header.antialiased = words[2] == "1"; }

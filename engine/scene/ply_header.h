@@ -36,6 +36,7 @@ struct Header {
     int line_count = 0;
     bool antialiased = false;  // as a comment says: "SplatRenderMode: mip" (Brush, gsplat), "antialiased 1" or "postshot.anti_aliasing=1"
                                // (Postshot); the last one counts
+    int vertical_axis = -1;    // 0 or 2, as a comment says: "Vertical axis: z". Of y it says nothing: Brush writes it into every file
 };
 
 // Reads up to and including the end_header line. Throws Error with the line at fault.

@@ -15,8 +15,12 @@ namespace binosplat {
 namespace {
 
 std::string makeHeader(const Scene& scene) {
-    std::string header = fmt::format("ply\nformat binary_little_endian 1.0\n{}element vertex {}\n",
-                                     scene.antialiased ? "comment SplatRenderMode: mip\n" : "", scene.size());
+    std::string header = fmt::format("ply\nformat binary_little_endian 1.0\n{}{}element vertex {}\n",
+                                     scene.antialiased ? "comment SplatRenderMode: mip\n" : "",
+                                     scene.vertical_axis == 0   ? "comment Vertical axis: x\n"
+                                     : scene.vertical_axis == 2 ? "comment Vertical axis: z\n"
+                                                                : "",
+                                     scene.size());
     const auto property = [&header](const std::string& name) { header += "property float " + name + "\n"; };
     for (const char* name : {"x", "y", "z", "nx", "ny", "nz", "f_dc_0", "f_dc_1", "f_dc_2"}) { property(name); }
     for (int i = 0; i < 3 * (shCoefficientCount(scene.sh_degree) - 1); ++i) { property(fmt::format("f_rest_{}", i)); }

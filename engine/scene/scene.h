@@ -32,6 +32,7 @@ struct Scene {
 
     bool by_distance = false;  // asks to be blended by distance, not by depth
     bool y_up = false;         // up is +y, and the front is seen from +z, as in glTF; otherwise, as in trainings, -y and from -z
+    int vertical_axis = -1;    // of 0 to 2, as the file says; of y, `y_up` then says which way is up; -1: the file does not say
     bool is_linear = false;    // colours of linear light, to be encoded after blending
 
     [[nodiscard]] std::size_t size() const { return positions.size(); }

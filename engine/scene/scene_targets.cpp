@@ -16,6 +16,12 @@ namespace binosplat {
 
 namespace {
 
+void addAxis(const Scene& scene, std::vector<std::string>& losses) {
+    if (scene.vertical_axis == 0 || scene.vertical_axis == 2) {
+        losses.emplace_back(fmt::format("that {} is vertical", "xyz"[scene.vertical_axis]));
+    }
+}
+
 // Properties that none of the formats can store.
 void addUnsaid(const Scene& scene, std::vector<std::string>& losses) {
     if (scene.by_distance) { losses.emplace_back("that splats are blended by distance (render it with --order distance)"); }
@@ -34,6 +40,7 @@ std::string describeSpzLoss(const Scene& scene) {
         "colours and opacities of 8 bits", "rotations of 10 bits a component"};
     if (scene.sh_degree > 0) { losses.emplace_back("harmonics from -1 to 1 in steps of 1/128"); }
     if (!scene.isGaussian3d()) { losses.emplace_back("that its splats are discs (render it with --flatten)"); }
+    addAxis(scene, losses);
     addUnsaid(scene, losses);
     return fmt::format("{}", fmt::join(losses, "; "));
 }
@@ -44,6 +51,7 @@ std::string describeSogLoss(const Scene& scene) {
     if (scene.sh_degree > 0) {
         losses.emplace_back(fmt::format("harmonics of {} rows at most for {} splats", sogPaletteSize(scene), scene.size()));
     }
+    addAxis(scene, losses);
     addUnsaid(scene, losses);
     return fmt::format("{}", fmt::join(losses, "; "));
 }

@@ -218,12 +218,12 @@ void unpackSplat(const Header& header, const SpzAxes& axes, const Attributes& at
 }
 
 // The file's axes, or those of files that do not name any.
-SpzAxes chooseAxes(const std::string& file, const Header& header, const Attributes& attributes, LoadNotes& notes) {
+SpzAxes chooseAxes(const std::string& file, const Header& header, const Attributes& attributes, LoadNotes& notes, bool& known) {
     const std::optional<std::uint32_t> said = header.has_extensions ? findSpzAxes(attributes.records) : std::nullopt;
     if (said && *said > SpzAxes::kLast) {
         notes.lines.push_back(fmt::format("{}: names axes {}, which are not known; taken as {}", file, *said, SpzAxes().describe()));
     }
-    const bool known = said && *said > 0 && *said <= SpzAxes::kLast;
+    known = said && *said > 0 && *said <= SpzAxes::kLast;
     const SpzAxes axes(known ? *said : SpzAxes::kUsual);
     notes.axes = axes.describe() + (known ? " (named by the file)" : " (SPZ's own: the file names none)");
     return axes;
@@ -256,7 +256,8 @@ Scene readSpz(InputFile& file, LoadNotes& notes, const Progress& progress) {
         attributes = readStream(file, read, header, progress);
     }
     LoadNotes of_axes;
-    const SpzAxes axes = chooseAxes(file.name(), header, attributes, of_axes);
+    bool axes_known = false;
+    const SpzAxes axes = chooseAxes(file.name(), header, attributes, of_axes, axes_known);
 
     SceneBuilder builder(file.name(), header.splats, header.sh_degree, true);
     StoredBlock block;
@@ -273,6 +274,7 @@ Scene readSpz(InputFile& file, LoadNotes& notes, const Progress& progress) {
     notes.axes = of_axes.axes;
     notes.lines.insert(notes.lines.end(), of_axes.lines.begin(), of_axes.lines.end());
     scene.antialiased = header.antialiased;
+    if (axes_known) { scene.vertical_axis = 1; }
     if (header.sh_bytes > 45) { notes.lines.push_back(fmt::format("{}: SH of degree 4 were left out, degree 3 is kept", file.name())); }
     return scene;
 }

@@ -1,14 +1,14 @@
-// Judged in axes of the wearer's own: right, up along the floor's normal, ahead.
+// Judged by what lies about a place, in axes of the wearer's own.
 #include "engine/scene/standpoint.h"
 
-#include "engine/scene/floor_plane.h"
+#include "engine/scene/floor_choice.h"
+#include "engine/scene/lie.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 namespace binosplat {
@@ -21,118 +21,15 @@ constexpr double kSurrounded = 0.6;  // of the sectors
 constexpr double kTallest = 1.3;     // of its width: rooms are not taller
 constexpr double kEyeHeightMetres = 1.6;
 constexpr double kLeastRoomHeightMetres = 1.8, kHollow = 0.04;
+constexpr double kMostDense = 0.25;  // about a head, of the density if splats were spread evenly
+constexpr std::size_t kFewInSector = 4;
 constexpr int kGrid = 15;                           // places to stand that are tried, along either side
 constexpr int kCells = 24;                          // of the longest side, to find what is dense
 constexpr double kLookDown = 0.45, kLookUp = 0.25;  // tangents
 
-// A sample in the wearer's axes.
-struct Spot {
-    double x, h, z;  // right, up, ahead
-    double reach;
-    bool is_floor;
-};
-
-struct Axes {
-    glm::dvec3 right, up, ahead;
-    [[nodiscard]] glm::dvec3 world(double x, double h, double z) const { return x * right + h * up + z * ahead; }
-};
-
-Axes axesOf(const glm::dvec3& up, bool y_up) {
-    const double side = y_up ? -1.0 : 1.0;
-    glm::dvec3 ahead = glm::dvec3(0.0, 0.0, side) - glm::dot(glm::dvec3(0.0, 0.0, side), up) * up;
-    // The front of a scene whose z is up is towards -y.
-    if (glm::length(ahead) < 0.2) { ahead = glm::dvec3(0.0, 1.0, 0.0) - up.y * up; }
-    ahead = glm::normalize(ahead);
-    return {glm::normalize(glm::cross(ahead, up)), up, ahead};
-}
-
-Axes turned(const Axes& axes, double angle_rad) {
-    const double c = std::cos(angle_rad), s = std::sin(angle_rad);
-    return {c * axes.right + s * axes.ahead, axes.up, c * axes.ahead - s * axes.right};
-}
-
-struct Range {
-    double low, high;
-    [[nodiscard]] double middle() const { return 0.5 * (low + high); }
-    [[nodiscard]] double length() const { return high - low; }
-};
-
-template <typename Of>
-std::vector<double> valuesOf(const std::vector<Spot>& spots, const Of& of) {
-    std::vector<double> values;
-    for (const Spot& spot : spots) {
-        if (const std::optional<double> value = of(spot)) { values.push_back(*value); }
-    }
-    return values;
-}
-
-Range rangeOf(std::vector<double> values, double beyond) {
-    if (values.empty()) { return {0.0, 0.0}; }
-    std::ranges::sort(values);
-    const std::size_t cut = static_cast<std::size_t>(beyond * static_cast<double>(values.size()));
-    return {values[cut], values[values.size() - 1 - cut]};
-}
-
-// Without what lies far beyond the rest, such as hills and sky: a landscape has more of it than of what one stands in. Half of the splats
-// stay at each step.
-std::vector<SplatSample> coreOf(std::vector<SplatSample> samples) {
-    if (samples.empty()) { return samples; }
-    constexpr double kFar = 4.0, kCore = 3.0;  // times the median distance
-    for (int i = 0; i < 4; ++i) {
-        glm::dvec3 middle;
-        std::vector<double> values(samples.size());
-        for (int axis = 0; axis < 3; ++axis) {
-            std::ranges::transform(samples, values.begin(), [&](const SplatSample& sample) { return sample.centre[axis]; });
-            middle[axis] = findQuantile(values, 0.5);
-        }
-        const auto distanceOf = [&](const SplatSample& sample) { return glm::distance(sample.centre, middle); };
-        std::ranges::transform(samples, values.begin(), distanceOf);
-        const double half = findQuantile(values, 0.5);
-        if (!(half > 0.0) || findQuantile(values, 0.95) <= kFar * half) { break; }
-        std::erase_if(samples, [&](const SplatSample& sample) { return distanceOf(sample) > kCore * half; });
-    }
-    return samples;
-}
-
-// The scene's properties that do not depend on the standpoint.
-struct Lie {
-    std::vector<Spot> spots;
-    Range x, z;              // nine tenths of all
-    double floor_h, height;  // of the floor, and of nineteen in twenty of the rest above it
-    bool has_floor;
-};
-
-Lie lieOf(const std::vector<SplatSample>& samples, const Axes& axes, const std::optional<FloorPlane>& floor) {
-    Lie lie{{}, {}, {}, 0.0, 0.0, floor && !floor->is_ceiling};
-    for (const SplatSample& sample : samples) {
-        const double h = glm::dot(sample.centre, axes.up);
-        const bool is_floor = lie.has_floor && std::abs(h - floor->height) < 2.0 * floor->thickness;
-        lie.spots.push_back({glm::dot(sample.centre, axes.right), h, glm::dot(sample.centre, axes.ahead), sample.reach, is_floor});
-    }
-    lie.x = rangeOf(valuesOf(lie.spots, [](const Spot& s) { return std::optional(s.x); }), 0.05);
-    lie.z = rangeOf(valuesOf(lie.spots, [](const Spot& s) { return std::optional(s.z); }), 0.05);
-    const Range h = rangeOf(valuesOf(lie.spots, [](const Spot& s) { return std::optional(s.h); }), 0.04);
-    lie.floor_h = lie.has_floor ? floor->height : h.low;
-    lie.height = h.high - lie.floor_h;
-    return lie;
-}
-
-// Along its own sides: those about the vertical with the smallest box.
-Axes alongSides(const std::vector<SplatSample>& samples, const Axes& axes) {
-    constexpr int kTurns = 18;
-    const std::size_t step = samples.size() / 2048 + 1;
-    Axes best = axes;
-    double least = std::numeric_limits<double>::infinity();
-    for (int i = 0; i < kTurns; ++i) {
-        const Axes tried = turned(axes, 1.5707963267948966 * i / kTurns);
-        std::vector<double> x, z;
-        for (std::size_t j = 0; j < samples.size(); j += step) {
-            x.push_back(glm::dot(samples[j].centre, tried.right)), z.push_back(glm::dot(samples[j].centre, tried.ahead));
-        }
-        const double area = rangeOf(std::move(x), 0.05).length() * rangeOf(std::move(z), 0.05).length();
-        if (area < 0.98 * least) { least = area, best = tried; }
-    }
-    return best;
+std::size_t sectorOf(double x, double z) {
+    const double turn = (std::atan2(z, x) / 6.283185307179586 + 0.5) * kSectors;
+    return static_cast<std::size_t>(std::clamp(static_cast<int>(turn), 0, kSectors - 1));
 }
 
 // Of the directions about the middle, in how many something stands where the floor ends, or, without a floor, far from the middle; and
@@ -146,8 +43,7 @@ int surroundingSectors(const Lie& lie) {
     const double middle_x = lie.x.middle(), middle_z = lie.z.middle();
     for (const Spot& spot : lie.spots) {
         const double x = spot.x - middle_x, z = spot.z - middle_z;
-        const double turn = (std::atan2(z, x) / 6.283185307179586 + 0.5) * kSectors;
-        Sector& sector = sectors[static_cast<std::size_t>(std::clamp(static_cast<int>(turn), 0, kSectors - 1))];
+        Sector& sector = sectors[sectorOf(x, z)];
         const double distance = std::hypot(x, z);
         if (spot.is_floor) { sector.floor.push_back(distance); }
         if (!spot.is_floor && spot.h > lie.floor_h + 0.2 * lie.height) { sector.standing.push_back(distance), ++standing; }
@@ -250,6 +146,22 @@ double clearanceAt(const std::vector<Spot>& spots, double x, double h, double z,
     return findQuantile(distances, 0.002);
 }
 
+// True where a head has free space about it, and something stands at a distance on most sides: within something solid splats are as dense
+// as anywhere.
+bool hasRoom(const Lie& lie, const std::vector<Spot>& spots, const glm::dvec3& head, double radius) {
+    std::array<std::vector<double>, kSectors> sectors;
+    double near = 0.0;
+    for (const Spot& spot : spots) {
+        const double x = spot.x - head.x, z = spot.z - head.z;
+        near += std::hypot(x, spot.h - head.y, z) < radius;
+        if (!spot.is_floor) { sectors[sectorOf(x, z)].push_back(std::hypot(x, z)); }
+    }
+    const double sphere = 4.18879 * radius * radius * radius, all = lie.x.length() * lie.z.length() * lie.height;
+    const auto isFree = [&](std::vector<double>& sector) { return sector.size() >= kFewInSector && findQuantile(sector, 0.5) >= radius; };
+    return near * all <= kMostDense * sphere * static_cast<double>(spots.size()) &&
+           static_cast<double>(std::ranges::count_if(sectors, isFree)) >= kSurrounded * kSectors;
+}
+
 struct Place {
     glm::dvec3 eye{0.0}, look{0.0};  // right, up, ahead
     double clearance = 0.0;
@@ -277,7 +189,9 @@ std::optional<Place> findPlaceInside(const Lie& lie, double eye_height) {
         const double clearance = clearanceAt(some, x, h, z, scratch);
         const double away = std::hypot(x - median_x, z - median_z) / half, to_dense = std::hypot(x - densest->x, z - densest->z) / half;
         const double score = std::min(clearance / enough, 1.0) - 0.5 * away - std::max(0.0, 0.8 - to_dense);
-        if (clearance > 0.15 * enough && score > best_score) { best_score = score, best = Place{{x, h, z}, *densest, clearance}; }
+        if (clearance > 0.15 * enough && score > best_score && hasRoom(lie, some, {x, h, z}, 0.9 * enough)) {
+            best_score = score, best = Place{{x, h, z}, *densest, clearance};
+        }
     }
     if (best) {
         const double level = std::hypot(best->look.x - best->eye.x, best->look.z - best->eye.z);
@@ -286,17 +200,19 @@ std::optional<Place> findPlaceInside(const Lie& lie, double eye_height) {
     return best;
 }
 
-std::string nameUp(const StandpointWish& wish, const std::optional<FloorPlane>& floor, bool y_up) {
-    if (wish.up) { return ""; }
+std::string explainUp(const StandpointWish& wish, const UpHints& hints, const std::optional<FloorPlane>& floor) {
+    if (wish.up) { return "given"; }
     if (floor) {
-        return fmt::format("; up from the {} that {:.0f} % of the splats lie in", floor->is_ceiling ? "ceiling" : "floor",
-                           100.0 * floor->share);
+        return fmt::format("of the {}: {:.0f} % of the splats lie in it, {:.0f} % of the others {} it",
+                           floor->is_ceiling ? "ceiling" : "floor", 100.0 * floor->share, 100.0 * (1.0 - floor->behind),
+                           floor->is_ceiling ? "below" : "above");
     }
-    return fmt::format("; up is {}y, as no floor was found", y_up ? '+' : '-');
+    const char* const whose = hints.known == UpHints::Known::kNothing ? "by convention" : "as the file says";
+    return fmt::format("{}, as no floor was found", whose);
 }
 
 // From in front, level, or a little from above what stands on a floor.
-Standpoint standOutside(const Lie& lie, const Axes& axes, const Scene& scene, double fov_x_deg) {
+Standpoint standOutside(const Lie& lie, const Axes& axes, double fov_x_deg) {
     std::vector<Spot> object;
     std::ranges::copy_if(lie.spots, std::back_inserter(object), [](const Spot& spot) { return !spot.is_floor; });
     const bool on_floor = lie.has_floor && 5 * object.size() >= lie.spots.size();
@@ -305,36 +221,39 @@ Standpoint standOutside(const Lie& lie, const Axes& axes, const Scene& scene, do
         return rangeOf(valuesOf(object, [&](const Spot& spot) { return std::optional(spot.*axis); }), 0.05);
     };
     const Range x = along(&Spot::x), h = along(&Spot::h), z = along(&Spot::z);
-    // A sphere about the common box fills the picture's width; about a point it holds the first splat, and half a unit at least.
+    // A sphere about the common box fills the picture's width; about a point it holds the usual splat, and half a unit at least.
     // Where splats lie evenly the tenth that is left out at its ends makes it a ninth longer.
     double radius = 0.5 / 0.9 * glm::length(glm::dvec3(x.length(), h.length(), z.length()));
-    const glm::vec2 scale = scene.scales.empty() ? glm::vec2(0.0f) : scene.scales.front();
-    const auto first = static_cast<double>(std::max(scale.x, scale.y));
-    if (radius <= first) { radius = std::max(3.0 * first, 0.5); }
+    std::vector<double> reaches = valuesOf(object, [](const Spot& spot) { return std::optional(spot.reach); });
+    const double usual = 0.5 * findQuantile(reaches, 0.5);
+    if (radius <= usual) { radius = std::max(3.0 * usual, 0.5); }
     const double distance = radius / std::sin(glm::radians(0.5 * std::min(fov_x_deg, 120.0)));
     const double rise = lie.has_floor ? 0.26 : 0.0;  // 15 degrees
     const glm::dvec3 look = axes.world(x.middle(), h.middle(), z.middle());
     const glm::dvec3 eye = look + distance * (std::sin(rise) * axes.up - std::cos(rise) * axes.ahead);
     return {{eye, look, axes.up, fov_x_deg},
-            fmt::format("outside: {:.3g} units from the middle of what is {:.3g} units across", distance, 2.0 * radius)};
+            fmt::format("outside: {:.3g} units from the middle of what is {:.3g} units across", distance, 2.0 * radius),
+            {}};
 }
 
 }  // namespace
 
 Standpoint judgeStandpoint(const Scene& scene, const StandpointWish& wish) {
-    const glm::dvec3 usual(0.0, scene.y_up ? 1.0 : -1.0, 0.0);
+    UpHints hints = hintsOf(scene);
+    if (wish.up) { hints = {.usual = glm::normalize(*wish.up), .front = hints.front, .known = UpHints::Known::kDirection}; }
     const std::vector<SplatSample> samples = coreOf(sampleSplats(scene, kMostSamples));
     if (samples.empty()) {
-        const glm::dvec3 up = wish.up ? glm::normalize(*wish.up) : usual;
-        return {{-axesOf(up, scene.y_up).ahead, {0.0, 0.0, 0.0}, up, wish.fov_x_deg}, "outside: there is nothing to be seen"};
+        const Axes axes = axesOf(hints.usual, scene.y_up);
+        return {
+            {-axes.ahead, {0.0, 0.0, 0.0}, axes.up, wish.fov_x_deg}, "outside: there is nothing to be seen", explainUp(wish, hints, {})};
     }
-    std::optional<FloorPlane> floor = findFloorPlane(samples, wish.up ? glm::normalize(*wish.up) : usual);
-    const glm::dvec3 up = wish.up ? glm::normalize(*wish.up) : floor ? floor->up : usual;
+    std::optional<FloorPlane> floor = chooseFloor(samples, hints);
+    const glm::dvec3 up = floor && !wish.up ? floor->up : hints.usual;
     if (floor && glm::dot(floor->up, up) < 0.98) { floor.reset(); }
+    const std::string up_why = explainUp(wish, hints, floor);
     const Axes axes = axesOf(up, scene.y_up);
     const Axes sides = alongSides(samples, axes);
     const Lie lie = lieOf(samples, sides, floor);
-    const std::string up_said = nameUp(wish, floor, scene.y_up);
     const int sectors = surroundingSectors(lie);
     if (samples.size() >= kFewForRoom && surrounds(lie, sectors, wish.metres_per_unit)) {
         const double eye_height = eyeHeight(lie, wish.metres_per_unit);
@@ -343,12 +262,14 @@ Standpoint judgeStandpoint(const Scene& scene, const StandpointWish& wish) {
             return {
                 {sides.world(eye.x, eye.y, eye.z), sides.world(look.x, look.y, look.z), up, wish.fov_x_deg},
                 fmt::format("inside: what stands there surrounds its middle in {} of {} directions; {:.3g} units above the floor, {:.3g} "
-                            "from the densest part, which is looked at{}",
-                            sectors, kSectors, eye_height, glm::length(look - eye), up_said)};
+                            "from the densest part, which is looked at",
+                            sectors, kSectors, eye_height, glm::length(look - eye)),
+                up_why};
         }
     }
-    Standpoint outside = standOutside(lieOf(samples, axes, floor), axes, scene, wish.fov_x_deg);
-    outside.why += up_said;
+    const Lie seen = lieOf(samples, axes, floor);
+    Standpoint outside = standOutside(seen, axes, wish.fov_x_deg);
+    outside.up_why = up_why;
     return outside;
 }
 
@@ -363,8 +284,21 @@ double coreSize(const Scene& scene) {
     return size;
 }
 
+double usualNear(const Scene& scene) {
+    const double size = coreSize(scene);
+    return size > 0.0 ? kUsualNear * std::min(size, 1.0) : kUsualNear;
+}
+
+std::optional<glm::dvec3> upBeneath(const Scene& scene, const glm::dvec3& cameras) {
+    UpHints hints = hintsOf(scene);
+    hints.seen_from = cameras;
+    const std::optional<FloorPlane> floor = chooseFloor(coreOf(sampleSplats(scene, kMostForRoom)), hints);
+    return floor ? std::optional(floor->up) : std::nullopt;
+}
+
 std::optional<double> floorHeight(const Scene& scene, const glm::dvec3& up) {
-    const std::optional<FloorPlane> floor = findFloorPlane(coreOf(sampleSplats(scene, kMostForRoom)), up);
+    const std::optional<FloorPlane> floor =
+        chooseFloor(coreOf(sampleSplats(scene, kMostForRoom)), {.usual = up, .known = UpHints::Known::kDirection});
     if (!floor || floor->is_ceiling || glm::dot(floor->up, up) < 0.98) { return std::nullopt; }
     return floor->height;
 }

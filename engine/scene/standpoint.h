@@ -17,18 +17,26 @@ struct StandpointWish {
 
 struct Standpoint {
     View view;
-    std::string why;  // half a sentence: "inside: ...", "outside: ..."
+    std::string why;     // half a sentence: "inside: ...", "outside: ..."
+    std::string up_why;  // where up is from, likewise: "of the floor: ..."
 };
 
 // A scene that surrounds its middle, a room or a street, is entered: at eye height over its floor, near the middle of the dense part but
 // clear of it, facing the densest part. Anything else is viewed from the front (from -z where y points down, from +z where it points
-// up) so that nine tenths of the splats fill the picture's width. Up is `wish.up`, else the floor's (floor_plane.h), else -y, or +y as in
-// glTF.
+// up) so that nine tenths of the splats fill the picture's width. Up is `wish.up`, else the floor's (floor_choice.h), else as the file or
+// its format says.
 Standpoint judgeStandpoint(const Scene& scene, const StandpointWish& wish = {});
+
+// The nearest depth that is drawn unless it is given: a fifth of the size below, of scenes smaller than a unit.
+inline constexpr double kUsualNear = 0.2;
+double usualNear(const Scene& scene);
 
 // The longest side, along the axes, of the box with nine tenths of the splats that one stands in or in front of: hills and sky beyond do
 // not count.
 double coreSize(const Scene& scene);
+
+// The up of the plane that lies beneath cameras whose mean place is given, if there is one.
+std::optional<glm::dvec3> upBeneath(const Scene& scene, const glm::dvec3& cameras);
 
 // The height of the floor along `up`, a unit vector, if there is one: dot(up, p) of its points.
 std::optional<double> floorHeight(const Scene& scene, const glm::dvec3& up);

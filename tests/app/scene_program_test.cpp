@@ -34,6 +34,7 @@ TEST_CASE("info says what a scene is made of, and what would take less memory") 
         CHECK(contains(info, row));
     }
     CHECK_FALSE(contains(info, "--sh-degree"));
+    CHECK(contains(info, "\nup                 0,-1,0: by convention, as no floor was found\n"));
     // What is proposed can be done, far from the origin, too, and where all is small.
     for (const auto& [scale, away] : {std::pair(1.0, 0.0), {1.0, 40000.0}, {1e-4, 0.5}}) {
         CAPTURE(away);

@@ -48,6 +48,7 @@ TEST_CASE("a glTF holds what a PLY of the same splats holds, whatever its buffer
         checkAlike(scene, expected);
         CHECK(scene.by_distance);
         CHECK(scene.y_up);
+        CHECK(scene.vertical_axis == 1);
         CHECK(notes.lines.empty());
         CHECK(notes.three_scales);
         checkAlike(loadScene(folder.write("in_its_text", gltf.embedded())), expected);

@@ -294,6 +294,24 @@ TEST_CASE("a comment asks for antialiasing, the last one counts, and writing kee
     CHECK_FALSE(loadWith("comment SplatRenderMode: mip\n", false).antialiased);  // discs are not dimmed
 }
 
+TEST_CASE("a comment names the vertical axis, and writing keeps it") {
+    const Folder folder;
+    for (const auto& [comment, axis] : {std::pair("comment Vertical axis: z\n", 2),
+                                        {"comment vertical AXIS:  X\n", 0},
+                                        {"comment Vertical axis: y\n", -1},
+                                        {"comment Vertical axis: w\n", -1},
+                                        {"comment Vertical axis:\n", -1},
+                                        {"comment the Vertical axis: z\n", -1}}) {
+        CAPTURE(comment);
+        LoadNotes notes;
+        const Scene scene =
+            loadScene(folder.write("said.ply", replaced(makePly(0).bytes(), "comment made for a test\n", comment)), 0, &notes);
+        CHECK(scene.vertical_axis == axis);
+        CHECK(writtenAndRead(folder, scene).vertical_axis == axis);
+        CHECK(notes.axes == (axis < 0 ? "" : fmt::format("{} is vertical (named by the file)", "xyz"[axis])));
+    }
+}
+
 TEST_CASE("a PLY that looks as if its activations had been applied is loaded as usual, with one line that says so") {
     const Folder folder;
     for (const bool three_scales : {false, true}) {

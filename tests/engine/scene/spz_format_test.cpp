@@ -92,6 +92,7 @@ TEST_CASE("the axes that an extension names are honoured: places, ellipsoids and
         LoadNotes notes;
         const Scene scene = loadBytes(folder, makeSpzContainer(spz, spzRecord(7, "someone else's") + spzAxesRecord(system)), &notes);
         CHECK(contains(notes.axes, "-handed (named by the file)"));
+        CHECK(scene.vertical_axis == 1);
         CHECK(contains(notes.axes, glm::determinant(ours_from_file) > 0.0 ? "right-handed" : "left-handed"));
         for (std::size_t i = 0; i < 2; ++i) {
             CHECK(glm::distance(glm::dvec3(scene.positions[i]), ours_from_file * glm::dvec3(stored.positions[i])) < 1e-6);
@@ -111,6 +112,7 @@ TEST_CASE("files that name no axes, or unknown ones, are right, up, back") {
     LoadNotes notes;
     const Scene usual = loadBytes(folder, gzip(spz.bytes()), &notes);
     CHECK(notes.axes == "x right, y up, z back; right-handed (SPZ's own: the file names none)");
+    CHECK(usual.vertical_axis == -1);
     spz.flags = 2;
     checkSameScene(usual, loadBytes(folder, gzip(spz.bytes() + spzAxesRecord(4))));
     CHECK(loadBytes(folder, gzip(spz.bytes() + spzAxesRecord(6))).positions[0] == glm::vec3(1.0f, -2.0f, 0.5f));

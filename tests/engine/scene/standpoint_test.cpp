@@ -1,7 +1,8 @@
 // Where one stands in captures as people make them, without cameras: each is made here, small, with what makes its kind hard.
 #include "engine/scene/standpoint.h"
-#include "engine/scene/floor_plane.h"
+#include "engine/scene/floor_choice.h"
 #include "engine/scene/procedural.h"
+#include "tests/shared_data.h"
 #include "tests/suite.h"
 
 #include <functional>
@@ -9,6 +10,14 @@
 SUITE(standpoint) {
 
 const glm::dvec3 kUp(0, -1, 0);
+
+void turnScene(Scene& scene, const glm::dquat& turn, double scale = 1.0) {
+    for (std::size_t i = 0; i < scene.size(); ++i) {
+        scene.positions[i] = glm::vec3(scale * (turn * glm::dvec3(scene.positions[i])));
+        scene.rotations[i] = glm::quat(turn * glm::dquat(scene.rotations[i]));
+        scene.scales[i] *= static_cast<float>(scale);
+    }
+}
 
 // Scenes in metres, y down: the floor is y = 0.
 class Maker {
@@ -49,11 +58,12 @@ public:
         return *this;
     }
     Maker& turn(const glm::dquat& turn, double scale = 1.0) {
-        for (std::size_t i = 0; i < scene_.size(); ++i) {
-            scene_.positions[i] = glm::vec3(scale * (turn * glm::dvec3(scene_.positions[i])));
-            scene_.rotations[i] = glm::quat(turn * glm::dquat(scene_.rotations[i]));
-            scene_.scales[i] *= static_cast<float>(scale);
-        }
+        turnScene(scene_, turn, scale);
+        return *this;
+    }
+    // Splats anywhere in a box.
+    Maker& fill(const glm::dvec3& low, const glm::dvec3& high, int count) {
+        for (int i = 0; i < count; ++i) { add(low + glm::dvec3(next(), next(), next()) * (high - low), {0, 1, 0}); }
         return *this;
     }
     [[nodiscard]] const Scene& scene() const { return scene_; }
@@ -237,7 +247,7 @@ const Kind kKinds[] = {
          checkWhole(point, {0, -0.25, 0}, 0.46);
      }},
     {"a fence is seen from in front, without a floor", fence, false, 180.0,
-     [](const glm::dvec3&, const Standpoint& point) { CHECK(point.why.find("no floor was found") != std::string::npos); }},
+     [](const glm::dvec3&, const Standpoint& point) { CHECK(point.up_why.ends_with("no floor was found")); }},
     {"a garden is entered: its table is looked at from the lawn, under a sky of a fifth of the splats", garden, true, 1.5,
      [](const glm::dvec3& eye, const Standpoint& point) {
          CHECK(-eye.y == doctest::Approx(1.6).epsilon(0.06));
@@ -306,13 +316,96 @@ TEST_CASE("every kind of scene is looked at from where people would stand, with 
     }
 }
 
-TEST_CASE("an object on the ground whose z is up stands upright, too; an up that is given is kept") {
-    Maker made = statueOnGround();
-    made.turn(glm::angleAxis(glm::radians(90.0), glm::dvec3(1, 0, 0)));  // -y comes to -z
+glm::dquat aboutAxis(int axis, double degrees) {
+    glm::dvec3 direction(0.0);
+    direction[axis] = 1.0;
+    return glm::angleAxis(glm::radians(degrees), direction);
+}
+
+// The axis of each, and degrees: none, up along z, along x, along y and neither.
+constexpr std::pair<int, double> kTurns[] = {{0, 0.0}, {0, 90.0}, {0, -90.0}, {2, 90.0}, {0, 180.0}, {0, 30.0}};
+
+// The same scene, whichever of the file's axes is up.
+void checkTurned(const Scene& scene, bool is_inside, const std::function<void(const glm::dvec3& eye)>& check) {
+    for (const auto& [axis, degrees] : kTurns) {
+        CAPTURE(axis);
+        CAPTURE(degrees);
+        const glm::dquat turn = aboutAxis(axis, degrees);
+        Scene turned = scene;
+        turned.name.clear();
+        turnScene(turned, turn);
+        const Standpoint point = judgeStandpoint(turned);
+        CAPTURE(point.why);
+        CAPTURE(point.up_why);
+        CHECK(degreesBetween(glm::conjugate(turn) * point.view.up, kUp) < 5.0);
+        CHECK(point.up_why.starts_with("of the floor: "));
+        CHECK(isInside(point) == is_inside);
+        check(glm::conjugate(turn) * point.view.eye);
+    }
+}
+
+TEST_CASE("up, the height of the eye and the place within a room are the same whichever axis of the file is up") {
+    checkTurned(makeBuiltin("builtin:atelier", 20000), true, [](const glm::dvec3& eye) {
+        CHECK(std::abs(-eye.y - 1.6) < 0.2);
+        CHECK(std::abs(eye.x) < 2.8);
+        CHECK(std::abs(eye.z - 2.5) < 2.3);
+    });
+    checkTurned(statueOnGround().scene(), false, [](const glm::dvec3& eye) { CHECK(std::abs(-eye.y - 1.9) < 0.2); });
+    checkTurned(scannedToy().scene(), false, [](const glm::dvec3& eye) { CHECK(std::abs(-eye.y - 0.15) < 0.02); });
+    // From above, whose z is up.
+    Maker drone = town();
+    CHECK(degreesBetween(judgeStandpoint(drone.turn(aboutAxis(0, -90.0)).scene()).view.up, {0, 0, 1}) < 2.0);
+}
+
+TEST_CASE("real things are seen upright, from outside, whichever axis of the file is up" * test::needsSharedData()) {
+    const auto data = test::sharedData();
+    if (!data) { return; }
+    for (const auto& [file, height] :
+         {std::pair("playbot/playbot_lod3_2dgs_sh2.ply", 1.18), std::pair("statues/angel_2dgs_sh0.ply", 1.59)}) {
+        CAPTURE(file);
+        checkTurned(loadScene((*data / file).string()), false, [&](const glm::dvec3& eye) { CHECK(std::abs(-eye.y - height) < 0.2); });
+    }
+}
+
+TEST_CASE("a facade is no ground: a wall with a relief, seen from the front, stays upright") {
+    Maker made;
+    made.wall({-5, -6, 0}, {10, 0, 0}, {0, 6, 0}, 300.0);
+    for (const double x : {-3.5, -1.0, 1.5}) { made.box({x, -4.5, -0.8}, {x + 1.5, -3.0, 0}, 400.0, false); }
     const Standpoint point = judgeStandpoint(made.scene());
-    CAPTURE(point.why);
-    CHECK(degreesBetween(point.view.up, {0, 0, -1}) < 1.5);
-    CHECK_FALSE(isInside(point));
+    CAPTURE(point.up_why);
+    CHECK(degreesBetween(point.view.up, kUp) < 2.0);
+    CHECK(point.view.eye.z < -3.0);
+}
+
+TEST_CASE("the axis that the file names as vertical is kept to; the floor says which way is up, or a format") {
+    // On its own this would lie on its back.
+    Maker made = statueOnGround();
+    Scene scene = made.scene();
+    const auto upOf = [&](int vertical_axis, bool y_up) {
+        scene.vertical_axis = vertical_axis;
+        scene.y_up = y_up;
+        return judgeStandpoint(scene).view.up;
+    };
+    CHECK(degreesBetween(upOf(-1, false), {0, -1, 0}) < 1.5);
+    CHECK(degreesBetween(upOf(1, true), {0, 1, 0}) < 1.5);
+    CHECK(degreesBetween(upOf(2, false), {0, 0, 1}) < 1.5);
+    for (const double degrees : {90.0, -90.0}) {
+        Maker turned = statueOnGround();
+        scene = turned.turn(aboutAxis(0, degrees)).scene();
+        CHECK(degreesBetween(upOf(2, false), {0, 0, degrees > 0.0 ? -1 : 1}) < 1.5);
+    }
+}
+
+TEST_CASE("one stands beneath nothing: the floor is on the other side of cameras that look every way") {
+    Maker made = town();
+    const Scene scene = made.turn(aboutAxis(0, 90.0)).scene();
+    const std::optional<glm::dvec3> up = upBeneath(scene, {0, 0, -80});
+    REQUIRE(up);
+    CHECK(degreesBetween(*up, {0, 0, -1}) < 2.0);
+    CHECK_FALSE(upBeneath(scene, {0, 0, 80}));
+}
+
+TEST_CASE("an up that is given is kept") {
     const glm::dvec3 up = glm::normalize(glm::dvec3(0.2, -1, 0.1));
     CHECK(glm::distance(judgeStandpoint(room().scene(), {60.0, 1.0, up}).view.up, up) < 1e-12);
 }
@@ -342,7 +435,7 @@ TEST_CASE("one stands alike in a scene a hundred times as large, and in one a th
 }
 
 TEST_CASE("what has no floor has none: a ball, a wall and a handful of splats") {
-    const auto floorOf = [](const Maker& made) { return findFloorPlane(sampleSplats(made.scene(), 32768), kUp); };
+    const auto floorOf = [](const Maker& made) { return chooseFloor(sampleSplats(made.scene(), 32768), {}); };
     CHECK_FALSE(floorOf(Maker().ball({0, 0, 0}, 1.0, 20000)));
     CHECK_FALSE(floorOf(Maker().wall({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 5000.0)));
     CHECK_FALSE(floorOf(Maker().ball({0, 0, 0}, 1.0, 100)));
@@ -383,6 +476,39 @@ TEST_CASE("what was seen from in front alone, a wall, a photograph and a single 
         CHECK(glm::distance(at_one.view.eye, at_one.view.look) > 2.0 * static_cast<double>(scale));
         CHECK(glm::distance(at_one.view.eye, at_one.view.look) < std::max(2.0, 10.0 * static_cast<double>(scale)));
     }
+}
+
+TEST_CASE("what is solid is no room, and a huge splat at the head of the file moves nobody") {
+    Maker solids[] = {Maker().box({-1, -2, -1}, {1, 0, 1}, 400.0).fill({-1, -2, -1}, {1, 0, 1}, 6000),
+                      Maker().box({-3, -2.5, -3}, {3, 0, 3}, 100.0).fill({-3, -2.5, -3}, {3, 0, 3}, 15000),
+                      Maker().box({-1, -2, -8}, {1, 0, 8}, 100.0).fill({-1, -2, -8}, {1, 0, 8}, 10000)};
+    for (const Maker& solid : solids) {
+        const Standpoint point = judgeStandpoint(solid.scene());
+        CAPTURE(point.why);
+        CHECK_FALSE(isInside(point));
+        CHECK(shareSeen(point, solid.scene(), point.view.look, 100.0) > 0.95);
+    }
+    for (Maker (*const make)() : {statue, crate, scannedToy, room}) {
+        const View before = judgeStandpoint(make().scene()).view;
+        Maker first = Maker().sized(300.0).ball({0.1, -0.3, 0.1}, 0.0, 1);
+        Scene scene = make().scene();
+        scene.positions.front() = first.scene().positions.front();
+        scene.scales.front() = first.scene().scales.front();
+        CHECK(glm::distance(judgeStandpoint(scene).view.eye, before.eye) < 0.05 * glm::distance(before.eye, before.look));
+    }
+}
+
+TEST_CASE("nothing at the start is nearer than what is drawn") {
+    for (const double scale : {100.0, 1.0, 0.1, 0.001}) {
+        CAPTURE(scale);
+        Maker toy = scannedToy();
+        const Scene scene = toy.turn({1, 0, 0, 0}, scale).scene();
+        const Standpoint point = judgeStandpoint(scene, {60.0, 1.0 / scale, {}});
+        CHECK(usualNear(scene) == doctest::Approx(scale == 100.0 ? 0.2 : 0.2 * coreSize(scene)));
+        CHECK(glm::distance(point.view.eye, point.view.look) > 2.0 * usualNear(scene));
+    }
+    CHECK(usualNear({}) == 0.2);
+    CHECK(usualNear(room().scene()) == 0.2);
 }
 
 TEST_CASE("splats that nobody sees, and those that are equal, place nobody at infinity") {
