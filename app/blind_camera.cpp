@@ -22,4 +22,17 @@ std::string describeNearest(const Pose& world_from_camera, std::span<const glm::
         nearest < near ? fmt::format("; nothing nearer than {:.4g} is drawn (near)", near) : "");
 }
 
+std::string describeCut(const Eye& eye, std::span<const glm::vec3> positions, double near) {
+    const Pose camera_from_world = inverse(eye.world_from_camera);
+    std::size_t cut = 0, seen = 0;
+    for (const glm::vec3& position : positions) {
+        const glm::dvec3 centre = transform(camera_from_world, glm::dvec3(position));
+        if (!isInPicture(eye, centre)) { continue; }
+        ++seen;
+        cut += centre.z < near;
+    }
+    if (cut == 0 || 20 * cut < seen) { return ""; }
+    return fmt::format("{} of the {} splats in the picture are nearer than {:.4g} (near) and are cut off", cut, seen, near);
+}
+
 }  // namespace binosplat

@@ -1,4 +1,4 @@
-// A message about a camera that sees no splat.
+// Messages about a camera that sees no splat, or not all before it.
 #pragma once
 
 #include "engine/geometry.h"
@@ -13,5 +13,8 @@ namespace binosplat {
 // Tells how far away the scene's nearest splat is, and in which direction: "no splat is seen from ...: the nearest is ...", and whether it
 // is before the near plane.
 std::string describeNearest(const Pose& world_from_camera, std::span<const glm::vec3> positions, double near);
+
+// Empty unless one in twenty of the splats in the picture, by their centres, is before the near plane.
+std::string describeCut(const Eye& eye, std::span<const glm::vec3> positions, double near);
 
 }  // namespace binosplat

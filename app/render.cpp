@@ -76,7 +76,7 @@ void warnOfBlindFrames(const PathReport& report, std::span<const glm::vec3> posi
     if (first == report.frames.end()) { return; }
     warn(fmt::format("{}: frame {}, the first of {} of {}: {}", report.options.scene, first - report.frames.begin(),
                      std::ranges::count_if(report.frames, is_blind), report.frames.size(),
-                     describeNearest(first->cameras.middle.world_from_camera, positions, report.options.run.camera.near)));
+                     describeNearest(first->cameras.middle.world_from_camera, positions, first->cameras.near)));
 }
 
 }  // namespace
@@ -116,6 +116,7 @@ void runRender(const RenderOptions& options) {
 
     StereoFrame frame(context, gpu_scene);
     FrameSettings settings = frameSettings(options.run.camera, stereo, gpu_scene.usualOrder());
+    settings.near = cameras.near;
     settings.gazes = gazesOf(cameras, stereo);
     const auto report = [&](const auto& said) {
         writeText(files.staging() / "report.json", reportJson(said));
@@ -141,8 +142,9 @@ void runRender(const RenderOptions& options) {
         report(FrameReport{context.deviceName(), used, cameras, result});
         for (const std::string& phrase : result.left_out) { fmt::print("  left out: {}\n", phrase); }
         if (result.sees_nothing) {
-            warn(fmt::format("{}: {}", options.scene,
-                             describeNearest(cameras.middle.world_from_camera, positions, options.run.camera.near)));
+            warn(fmt::format("{}: {}", options.scene, describeNearest(cameras.middle.world_from_camera, positions, cameras.near)));
+        } else if (const std::string cut = describeCut(cameras.middle, positions, cameras.near); !cut.empty()) {
+            warn(fmt::format("{}: {}", options.scene, cut));
         }
     }
     for (const std::string& line : notes.lines) { fmt::print("  note: {}\n", line); }

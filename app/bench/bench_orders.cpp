@@ -69,7 +69,7 @@ OrderChange changeBetween(const reference::Picture& a, const reference::Picture&
 class OrderPoint {
 public:
     OrderPoint(const Scene& scene, const RunOptions& run, const Cameras& cameras) : scene_(scene), run_(run), cameras_(cameras) {
-        settings_.near = run.camera.near;
+        settings_.near = cameras.near;
         settings_.background = run.camera.background;
         settings_.is_light = scene_.is_linear;
     }

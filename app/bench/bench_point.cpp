@@ -70,7 +70,7 @@ FrameResult renderTwin(const BenchPoint& point) {
                                                                {Role::kNone, FrameStage::kSplat, "rasterize"}}};
     std::array<double, reference::kPassCount> seconds{};
     reference::Settings settings;
-    settings.near = point.run.camera.near;
+    settings.near = point.cameras.near;
     settings.background = point.run.camera.background;
     settings.seconds = seconds.data();
     const auto start = std::chrono::steady_clock::now();
@@ -158,6 +158,7 @@ MethodFrames::Rendered MethodFrames::render(const Cameras& full_cameras, const C
     const StereoOptions& stereo = method.stereo;
     const Cameras cameras = atResolution(full_cameras, method.resolution);
     FrameSettings settings = frameSettings(camera, stereo, scene_.usualOrder());
+    settings.near = cameras.near;
     settings.gazes = gazesOf(cameras, stereo);
     settings.keep_classes = settings.square_boxes = compared;
     settings.keep_past = keep_past;

@@ -16,13 +16,14 @@ namespace {
 constexpr std::size_t kHelpFrom = 36;  // columns
 
 // Examples for keys without a default.
-constexpr std::array<std::pair<std::string_view, const char*>, 15> kExamples{{
+constexpr std::array<std::pair<std::string_view, const char*>, 16> kExamples{{
     {"eye", "[0.0, -1.5, -3.0]"},
     {"look", "[0.0, -1.0, 0.0]"},
     {"up", "[0.0, -1.0, 0.0]"},
     {"fov-x", "60.0"},
     {"size", "\"1024x1024\""},
     {"cameras", "\"cameras.json\""},
+    {"near", "0.2"},
     {"headset", "\"quest2\""},
     {"ipd", "0.063"},
     {"gaze", "[0.0, 0.0, 1.0]"},

@@ -11,20 +11,7 @@ namespace {
 constexpr double kDefaultFovXDegrees = 60.0;
 constexpr glm::uvec2 kDefaultSize{1024, 1024};
 
-}  // namespace
-
-CameraFiles readCameraFiles(const CameraOptions& options) {
-    CameraFiles files;
-    if (!options.cameras_file.empty()) {
-        const std::vector<FileCamera> cameras = readCameraFile(options.cameras_file);
-        check(options.view < cameras.size(), "{}: --view is {}, must be 0 to {}", options.cameras_file, options.view, cameras.size() - 1);
-        files.camera = cameras[options.view];
-    }
-    if (!options.headset.empty()) { files.headset = readHeadset(findHeadset(options.headset)); }
-    return files;
-}
-
-Cameras makeCameras(const RunOptions& options, const CameraFiles& files, const Scene& scene) {
+Cameras placeCameras(const RunOptions& options, const CameraFiles& files, const Scene& scene) {
     const CameraOptions& camera = options.camera;
     const double default_ipd_m = files.headset ? files.headset->eye_distance_m : kDefaultIpdMetres;
     const double eye_distance = options.stereo.ipd_m.value_or(default_ipd_m) / options.metres_per_unit;
@@ -47,6 +34,25 @@ Cameras makeCameras(const RunOptions& options, const CameraFiles& files, const S
     const glm::uvec2 size_px = camera.size_px.value_or(kDefaultSize);
     const Eye middle{world_from_middle, intrinsicsFromFovX(glm::radians(view.fov_x_deg), size_px), size_px};
     return {middle, stereoPair(middle, eye_distance), eye_distance, view};
+}
+
+}  // namespace
+
+CameraFiles readCameraFiles(const CameraOptions& options) {
+    CameraFiles files;
+    if (!options.cameras_file.empty()) {
+        const std::vector<FileCamera> cameras = readCameraFile(options.cameras_file);
+        check(options.view < cameras.size(), "{}: --view is {}, must be 0 to {}", options.cameras_file, options.view, cameras.size() - 1);
+        files.camera = cameras[options.view];
+    }
+    if (!options.headset.empty()) { files.headset = readHeadset(findHeadset(options.headset)); }
+    return files;
+}
+
+Cameras makeCameras(const RunOptions& options, const CameraFiles& files, const Scene& scene) {
+    Cameras cameras = placeCameras(options, files, scene);
+    cameras.near = options.camera.near ? *options.camera.near : usualNear(scene);
+    return cameras;
 }
 
 std::array<std::optional<Gaze>, 2> gazesOf(const Cameras& cameras, const StereoOptions& stereo) {

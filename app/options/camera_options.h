@@ -5,6 +5,7 @@
 #include "engine/frame/stereo_frame.h"
 #include "engine/geometry.h"
 #include "engine/scene/procedural.h"
+#include "engine/scene/standpoint.h"
 #include "engine/setup/camera_file.h"
 #include "engine/setup/headset.h"
 
@@ -27,6 +28,7 @@ struct Cameras {
     std::optional<View> view;  // the resulting --eye, --look, --up and --fov-x (0 with a headset); empty with a camera file
     // Directions to the lenses' centres, in the eyes' axes.
     std::array<glm::dvec3, 2> lens_centres{glm::dvec3(0.0, 0.0, 1.0), glm::dvec3(0.0, 0.0, 1.0)};
+    double near = kUsualNear;  // the resulting --near
 };
 
 // Missing options come from the files, then from the scene. Throws Error if the points span no view.

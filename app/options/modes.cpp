@@ -2,6 +2,7 @@
 #include "app/options/modes.h"
 
 #include "engine/error.h"
+#include "engine/scene/standpoint.h"
 
 namespace binosplat {
 
@@ -13,7 +14,7 @@ void requirePeriphery(const StereoOptions& stereo) {
 FrameSettings frameSettings(const CameraOptions& camera, const StereoOptions& stereo, Order usual) {
     return {.mode = stereo.mode,
             .dominant = stereo.dominant,
-            .near = camera.near,
+            .near = camera.near.value_or(kUsualNear),
             .background = camera.background,
             .order = stereo.order.value_or(usual),
             .stereo = stereo.warp,

@@ -24,7 +24,7 @@ struct CameraOptions {
     std::string cameras_file;
     std::uint32_t view = 0;
     std::string headset;
-    double near = 0.2;
+    std::optional<double> near;  // absent: as usualNear says of the scene; kUsualNear of the wearer's metres in a headset
     glm::dvec3 background{0.0};
 };
 

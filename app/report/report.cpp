@@ -54,6 +54,7 @@ Json optionsJson(const RenderOptions& options, const Cameras& cameras) {
     json["look"] = cameras.view ? vectorJson(cameras.view->look) : Json();
     json["up"] = cameras.view ? vectorJson(cameras.view->up) : Json();
     json["fov-x"] = cameras.view && cameras.view->fov_x_deg > 0.0 ? Json(cameras.view->fov_x_deg) : Json();
+    json["near"] = cameras.near;
     json["size"] = fmt::format("{}x{}", cameras.middle.size_px.x, cameras.middle.size_px.y);
     json["view"] = options.run.camera.cameras_file.empty() ? Json() : Json(options.run.camera.view);
     json["ipd"] = cameras.eye_distance * options.run.metres_per_unit;

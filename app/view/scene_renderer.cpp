@@ -93,7 +93,7 @@ FrameSettings SceneRenderer::settingsOfFrame(ConnectedHeadset& headset, const Vi
     if (headset.inset) { stereo.half_periphery = false; }  // the runtime overlays the inset
     FrameSettings frame = frameSettings(options_.camera, stereo, kWearersOrder);
     // In the wearer's metres, however large the scene is.
-    frame.near = options_.camera.near * scale;
+    frame.near *= scale;
     frame.units_per_metre = scale;
     frame.keep_depth = frame.keep_both_depths = headset.images->takesDepth();
     frame.half_floats = true;

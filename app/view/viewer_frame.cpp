@@ -189,7 +189,7 @@ void Viewer::addEyes(xr::Layers& layers, const FrameViews& views) const {
     const auto layerEye = [&](const EyeImages& images, const std::array<xr::EyeView, 2>& eyes, int shown_to) {
         // If both eyes share a picture, both use the pose and angles of its eye.
         const int e = scenes_.get() != nullptr && drawn_.showsOneEye() ? drawn_.stereo.dominant : shown_to;
-        return images.layerEye(e, eyes[static_cast<std::size_t>(e)], options_.run.camera.near);
+        return images.layerEye(e, eyes[static_cast<std::size_t>(e)], options_.run.camera.near.value_or(kUsualNear));
     };
     const EyeImages& images = *headset().images;
     const xr::LayerEye left = layerEye(images, views.eyes, kLeft), right = layerEye(images, views.eyes, kRight);

@@ -165,6 +165,10 @@ TEST_CASE("of a camera that sees no splat one line says so, and where the neares
                   "binosplat: builtin:one-splat: no splat is seen from 0,0,0: the nearest is 2 scene units away, 180 degrees");
     }
     checkSaid("--look 0,0,1 --mode mono --near 3", "0 degrees off the middle of the picture; nothing nearer than 3 is drawn (near)");
+    // Of several it says how many are too near.
+    const Outcome cut = work.go("render builtin:two-layers --size 16x8 --out out --eye 0,0,0 --look 0,0,1 --mode mono --near 3");
+    CHECK(cut.errors == "binosplat: builtin:two-layers: 1 of the 2 splats in the picture are nearer than 3 (near) and are cut off\n");
+    fs::remove_all(work.path / "out");
     work.write("poses.csv", "0,0,0,0,0,0,0,1\n1,0,0,-9,0,0,0,1\n2,0,0,-10,0,0,0,1\n");
     checkSaid("--look 0,0,1 --mode mono --path poses.csv",
               "builtin:one-splat: frame 1, the first of 2 of 3: no splat is seen from 0,0,9: the nearest is 7 scene units away");

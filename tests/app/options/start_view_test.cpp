@@ -69,6 +69,12 @@ TEST_CASE("a file is framed whole: upright and from its front where its y is up,
         CHECK(std::abs(k.fy * c.y / c.z) < 512.0);
     }
     CHECK_NOTHROW(makeCameras(renderOptions(""), {}, Scene{}));
+    // What is drawn begins as near as the scene is small, or where it is told to.
+    Scene small = scene;
+    for (glm::vec3& p : small.positions) { p *= 0.01f / static_cast<float>(coreSize(scene)); }
+    CHECK(cameras.near == doctest::Approx(0.2 * std::min(coreSize(scene), 1.0)));
+    CHECK(makeCameras(renderOptions(""), {}, small).near == doctest::Approx(0.002));
+    CHECK(makeCameras(renderOptions("--near 0.3"), {}, small).near == 0.3);
     const View trained = startView(scene, {60.0}).view;
     scene.y_up = true;
     const View upright = startView(scene, {60.0}).view;
