@@ -270,7 +270,7 @@ TEST_CASE_FIXTURE(Shown, "another method is drawn once its kernels are there, ma
         Eye middle{};
         middle.size_px = size_px;
         middle.intrinsics = intrinsicsFromFovX(1.5, size_px);
-        FrameSettings frame = frameSettings(options.run.camera, settings.stereo);
+        FrameSettings frame = frameSettings(options.run.camera, settings.stereo, kWearersOrder);
         frame.half_floats = true;
         frame.keep_depth = frame.keep_both_depths = false;
         frame.square_boxes = false;
