@@ -7,9 +7,9 @@
 #include "engine/scene/scene.h"
 #include "tests/app/view/view_acts.h"
 #include "tests/engine/stream/moving_frames.h"
+#include "tests/suite.h"
 #ifdef BINOSPLAT_SOG
 #include "tests/engine/stream/split_scene.h"
-#include "tests/suite.h"
 #endif
 
 #include <iterator>

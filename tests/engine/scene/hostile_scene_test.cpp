@@ -4,9 +4,9 @@
 #include "tests/engine/scene/hostile_scenes.h"
 #include "tests/engine/scene/ksplat_files.h"
 #include "tests/hostile.h"
+#include "tests/suite.h"
 #ifdef BINOSPLAT_SOG
 #include "tests/engine/scene/streamed_scenes.h"
-#include "tests/suite.h"
 #endif
 
 #include <cstdlib>

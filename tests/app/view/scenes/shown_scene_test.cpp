@@ -11,9 +11,9 @@
 #include "tests/engine/gpu/gpu_fixture.h"
 #include "tests/run_program.h"
 
+#include "tests/suite.h"
 #ifdef BINOSPLAT_SOG
 #include "tests/engine/scene/sog_scenes.h"
-#include "tests/suite.h"
 #endif
 
 #include <sys/stat.h>
