@@ -54,7 +54,7 @@ inline Image keepTiles(Image image, const std::vector<std::uint32_t>& tile_kinds
     for (std::size_t i = 0; i < image.pixelCount(); ++i) {
         const std::size_t x = i % image.size_px.x, y = i / image.size_px.x;
         if (tile_kinds[(y / 16) * columns + x / 16] == 0) {
-            std::fill_n(image.values.begin() + static_cast<std::ptrdiff_t>(4 * i), 4, 0.0f);
+            std::fill_n(image.values.begin() + static_cast<std::ptrdiff_t>(i) * image.channels, image.channels, 0.0f);
         }
     }
     return image;

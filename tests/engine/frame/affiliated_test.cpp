@@ -138,7 +138,9 @@ TEST_CASE_FIXTURE(Gpu, "tiles that are rendered again are those of the full rend
     const ViewedScene view = viewAtelier({192, 192});
     KeptFrame frame(context(), view.scene);
     for (const auto& eyes : {stereoPair(view.eye, 0.063), test::headsetEyes(view.eye, glm::radians(5.0))}) {
-        const Image full = makeAffiliated(frame, eyes, makeSettings(Mode::kShared)).pictures[kRight];
+        FrameSettings full_settings = makeSettings(Mode::kShared);
+        full_settings.keep_both_depths = true;
+        const Image full = makeAffiliated(frame, eyes, full_settings).pictures[kRight], full_depth = frame.readDepth(kRight);
         // That odd rows are moved like even ones costs little.
         double before_db = compare(makeAffiliated(frame, eyes, makeSettings(Mode::kReproject)).pictures[kRight], full).psnrDb() - 0.4;
         for (const auto& [mode, budget] : {std::pair(Mode::kPaper, 0.0), std::pair(Mode::kPredicted, 0.0), std::pair(Mode::kPredicted, 0.2),
@@ -147,8 +149,13 @@ TEST_CASE_FIXTURE(Gpu, "tiles that are rendered again are those of the full rend
             CAPTURE(budget);
             FrameSettings settings = makeSettings(mode);
             settings.stereo.budget = budget;
+            settings.keep_both_depths = true;
             const AffiliatedFrame made = makeAffiliated(frame, eyes, settings);
-            CHECK(test::keepTiles(made.pictures[kRight], made.tile_kinds).values == test::keepTiles(full, made.tile_kinds).values);
+            const auto areFull = [&](const Image& picture, const Image& whole) {
+                return test::keepTiles(picture, made.tile_kinds).values == test::keepTiles(whole, made.tile_kinds).values;
+            };
+            CHECK(areFull(made.pictures[kRight], full));
+            CHECK(areFull(frame.readDepth(kRight), full_depth));
             const auto tiles = made.tile_kinds.size() - static_cast<std::size_t>(std::ranges::count(made.tile_kinds, 0u));
             CHECK(tiles == countOf(made.result, "tiles_patched"));
             if (mode == Mode::kPaper || budget > 0.0) { CHECK(tiles > 0); }

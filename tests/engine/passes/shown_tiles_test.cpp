@@ -128,19 +128,12 @@ TEST_CASE_FIXTURE(Gpu, "an eye made from the other under masks is the twin's, in
     const ViewedScene view = room(), fence = test::viewBuiltin("builtin:fence", kSizePx);
     const auto straight = test::headsetEyes(view.eye, 0.0), canted = test::headsetEyes(view.eye, glm::radians(4.0)),
                before_fence = stereoPair(fence.eye, 0.12);
-    struct Setting {
-        const ViewedScene* view;
-        const std::array<Eye, 2>* eyes;
-        Mode mode;
-        TileChoice method;
-    };
-    for (const auto& [seen, eyes, mode, method] :
-         {Setting{&view, &straight, Mode::kReproject, TileChoice::kNone},
-          Setting{&view, &straight, Mode::kPredicted, TileChoice::kPredicted}, Setting{&view, &canted, Mode::kPaper, TileChoice::kPaper},
-          Setting{&view, &canted, Mode::kPredicted, TileChoice::kPredicted},
-          Setting{&fence, &before_fence, Mode::kPaper, TileChoice::kPaper},
-          Setting{&fence, &before_fence, Mode::kPredicted, TileChoice::kPredicted}}) {
-        INFO(seen->name, ", method ", static_cast<int>(method));
+    const std::array seen_by{std::pair(&view, &straight), std::pair(&view, &canted), std::pair(&fence, &before_fence)};
+    for (std::size_t way = 0; way < 9; ++way) {
+        const auto& [seen, eyes] = seen_by[way / 3];
+        const TileChoice method = std::array{TileChoice::kNone, TileChoice::kPaper, TileChoice::kPredicted}[way % 3];
+        const Mode mode = std::array{Mode::kReproject, Mode::kPaper, Mode::kPredicted}[way % 3];
+        INFO(seen->name, ", way ", way);
         Scene scene = seen->scene;
         test::hideWhatMeetsTheNearPlane(scene, *eyes);
         test::KeptFrame frame(context(), scene);

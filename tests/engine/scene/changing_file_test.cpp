@@ -1,12 +1,14 @@
-// Facts about scene files that change while they are read. They change where reading reports its progress, so no test waits for a time.
+// Facts about scene files that change while they are read, and how far ahead they are read. They change where reading reports its progress,
+// so no test waits for a time.
 #include "engine/error.h"
 #include "engine/scene/ply.h"
 #include "engine/scene/procedural.h"
+#include "engine/scene/read_ahead.h"
 #include "engine/scene/spz.h"
 #include "tests/engine/scene/hostile_scenes.h"
+#include "tests/suite.h"
 #ifdef BINOSPLAT_SOG
 #include "tests/engine/scene/sog_scenes.h"
-#include "tests/suite.h"
 #endif
 
 #include <chrono>
@@ -71,6 +73,18 @@ TEST_CASE("a file that is cut off, grows or is written to while it is read is re
             CHECK(message == (is_read ? "read" : path + ": was changed while it was read, must stay as it is until then"));
             CHECK(scene.size() == (is_read ? splats : 0));
         }
+    }
+}
+
+TEST_CASE("blocks are read a little ahead of those that are taken, and whoever stops taking waits for nothing") {
+    for (const int taken : {0, 1, 9, 40}) {
+        int filled = 0;
+        {
+            ReadAhead blocks(100'000'000, [&](ReadAhead::Block&) { ++filled; });
+            for (int i = 0; i < taken; ++i) { REQUIRE(blocks.next() != nullptr); }
+        }
+        CHECK(filled >= taken);
+        CHECK(filled <= taken + 48);
     }
 }
 
