@@ -41,30 +41,37 @@ struct Machine : Workplace {
     }
 };
 
+// Of `render`: while the scene is uploaded, in a frame, while pictures are read.
+void checkFaults(const Machine& machine, const std::string& render) {
+    machine.checkFails(render, fault("submit", 1, "lost"), 3, kLost);
+    machine.checkFails(render, fault("submit", 3, "lost"), 3, kLost);
+    machine.checkFails(render, fault("wait", 3, "lost"), 3, kLost);
+    machine.checkFails(render, fault("allocate", 1, "no-device-memory"), 1, kFull);
+    machine.checkFails(render, fault("allocate", 8, "no-host-memory"), 1, kFull);
+    machine.checkFails(render, fault("submit", 2, "no-device-memory"), 1, "not enough memory for this scene and picture size");
+    machine.checkFails(render, fault("submit", 1, "SIGINT"), 130, kStopped);
+    machine.checkFails(render, fault("submit", 2, "SIGTERM"), 143, kEnded);
+    machine.checkFails(render, fault("submit", 4, "SIGINT"), 130, kStopped);
+}
+
 TEST_CASE("a lost device ends a program with three, one without memory with one and the buffer's name, and a signal as a shell expects") {
     const Machine machine;
-    // While the scene is uploaded, in a frame, while pictures are read.
-    machine.checkFails(kRender, fault("submit", 1, "lost"), 3, kLost);
-    machine.checkFails(kRender, fault("submit", 3, "lost"), 3, kLost);
-    machine.checkFails(kRender, fault("wait", 3, "lost"), 3, kLost);
-    machine.checkFails(kRender, fault("allocate", 1, "no-device-memory"), 1, kFull);
-    machine.checkFails(kRender, fault("allocate", 8, "no-host-memory"), 1, kFull);
-    machine.checkFails(kRender, fault("submit", 2, "no-device-memory"), 1, "not enough memory for this scene and picture size");
-    machine.checkFails(kRender, fault("submit", 1, "SIGINT"), 130, kStopped);
-    machine.checkFails(kRender, fault("submit", 2, "SIGTERM"), 143, kEnded);
-    machine.checkFails(kRender, fault("submit", 4, "SIGINT"), 130, kStopped);
+    checkFaults(machine, kRender);
     machine.checkFails(kBench, fault("wait", 6, "lost"), 3, kLost);
     machine.checkFails(kBench, fault("submit", 5, "SIGINT"), 130, kStopped);
 }
 
-TEST_CASE("so do they at other places" * nightly()) {
+TEST_CASE("so do they at other places, and where there are two eyes" * nightly()) {
     const Machine machine;
-    machine.checkFails(kRender, fault("wait", 1, "lost"), 3, kLost);
+    checkFaults(machine, kShared);
     for (const int number : {4, 12}) { machine.checkFails(kShared, fault("allocate", number, "no-device-memory"), 1, kFull); }
-    machine.checkFails(kRender, fault("submit", 2, "SIGINT"), 130, kStopped);
+    for (const std::string& render : {kRender, kShared}) {
+        machine.checkFails(render, fault("wait", 1, "lost"), 3, kLost);
+        machine.checkFails(render, fault("submit", 2, "SIGINT"), 130, kStopped);
+        machine.checkFails(render, filesOf(4), 1, BINOSPLAT_FLOAT_EXTENSION ": cannot be written (");
+    }
     machine.checkFails(kBench, fault("allocate", 30, "no-device-memory"), 1, kFull);
     machine.checkFails(kBench, fault("submit", 12, "SIGTERM"), 143, kEnded);
-    machine.checkFails(kRender, filesOf(4), 1, "mono" BINOSPLAT_FLOAT_EXTENSION ": cannot be written (");
     machine.checkFails("scene atelier --splats 20000 --out atelier.ply", filesOf(4000), 1, "atelier.ply: writing failed: ");
     machine.checkFails("convert builtin:fence fence.ply", filesOf(1), 1, "fence.ply: writing failed: ");
 }

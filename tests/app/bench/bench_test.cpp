@@ -370,13 +370,29 @@ TEST_CASE("a bench writes a table, JSON, CSV and a plot, and compares methods by
     CHECK(!all.contains("ssim"));
 }
 
+const std::string kAlongMotion =
+    "bench builtin:step-edge --size 48x48 --config b.toml --motion m.csv --from 0.1 --seconds 0.1 --rate 40 --out out";
+const std::string kBesidePhotos = "bench builtin:step-edge --cameras c.json --config b.toml --photos photos --out out";
+
+// Walks, or stands before the photograph of a scene that is the scene itself, seen by one eye in the middle.
+struct Walk : Bench {
+    Walk() {
+        write("m.csv", "time_s,x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,0,1\n0.1,0.02,0,0,0,0,0,1\n0.2,0.04,0,0,0,0,0,1\n");
+        write("c.json", R"([{"img_name": "a", "width": 48, "height": 40, "fx": 48, "fy": 48, "position": [0,0,0],
+                             "rotation": [[1,0,0],[0,1,0],[0,0,1]]}])");
+    }
+    void takePhoto() const {
+        go("render builtin:step-edge --cameras c.json --mode mono --out photo");
+        const std::string extension = extensionOf(PictureKind::kDisplay);
+        fs::create_directory(path / "photos");
+        fs::rename(path / "photo" / ("mono" + extension), path / "photos" / ("a" + extension));
+    }
+};
+
 TEST_CASE("a bench plays a part of a head's motion") {
-    const Bench bench;
-    bench.write("m.csv", "time_s,x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,0,1\n0.1,0.02,0,0,0,0,0,1\n0.2,0.04,0,0,0,0,0,1\n");
+    const Walk bench;
     bench.write("b.toml", "[bench]\nmodes = [\"predicted\"]\n[[methods]]\nname = \"shared\"\nmode = \"shared\"\nresolution = [0.4, 0.5]\n");
-    bench.go(
-        "bench builtin:step-edge --size 48x48 --config b.toml --motion m.csv "
-        "--from 0.1 --seconds 0.1 --rate 40 --every 3 --out out");
+    bench.go(kAlongMotion + " --every 3");
     const nlohmann::json results = bench.results("out/motion.json");
     REQUIRE(results.size() == 5);
     CHECK(results[0]["frames"] == 2);
@@ -411,18 +427,11 @@ TEST_CASE("a bench plays a part of a head's motion") {
 }
 
 TEST_CASE("a bench compares with photographs") {
-    const Bench bench;
-    bench.write("c.json", R"([{"img_name": "a", "width": 48, "height": 40, "fx": 48, "fy": 48, "position": [0,0,0],
-                               "rotation": [[1,0,0],[0,1,0],[0,0,1]]}])");
+    const Walk bench;
     bench.write("b.toml", "[bench]\nmodes = [\"reproject\"]\n");
     writeFloats(bench.path / "w.bin", makeLpipsWeights(9));
-    // The photograph is the scene itself, seen by one eye in the middle.
-    bench.go("render builtin:step-edge --cameras c.json --mode mono --out photo");
-    const std::string extension = extensionOf(PictureKind::kDisplay);
-    fs::create_directory(bench.path / "photos");
-    fs::rename(bench.path / "photo" / ("mono" + extension), bench.path / "photos" / ("a" + extension));
-    const std::string compare = "bench builtin:step-edge --cameras c.json --config b.toml --photos photos --out out";
-    bench.go(compare);
+    bench.takePhoto();
+    bench.go(kBesidePhotos);
     const nlohmann::json results = bench.results("out/photos.json");
     REQUIRE(results.size() == 3);
     CHECK(results[1]["method"] == "shared");
@@ -430,12 +439,41 @@ TEST_CASE("a bench compares with photographs") {
     CHECK(results[1]["psnr_db_lost"] == 0.0);
     CHECK(results[2]["psnr_db_lost"] > 0.0);
     CHECK(!results[2].contains("lpips_to_photo"));
-    bench.go(compare + " --lpips w.bin");
+    bench.go(kBesidePhotos + " --lpips w.bin");
     const nlohmann::json with_lpips = bench.results("out/photos.json");
     CHECK(with_lpips[1]["lpips_lost"] == 0.0);
     CHECK(with_lpips[2]["lpips_to_photo"] > with_lpips[1]["lpips_to_photo"]);
     fs::remove_all(bench.path / "photos");
-    bench.checkRefused(compare, 1, "photos/a");
+    bench.checkRefused(kBesidePhotos, 1, "photos/a");
+}
+
+TEST_CASE("a bench of every mode that makes one eye from the other: beside the full render, along a motion, and beside a photograph" *
+          nightly()) {
+    const Walk bench;
+    bench.takePhoto();
+    bench.write("b.toml", "[bench]\nmodes = [\"reproject\", \"paper\", \"predicted\"]\nrepeats = 1\nwarm-up = 0\n");
+    bench.go("bench builtin:step-edge --size 96x96 --config b.toml --out out");
+    bench.go(kAlongMotion);
+    bench.go(kBesidePhotos);
+    const nlohmann::json alone = bench.results("out/bench.json"), moved = bench.results("out/motion.json"),
+                         beside = bench.results("out/photos.json");
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::string mode = std::array{"reproject", "paper", "predicted"}[i];
+        CAPTURE(mode);
+        // Behind two-pass and shared.
+        REQUIRE(std::min({alone.size(), moved.size(), beside.size()}) == 5);
+        const nlohmann::json& quality = alone[2 + i]["affiliated_against_full"];
+        CHECK(alone[2 + i]["mode"] == mode);
+        CHECK(quality["all"]["psnr_db"] > 20.0);
+        CHECK(quality.contains("patched") == (mode != "reproject"));
+        CHECK(moved[2 + i]["mode"] == mode);
+        CHECK(moved[2 + i]["psnr_db"]["run"] > 20.0);
+        CHECK(moved[2 + i]["work_rendered"]["median"] < 1.0);
+        CHECK(moved[2 + i]["flicker"]["median"] > 0.0);
+        CHECK(beside[2 + i]["method"] == mode);
+        CHECK(beside[2 + i]["psnr_db_lost"] > 0.0);
+        CHECK(beside[2 + i]["psnr_db_to_photo"] > 20.0);
+    }
 }
 #endif
 
