@@ -18,6 +18,12 @@ namespace {
 constexpr std::size_t kMostBufferBytes = std::size_t{1} << 20, kLeastBufferBytes = 4096;
 }
 
+std::string_view withoutByteOrderMark(std::string_view start) {
+    constexpr std::string_view kMark = "\xef\xbb\xbf";
+    if (start.starts_with(kMark)) { start.remove_prefix(kMark.size()); }
+    return start;
+}
+
 InputFile::InputFile(const std::string& path) : name_(path) { open(path); }
 
 InputFile::InputFile(const std::filesystem::path& path, std::string name, SceneFiles& others) : name_(std::move(name)), others_(&others) {

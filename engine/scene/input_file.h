@@ -16,6 +16,9 @@ namespace binosplat {
 
 class SceneFiles;
 
+// The start of a text without the byte order mark that some editors put there.
+std::string_view withoutByteOrderMark(std::string_view start);
+
 class InputFile {
 public:
     // Throws Error if `path` is missing, a directory, not a regular file, not readable or a Git LFS pointer.
@@ -37,7 +40,7 @@ public:
     // Bytes from anywhere, without moving on; fewer at the end of the file.
     [[nodiscard]] std::size_t readAt(std::uint64_t offset, std::span<std::byte> target) const;
 
-    // The first bytes of the file, `count` at most, without moving on. Only before anything was read.
+    // The next bytes, `count` at most, without moving on. Valid until the next call.
     [[nodiscard]] std::string_view peek(std::size_t count);
 
     // The end of a line: a line break, the end of the file after at least one character, or there was no line at all.

@@ -2,7 +2,9 @@
 #include "engine/scene/json_node.h"
 
 #include "engine/error.h"
+#include "engine/scene/input_file.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -16,6 +18,12 @@ nlohmann::json parseJson(std::span<const std::byte> text, const std::string& fil
             return true;
         });
     } catch (const nlohmann::json::exception& error) { fail("{}: not JSON ({}), expected {}", file, error.what(), expected); }
+}
+
+bool startsObject(std::string_view start) {
+    start = withoutByteOrderMark(start);
+    const std::size_t first = start.find_first_not_of(" \t\r\n");
+    return first != std::string_view::npos && start[first] == '{';
 }
 
 bool JsonNode::has(const char* name) const {
@@ -52,9 +60,19 @@ float JsonNode::number() const {
 }
 
 std::uint64_t JsonNode::count() const {
+    // Some writers know no integers: 608.0. Beyond 2^53 a double may have been rounded.
+    const double wide = value.is_number_float() ? value.get<double>() : -1.0;
+    if (wide >= 0.0 && wide <= 0x1p53 && wide == std::floor(wide)) { return static_cast<std::uint64_t>(wide); }
     check(value.is_number_unsigned(), "{}: is {}, expected a whole number from 0 on", place(),
           value.is_number() ? value.dump() : value.type_name());
     return value.get<std::uint64_t>();
+}
+
+std::string JsonNode::filePath() const {
+    std::string path = text();
+    std::ranges::replace(path, '\\', '/');
+    while (path.starts_with("./")) { path.erase(0, path.find_first_not_of('/', 1)); }
+    return path;
 }
 
 std::string JsonNode::text() const {

@@ -7,12 +7,16 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 
 namespace binosplat {
 
 // `file` is the name for messages, `expected` what it should be. Throws Error for text that is no JSON or nested deeper than `max_depth`:
 // so code that walks through it or quotes it cannot overflow the stack.
 nlohmann::json parseJson(std::span<const std::byte> text, const std::string& file, const char* expected, int max_depth = 64);
+
+// True if a text that starts so is an object.
+bool startsObject(std::string_view start);
 
 // A value of a document that outlives it. A request that the value does not meet throws Error.
 struct JsonNode {
@@ -28,9 +32,10 @@ struct JsonNode {
     void requireObject() const;
     [[nodiscard]] std::size_t arraySize() const;
     void requireArray(std::size_t size) const;
-    [[nodiscard]] float number() const;  // finite
-    [[nodiscard]] std::uint64_t count() const;
+    [[nodiscard]] float number() const;         // finite
+    [[nodiscard]] std::uint64_t count() const;  // also as 608.0
     [[nodiscard]] std::string text() const;
+    [[nodiscard]] std::string filePath() const;  // a text; backslashes become slashes, and "./" in front goes
     [[nodiscard]] bool flag() const;
 };
 

@@ -23,9 +23,9 @@ constexpr std::uint64_t kMaxSplats = std::uint64_t{1} << 40;
 // A path that leads to a file within the folder: no root (Windows takes "/a" for relative), no "..", nothing another system would take for
 // either.
 std::string readChunkPath(const JsonNode& node) {
-    const std::string text = node.text();
+    const std::string text = node.filePath();
     const std::filesystem::path path(text);
-    const bool within = !path.has_root_path() && text.find_first_of(std::string_view("\\:\0", 3)) == std::string::npos &&
+    const bool within = !path.has_root_path() && text.find_first_of(std::string_view(":\0", 2)) == std::string::npos &&
                         std::find(path.begin(), path.end(), "..") == path.end();
     check(within, "{}: names \"{}\", expected a path within the folder of this file", node.place(), text);
     check(path.filename() == "meta.json" || path.extension() == ".sog", "{}: names \"{}\", expected the meta.json or the .sog of a chunk",
@@ -82,6 +82,13 @@ void readLeaf(const JsonNode& lods, LodLeaf leaf, LodMeta& meta) {
     const bool is_box = glm::all(glm::lessThanEqual(leaf.low, leaf.high));
     check(is_box, "{}: lies in no box, expected a bound whose min is at most its max", lods.place());
     std::ranges::sort(leaf.levels, {}, &LodRange::level);
+    // Where a leaf has a coarser level, but not this one, the next coarser one stands in.
+    for (std::uint32_t level = 0; level < leaf.levels.back().level; ++level) {
+        if (present[level]) { continue; }
+        const LodRange& coarser = *std::ranges::upper_bound(leaf.levels, level, {}, &LodRange::level);
+        meta.levels[level].chunks[coarser.file].push_back(coarser.splats);
+        ++meta.leaves_coarser[level];
+    }
     meta.tree.push_back(std::move(leaf));
 }
 
@@ -139,6 +146,7 @@ LodMeta parseLodMeta(std::span<const std::byte> text, const std::string& place) 
     LodMeta meta;
     meta.levels.resize(levels.count());
     meta.leaves_without.resize(levels.count());
+    meta.leaves_coarser.resize(levels.count());
     readFiles(root, meta);
     readTree(root.at("tree"), meta);
     for (LodLevel& level : meta.levels) {

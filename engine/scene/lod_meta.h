@@ -27,6 +27,7 @@ struct LodMeta {
     std::vector<LodLeaf> tree;       // its leaves that have splats
     std::uint64_t leaves = 0;        // all of them
     std::vector<std::uint64_t> leaves_without;  // for each level: leaves with splats at other levels, but not at this one
+    std::vector<std::uint64_t> leaves_coarser;  // those of them that have a coarser level: the next one stands in
 };
 
 // `place` is the file's name for messages. Throws Error naming the key and what was expected. The reader checks

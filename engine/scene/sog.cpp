@@ -2,6 +2,7 @@
 #include "engine/scene/sog.h"
 
 #include "engine/error.h"
+#include "engine/scene/json_node.h"
 #include "engine/scene/scene_builder.h"
 #include "engine/scene/sog_splats.h"
 
@@ -39,8 +40,7 @@ bool isSogFolder(const std::string& folder) {
 bool isSogFile(InputFile& file) {
     if (isArchive(file)) { return true; }
     const std::string_view start = file.peek(4096);
-    const std::size_t first = start.find_first_not_of(" \t\r\n");
-    return first != std::string_view::npos && start[first] == '{' && start.find("\"means\"") != std::string_view::npos;
+    return startsObject(start) && start.find("\"means\"") != std::string_view::npos;
 }
 
 Scene readSogFolder(const std::string& folder, LoadNotes& notes, const Progress& progress) {

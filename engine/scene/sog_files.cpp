@@ -139,7 +139,10 @@ private:
         for (zip_int64_t i = 0; i < zip_get_num_entries(archive(), 0); ++i) {
             const char* text = zip_get_name(archive(), static_cast<zip_uint64_t>(i), 0);
             const std::string_view name = text != nullptr ? text : "";
-            const bool is_meta = name.ends_with(kMeta) && (name.size() == kMeta.size() || name[name.size() - kMeta.size() - 1] == '/');
+            if (!name.ends_with(kMeta)) { continue; }
+            const std::string_view folder = name.substr(0, name.size() - kMeta.size());
+            // Some writers of Windows have backslashes between folders.
+            const bool is_meta = folder.empty() || folder.ends_with('/') || folder.ends_with('\\');
             if (is_meta && (!found || name.size() < found->size())) { found = name; }
         }
         check(found.has_value(), "{}: a zip archive without a meta.json, expected a .sog bundle", path_);
@@ -155,6 +158,8 @@ private:
         zip_stat_init(&entry);
         check(zip_stat_index(archive(), static_cast<zip_uint64_t>(index), 0, &entry) == 0 && (entry.valid & ZIP_STAT_SIZE) != 0,
               "{}: its size cannot be read", place(name));
+        check((entry.valid & ZIP_STAT_ENCRYPTION_METHOD) == 0 || entry.encryption_method == ZIP_EM_NONE,
+              "{}: is encrypted and asks for a password, expected an archive without one (unpack it, and give the folder)", place(name));
         entry.index = static_cast<zip_uint64_t>(index);
         return entry;
     }

@@ -13,7 +13,7 @@ namespace {
 std::string fileName(const JsonNode& node, std::size_t index, std::size_t size) {
     const JsonNode files = node.at("files");
     files.requireArray(size);
-    return files.at(index).text();
+    return files.at(index).filePath();
 }
 
 ByteTable readCodebook(const JsonNode& node) {

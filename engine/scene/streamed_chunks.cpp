@@ -73,6 +73,22 @@ SogSplats StreamedChunks::open(std::size_t index) {
     return splats;
 }
 
+std::optional<SogSplats> StreamedChunks::openEnvironment() {
+    if (!hasEnvironment()) { return std::nullopt; }
+    std::error_code error;
+    const fs::path file = folder_ / meta_.environment;
+    try {
+        if (elsewhere_ != nullptr) {
+            (void)elsewhere_->open(meta_.environment);
+        } else if (!fs::exists(file, error)) {
+            missing_environment_ = file.string() + " is not there";
+        }
+    } catch (const Error& unreachable) { missing_environment_ = unreachable.what(); }
+    if (missing_environment_.empty()) { return open(environmentIndex()); }
+    meta_.environment.clear();
+    return std::nullopt;
+}
+
 void StreamedChunks::requireRange(std::size_t file, SplatRange range, const SogSplats& splats) const {
     check(range.first + range.count <= splats.count(), "{}: tree: a leaf names splat {} of filenames[{}] ({}), which has {}", place_,
           range.first + range.count - 1, file, path(file), splats.count());

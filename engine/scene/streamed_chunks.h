@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -32,10 +33,14 @@ public:
 
     // They will be opened soon.
     void expect(std::span<const std::size_t> files) const;
-    // One of the meta's files, or the environment. It lies within the folder, wherever links lead, and no other is the same one. Throws
+    // One of the meta's files. It lies within the folder, wherever links lead, and no other is the same one. Throws
     // Error naming the file. For one elsewhere it is not known yet whether its count is plausible: SogSplats::requirePlausibleCount waits
     // for its pictures.
     [[nodiscard]] SogSplats open(std::size_t file);
+    // None if the scene has none, or if it cannot be had: then it has none from now on. Throws Error if it is broken.
+    [[nodiscard]] std::optional<SogSplats> openEnvironment();
+    // Why an environment could not be had; empty: it could, or there is none.
+    [[nodiscard]] const std::string& missingEnvironment() const { return missing_environment_; }
     // Throws Error if that file, open, ends before the range does.
     void requireRange(std::size_t file, SplatRange range, const SogSplats& splats) const;
 
@@ -44,7 +49,7 @@ private:
     StreamedChunks(const std::filesystem::path& folder, const std::string& name);
 
     std::filesystem::path folder_;
-    std::string place_;
+    std::string place_, missing_environment_;
     LodMeta meta_;
     SceneFiles* elsewhere_ = nullptr;                      // not in the folder
     std::map<std::filesystem::path, std::size_t> opened_;  // by the paths that links lead to

@@ -2,6 +2,7 @@
 #include "engine/scene/streamed_sog.h"
 
 #include "engine/error.h"
+#include "engine/scene/json_node.h"
 #include "engine/scene/scene_builder.h"
 #include "engine/scene/sog_splats.h"
 #include "engine/scene/streamed_chunks.h"
@@ -48,10 +49,9 @@ ReadLevel openLevel(StreamedChunks& scene, std::size_t index) {
         scene.requireRange(file, ranges.back(), splats);
         add(std::move(splats), ranges);
     }
-    if (scene.hasEnvironment()) {
-        SogSplats splats = scene.open(scene.environmentIndex());
-        const SplatRange all{0, splats.count()};
-        add(std::move(splats), {all});
+    if (std::optional<SogSplats> environment = scene.openEnvironment()) {
+        const SplatRange all{0, environment->count()};
+        add(std::move(*environment), {all});
     }
     return level;
 }
@@ -84,6 +84,11 @@ void noteLevel(const std::string& source, const StreamedChunks& scene, const Rea
         fmt::format("{}: level of detail {} of 0 (the finest) to {}{}", source, level.index, meta.levels.size() - 1, level.reason));
     if (const std::uint64_t without = meta.leaves_without[level.index]; without > 0) {
         notes.lines.back() += fmt::format("; {} of {} leaves have no splats at this level", without, meta.leaves);
+        const std::uint64_t coarser = meta.leaves_coarser[level.index];
+        if (coarser > 0) { notes.lines.back() += fmt::format(", {} of them show a coarser one", coarser); }
+    }
+    if (!scene.missingEnvironment().empty()) {
+        notes.lines.push_back(fmt::format("{}: is shown without its environment: {}", source, scene.missingEnvironment()));
     }
 }
 
@@ -128,8 +133,7 @@ bool isStreamedSogFolder(const std::string& folder) {
 bool isStreamedSogFile(InputFile& file) {
     if (fs::path(file.name()).filename() == "lod-meta.json") { return true; }
     const std::string_view start = file.peek(4096);
-    const std::size_t first = start.find_first_not_of(" \t\r\n");
-    return first != std::string_view::npos && start[first] == '{' && start.find("\"lodLevels\"") != std::string_view::npos;
+    return startsObject(start) && start.find("\"lodLevels\"") != std::string_view::npos;
 }
 
 Scene readStreamedSogFolder(const std::string& folder, const LevelChoice& choice, LoadNotes& notes, const Progress& progress) {

@@ -16,8 +16,8 @@ bool isStreamedSogFolder(const std::string& folder);
 bool isStreamedSogFile(InputFile& file);
 
 // All splats that the leaves have at the chosen level, and the environment's: chunk by chunk in the order of their names' list, those of a
-// chunk in its own order. A leaf without the level has no splats there, as in the format's specification and in PlayCanvas'
-// viewer. Throws Error in a build that cannot decode WebP.
+// chunk in its own order. A leaf without the level shows its next coarser one, or has no splats there if it has finer ones alone. A missing
+// environment is left out. Throws Error in a build that cannot decode WebP.
 Scene readStreamedSogFolder(const std::string& folder, const LevelChoice& choice, LoadNotes& notes, const Progress& progress);
 Scene readStreamedSogFile(InputFile& file, const LevelChoice& choice, LoadNotes& notes, const Progress& progress);
 

@@ -45,8 +45,8 @@ ChunkSource::ChunkSource(const std::string& source, const WebSettings& web, cons
         chunks_ = std::make_unique<StreamedChunks>(file);
     }
     leaves_ = meta().tree;
-    if (chunks_->hasEnvironment()) {
-        environment_splats_ = open(chunks_->environmentIndex()).count();
+    if (const std::optional<SogSplats> environment = chunks_->openEnvironment()) {
+        environment_splats_ = environment->count();
         const auto file = static_cast<std::uint32_t>(chunks_->environmentIndex());
         if (environment_splats_ > 0) {
             leaves_.push_back({glm::vec3(-kEverywhere), glm::vec3(kEverywhere), {{0, file, {0, environment_splats_}}}});

@@ -19,8 +19,8 @@ bool isStreamedScene(const std::string& source);
 // For one thread at a time.
 class ChunkSource {
 public:
-    // `waiting` is called now and then while an address is waited for, as in WebFiles. Throws Error if lod-meta.json or the environment
-    // cannot be had or is broken, and in a build that cannot decode WebP.
+    // `waiting` is called now and then while an address is waited for, as in WebFiles. Throws Error if lod-meta.json cannot be had, if it
+    // or the environment is broken, and in a build that cannot decode WebP.
     ChunkSource(const std::string& source, const WebSettings& web, const Progress& waiting = {});
 
     [[nodiscard]] const std::string& name() const { return name_; }

@@ -62,8 +62,17 @@ TEST_CASE("both versions mean what their tables say, in a directory, a bundle, a
         checkSameScene(scene, loadScene(source + "/meta.json"));
         for (const bool deflated : {false, true}) {
             checkSameScene(scene, loadScene(folder.write("bundle.sog", makeZip(files, deflated))));
-            checkSameScene(scene, loadScene(folder.write("bundle.bin", makeZip(files, deflated, "within/"))));
+            for (const char* within : {"within/", ".\\within\\"}) {
+                checkSameScene(scene, loadScene(folder.write("bundle.bin", makeZip(files, deflated, within))));
+            }
         }
+        // As some writers have them: a byte order mark, a number with a point, paths of Windows.
+        SogText odd = files;
+        std::string& meta = odd["meta.json"];
+        meta = "\xef\xbb\xbf" + replaced(replaced(meta, "\"q.webp\"", R"(".\\q.webp")"), "\"l.webp\"", "\"./l.webp\"");
+        meta = version == 2 ? replaced(meta, "\"count\":8", "\"count\":8.0") : replaced(meta, "[8,3]", "[8.0,3.0]");
+        checkSameScene(scene, loadScene(writeSogFolder(folder, "odd", odd)));
+        checkSameScene(scene, loadScene(folder.file("odd/meta.json")));
     }
 }
 
@@ -211,6 +220,11 @@ TEST_CASE("a bundle's files may come in any order, and among others; archives th
     changed[changed.find("RIFF") + 40] ^= 1;  // the checksum no longer fits
     CHECK(contains(loadError(folder.write("a.sog", changed)), "cannot be read"));
     CHECK(contains(loadError(folder.write("a.sog", std::string("PK\x03\x04") + std::string(100, 'x'))), "not a whole zip archive"));
+    std::string locked = makeZip(files);
+    for (const auto& [header, flags] : {std::pair("PK\x03\x04", 6u), std::pair("PK\x01\x02", 8u)}) {
+        for (std::size_t at = 0; (at = locked.find(header, at)) != std::string::npos; ++at) { locked[at + flags] = 1; }
+    }
+    CHECK(contains(loadError(folder.write("a.sog", locked)), "a.sog: meta.json: is encrypted and asks for a password"));
 }
 
 }  // SUITE(sog_format)

@@ -88,6 +88,32 @@ TEST_CASE("the tree says where each leaf lies and which splats show it, the fine
     CHECK(told(replaced(makeLodMeta(), R"({"0":{"file":1,"offset":0,"count":8}})", "{}")) == two);
 }
 
+TEST_CASE("a leaf that has no splats at a level shows the next coarser one, if it has one; without its environment a scene is shown, too") {
+    const Folder folder;
+    // The first leaf has level 1 alone; the third has, as before, level 0 alone.
+    const std::string less = replaced(makeLodMeta(), R"("0":{"file":0,"offset":5,"count":3},)", "");
+    const std::string source = writeStreamed(folder, "scene", less);
+    const Scene a = loadScene(source + "/a"), b = loadScene(source + "/b"), c = loadScene(source + "/c"), env = loadScene(source + "/env");
+    Scene expected;
+    expected.sh_degree = 1;
+    addSplats(expected, a, 0, 5);
+    addWhole(expected, b);
+    addSplats(expected, c, 0, 6);
+    Scene with_environment = expected;
+    addWhole(with_environment, env);
+    LoadNotes notes;
+    checkSameScene(loadLevel(source, 0, &notes), with_environment);
+    CHECK(notes.level_splats == std::vector<std::uint64_t>{19, 8});
+    CHECK(contains(notes.lines.back(), "; 1 of 3 leaves have no splats at this level, 1 of them show a coarser one"));
+    CHECK(loadLevel(source, 1).size() == 16);
+
+    std::filesystem::remove_all(source + "/env");
+    checkSameScene(loadLevel(source, 0, &notes), expected);
+    CHECK(notes.environment_splats == 0);
+    CHECK(contains(notes.lines.back(), "scene: is shown without its environment: "));
+    CHECK(contains(notes.lines.back(), "scene/env/meta.json is not there"));
+}
+
 TEST_CASE("chunks and the environment may be bundles") {
     const Folder folder;
     const std::string source = writeStreamed(folder, "scene", makeLodMeta());
@@ -236,6 +262,7 @@ TEST_CASE("a lod-meta.json that does not fit is named with its key") {
         {"env/meta.json", "../env/meta.json", "environment: names \"../env/meta.json\""},
         {"b/meta.json", "a/meta.json", "filenames[1]: names a/meta.json once more, expected each chunk once"},
         {"b/meta.json", ".//a/./meta.json", "filenames[1]: names a/meta.json once more"},
+        {"b/meta.json", ".\\\\a\\\\meta.json", "filenames[1]: names a/meta.json once more"},
         {"env/meta.json", "a/meta.json", "environment: names a/meta.json once more"},
         // Ranges that overlap, lead beyond their chunk or name no chunk.
         {R"("offset":5,"count":3)", R"("offset":4,"count":4)",
@@ -247,8 +274,8 @@ TEST_CASE("a lod-meta.json that does not fit is named with its key") {
         {R"("file":0,)", "", "lods.0: has no file"},
         {R"("offset":5)", R"("offset":18446744073709551615)", "expected at most 1099511627776"},
         {R"("count":3)", R"("count":9223372036854775808)", "lods.0.count: is 9223372036854775808"}};
-    for (const char* path : {"../a/meta.json", "x/../../a/meta.json", "./x/../a//meta.json", "/etc/meta.json", "a\\\\meta.json",
-                             "c:meta.json", "a/meta.json\\u0000", "../b.sog", "/b.sog", "x\\\\b.sog"}) {
+    for (const char* path : {"../a/meta.json", "x/../../a/meta.json", "./x/../a//meta.json", "/etc/meta.json", "..\\\\a\\\\meta.json",
+                             "c:meta.json", "a/meta.json\\u0000", "../b.sog", "/b.sog", "\\\\b.sog"}) {
         faults.push_back({"b/meta.json", path, within});
     }
     for (const char* path : {"", "a", "a/other.json", "a/meta.json/"}) {
@@ -302,8 +329,6 @@ TEST_CASE("chunks that are missing or broken are named before any is decoded") {
     };
     std::filesystem::remove(source + "/env/q.webp");
     CHECK(contains(error(), "scene/env/q.webp: no such file"));
-    std::filesystem::remove_all(source + "/env");
-    CHECK(contains(error(), "scene/lod-meta.json: environment: "));
     std::filesystem::remove(source + "/b/meta.json");
     CHECK(contains(error(), "scene/lod-meta.json: filenames[1]: "));
     CHECK(contains(error(), "scene/b/meta.json is not there, expected a chunk of the scene"));

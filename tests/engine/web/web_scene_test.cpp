@@ -129,6 +129,12 @@ TEST_CASE("of a streamed scene the files of the level that is read are fetched, 
     const auto fits = [](std::uint64_t splats, int) { return splats < 16; };
     CHECK(loadFromWeb(server.at("/s/lod-meta.json"), webSettings(folder), nullptr, {std::nullopt, fits}).size() == 16);
     for (const std::string& name : server.asked()) { CHECK_FALSE(name.starts_with("/s/a")); }
+    // Without its environment it is shown, too.
+    std::filesystem::remove_all(folder.file("scene/env"));
+    const WebServer without(filesOf(path, "/s/"));
+    LoadNotes notes;
+    CHECK(loadFromWeb(without.at("/s/lod-meta.json"), webSettings(folder), &notes, {1, {}}).size() == 8);
+    CHECK(contains(notes.lines.back(), "is shown without its environment: " + without.at("/s/env/meta.json")));
 }
 #endif
 
