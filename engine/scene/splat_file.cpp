@@ -6,6 +6,7 @@
 #include "engine/scene/scene_builder.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace binosplat {
@@ -17,10 +18,18 @@ constexpr std::size_t kSplatBytes = 32;
 float loadByte(std::span<const std::byte> row, std::size_t offset) { return static_cast<float>(std::to_integer<int>(row[offset])); }
 float loadRotation(std::span<const std::byte> row, std::size_t i) { return (loadByte(row, 28 + i) - 128.0f) / 128.0f; }
 
+bool isRotation(std::span<const std::byte> row, const std::array<int, 4>& bytes) {
+    return std::ranges::equal(row.subspan(28, 4), bytes, {}, [](std::byte byte) { return std::to_integer<int>(byte); });
+}
+// A quaternion of length zero, from writers that have no rotations.
+bool isNoRotation(std::span<const std::byte> row) { return isRotation(row, {128, 128, 128, 128}); }
+// One of length 2, which some writers leave in every row; it is normalised like any other.
+bool isLongRotation(std::span<const std::byte> row) { return isRotation(row, {255, 0, 0, 0}); }
+
 bool isPlausible(std::span<const std::byte> row) {
     float length2 = 0.0f;
     for (std::size_t i = 0; i < 4; ++i) { length2 += loadRotation(row, i) * loadRotation(row, i); }
-    bool plausible = length2 > 0.9f && length2 < 1.1f;
+    bool plausible = (length2 > 0.9f && length2 < 1.1f) || isNoRotation(row) || isLongRotation(row);
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const float position = loadLittle<float>(row, 4 * axis), scale = loadLittle<float>(row, 12 + 4 * axis);
         plausible = plausible && std::abs(position) < 1e9f && scale >= 0.0f && scale < 1e9f;
@@ -63,6 +72,7 @@ Scene readSplatFile(InputFile& file, LoadNotes& notes, const Progress& progress)
             }
             put(kStoredOpacity, storedOpacity(loadByte(splat, 27) / 255.0f));
             for (int i = 0; i < 4; ++i) { put(kStoredRot0 + i, loadRotation(splat, static_cast<std::size_t>(i))); }
+            if (isNoRotation(splat)) { put(kStoredRot0, 1.0f); }
         }
         builder.append(block);
     }
