@@ -3,6 +3,7 @@
 
 #include "engine/error.h"
 #include "engine/scene/ply_header.h"
+#include "engine/scene/ply_moment.h"
 #include "engine/scene/ply_rows.h"
 #include "engine/scene/read_ahead.h"
 #include "engine/scene/scene_builder.h"
@@ -10,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <set>
 
 namespace binosplat {
 
@@ -22,8 +24,23 @@ constexpr std::array<const char*, kStoredRest0> kRequiredNames{"x",       "y",  
 struct Layout {
     std::vector<ply::Column> columns;
     int sh_degree = 0;
+    int sh_degree_in_file = 0;
     bool three_scales = false;
 };
+
+// CloudCompare writes a field that it does not know as scalar_NAME.
+void dropPrefixes(ply::Header& header) {
+    constexpr std::string_view kPrefix = "scalar_";
+    for (ply::Element& element : header.elements) {
+        std::set<std::string> names;
+        for (const ply::Property& property : element.properties) { names.insert(property.name); }
+        for (ply::Property& property : element.properties) {
+            if (!property.name.starts_with(kPrefix)) { continue; }
+            const std::string plain = property.name.substr(kPrefix.size());
+            if (names.insert(plain).second) { property.name = plain; }
+        }
+    }
+}
 
 const ply::Element& findVertexElement(const InputFile& file, const ply::Header& header) {
     const ply::Element* found = nullptr;
@@ -49,6 +66,18 @@ void refusePointCloud(const InputFile& file, const ply::Header& header, const pl
          has("red") || has("r") || has("diffuse_red") ? ", with colours" : "", has("nx") ? ", with normals" : "");
 }
 
+void refuseAnchors(const InputFile& file, const ply::Element& vertex) {
+    const bool has_features =
+        std::ranges::any_of(vertex.properties, [](const ply::Property& p) { return p.name.starts_with("f_anchor_feat"); });
+    check(!has_features,
+          "{}: anchors of Scaffold-GS, from which a network makes other splats for each view, expected splats as a 3DGS or 2DGS training "
+          "leaves them",
+          file.name());
+}
+
+// Harmonics of one channel beyond the constant one.
+std::size_t restPerChannel(int sh_degree) { return static_cast<std::size_t>(shCoefficientCount(sh_degree)) - 1; }
+
 Layout planColumns(const InputFile& file, const ply::Element& vertex) {
     std::map<std::string, std::size_t> index_of;
     std::size_t rest_count = 0;
@@ -70,15 +99,21 @@ Layout planColumns(const InputFile& file, const ply::Element& vertex) {
               file.name(), name);
         layout.columns.push_back({found->second, attribute});
     }
-    while (layout.sh_degree <= kMaxShDegree && 3 * (static_cast<std::size_t>(shCoefficientCount(layout.sh_degree)) - 1) != rest_count) {
-        ++layout.sh_degree;
-    }
-    check(layout.sh_degree <= kMaxShDegree, "{}: header: element vertex has {} f_rest properties, expected 0, 9, 24 or 45", file.name(),
+    constexpr int kMostDegree = kMaxShDegree + 1;  // of which the highest band is left out
+    int& in_file = layout.sh_degree_in_file;
+    while (in_file <= kMostDegree && 3 * restPerChannel(in_file) != rest_count) { ++in_file; }
+    check(in_file <= kMostDegree, "{}: header: element vertex has {} f_rest properties, expected 0, 9, 24, 45 or 72", file.name(),
           rest_count);
-    for (std::size_t i = 0; i < rest_count; ++i) {
-        const auto found = index_of.find(fmt::format("f_rest_{}", i));
-        check(found != index_of.end(), "{}: header: element vertex has {} f_rest properties but no f_rest_{}", file.name(), rest_count, i);
-        layout.columns.push_back({found->second, kStoredRest0 + static_cast<int>(i)});
+    layout.sh_degree = std::min(in_file, kMaxShDegree);
+    int attribute = kStoredRest0;
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+        for (std::size_t k = 0; k < restPerChannel(layout.sh_degree); ++k, ++attribute) {
+            const std::size_t i = channel * restPerChannel(in_file) + k;
+            const auto found = index_of.find(fmt::format("f_rest_{}", i));
+            check(found != index_of.end(), "{}: header: element vertex has {} f_rest properties but no f_rest_{}", file.name(), rest_count,
+                  i);
+            layout.columns.push_back({found->second, attribute});
+        }
     }
     return layout;
 }
@@ -96,15 +131,18 @@ bool looksActivated(const StoredBlock& block, bool three_scales) {
 }  // namespace
 
 bool isPly(InputFile& file) {
-    const std::string_view start = file.peek(5);
-    return start.starts_with("ply\n") || start == "ply\r\n";
+    const std::string_view start = withoutByteOrderMark(file.peek(8));
+    return start.starts_with("ply\n") || start.starts_with("ply\r\n");
 }
 
 Scene readPly(InputFile& file, LoadNotes& notes, const Progress& progress) {
-    const ply::Header header = ply::readHeader(file);
+    ply::Header header = ply::readHeader(file);
+    dropPrefixes(header);
     const ply::Element& vertex = findVertexElement(file, header);
     refusePointCloud(file, header, vertex);
-    const Layout layout = planColumns(file, vertex);
+    refuseAnchors(file, vertex);
+    Layout layout = planColumns(file, vertex);
+    ply::Moment moment(vertex, kStoredRest0 + 3 * static_cast<int>(restPerChannel(layout.sh_degree)), layout.columns);
     for (const ply::Element* element = header.elements.data(); element != &vertex; ++element) {
         ply::skipElement(file, header.encoding, *element);
     }
@@ -115,9 +153,12 @@ Scene readPly(InputFile& file, LoadNotes& notes, const Progress& progress) {
     if (progress) { progress(0.0); }
     StoredBlock some;
     rows->sample(some);
+    moment.choose(some);
+    if (moment.isDynamic()) { moment.apply(some); }
     builder.expect(some);
     ReadAhead blocks(vertex.count, [&](ReadAhead::Block& block) {
         rows->read(block.stored);
+        if (moment.isDynamic()) { moment.apply(block.stored); }
         builder.activate(block.stored, block.active);
     });
     std::uint64_t done = 0, count = 0;
@@ -133,6 +174,11 @@ Scene readPly(InputFile& file, LoadNotes& notes, const Progress& progress) {
     scene.antialiased = header.antialiased && layout.three_scales;
     scene.vertical_axis = header.vertical_axis;
     if (header.vertical_axis >= 0) { notes.axes = fmt::format("{} is vertical (named by the file)", "xyz"[header.vertical_axis]); }
+    if (layout.sh_degree_in_file > layout.sh_degree) {
+        notes.lines.push_back(
+            fmt::format("{}: SH of degree {} were left out, degree {} is kept", file.name(), layout.sh_degree_in_file, layout.sh_degree));
+    }
+    if (moment.isDynamic()) { notes.lines.push_back(fmt::format("{}: {}", file.name(), moment.describe())); }
     if (activated) {
         notes.lines.push_back(fmt::format(
             "{}: all scales are positive and all opacities lie within 0 to 1: it looks as if it was written with the activations "

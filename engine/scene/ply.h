@@ -11,9 +11,10 @@ namespace binosplat {
 // True if the file is a PLY, by its first line.
 bool isPly(InputFile& file);
 
-// Reads element `vertex` with x y z, f_dc_0..2, f_rest_0.. (none, 9, 24 or 45, channel-major), opacity (logit), scale_0 scale_1
-// [scale_2] (logarithms), rot_0..3 (w, x, y, z); any order, any scalar types, ascii or binary. Anything else in the file is ignored,
-// except a comment that asks for antialiasing. Throws Error that says so for a point cloud or a mesh.
+// Reads element `vertex` with x y z, f_dc_0..2, f_rest_0.. (none, 9, 24, 45 or, without the highest band, 72; channel-major), opacity
+// (logit), scale_0 scale_1 [scale_2] (logarithms), rot_0..3 (w, x, y, z), each also as scalar_NAME; any order, any scalar types, ascii or
+// binary. Of splats that move the still of one moment is read. Anything else in the file is ignored, except a comment that asks for
+// antialiasing. Throws Error that says so for a point cloud, a mesh or anchors.
 Scene readPly(InputFile& file, LoadNotes& notes, const Progress& progress);
 
 // Writes the 2DGS layout in binary little-endian: x y z nx ny nz f_dc f_rest opacity scale_0 scale_1 rot_0..3, the normal along t_w; of

@@ -141,7 +141,7 @@ Header readHeader(InputFile& file) {
         check(file.positionBytes() <= kMaxHeaderBytes, "{}: header: no end_header line within the first MiB", file.name());
         const Line line{file.name(), ++header.line_count, splitWords(text)};
         if (!magic_seen) {
-            line.require(text == "ply", "expected 'ply'");
+            line.require(withoutByteOrderMark(text) == "ply", "expected 'ply'");
             magic_seen = true;
             continue;
         }

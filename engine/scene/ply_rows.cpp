@@ -183,7 +183,24 @@ public:
         }
     }
 
+    void sample(StoredBlock& block) const override {
+        std::string_view ahead = file_.peek(kSampleBytes);
+        const auto most = static_cast<std::size_t>(std::min<std::uint64_t>(StoredBlock::kRows, element_.count));
+        block.rows = 0;
+        for (std::size_t end = 0; block.rows < most && (end = ahead.find('\n')) != std::string_view::npos; ahead.remove_prefix(end + 1)) {
+            std::string_view text = ahead.substr(0, ahead[std::max<std::size_t>(end, 1) - 1] == '\r' ? end - 1 : end);
+            for (const int attribute : attribute_of_) {
+                float value = 0.0f;
+                if (!takeNumber(text, value)) { return; }  // as reading it will say
+                if (attribute >= 0) { block.put(attribute, block.rows, value); }
+            }
+            ++block.rows;
+        }
+    }
+
 private:
+    static constexpr std::size_t kSampleBytes = std::size_t{1} << 18;
+
     static std::string firstWord(std::string_view text) {
         const std::size_t start = std::min(text.find_first_not_of(" \t"), text.size());
         const std::size_t end = std::min(text.find_first_of(" \t", start), text.size());

@@ -21,8 +21,8 @@ public:
     virtual ~RowReader() = default;
     // Fills `block` with its next rows (block.rows of them). Throws Error with the splat's number if the file ends or a value is no number.
     virtual void read(StoredBlock& block) = 0;
-    // Fills `block` with rows from all over the element, before the first is read; none where they cannot be found without reading all.
-    virtual void sample(StoredBlock& block) const { block.rows = 0; }
+    // Fills `block` with some rows, before the first is read: from all over the element, or the first ones of an ascii file.
+    virtual void sample(StoredBlock& block) const = 0;
 };
 
 // Moves `file` past an element that is of no interest.

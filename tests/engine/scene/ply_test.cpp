@@ -336,6 +336,67 @@ TEST_CASE("a PLY that looks as if its activations had been applied is loaded as 
     }
 }
 
+TEST_CASE("a byte order mark, CloudCompare's names and harmonics of degree 4 are passed over") {
+    const Folder folder;
+    LoadNotes notes;
+    const Scene plain = loadScene(folder.write("plain.ply", makePly(45, true).bytes()));
+    checkSameScene(loadScene(folder.write("marked.ply", "\xef\xbb\xbf" + makePly(45, true).bytes())), plain);
+    PlyText renamed = makePly(45, true);
+    for (Column& column : renamed.columns) { column.name.insert(0, column.name.size() > 2 ? "scalar_" : ""); }
+    renamed.columns.push_back({"scalar_x", "float", {7.0, 8.0, 9.0}});  // not the position
+    checkSameScene(loadScene(folder.write("renamed.ply", renamed.bytes()), 0, &notes), plain);
+    CHECK(notes.lines.empty());
+    // Of each channel's 24 values the first 15.
+    PlyText larger = makePly(72, true);
+    for (int i = 0; i < 72; ++i) {
+        std::vector<double>& values = larger[fmt::format("f_rest_{}", i)].values;
+        values = i % 24 < 15 ? makePly(45)[fmt::format("f_rest_{}", i / 24 * 15 + i % 24)].values : std::vector<double>{kNan, 1.0, 2.0};
+    }
+    checkSameScene(loadScene(folder.write("larger.ply", larger.bytes()), 0, &notes), plain);
+    REQUIRE(notes.lines.size() == 1);
+    CHECK(contains(notes.lines[0], "larger.ply: SH of degree 4 were left out, degree 3 is kept"));
+}
+
+TEST_CASE("of splats that move and fade the still of one moment is shown, and a note says which") {
+    const Folder folder;
+    const auto load = [&](const PlyText& ply, const std::string& note) {
+        LoadNotes notes;
+        const Scene scene = loadScene(folder.write("moving.ply", ply.bytes()), 0, &notes);
+        REQUIRE(notes.lines.size() == 1);
+        CHECK(contains(notes.lines[0], note));
+        return scene;
+    };
+    for (const Encoding encoding : kEncodings) {
+        PlyText ply = makeIn(encoding, 9, true);
+        const auto add = [&](const std::string& name, double a, double b, double c) { ply.columns.push_back({name, "float", {a, b, c}}); };
+        add("trbf_center", 0.25, 0.5, 1.0);  // shown at the median
+        add("trbf_scale", std::log(0.25), 0.0, 0.0);
+        add("motion_0", 2.0, 9.0, 4.0);  // the speed along x, the square along z, the cube along y
+        add("motion_5", 16.0, 9.0, 0.0);
+        add("motion_7", 0.0, 9.0, 8.0);
+        add("omega_1", 8.0, 9.0, 0.0);
+        const Scene scene =
+            load(ply, "(trbf_center, trbf_scale, motion_0, motion_5, motion_7, omega_1): shown as the still of one moment, 0.5");
+        const auto opacity = [](double logit, double seen) { return doctest::Approx(seen / (1.0 + std::exp(-logit))).epsilon(1e-5); };
+        CHECK(scene.positions == std::vector<glm::vec3>{{1.5f, 0.5f, 5.0f}, {2.0f, 0.25f, 5.0f}, {-5.0f, -0.875f, 6.0f}});
+        CHECK(scene.opacities[0] == opacity(0.0, std::exp(-1.0)));
+        CHECK(scene.opacities[1] == opacity(2.0, 1.0));
+        CHECK(scene.opacities[2] == opacity(-2.0, std::exp(-0.25)));
+        CHECK(scene.sh == loadScene(folder.write("still.ply", makeIn(encoding, 9, true).bytes())).sh);
+        CHECK(scene.rotations[1] == loadScene(folder.file("still.ply")).rotations[1]);
+        CHECK(std::abs(glm::dot(scene.rotations[0], loadScene(folder.file("still.ply")).rotations[0])) == doctest::Approx(std::sqrt(0.5)));
+    }
+    PlyText fading = makePly();
+    fading.columns.push_back({"t", "float", {0.0, 1.0, 3.0}});
+    fading.columns.push_back({"scale_t", "float", {0.0, 0.0, std::log(2.0)}});
+    const Scene faded = load(fading, "(t, scale_t): shown as the still of one moment, 1");
+    CHECK(faded.opacities[0] == doctest::Approx(0.5 * std::exp(-0.5)));
+    CHECK(faded.opacities[2] == doctest::Approx(std::exp(-0.5) / (1.0 + std::exp(2.0))));
+    PlyText unknown = makePly();
+    unknown.columns.push_back({"motion_0", "float", {1.0, 2.0, 3.0}});
+    checkSameScene(load(unknown, "(motion_0): all are shown at once"), loadScene(folder.write("still.ply", makePly().bytes())));
+}
+
 TEST_CASE("an empty scene is a scene") {
     const Folder folder;
     for (const Encoding encoding : kEncodings) {
@@ -431,6 +492,9 @@ TEST_CASE("a point cloud or a mesh is named as what it is, with the place where 
         ply.columns.push_back({"opacity", "float", {0.0, 1.0}});  // a splat scene that lacks the rest
         CHECK(contains(error(), "no property f_dc_0"));
     }
+    PlyText anchors = makePly();
+    anchors.columns.push_back({"f_anchor_feat_0", "float", {0.0, 1.0, 2.0}});
+    CHECK(contains(loadError(folder, anchors.bytes()), "broken.ply: anchors of Scaffold-GS"));
 }
 
 TEST_CASE("errors in a header name the file, the line and what was expected") {
@@ -444,7 +508,7 @@ TEST_CASE("errors in a header name the file, the line and what was expected") {
                                     {"property float nx", "property float x", "property x of element vertex twice"},
                                     {"property float opacity", "property float opaque", "no property opacity"},
                                     {"property float scale_1", "property float scale", "no property scale_1"},
-                                    {"property float f_rest_8", "property float other", "8 f_rest properties, expected 0, 9, 24 or 45"},
+                                    {"property float f_rest_8", "property float other", "8 f_rest properties, expected 0, 9, 24, 45 or 72"},
                                     {"property float f_rest_8", "property float f_rest_9", "no f_rest_8"},
                                     {"element vertex 3", "element vertex -3", "count of element vertex is '-3'"},
                                     {"element vertex 3", "element vertex many", "count of element vertex is 'many'"},
