@@ -3,6 +3,7 @@
 
 #include "engine/error.h"
 #include "engine/scene/gltf_document.h"
+#include "engine/scene/json_node.h"
 #include "engine/scene/placed_splat.h"
 #include "engine/scene/quantized.h"
 #include "engine/scene/scene_builder.h"
@@ -147,8 +148,8 @@ private:
 bool isGltf(InputFile& file) {
     const std::string_view start = file.peek(std::size_t{1} << 16);
     if (start.starts_with("glTF")) { return true; }
-    const std::size_t first = start.find_first_not_of(" \t\r\n");
-    if (first == std::string_view::npos || start[first] != '{') { return false; }
+    // A tileset of 3D Tiles has an asset, too.
+    if (!startsObject(start) || start.find("\"geometricError\"") != std::string_view::npos) { return false; }
     // Any of them may come first, and be longer than this.
     constexpr std::string_view kKeys[] = {"\"asset\"", "\"accessors\"", "\"bufferViews\"", "\"extensionsUsed\"", "\"meshes\""};
     return std::ranges::any_of(kKeys, [&](std::string_view key) { return start.find(key) != std::string_view::npos; });

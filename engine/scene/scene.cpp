@@ -6,6 +6,7 @@
 #include "engine/scene/gltf.h"
 #include "engine/scene/input_file.h"
 #include "engine/scene/ksplat.h"
+#include "engine/scene/not_a_scene.h"
 #include "engine/scene/ply.h"
 #include "engine/scene/procedural.h"
 #include "engine/scene/scene_folder.h"
@@ -100,14 +101,16 @@ const SceneFormat* findFormat(Source& source) {
     return found == kSceneFormats.end() ? nullptr : found;
 }
 
-// Of a folder that is neither SOG nor a training's output.
+// Of a folder that is none of a scene.
 [[noreturn]] void refuseFolder(const Source& folder) {
     std::error_code error;
     static_cast<void>(std::filesystem::directory_iterator(folder.path, error));
     check(!error, "{}: cannot be read: {}", folder.path, error.message());
+    const std::string other = describeOtherFolder(folder.path);
+    check(other.empty(), "{}: {}", folder.path, other);
     fail(
         "{}: is a directory, expected one with lod-meta.json (streamed SOG), meta.json (SOG), "
-        "point_cloud/iteration_N/point_cloud.ply (a training's output) or numbered files of one format (a moving scene)",
+        "point_cloud/iteration_N/point_cloud.ply (a training's output), numbered files of one format (a moving scene) or one scene file",
         folder.path);
 }
 
@@ -124,13 +127,23 @@ Scene loadFrom(Source& source, LoadNotes& notes, const Progress& progress) {
             return scene;
         };
         if (const std::optional<TrainingOutput> training = findTrainingOutput(source.path)) {
-            return loadOne(training->scene, "a training's output");
+            Scene scene = loadOne(training->scene, "a training's output");
+            if (!training->older.empty()) { notes.lines.back() += fmt::format("; older ones: {}", fmt::join(training->older, ", ")); }
+            return scene;
         }
-        if (!isMovingScene(source.path)) { refuseFolder(source); }
+        if (!isMovingScene(source.path)) {
+            const std::optional<std::string> only = findOnlyScene(source.path);
+            if (!only) { refuseFolder(source); }
+            Scene scene = loadOne(*only, "a folder");
+            notes.lines.back() += ", its only scene";
+            return scene;
+        }
         const SceneSeries series(source.path);
         return loadOne(series.nameOf(0), fmt::format("a moving scene of {} frames", series.size()));
     }
     check(source.file->sizeBytes() > 0, "{}: is empty, expected a scene file: {}", source.path, listFormats());
+    const std::string other = describeOther(source.file->peek(std::size_t{1} << 16), source.path);
+    check(other.empty(), "{}: {}", source.path, other);
     fail("{}: not a scene file of a known format, expected {} or builtin:NAME", source.path, listFormats());
 }
 

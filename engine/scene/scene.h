@@ -28,6 +28,7 @@ struct Scene {
     std::vector<float> opacities;      // o = sigmoid(stored), 0 to 1
     std::vector<float> sh;             // sh[(splat * shCoefficientCount(sh_degree) + k) * 3 + channel]
     int sh_degree = 0;                 // 0 to 3: the highest band with a non-zero coefficient; higher bands are not kept
+    glm::dvec3 origin{0.0};            // what was taken off the file's positions, which float32 could not have told apart
     bool antialiased = false;          // 3D Gaussians: trained with opacities that the low-pass dims (Yu et al. 2024, section 5.2)
 
     bool by_distance = false;  // asks to be blended by distance, not by depth
@@ -67,8 +68,8 @@ struct LevelChoice {
 // Called now and then with the share done, 0 to 1.
 using Progress = std::function<void(double)>;
 
-// Loads `source`: a file; a directory, which is a SOG scene, a training's output, of which the newest scene is taken, or a moving scene, of
-// which the first frame is; or builtin:NAME (then `builtin_splats` sets the size, 0 for its default).
+// Loads `source`: a file; a directory, which is a SOG scene, a training's output, of which the newest scene is taken, a moving scene, of
+// which the first frame is, or has one scene file; or builtin:NAME (then `builtin_splats` sets the size, 0 for its default).
 // Needs at most twice the scene's own size in host memory. Throws Error with file, place, what is wrong and what was expected.
 Scene loadScene(const std::string& source, std::uint64_t builtin_splats = 0, LoadNotes* notes = nullptr, const Progress& progress = {},
                 const LevelChoice& level = {});

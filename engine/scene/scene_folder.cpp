@@ -1,7 +1,9 @@
 // Looking through a folder's names.
 #include "engine/scene/scene_folder.h"
 
+#include "engine/error.h"
 #include "engine/scene/address.h"
+#include "engine/scene/scene.h"
 #include "engine/scene/sog.h"
 #include "engine/scene/streamed_sog.h"
 
@@ -9,6 +11,7 @@
 #include <charconv>
 #include <functional>
 #include <map>
+#include <span>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -27,27 +30,68 @@ std::pair<std::size_t, std::string> numberOf(std::string_view digits) {
     return {digits.size(), std::string(digits)};
 }
 
+struct Checkpoint {
+    std::pair<std::size_t, std::string> number;
+    fs::path scene;
+};
+
+// What stands between a name's front and its end, if these are all digits.
+std::string_view digitsOf(std::string_view name, std::string_view front, std::string_view end) {
+    if (!name.starts_with(front) || !name.ends_with(end) || name.size() <= front.size() + end.size()) { return {}; }
+    const std::string_view digits = name.substr(front.size(), name.size() - front.size() - end.size());
+    return std::ranges::all_of(digits, isDigit) ? digits : std::string_view();
+}
+
+// Folders iteration_N with a scene in them, in no order.
+std::vector<Checkpoint> findIterations(const fs::path& folder) {
+    std::vector<Checkpoint> found;
+    std::error_code error, ignored;
+    for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+        const std::string name = entry->path().filename().string();
+        const std::string_view digits = digitsOf(name, "iteration_", "");
+        const fs::path scene = entry->path() / "point_cloud.ply";
+        if (!digits.empty() && fs::is_regular_file(scene, ignored)) { found.push_back({numberOf(digits), scene}); }
+    }
+    return found;
+}
+
+// A training saves after round numbers of steps, some counted from 0; the frames of a film are counted one by one.
+bool isRound(std::string_view steps) { return steps.ends_with("00") || steps.ends_with("99"); }
+
+// Scenes named after the step of a training at which they were saved, in no order. None if a number is none of a step.
+std::vector<Checkpoint> findCheckpointFiles(const fs::path& folder) {
+    std::vector<Checkpoint> found;
+    std::error_code error, ignored;
+    for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+        const std::string name = entry->path().filename().string();
+        for (const char* front : {"point_cloud_", "iteration_", "export_"}) {  // gsplat, and others; the last is Brush's
+            const std::string_view digits = digitsOf(name, front, ".ply");
+            if (digits.empty() || !entry->is_regular_file(ignored)) { continue; }
+            if (!isRound(digits)) { return {}; }
+            found.push_back({numberOf(digits), entry->path()});
+        }
+    }
+    return found;
+}
+
 }  // namespace
 
 std::optional<TrainingOutput> findTrainingOutput(const fs::path& folder) {
     if (isStreamedSogFolder(folder.string()) || isSogFolder(folder.string())) { return std::nullopt; }
-    constexpr std::string_view kIteration = "iteration_";
-    std::optional<TrainingOutput> found;
-    std::pair<std::size_t, std::string> highest;
-    std::error_code error;
-    for (fs::directory_iterator entry(folder / "point_cloud", error), end; !error && entry != end; entry.increment(error)) {
-        const std::string name = entry->path().filename().string();
-        const std::string_view digits = std::string_view(name).substr(std::min(kIteration.size(), name.size()));
-        if (!name.starts_with(kIteration) || digits.empty() || !std::ranges::all_of(digits, isDigit)) { continue; }
-        const fs::path scene = entry->path() / "point_cloud.ply";
-        std::error_code ignored;
-        const auto number = numberOf(digits);
-        if ((found && number <= highest) || !fs::is_regular_file(scene, ignored)) { continue; }
-        highest = number;
-        const fs::path cameras = folder / "cameras.json";
-        found = {scene.string(), fs::is_regular_file(cameras, ignored) ? cameras.string() : ""};
+    std::vector<Checkpoint> found = findIterations(folder / "point_cloud");
+    if (found.empty()) { found = findIterations(folder); }
+    if (found.empty()) { found = findCheckpointFiles(folder); }
+    if (found.empty()) { return std::nullopt; }
+    std::ranges::sort(found, std::greater{}, &Checkpoint::number);
+    TrainingOutput output{found.front().scene.string(), "", {}};
+    for (const Checkpoint& older : std::span(found).subspan(1)) { output.older.push_back(older.scene.lexically_relative(folder).string()); }
+    const fs::path named = folder.has_filename() ? folder : folder.parent_path();  // with a slash behind it or not
+    std::error_code ignored;
+    for (const fs::path& place : {named, named.filename() == "point_cloud" ? named.parent_path() : named}) {
+        const fs::path cameras = place / "cameras.json";
+        if (output.cameras.empty() && fs::is_regular_file(cameras, ignored)) { output.cameras = cameras.string(); }
     }
-    return found;
+    return output;
 }
 
 fs::path findCameraFile(const fs::path& scene) {
@@ -68,6 +112,24 @@ fs::path findCameraFile(const fs::path& scene) {
         return scene.is_absolute() ? place / "cameras.json" : (place / "cameras.json").lexically_proximate(fs::current_path());
     }
     return {};
+}
+
+std::optional<std::string> findOnlyScene(const fs::path& folder) {
+    constexpr int kMostFiles = 64;  // each is opened
+    std::optional<std::string> found;
+    int files = 0;
+    std::error_code error, ignored;
+    for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+        if (entry->path().filename().string().starts_with('.') || !entry->is_regular_file(ignored)) { continue; }
+        if (++files > kMostFiles) { return std::nullopt; }
+        const std::string path = entry->path().string();
+        try {
+            if (formatOfFile(path).empty()) { continue; }
+        } catch (const Error&) { continue; }  // whatever cannot be read is not the scene
+        if (found) { return std::nullopt; }
+        found = path;
+    }
+    return found;
 }
 
 std::vector<std::vector<NumberedFile>> findNumberedFiles(const fs::path& folder) {

@@ -9,10 +9,12 @@
 
 namespace binosplat {
 
-// As 3DGS and 2DGS trainings leave it: point_cloud/iteration_N/point_cloud.ply, and cameras.json beside point_cloud.
+// As 3DGS and 2DGS trainings leave it: point_cloud/iteration_N/point_cloud.ply, and cameras.json beside point_cloud. Also that folder
+// point_cloud by itself, or one of checkpoints: iteration_N/point_cloud.ply, or files such as point_cloud_N.ply with round numbers.
 struct TrainingOutput {
-    std::string scene;    // of the highest N that has one
-    std::string cameras;  // empty: there are none
+    std::string scene;               // of the highest N that has one
+    std::string cameras;             // empty: there are none
+    std::vector<std::string> older;  // the other scenes, the newest first, relative to the folder
 };
 
 // None if the folder is no such output, or is judged to be something else before that: a SOG scene, streamed or not.
@@ -21,6 +23,9 @@ std::optional<TrainingOutput> findTrainingOutput(const std::filesystem::path& fo
 // The cameras.json of a scene, a file or a folder: in its folder, beside it, or, of FOLDER/point_cloud/iteration_N/FILE, in FOLDER. Empty:
 // there is none.
 std::filesystem::path findCameraFile(const std::filesystem::path& scene);
+
+// The one file of a folder that is a scene, by its content; none if there are several, or more files than are worth opening.
+std::optional<std::string> findOnlyScene(const std::filesystem::path& folder);
 
 struct NumberedFile {
     std::string path;

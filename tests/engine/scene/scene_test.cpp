@@ -1,6 +1,7 @@
 // The built-in scenes, folders of scenes, moving ones among them, what `info` says of a scene, and the shared ones.
 #include "engine/scene/describe.h"
 #include "engine/scene/procedural.h"
+#include "engine/scene/scene_folder.h"
 #include "engine/scene/scene_series.h"
 #include "tests/engine/scene/ply_files.h"
 #include "tests/suite.h"
@@ -166,15 +167,24 @@ TEST_CASE("colours are limited to the bands that are asked for") {
     CHECK(scene.sh == std::vector<float>{0.0f, 1.0f, 2.0f, 27.0f, 28.0f, 29.0f});
 }
 
-TEST_CASE("a folder is streamed SOG, SOG, a training's output or a moving scene, judged in this order, or none of them") {
+TEST_CASE("a folder is streamed SOG, SOG, a training's output, a moving scene or has one scene, judged in this order, or none of them") {
     const Garden garden;
     const std::string root = garden.path();
     std::filesystem::create_directories(root + "/point_cloud/iteration_best");
     const std::string four = loadError(root);
-    for (const char* kind : {"is a directory", "lod-meta.json", "meta.json (SOG)", "point_cloud/iteration_N", "numbered files"}) {
+    for (const char* kind :
+         {"is a directory", "lod-meta.json", "meta.json (SOG)", "point_cloud/iteration_N", "numbered files", "one scene file"}) {
         CHECK(contains(four, kind));
     }
-    garden.place({{"frame_9.txt", 0}, {"frame_10.txt", 0}, {"alone_1.ply", 1}});
+    garden.place({{"frame_9.txt", 0}, {"frame_10.txt", 0}, {".hidden.ply", 1}});
+    CHECK(loadError(root) == four);
+    garden.place({{"alone_1.ply", 4}});
+    LoadNotes of_one;
+    CHECK(loadScene(root, 0, &of_one).size() == 4);
+    REQUIRE(of_one.lines.size() == 1);
+    CHECK(contains(of_one.lines[0], ": a folder, of which"));
+    CHECK(contains(of_one.lines[0], "alone_1.ply was loaded, its only scene"));
+    garden.place({{"other.ply", 1}});
     CHECK(loadError(root) == four);
     garden.place({{"step_10.ply", 1}, {"step_9.ply", 2}, {"step_100.ply", 1}});
     LoadNotes of_moving;
@@ -193,7 +203,6 @@ TEST_CASE("a folder is streamed SOG, SOG, a training's output or a moving scene,
     CHECK(loadScene(root + "/", 0, &notes).size() == 30);
     REQUIRE(notes.lines.size() == 1);
     CHECK(contains(notes.lines[0], "iteration_30000"));
-    CHECK(contains(loadError(root + "/point_cloud"), "is a directory"));
 
     garden.place({{"meta.json", 0}});
 #ifdef BINOSPLAT_SOG
@@ -215,6 +224,66 @@ TEST_CASE("a folder is streamed SOG, SOG, a training's output or a moving scene,
     CHECK(contains(message, "a.gltf: a glTF scene, which this build cannot read"));
     CHECK(contains(message, "BINOSPLAT_GLTF=ON"));
 #endif
+}
+
+TEST_CASE("checkpoints of a training, as folders or files with round numbers, are no film: the newest is shown, the others are named") {
+    const auto check = [](const std::vector<std::pair<std::string, int>>& files, std::size_t splats, const std::string& older) {
+        const Garden garden;
+        garden.place(files);
+        LoadNotes notes;
+        CHECK(loadScene(garden.path(), 0, &notes).size() == splats);
+        REQUIRE(notes.lines.size() == 1);
+        const std::string said = "a training's output, of which " + garden.file(files.back().first) + " was loaded" + older;
+        CHECK_MESSAGE(contains(notes.lines[0], said), notes.lines[0]);
+        CHECK_FALSE(isMovingScene(garden.path()));
+    };
+    check({{"iteration_7000/point_cloud.ply", 7}, {"cameras.json", 0}, {"iteration_30000/point_cloud.ply", 30}}, 30,
+          "; older ones: iteration_7000/point_cloud.ply");
+    check({{"point_cloud_6999.ply", 7}, {"point_cloud_500.ply", 5}, {"point_cloud_29999.ply", 30}}, 30,
+          "; older ones: point_cloud_6999.ply, point_cloud_500.ply");
+    check({{"export_5000.ply", 5}}, 5, "");
+    const Garden film;
+    film.place({{"point_cloud_99.ply", 1}, {"point_cloud_100.ply", 2}, {"point_cloud_101.ply", 3}});
+    CHECK(film.counts() == std::vector<std::size_t>{1, 2, 3});
+
+    const Garden garden;
+    garden.place({{"point_cloud/iteration_100/point_cloud.ply", 1}, {"cameras.json", 0}});
+    for (const char* folder : {"", "point_cloud", "point_cloud/"}) {
+        const std::optional<TrainingOutput> found = findTrainingOutput(garden.file(folder));
+        REQUIRE(found);
+        CHECK(std::filesystem::equivalent(found->cameras, garden.file("cameras.json")));
+    }
+}
+
+TEST_CASE("files and folders that people take for a scene are named as what they are, with what to open instead") {
+    const Folder folder;
+    const std::string training = "point_cloud/iteration_N/point_cloud.ply";
+    const struct {
+        const char *name, *bytes;
+        std::string what, instead;
+    } files[] = {
+        {"garden.ply", "\xef\xbb\xbf\n<!DOCTYPE html>\n<html>", "garden.ply: a web page (HTML)", "download button"},
+        {"garden.splat", "<HTML><body>", "a web page (HTML)", "download button"},
+        {"tileset.json", R"({"asset":{"version":"1.1"},"geometricError":1,"root":{}})", "a tileset of 3D Tiles", ".glb"},
+        {"t.json", R"({"camera_angle_x":1,"frames":[{"transform_matrix":[]}]})", "photographs with their cameras", training},
+        {"cameras.json", R"([{"img_name":"a","rotation":[]}])", "the cameras of a 3DGS training", "--cameras"},
+        {"list.json", R"({"cameras": []})", "a list of cameras", "--cameras"},
+        {"cameras.bin", "\1", "the cameras of a COLMAP project", training},
+        {"points3D.bin", "\1", "the point cloud of a COLMAP project", training},
+        {"a/sparse/0/cameras.bin", "\1", "a COLMAP project", training},
+        {"b/cameras.txt", "#", "cameras of a COLMAP project", training},
+        {"c/opensfm/reconstruction.json", "[]", "an OpenDroneMap project", training},
+        {"d/transforms.json", "{}", "photographs with their cameras", training},
+    };
+    for (const auto& [name, bytes, what, instead] : files) {
+        const std::string text = name;
+        std::filesystem::create_directories(std::filesystem::path(folder.file(text)).parent_path());
+        const std::string path = folder.write(text, bytes);
+        const std::string message = loadError(text[1] == '/' ? folder.file(text.substr(0, 1)) : path);
+        CHECK_MESSAGE(contains(message, what), message);
+        CHECK_MESSAGE(contains(message, "not a splat scene"), message);
+        CHECK_MESSAGE(contains(message, instead), message);
+    }
 }
 
 TEST_CASE("numbered files are frames in the order of their numbers, whatever else lies beside them") {
