@@ -42,6 +42,12 @@ void dropPrefixes(ply::Header& header) {
     }
 }
 
+ply::Header readPlainHeader(InputFile& file) {
+    ply::Header header = ply::readHeader(file);
+    dropPrefixes(header);
+    return header;
+}
+
 const ply::Element& findVertexElement(const InputFile& file, const ply::Header& header) {
     const ply::Element* found = nullptr;
     for (const ply::Element& element : header.elements) {
@@ -73,6 +79,13 @@ void refuseAnchors(const InputFile& file, const ply::Element& vertex) {
           "{}: anchors of Scaffold-GS, from which a network makes other splats for each view, expected splats as a 3DGS or 2DGS training "
           "leaves them",
           file.name());
+}
+
+const ply::Element& findSplats(const InputFile& file, const ply::Header& header) {
+    const ply::Element& vertex = findVertexElement(file, header);
+    refusePointCloud(file, header, vertex);
+    refuseAnchors(file, vertex);
+    return vertex;
 }
 
 // Harmonics of one channel beyond the constant one.
@@ -128,6 +141,44 @@ bool looksActivated(const StoredBlock& block, bool three_scales) {
            all(kStoredScale1, is_positive) && (!three_scales || all(kStoredScale2, is_positive));
 }
 
+// A whole number near the middle of each axis in float64 that lies so far out that float32 has steps of a millimetre and more there.
+glm::dvec3 findOrigin(const ply::Element& vertex, const Layout& layout, const StoredBlock& some) {
+    constexpr double kFar = 1e4;
+    glm::dvec3 origin(0.0);
+    for (int axis = 0; axis < 3; ++axis) {
+        const ply::Column& column = layout.columns[static_cast<std::size_t>(axis)];
+        const double middle = medianOf(some, column.attribute);
+        const bool is_far = vertex.properties[column.property].type == ply::Type::kFloat64 && std::abs(middle) >= kFar;
+        if (is_far) { origin[axis] = std::round(middle); }
+    }
+    return origin;
+}
+
+// A file before its first splat.
+struct OpenedPly {
+    explicit OpenedPly(InputFile& file)
+        : header(readPlainHeader(file)),
+          vertex(findSplats(file, header)),
+          layout(planColumns(file, vertex)),
+          moment(vertex, kStoredRest0 + 3 * static_cast<int>(restPerChannel(layout.sh_degree)), layout.columns) {
+        for (const ply::Element* element = header.elements.data(); element != &vertex; ++element) {
+            ply::skipElement(file, header.encoding, *element);
+        }
+        rows = ply::openRows(file, header, vertex, layout.columns);
+        rows->sample(some);
+        origin = findOrigin(vertex, layout, some);
+        rows->countFrom(origin);
+    }
+
+    ply::Header header;
+    const ply::Element& vertex;
+    Layout layout;
+    ply::Moment moment;  // of splats that move
+    std::unique_ptr<ply::RowReader> rows;
+    StoredBlock some;
+    glm::dvec3 origin{0.0};
+};
+
 }  // namespace
 
 bool isPly(InputFile& file) {
@@ -135,29 +186,22 @@ bool isPly(InputFile& file) {
     return start.starts_with("ply\n") || start.starts_with("ply\r\n");
 }
 
+glm::dvec3 originOfPly(InputFile& file) { return OpenedPly(file).origin; }
+
 Scene readPly(InputFile& file, LoadNotes& notes, const Progress& progress) {
-    ply::Header header = ply::readHeader(file);
-    dropPrefixes(header);
-    const ply::Element& vertex = findVertexElement(file, header);
-    refusePointCloud(file, header, vertex);
-    refuseAnchors(file, vertex);
-    Layout layout = planColumns(file, vertex);
-    ply::Moment moment(vertex, kStoredRest0 + 3 * static_cast<int>(restPerChannel(layout.sh_degree)), layout.columns);
-    for (const ply::Element* element = header.elements.data(); element != &vertex; ++element) {
-        ply::skipElement(file, header.encoding, *element);
-    }
-    const std::unique_ptr<ply::RowReader> rows = ply::openRows(file, header, vertex, layout.columns);
+    OpenedPly ply(file);
+    const ply::Element& vertex = ply.vertex;
+    const Layout& layout = ply.layout;
+    ply::Moment& moment = ply.moment;
 
     SceneBuilder builder(file.name(), vertex.count, layout.sh_degree, layout.three_scales);
     constexpr std::uint64_t kBlocksPerReport = 128;
     if (progress) { progress(0.0); }
-    StoredBlock some;
-    rows->sample(some);
-    moment.choose(some);
-    if (moment.isDynamic()) { moment.apply(some); }
-    builder.expect(some);
+    moment.choose(ply.some);
+    if (moment.isDynamic()) { moment.apply(ply.some); }
+    builder.expect(ply.some);
     ReadAhead blocks(vertex.count, [&](ReadAhead::Block& block) {
-        rows->read(block.stored);
+        ply.rows->read(block.stored);
         if (moment.isDynamic()) { moment.apply(block.stored); }
         builder.activate(block.stored, block.active);
     });
@@ -171,9 +215,14 @@ Scene readPly(InputFile& file, LoadNotes& notes, const Progress& progress) {
     }
     if (progress) { progress(1.0); }
     Scene scene = builder.finish(notes);
-    scene.antialiased = header.antialiased && layout.three_scales;
-    scene.vertical_axis = header.vertical_axis;
-    if (header.vertical_axis >= 0) { notes.axes = fmt::format("{} is vertical (named by the file)", "xyz"[header.vertical_axis]); }
+    scene.antialiased = ply.header.antialiased && layout.three_scales;
+    scene.vertical_axis = ply.header.vertical_axis;
+    if (scene.vertical_axis >= 0) { notes.axes = fmt::format("{} is vertical (named by the file)", "xyz"[scene.vertical_axis]); }
+    scene.origin = ply.origin;
+    if (scene.origin != glm::dvec3(0.0)) {
+        notes.lines.push_back(fmt::format("{}: its positions are in float64 and far from 0: they count from {}, views and --crop, too",
+                                          file.name(), describeOrigin(scene)));
+    }
     if (layout.sh_degree_in_file > layout.sh_degree) {
         notes.lines.push_back(
             fmt::format("{}: SH of degree {} were left out, degree {} is kept", file.name(), layout.sh_degree_in_file, layout.sh_degree));

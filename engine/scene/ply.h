@@ -17,8 +17,12 @@ bool isPly(InputFile& file);
 // antialiasing. Throws Error that says so for a point cloud, a mesh or anchors.
 Scene readPly(InputFile& file, LoadNotes& notes, const Progress& progress);
 
+// The Scene::origin that the reader of that file will choose.
+glm::dvec3 originOfPly(InputFile& file);
+
 // Writes the 2DGS layout in binary little-endian: x y z nx ny nz f_dc f_rest opacity scale_0 scale_1 rot_0..3, the normal along t_w; of
 // an antialiased scene with the comment that says so.
+// Positions are float64, and count from 0 again, where the scene has an origin.
 // Opacities 0 and 1 and scale 0 are stored as large finite numbers that read back exactly. The file appears whole or not at all.
 void writePly(const Scene& scene, const std::string& path, const Progress& progress = {});
 

@@ -40,16 +40,7 @@ Moment::Moment(const Element& element, int first_attribute, std::vector<Column>&
 }
 
 void Moment::choose(const StoredBlock& some) {
-    if (attribute_of_[kTime] < 0) { return; }
-    std::vector<float> times;
-    for (std::size_t row = 0; row < some.rows; ++row) {
-        const float time = some.rest(row)[attribute_of_[kTime] - kStoredRest0];
-        if (std::isfinite(time)) { times.push_back(time); }
-    }
-    if (times.empty()) { return; }
-    const auto middle = times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2);
-    std::ranges::nth_element(times, middle);
-    time_ = *middle;
+    if (attribute_of_[kTime] >= 0) { time_ = medianOf(some, attribute_of_[kTime]); }
 }
 
 void Moment::apply(StoredBlock& block) const {

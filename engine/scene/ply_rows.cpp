@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <type_traits>
 
 namespace binosplat::ply {
 
@@ -23,13 +24,20 @@ T loadValue(const std::byte* source) {
     return std::bit_cast<T>(bytes);
 }
 
-// One property of a block: rows are `stride` bytes apart, and `step` values in the block.
+// One property of a block: rows are `stride` bytes apart, and `step` values in the block. `zero` is taken off a float64.
 template <typename T, bool kSwap>
-void convertColumn(const std::byte* source, std::size_t stride, std::size_t rows, float* target, std::size_t step) {
-    for (std::size_t row = 0; row < rows; ++row) { target[row * step] = static_cast<float>(loadValue<T, kSwap>(source + row * stride)); }
+void convertColumn(const std::byte* source, std::size_t stride, std::size_t rows, float* target, std::size_t step, double zero) {
+    for (std::size_t row = 0; row < rows; ++row) {
+        const T value = loadValue<T, kSwap>(source + row * stride);
+        if constexpr (std::is_same_v<T, double>) {
+            target[row * step] = static_cast<float>(value - zero);
+        } else {
+            target[row * step] = static_cast<float>(value);
+        }
+    }
 }
 
-using ConvertColumn = void (*)(const std::byte*, std::size_t, std::size_t, float*, std::size_t);
+using ConvertColumn = void (*)(const std::byte*, std::size_t, std::size_t, float*, std::size_t, double);
 
 template <bool kSwap>
 ConvertColumn selectConversion(Type type) {
@@ -105,13 +113,19 @@ public:
         }
     }
 
+    void countFrom(const glm::dvec3& origin) override {
+        for (Source& source : columns_) {
+            if (source.attribute <= kStoredZ) { source.zero = origin[source.attribute]; }
+        }
+    }
+
 private:
     // From `source` on to the rows of `block` from `first` on.
     void convert(const std::byte* source, std::size_t rows, StoredBlock& block, std::size_t first) const {
         for (const Source& one : columns_) {
             const bool is_rest = one.attribute >= kStoredRest0;
             float* target = is_rest ? block.rest(first) + (one.attribute - kStoredRest0) : block.column(one.attribute) + first;
-            one.convert(source + one.offset, stride_, rows, target, is_rest ? StoredBlock::kRestStride : 1);
+            one.convert(source + one.offset, stride_, rows, target, is_rest ? StoredBlock::kRestStride : 1, one.zero);
         }
         for (std::size_t row = 0; rest_count_ > 0 && row < rows; ++row) {
             std::memcpy(block.rest(first + row), source + row * stride_ + rest_offset_, rest_count_ * sizeof(float));
@@ -123,6 +137,7 @@ private:
         std::size_t offset;
         ConvertColumn convert;
         int attribute;
+        double zero = 0.0;
     };
     InputFile& file_;
     std::uint64_t total_, done_ = 0;
@@ -132,22 +147,20 @@ private:
 };
 
 // The number at the front of `text`, which is moved past it; false if there is none. Overflow gives an infinity.
-bool takeNumber(std::string_view& text, float& value) {
+bool takeNumber(std::string_view& text, double& value) {
     const std::size_t start = text.find_first_not_of(" \t");
     if (start == std::string_view::npos) { return false; }
     text.remove_prefix(start);
     const std::size_t length = std::min(text.find_first_of(" \t"), text.size());
     const char* begin = text.data() + (text[0] == '+' && length > 1 ? 1 : 0);
-    double wide = 0.0;
-    const auto [end, error] = std::from_chars(begin, text.data() + length, wide);
+    const auto [end, error] = std::from_chars(begin, text.data() + length, value);
     if (error == std::errc::invalid_argument || end != text.data() + length) { return false; }
     // Out of float64's range, from_chars leaves the value alone; it matters only whether the exponent was negative.
     if (error == std::errc::result_out_of_range) {
         const bool tiny =
             text.substr(0, length).find("e-") != std::string_view::npos || text.substr(0, length).find("E-") != std::string_view::npos;
-        wide = tiny ? 0.0 : std::numeric_limits<double>::infinity();
+        value = tiny ? 0.0 : std::numeric_limits<double>::infinity();
     }
-    value = static_cast<float>(wide);
     text.remove_prefix(length);
     return true;
 }
@@ -171,11 +184,11 @@ public:
             check(end == InputFile::LineEnd::kBreak, "{}: data: ends in splat {} of {}: its line has no line break", file_.name(), done_,
                   element_.count);
             for (std::size_t i = 0; i < attribute_of_.size(); ++i) {
-                float value = 0.0f;
+                double value = 0.0;
                 const std::string_view rest = text;
                 check(takeNumber(text, value), "{}: splat {} of {}: property {} is '{}', expected a number", file_.name(), done_,
                       element_.count, element_.properties[i].name, firstWord(rest));
-                if (attribute_of_[i] >= 0) { block.put(attribute_of_[i], row, value); }
+                put(block, attribute_of_[i], row, value);
             }
             check(text.find_first_not_of(" \t") == std::string_view::npos,
                   "{}: splat {} of {}: more than the expected {} values in its line", file_.name(), done_, element_.count,
@@ -190,15 +203,22 @@ public:
         for (std::size_t end = 0; block.rows < most && (end = ahead.find('\n')) != std::string_view::npos; ahead.remove_prefix(end + 1)) {
             std::string_view text = ahead.substr(0, ahead[std::max<std::size_t>(end, 1) - 1] == '\r' ? end - 1 : end);
             for (const int attribute : attribute_of_) {
-                float value = 0.0f;
+                double value = 0.0;
                 if (!takeNumber(text, value)) { return; }  // as reading it will say
-                if (attribute >= 0) { block.put(attribute, block.rows, value); }
+                put(block, attribute, block.rows, value);
             }
             ++block.rows;
         }
     }
 
+    void countFrom(const glm::dvec3& origin) override { origin_ = origin; }
+
 private:
+    void put(StoredBlock& block, int attribute, std::size_t row, double value) const {
+        if (attribute < 0) { return; }
+        block.put(attribute, row, static_cast<float>(attribute <= kStoredZ ? value - origin_[attribute] : value));
+    }
+
     static constexpr std::size_t kSampleBytes = std::size_t{1} << 18;
 
     static std::string firstWord(std::string_view text) {
@@ -215,6 +235,7 @@ private:
     const Element& element_;
     std::uint64_t done_ = 0;
     std::vector<int> attribute_of_;  // -1: not wanted
+    glm::dvec3 origin_{0.0};
 };
 
 // The count in front of a binary list.

@@ -23,6 +23,8 @@ public:
     virtual void read(StoredBlock& block) = 0;
     // Fills `block` with some rows, before the first is read: from all over the element, or the first ones of an ascii file.
     virtual void sample(StoredBlock& block) const = 0;
+    // From now on positions that the file has in float64 count from there.
+    virtual void countFrom(const glm::dvec3& origin) = 0;
 };
 
 // Moves `file` past an element that is of no interest.

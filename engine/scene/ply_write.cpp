@@ -14,6 +14,14 @@ namespace binosplat {
 
 namespace {
 
+bool isFar(const Scene& scene) { return scene.origin != glm::dvec3(0.0); }
+
+// As two float32 of the same bytes, the lower half first.
+std::array<float, 2> halvesOf(double value) {
+    const auto bits = std::bit_cast<std::uint64_t>(value);
+    return {std::bit_cast<float>(static_cast<std::uint32_t>(bits)), std::bit_cast<float>(static_cast<std::uint32_t>(bits >> 32))};
+}
+
 std::string makeHeader(const Scene& scene) {
     std::string header = fmt::format("ply\nformat binary_little_endian 1.0\n{}{}element vertex {}\n",
                                      scene.antialiased ? "comment SplatRenderMode: mip\n" : "",
@@ -22,7 +30,8 @@ std::string makeHeader(const Scene& scene) {
                                                                 : "",
                                      scene.size());
     const auto property = [&header](const std::string& name) { header += "property float " + name + "\n"; };
-    for (const char* name : {"x", "y", "z", "nx", "ny", "nz", "f_dc_0", "f_dc_1", "f_dc_2"}) { property(name); }
+    for (const char* name : {"x", "y", "z"}) { header += fmt::format("property {} {}\n", isFar(scene) ? "double" : "float", name); }
+    for (const char* name : {"nx", "ny", "nz", "f_dc_0", "f_dc_1", "f_dc_2"}) { property(name); }
     for (int i = 0; i < 3 * (shCoefficientCount(scene.sh_degree) - 1); ++i) { property(fmt::format("f_rest_{}", i)); }
     for (const char* name : {"opacity", "scale_0", "scale_1"}) { property(name); }
     if (scene.isGaussian3d()) { property("scale_2"); }
@@ -38,7 +47,15 @@ float* putRow(const Scene& scene, std::size_t splat, float* row) {
     const glm::vec3 normal = q * glm::vec3(0.0f, 0.0f, 1.0f);
     const auto coefficients = static_cast<std::size_t>(shCoefficientCount(scene.sh_degree));
     const float* sh = scene.sh.data() + splat * coefficients * 3;
-    put({p.x, p.y, p.z, normal.x, normal.y, normal.z, sh[0], sh[1], sh[2]});
+    for (int axis = 0; axis < 3; ++axis) {
+        if (isFar(scene)) {
+            const std::array<float, 2> halves = halvesOf(scene.origin[axis] + static_cast<double>(p[axis]));
+            put({halves[0], halves[1]});
+        } else {
+            put({p[axis]});
+        }
+    }
+    put({normal.x, normal.y, normal.z, sh[0], sh[1], sh[2]});
     for (std::size_t channel = 0; channel < 3; ++channel) {
         for (std::size_t k = 1; k < coefficients; ++k) { *row++ = sh[3 * k + channel]; }
     }
@@ -57,7 +74,8 @@ void writePly(const Scene& scene, const std::string& path, const Progress& progr
     file.write(header.data(), header.size());
 
     constexpr std::size_t kBlockRows = 4096;
-    const std::size_t width = (scene.isGaussian3d() ? 17 : 16) + 3 * (static_cast<std::size_t>(shCoefficientCount(scene.sh_degree)) - 1);
+    const std::size_t width =
+        (scene.isGaussian3d() ? 17 : 16) + (isFar(scene) ? 3 : 0) + 3 * (static_cast<std::size_t>(shCoefficientCount(scene.sh_degree)) - 1);
     std::vector<float> rows(kBlockRows * width);
     for (std::size_t done = 0; done < scene.size();) {
         if (progress) { progress(static_cast<double>(done) / static_cast<double>(scene.size())); }

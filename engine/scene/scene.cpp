@@ -170,6 +170,15 @@ void limitShDegree(Scene& scene, int sh_degree, LoadNotes& notes) {
     scene.sh_degree = sh_degree;
 }
 
+void countFrom(Scene& scene, const glm::dvec3& origin) {
+    if (scene.origin == origin) { return; }
+    const glm::dvec3 shift = scene.origin - origin;
+    for (glm::vec3& position : scene.positions) { position = glm::vec3(glm::dvec3(position) + shift); }
+    scene.origin = origin;
+}
+
+std::string describeOrigin(const Scene& scene) { return fmt::format("{},{},{}", scene.origin.x, scene.origin.y, scene.origin.z); }
+
 void keepWithin(Scene& scene, const glm::dvec3& centre, double radius) {
     const std::size_t numbers = scene.size() == 0 ? 0 : scene.sh.size() / scene.size();
     std::size_t kept = 0;

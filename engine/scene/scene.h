@@ -28,7 +28,7 @@ struct Scene {
     std::vector<float> opacities;      // o = sigmoid(stored), 0 to 1
     std::vector<float> sh;             // sh[(splat * shCoefficientCount(sh_degree) + k) * 3 + channel]
     int sh_degree = 0;                 // 0 to 3: the highest band with a non-zero coefficient; higher bands are not kept
-    glm::dvec3 origin{0.0};            // what was taken off the file's positions, which float32 could not have told apart
+    glm::dvec3 origin{0.0};            // where `positions` count from, in the file: far from 0 float32 would lose their detail
     bool antialiased = false;          // 3D Gaussians: trained with opacities that the low-pass dims (Yu et al. 2024, section 5.2)
 
     bool by_distance = false;  // asks to be blended by distance, not by depth
@@ -83,6 +83,12 @@ Scene loadScene(std::unique_ptr<InputFile> file, LoadNotes& notes, const Progres
 
 // Removes the bands of colours above `sh_degree`, and says so in `notes` if there are any.
 void limitShDegree(Scene& scene, int sh_degree, LoadNotes& notes);
+
+// Lets positions count from another place, without moving anything.
+void countFrom(Scene& scene, const glm::dvec3& origin);
+
+// The origin for messages: "500000,4600000,0".
+std::string describeOrigin(const Scene& scene);
 
 // Keeps the splats whose centres lie within a sphere, in scene units.
 void keepWithin(Scene& scene, const glm::dvec3& centre, double radius);

@@ -3,6 +3,8 @@
 
 #include "engine/error.h"
 #include "engine/scene/address.h"
+#include "engine/scene/compressed_ply.h"
+#include "engine/scene/ply.h"
 #include "engine/scene/procedural.h"
 #include "engine/scene/scene_folder.h"
 #include "engine/scene/sog.h"
@@ -32,6 +34,13 @@ std::vector<std::vector<NumberedFile>> findSceneGroups(const std::string& folder
         return format.empty() || format != formatOfFile(group.back().path);
     });
     return groups;
+}
+
+glm::dvec3 originOf(const std::string& path) {
+    try {
+        InputFile file(path);
+        return isPly(file) && !isCompressedPly(file) ? originOfPly(file) : glm::dvec3(0.0);
+    } catch (const Error&) { return glm::dvec3(0.0); }  // whoever reads it says why
 }
 
 }  // namespace
@@ -67,6 +76,7 @@ void SceneSeries::findFiles() {
           groups.size() < 2 ? "" : shortName(groups[1].back().path));
     const std::vector<NumberedFile>& files = groups[0];
     format_ = formatOfFile(files.front().path);
+    origin_ = originOf(files.front().path);
     std::uint64_t step = ~std::uint64_t{0};
     for (std::size_t i = 1; i < files.size(); ++i) { step = std::min(step, files[i].number - files[i - 1].number); }
     step = std::max<std::uint64_t>(step, 1);
@@ -103,7 +113,9 @@ Scene SceneSeries::load(std::size_t scene, LoadNotes& notes, const Progress& pro
     }
     const std::string format = formatOfFile(scenes_[scene]);
     check(format == format_ || format.empty(), "{}: {}, the moving scene's first file is {}", scenes_[scene], format, format_);
-    return loadScene(scenes_[scene], 0, &notes, progress);
+    Scene loaded = loadScene(scenes_[scene], 0, &notes, progress);
+    countFrom(loaded, origin_);
+    return loaded;
 }
 
 }  // namespace binosplat

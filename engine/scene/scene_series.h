@@ -39,6 +39,7 @@ private:
     void findFiles();
 
     std::string name_, format_;
+    glm::dvec3 origin_{0.0};           // of the first file, and so of all: otherwise the scene would jump
     std::vector<std::string> scenes_;  // files, or names for messages
     std::vector<std::size_t> frames_;
     double growth_ = 1.0;

@@ -28,6 +28,11 @@ void addUnsaid(const Scene& scene, std::vector<std::string>& losses) {
     if (scene.y_up) { losses.emplace_back("that y is up (render it with --up 0,1,0)"); }
 }
 
+// Formats without room for float64.
+void addOrigin(const Scene& scene, std::vector<std::string>& losses) {
+    if (scene.origin != glm::dvec3(0.0)) { losses.push_back("that its positions count from " + describeOrigin(scene)); }
+}
+
 std::string describePlyLoss(const Scene& scene) {
     std::vector<std::string> losses;
     addUnsaid(scene, losses);
@@ -41,6 +46,7 @@ std::string describeSpzLoss(const Scene& scene) {
     if (scene.sh_degree > 0) { losses.emplace_back("harmonics from -1 to 1 in steps of 1/128"); }
     if (!scene.isGaussian3d()) { losses.emplace_back("that its splats are discs (render it with --flatten)"); }
     addAxis(scene, losses);
+    addOrigin(scene, losses);
     addUnsaid(scene, losses);
     return fmt::format("{}", fmt::join(losses, "; "));
 }
@@ -52,6 +58,7 @@ std::string describeSogLoss(const Scene& scene) {
         losses.emplace_back(fmt::format("harmonics of {} rows at most for {} splats", sogPaletteSize(scene), scene.size()));
     }
     addAxis(scene, losses);
+    addOrigin(scene, losses);
     addUnsaid(scene, losses);
     return fmt::format("{}", fmt::join(losses, "; "));
 }

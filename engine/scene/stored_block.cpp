@@ -96,6 +96,17 @@ int findUsedDegree(const StoredBlock& block, const ActiveBlock& active, int sh_d
 
 }  // namespace
 
+float medianOf(const StoredBlock& block, int attribute) {
+    std::vector<float> values;
+    for (std::size_t row = 0; row < block.rows; ++row) {
+        if (const float value = block.get(attribute, row); std::isfinite(value)) { values.push_back(value); }
+    }
+    if (values.empty()) { return 0.0f; }
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::ranges::nth_element(values, middle);
+    return *middle;
+}
+
 void activate(const StoredBlock& block, int sh_degree, bool three_scales, ActiveBlock& active) {
     const std::array<bool, StoredBlock::kRows> finite = findFiniteRows(block, three_scales);
     active.count = active.skipped_not_finite = active.skipped_zero_rotation = 0;

@@ -51,11 +51,17 @@ public:
             rest(row)[attribute - kStoredRest0] = value;
         }
     }
+    [[nodiscard]] float get(int attribute, std::size_t row) const {
+        return attribute < kStoredRest0 ? column(attribute)[row] : rest(row)[attribute - kStoredRest0];
+    }
     std::size_t rows = 0;
 
 private:
     std::vector<float> columns_, rest_;
 };
+
+// Of an attribute's finite values; 0 if there are none.
+float medianOf(const StoredBlock& block, int attribute);
 
 // The splats of a block that are kept, one after the other.
 struct ActiveBlock {

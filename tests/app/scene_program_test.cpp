@@ -52,6 +52,14 @@ TEST_CASE("info says what a scene is made of, and what would take less memory") 
     }
     work.write("sh.ply", makePly(9).bytes());
     CHECK(contains(work.go("info sh.ply").output, "--sh-degree 0: "));
+    PlyText far = makePly();
+    for (double& x : far["x"].values) { x += 4e5; }
+    far["x"].type = "double";
+    work.write("far.ply", far.bytes());
+    CHECK(contains(work.go("info far.ply").output, "origin             400001,0,0 in the file"));
+    CHECK(contains(work.go("convert far.ply far.spz").output, "; that its positions count from 400001,0,0"));
+    CHECK(contains(work.go("convert far.ply again.ply").output, "loses: nothing"));
+    CHECK(contains(work.bytesOf("again.ply"), "property double x"));
     CHECK(contains(work.go("info builtin:one-splat").output, "colour space       display-encoded (sRGB)\n"));
 }
 

@@ -357,6 +357,38 @@ TEST_CASE("a byte order mark, CloudCompare's names and harmonics of degree 4 are
     CHECK(contains(notes.lines[0], "larger.ply: SH of degree 4 were left out, degree 3 is kept"));
 }
 
+TEST_CASE("positions of float64 far from 0 keep their detail, and are written back to where they were") {
+    const Folder folder;
+    for (const Encoding encoding : kEncodings) {
+        PlyText ply = makeIn(encoding, 9, true);
+        for (const char* name : {"x", "y", "z"}) { ply[name].type = "double"; }
+        ply["x"].values = {431250.001, 431250.002, 431249.5};
+        ply["y"].values = {-5412000.1, -5412000.1001, -5412001.0};
+        ply["z"].values = {210.5, 211.25, 209.0};
+        LoadNotes notes;
+        const Scene scene = loadScene(folder.write("far.ply", ply.bytes()), 0, &notes);
+        CHECK(scene.origin == glm::dvec3(431250.0, -5412000.0, 0.0));
+        REQUIRE(notes.lines.size() == 1);
+        CHECK(contains(notes.lines[0], "count from 431250,-5412000,0"));
+        writePly(scene, folder.file("again.ply"));
+        const Scene again = loadScene(folder.file("again.ply"));
+        CHECK(again.origin == scene.origin);
+        CHECK(again.rotations == scene.rotations);
+        CHECK(again.sh == scene.sh);
+        REQUIRE(again.size() == 3);
+        for (std::size_t i = 0; i < 3; ++i) {
+            const glm::dvec3 expected = glm::dvec3(ply["x"].values[i], ply["y"].values[i], ply["z"].values[i]) - scene.origin;
+            CHECK(glm::distance(glm::dvec3(scene.positions[i]), expected) < 1e-7);
+            CHECK(glm::distance(glm::dvec3(again.positions[i]), expected) < 1e-7);
+        }
+        // What is float32 in the file has lost its detail already, and stays where it is.
+        for (const char* name : {"x", "y", "z"}) { ply[name].type = "float"; }
+        const Scene near = loadScene(folder.write("float.ply", ply.bytes()));
+        CHECK(near.origin == glm::dvec3(0.0));
+        CHECK(near.positions[2] == glm::vec3(431249.5f, -5412001.0f, 209.0f));
+    }
+}
+
 TEST_CASE("of splats that move and fade the still of one moment is shown, and a note says which") {
     const Folder folder;
     const auto load = [&](const PlyText& ply, const std::string& note) {
