@@ -25,9 +25,12 @@ std::vector<std::string> namesOf(std::size_t field) {
 Moment::Moment(const Element& element, int first_attribute, std::vector<Column>& columns) {
     attribute_of_.fill(-1);
     const bool has_room = static_cast<std::size_t>(first_attribute - kStoredRest0) + kFields <= StoredBlock::kRestStride;
+    const auto find = [&](const std::string& name) { return std::ranges::find(element.properties, name, &Property::name); };
+    const auto has = [&](const std::string& name) { return find(name) != element.properties.end(); };
+    if (has("trbf_center") && !has("f_rest_0")) { colours_ = has("f_dc_3") ? Colours::kLogits : Colours::kPlain; }
     for (std::size_t field = 0; field < kFields; ++field) {
         for (const std::string& name : namesOf(field)) {
-            const auto found = std::ranges::find(element.properties, name, &Property::name);
+            const auto found = find(name);
             if (found == element.properties.end() || attribute_of_[field] >= 0) { continue; }
             fields_.push_back(name);
             if (!has_room) { continue; }
@@ -55,6 +58,10 @@ void Moment::apply(StoredBlock& block) const {
             block.column(kStoredX + static_cast<int>(axis))[row] += dt * (*speed + dt * (*square + dt * *cube));
         }
         for (std::size_t i = 0; i < 4; ++i) { block.column(kStoredRot0 + static_cast<int>(i))[row] += dt * fields[kOmega + i]; }
+        for (int channel = 0; channel < 3 && colours_ != Colours::kHarmonics; ++channel) {
+            float& colour = block.column(kStoredDc0 + channel)[row];
+            colour = storedColour(colours_ == Colours::kPlain ? colour : 1.0f / (1.0f + std::exp(-colour)));
+        }
         if (attribute_of_[kDuration] < 0) { continue; }
         const float distance = dt / std::exp(fields[kDuration]), seen = std::exp(-distance * distance * (is_gaussian_ ? 0.5f : 1.0f));
         float& logit = block.column(kStoredOpacity)[row];
@@ -63,9 +70,11 @@ void Moment::apply(StoredBlock& block) const {
 }
 
 std::string Moment::describe() const {
-    const std::string fields = fmt::format("its splats move or fade in time ({})", fmt::join(fields_, ", "));
-    return attribute_of_[kTime] < 0 || !changes_ ? fields + ": all are shown at once, each as it is at its own moment"
-                                                 : fmt::format("{}: shown as the still of one moment, {:.4g}", fields, time_);
+    std::string said = fmt::format("its splats move or fade in time ({}): ", fmt::join(fields_, ", "));
+    said += attribute_of_[kTime] < 0 || !changes_ ? "all are shown at once, each as it is at its own moment"
+                                                  : fmt::format("shown as the still of one moment, {:.4g}", time_);
+    if (colours_ == Colours::kLogits) { said += "; its colours lack what a network of its training adds"; }
+    return said;
 }
 
 }  // namespace binosplat::ply

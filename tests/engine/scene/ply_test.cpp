@@ -424,6 +424,13 @@ TEST_CASE("of splats that move and fade the still of one moment is shown, and a 
     const Scene faded = load(fading, "(t, scale_t): shown as the still of one moment, 1");
     CHECK(faded.opacities[0] == doctest::Approx(0.5 * std::exp(-0.5)));
     CHECK(faded.opacities[2] == doctest::Approx(std::exp(-0.5) / (1.0 + std::exp(2.0))));
+    // Without harmonics Spacetime Gaussians store colours, or their logits.
+    PlyText coloured = makePly();
+    coloured.columns.push_back({"trbf_center", "float", {0.0, 0.0, 0.0}});
+    const auto shown = [](const Scene& scene, std::size_t i) { return 0.5 + 0.28209479177387814 * double(scene.sh[i]); };
+    CHECK(shown(load(coloured, "(trbf_center): all"), 1) == doctest::Approx(0.25));
+    coloured.columns.push_back({"f_dc_3", "float", {0.0, 0.0, 0.0}});
+    CHECK(shown(load(coloured, "; its colours lack what a network"), 4) == doctest::Approx(1.0 / (1.0 + std::exp(-0.5))));
     PlyText unknown = makePly();
     unknown.columns.push_back({"motion_0", "float", {1.0, 2.0, 3.0}});
     checkSameScene(load(unknown, "(motion_0): all are shown at once"), loadScene(folder.write("still.ply", makePly().bytes())));
