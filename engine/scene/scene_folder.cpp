@@ -105,7 +105,10 @@ fs::path findCameraFile(const fs::path& scene) {
     // A training's output is a whole: what lies beside its folder is of another one.
     const fs::path beside = is_trained ? folder.parent_path().parent_path() : folder;
     std::vector<fs::path> places{whole, beside};
-    if (findTrainingOutput(whole)) { places = {whole}; }
+    if (const std::optional<TrainingOutput> training = findTrainingOutput(whole)) {
+        if (training->cameras.empty()) { return {}; }
+        places = {fs::path(training->cameras).parent_path()};
+    }
     for (const fs::path& place : places) {
         if (!fs::is_regular_file(place / "cameras.json", error)) { continue; }
         // As the scene was named.

@@ -252,6 +252,7 @@ TEST_CASE("checkpoints of a training, as folders or files with round numbers, ar
         const std::optional<TrainingOutput> found = findTrainingOutput(garden.file(folder));
         REQUIRE(found);
         CHECK(std::filesystem::equivalent(found->cameras, garden.file("cameras.json")));
+        CHECK(findCameraFile(garden.file(folder)) == garden.file("cameras.json"));
     }
 }
 
