@@ -158,7 +158,7 @@ TEST_CASE("a file that is not there, not for everybody, empty or no scene is ref
     const Folder folder;
     const WebServer server({{"/empty", ""}, {"/page", "<!DOCTYPE html><html><body>A scene!</body></html>"}});
     CHECK(contains(webError(server.at("/empty"), webSettings(folder)), "is empty, expected a scene file"));
-    CHECK(contains(webError(server.at("/page"), webSettings(folder)), "not a scene file of a known format"));
+    CHECK(contains(webError(server.at("/page"), webSettings(folder)), "a web page (HTML), not a splat scene"));
 }
 
 TEST_CASE("what a server says of a file's length is not believed") {
