@@ -1,5 +1,5 @@
 // SOG: values worked out by hand in both versions and both wrappings, and everything that does not fit.
-#include "tests/engine/scene/sog_scenes.h"
+#include "tests/engine/scene/streamed_scenes.h"
 #include "tests/suite.h"
 
 SUITE(sog_format) {
@@ -111,6 +111,13 @@ TEST_CASE("a key asks for antialiasing, by the name of old writers or of new one
     CHECK(loadWith("\"antialias\":true,").antialiased);
     CHECK_FALSE(loadWith("\"antialias\":false,").antialiased);
     CHECK(loadWith("\"model\":\"antialiased\",").antialiased);
+    // A streamed scene is, where one of its chunks is.
+    const std::string streamed = writeStreamed(folder, "streamed", makeLodMeta());
+    CHECK_FALSE(loadScene(streamed).antialiased);
+    SogText chunk = makeChunk(2);
+    chunk["meta.json"] = replaced(chunk["meta.json"], "{", "{\"antialias\":true,");
+    (void)writeSogFolder(folder, "streamed/a", chunk);
+    CHECK(loadScene(streamed).antialiased);
     const Scene discs = loadWith("\"model\":\"2dgs\",");
     CHECK_FALSE(discs.antialiased);
     CHECK_FALSE(discs.isGaussian3d());

@@ -9,6 +9,7 @@
 #include "app/view/scenes/seen_scenes.h"
 #include "app/view/scenes/view_scenes.h"
 #include "app/view/scenes/viewpoints.h"
+#include "app/view/settings/view_files.h"
 #include "engine/error.h"
 #include "tests/run_program.h"
 #include "tests/suite.h"
@@ -260,6 +261,8 @@ TEST_CASE("viewpoints are the cameras beside the scene, and then those that were
     keepViewpoint(scene, {{0, 0, 3}, {1, 0, 3}, {0, -1, 0}, 60.0});
     work.write("cameras.json", R"([{"img_name": "door", "width": 8, "height": 8, "fx": 8, "fy": 8, "position": [5, 0, 0],
                                     "rotation": [[1,0,0],[0,1,0],[0,0,1]]}])");
+    // Lines that are no view: one that looks along its up, and one that is broken off.
+    std::ofstream(viewFileStem(scene).string() + ".viewpoints.txt", std::ios::app) << "0 0 1 0 0 2 0 0 1\n0 0 1 0\n";
     const std::vector<Viewpoint> found = findViewpoints(scene, {});
     REQUIRE(found.size() == 3);
     CHECK(found[0].name == "door");
@@ -302,6 +305,8 @@ TEST_CASE("the rate is that of displays with a new picture") {
     CHECK(met.metHz() == doctest::Approx(100.0));
     for (int i = 0; i < 200; ++i) { met.add(10.0, 1.0); }
     CHECK(met.displayHz() == doctest::Approx(100.0));
+    CHECK(met.metHz() == doctest::Approx(50.0));
+    met.add(20.0, 0.0);  // a rate of its own
     CHECK(met.metHz() == doctest::Approx(50.0));
 }
 

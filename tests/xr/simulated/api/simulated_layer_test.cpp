@@ -140,7 +140,8 @@ TEST_CASE_FIXTURE(FlatFixture, "rectangles stay inside their image, of a swapcha
 }
 
 TEST_CASE("frames are logged, and pictures written for those with layers, also of no pixel, or while every image is held") {
-    FlatFixture made("size 64 32\nframes from 3 to 9\neye left angles -40.10705 34.37747 28.64789 -22.91831\n");
+    FlatFixture made(
+        "size 64 32\nframes from 3 to 9\neye left angles -40.10705 34.37747 28.64789 -22.91831\nat 0 gpu-load 1000 ms-per-megapixel\n");
     made.projection.layerFlags = XR_COMPOSITION_LAYER_BLEND_TEXTURE_SOURCE_ALPHA_BIT;
     made.depths[0].nearZ = INFINITY;
     made.quad.eyeVisibility = XR_EYE_VISIBILITY_LEFT;
@@ -153,6 +154,7 @@ TEST_CASE("frames are logged, and pictures written for those with layers, also o
     CHECK(lines[3]["session_state"] == "FOCUSED");
     CHECK(lines[3]["should_render"] == true);
     CHECK(lines[3]["blend_mode"] == "OPAQUE");
+    CHECK(lines[3]["gpu_ms"].get<double>() == doctest::Approx(2 * 2.048));  // of both views
     CHECK(lines[3]["eyes"][0]["fov"]["left"].get<double>() == doctest::Approx(-0.7));
     CHECK_FALSE(lines[2].contains("picture"));
     REQUIRE(lines[3]["layers"].size() == 2);

@@ -110,6 +110,8 @@ TEST_CASE("a projection of the eye's own view comes through byte for byte, also 
     submitted.stage_from_eye.position = {3, 4, 5};
     submitted.fov = {static_cast<float>(-0.9), static_cast<float>(0.6), static_cast<float>(0.7), static_cast<float>(-0.8)};
     CHECK(compose(eye, {projection(canvas, submitted)}) == seen);
+    submitted.fov.right_rad += 0.004;  // a fifth of a pixel
+    CHECK(compose(eye, {projection(canvas, submitted)}) != seen);
     CHECK(compose(eyeOf({3, 2}), {}) == RgbPicture{{3, 2}, std::vector<std::uint8_t>(18, 0)});
 }
 
