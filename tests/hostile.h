@@ -1,20 +1,13 @@
 // Broken inputs by the thousand: how they are made and what is asked of whoever reads them.
 #pragma once
 
-#include "engine/error.h"
-
-#include <doctest/doctest.h>
+#include "tests/suite.h"
 
 #ifndef _WIN32
 #include <sys/resource.h>
 #endif
 
-#include <array>
 #include <cctype>
-#include <functional>
-#include <random>
-#include <string>
-#include <vector>
 
 namespace binosplat::test {
 

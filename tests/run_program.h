@@ -2,21 +2,12 @@
 #pragma once
 
 #include "engine/platform.h"
-
-#include <doctest/doctest.h>
+#include "tests/suite.h"
 
 #ifndef _WIN32
 #include <sys/wait.h>
 #include <unistd.h>
 #endif
-
-#include <algorithm>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <set>
-#include <string>
 
 namespace binosplat::test {
 
@@ -82,7 +73,7 @@ struct Workplace {
     [[nodiscard]] bool isEmpty() const { return std::filesystem::is_empty(path); }
     [[nodiscard]] bool holds(const std::string& name) const { return std::filesystem::exists(path / name); }
     void write(const std::string& name, const std::string& text) const { std::ofstream(path / name, std::ios::binary) << text; }
-    [[nodiscard]] std::string bytesOf(const std::string& name) const { return textOf(path / name); }
+    [[nodiscard]] std::string bytesOf(const std::string& name) const { return textIn(path / name); }
     // All that lies in it, by the names from here.
     [[nodiscard]] std::set<std::string> files() const {
         std::set<std::string> names;
@@ -95,14 +86,10 @@ struct Workplace {
 private:
 #ifndef _WIN32
     [[nodiscard]] Outcome outcomeOf(int status) const {
-        return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, textOf(base / "output"), textOf(base / "errors")};
+        return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, textIn(base / "output"), textIn(base / "errors")};
     }
 #endif
     static std::filesystem::path makeBase() { return createFolder(std::filesystem::temp_directory_path(), "binosplat-test-"); }
-    static std::string textOf(const std::filesystem::path& file) {
-        std::ifstream stream(file, std::ios::binary);
-        return {std::istreambuf_iterator<char>(stream), {}};
-    }
 };
 
 }  // namespace binosplat::test

@@ -2,11 +2,7 @@
 // which is reported as skipped where they are absent.
 #pragma once
 
-#include <doctest/doctest.h>
-
-#include <cstdlib>
-#include <filesystem>
-#include <optional>
+#include "tests/suite.h"
 
 namespace binosplat::test {
 

@@ -1,19 +1,42 @@
 // SUITE(name) { facts }: the facts of NAME_test.cpp, which are a line of ctest. Within, all of binosplat and of binosplat::test is seen.
+// What suites and their headers share is included here once; a header of tests brings this one along.
 #pragma once
 
+#include "engine/error.h"
+
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iterator>
 #include <limits>
 #include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numbers>
 #include <numeric>
 #include <optional>
 #include <random>
 #include <set>
+#include <span>
+#include <sstream>
 #include <string>
+#include <string_view>
+#include <thread>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #define SUITE(name)          \
@@ -22,7 +45,23 @@
 
 namespace binosplat::test {
 
+namespace fs = std::filesystem;
+
 // Facts that take long, and seldom break: TEST_CASE("..." * nightly()). .ci/nightly checks them, .ci/run leaves them out.
 struct nightly : doctest::skip {};
+
+// All that is in a file, byte by byte.
+inline std::string textIn(const fs::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+// The message of the Error that `action` throws; empty if it throws none.
+inline std::string errorOf(const std::function<void()>& action) {
+    try {
+        action();
+    } catch (const Error& error) { return error.what(); }
+    return {};
+}
 
 }  // namespace binosplat::test

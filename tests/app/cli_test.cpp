@@ -3,16 +3,8 @@
 #include "engine/picture/image_io.h"
 #include "tests/engine/scene/gltf_files.h"
 #include "tests/run_program.h"
-#include "tests/suite.h"
-
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
-
-#include <utility>
 
 SUITE(cli) {
-
-namespace fs = std::filesystem;
 
 const fs::path kSource = BINOSPLAT_SOURCE_DIR;
 const std::string kNoDriver = "VK_DRIVER_FILES=/nonexistent/none.json VK_ICD_FILENAMES=/nonexistent/none.json";
@@ -232,8 +224,7 @@ TEST_CASE("BINOSPLAT_DATA names the folder that holds configs, and the program k
     const std::string render = "render builtin:one-splat --mode mono --size 16x16 --out out --headset mine";
     work.checkRefused(render, 1, "mine.toml");
     work.go(render, fmt::format("BINOSPLAT_DATA='{}'", (work.base / "data").string()));
-    std::ifstream file(BINOSPLAT_PROGRAM, std::ios::binary);
-    const std::string program(std::istreambuf_iterator<char>(file), {});
+    const std::string program = textIn(BINOSPLAT_PROGRAM);
     REQUIRE(program.size() > 1'000'000);
     CHECK(program.find((kSource / "shaders").string()) == std::string::npos);
 }

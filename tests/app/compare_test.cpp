@@ -3,9 +3,6 @@
 #include "tests/engine/picture/lpips_weights.h"
 #include "tests/engine/picture/pictures.h"
 #include "tests/run_program.h"
-#include "tests/suite.h"
-
-#include <sstream>
 
 SUITE(compare) {
 

@@ -1,9 +1,6 @@
 // `binosplat convert`, run as a program.
 #include "engine/scene/scene.h"
 #include "tests/run_program.h"
-#include "tests/suite.h"
-
-#include <fmt/format.h>
 
 SUITE(convert) {
 

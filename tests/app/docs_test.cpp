@@ -3,22 +3,13 @@
 #include "app/command_line/option_documents.h"
 #include "tests/app/options/parsed.h"
 #include "tests/run_program.h"
-#include "tests/suite.h"
 
 #include <cctype>
 #include <regex>
-#include <sstream>
 
 SUITE(docs) {
 
-namespace fs = std::filesystem;
-
 const fs::path kSource = BINOSPLAT_SOURCE_DIR;
-
-std::string textOf(const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 std::vector<fs::path> documents() {
     std::vector<fs::path> files;
@@ -54,7 +45,7 @@ std::string anchorOf(const std::string& heading) {
 }
 
 bool hasAnchor(const fs::path& document, const std::string& anchor) {
-    const std::vector<std::string> headings = findAll(fmt::format("\n{}", textOf(document)), "\n#+ ([^\n]*)");
+    const std::vector<std::string> headings = findAll(fmt::format("\n{}", textIn(document)), "\n#+ ([^\n]*)");
     return std::ranges::any_of(headings, [&](const std::string& heading) { return anchorOf(heading) == anchor; });
 }
 
@@ -138,12 +129,12 @@ std::string wrongCall(std::vector<std::string> call) {
 }
 
 TEST_CASE("the simulated runtime's folder has the same licence") {
-    REQUIRE(!textOf(kSource / "LICENSE").empty());
-    CHECK(textOf(kSource / "xr" / "simulated" / "LICENSE") == textOf(kSource / "LICENSE"));
+    REQUIRE(!textIn(kSource / "LICENSE").empty());
+    CHECK(textIn(kSource / "xr" / "simulated" / "LICENSE") == textIn(kSource / "LICENSE"));
 }
 
 TEST_CASE("every library that is built with has its row in the notices, and its licence if it is compiled in") {
-    const std::string notices = textOf(kSource / "third_party" / "NOTICES.md");
+    const std::string notices = textIn(kSource / "third_party" / "NOTICES.md");
     const std::size_t licences = notices.find("\n## Licences of what is compiled in");
     REQUIRE(licences != std::string::npos);
     std::string rows;
@@ -154,18 +145,18 @@ TEST_CASE("every library that is built with has its row in the notices, and its 
         CHECK_MESSAGE(notices.find(link, licences) != std::string::npos, "no licence of " << link);
     }
     const std::vector<std::string> libraries =
-        findAll(textOf(kSource / "third_party" / "CMakeLists.txt"), R"(add_library\(third_party_([a-z0-9]+) )");
+        findAll(textIn(kSource / "third_party" / "CMakeLists.txt"), R"(add_library\(third_party_([a-z0-9]+) )");
     CHECK(libraries.size() > 10);
     for (const std::string& library : libraries) { CHECK_MESSAGE(rows.find(library) != std::string::npos, "no row of " << library); }
 }
 
 TEST_CASE("variables of the environment that the program reads are documented") {
-    const std::string page = textOf(kSource / "docs" / "render.md"), man = documentOf("man");
+    const std::string page = textIn(kSource / "docs" / "render.md"), man = documentOf("man");
     std::set<std::string> names;
     for (const char* room : {"engine", "app", "xr"}) {
         for (const fs::directory_entry& entry : fs::recursive_directory_iterator(kSource / room)) {
             if (!entry.is_regular_file()) { continue; }
-            const std::string text = textOf(entry.path());
+            const std::string text = textIn(entry.path());
             if (text.find("environment(\"BINOSPLAT_") == std::string::npos) { continue; }
             for (const std::string& name : findAll(text, R"re(environment\("(BINOSPLAT_[A-Z_]+)"\))re")) { names.insert(name); }
         }
@@ -205,7 +196,7 @@ TEST_CASE("links of the documents lead somewhere, and the options and files that
     int links = 0, options = 0, files = 0;
     for (const fs::path& document : documents()) {
         CAPTURE(document);
-        const std::string text = textOf(document);
+        const std::string text = textIn(document);
         for (const std::string& link : findAll(text, R"(\]\(([^)\s]+)\))")) {
             if (link.starts_with("http")) { continue; }
             const std::size_t hash = link.find('#');
@@ -231,13 +222,13 @@ TEST_CASE("links of the documents lead somewhere, and the options and files that
 
 TEST_CASE("commands that the documents show are understood" * test::nightly()) {
     int calls = 0, runs = 0;
-    const std::vector<std::string> run_commands = findAll(textOf(kSource / "run"), R"(\n    ([a-z]+)\)\n)");
+    const std::vector<std::string> run_commands = findAll(textIn(kSource / "run"), R"(\n    ([a-z]+)\)\n)");
     REQUIRE(run_commands.size() == 4);
-    const std::string presets = textOf(kSource / "CMakePresets.json");
+    const std::string presets = textIn(kSource / "CMakePresets.json");
     fs::current_path(kSource);  // configs are named from there
     for (const fs::path& document : documents()) {
         CAPTURE(document);
-        for (const std::string& line : codeLines(textOf(document))) {
+        for (const std::string& line : codeLines(textIn(document))) {
             if (const std::vector<std::string> call = callOfProgram(line); !call.empty()) {
                 CHECK_MESSAGE(wrongCall(call).empty(), line << ": " << wrongCall(call));
                 ++calls;
@@ -263,7 +254,7 @@ TEST_CASE("commands that the documents show are understood" * test::nightly()) {
 TEST_CASE("the README's commands about files do what they say" * test::nightly()) {
     const test::Workplace work;
     int done = 0;
-    for (const std::string& line : codeLines(textOf(kSource / "README.md"))) {
+    for (const std::string& line : codeLines(textIn(kSource / "README.md"))) {
         const std::vector<std::string> call = callOfProgram(line);
         if (call.empty() || (call[0] != "info" && call[0] != "scene" && call[0] != "convert")) { continue; }
         std::string arguments;
@@ -284,7 +275,7 @@ TEST_CASE("measured results name scenes by their files, not by where they lay" *
         const fs::path extension = entry.path().extension();
         if (extension != ".csv" && extension != ".txt" && extension != ".svg") { continue; }
         for (const char* folder : {"../", "/tmp/", "/home/"}) {
-            CHECK_MESSAGE(textOf(entry.path()).find(folder) == std::string::npos, entry.path().string());
+            CHECK_MESSAGE(textIn(entry.path()).find(folder) == std::string::npos, entry.path().string());
         }
         ++files;
     }

@@ -1,11 +1,6 @@
 // Facts about machines that fail under the program: a device that is lost or full, a disk that is full, a signal. What fails, and where, a
 // Vulkan layer says (tests/faults), or the shell's limit of file sizes; each time one line, its exit code, and nothing left behind.
 #include "tests/run_program.h"
-#include "tests/suite.h"
-
-#include <fmt/format.h>
-
-#include <sstream>
 
 SUITE(fault) {
 

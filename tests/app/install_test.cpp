@@ -1,13 +1,10 @@
 // Facts about an installed program: it needs nothing of the folder it was built in.
 #include "tests/engine/web/web_server.h"
 #include "tests/run_program.h"
-#include "tests/suite.h"
 
 #include <regex>
 
 SUITE(install) {
-
-namespace fs = std::filesystem;
 
 // A command of the shell that is expected to end well.
 Outcome goCommand(const Workplace& work, const std::string& command) {
@@ -50,8 +47,7 @@ TEST_CASE("an installed program finds its headsets, from any folder and by the d
     int links = 0;
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(prefix / "share" / "doc" / "binosplat")) {
         if (entry.path().extension() != ".md") { continue; }
-        std::ifstream file(entry.path(), std::ios::binary);
-        const std::string text(std::istreambuf_iterator<char>(file), {});
+        const std::string text = textIn(entry.path());
         for (std::sregex_iterator match(text.begin(), text.end(), link); match != std::sregex_iterator{}; ++match) {
             const std::string target = (*match)[1];
             if (target.starts_with("http")) { continue; }

@@ -2,13 +2,8 @@
 #include "engine/picture/image_io.h"
 #include "tests/engine/stream/moving_frames.h"
 #include "tests/run_program.h"
-#include "tests/suite.h"
-
-#include <nlohmann/json.hpp>
 
 SUITE(moving_program) {
-
-namespace fs = std::filesystem;
 
 const std::string kCamera = " --size 64x64 --eye 0.4,-1.6,0.6 --look 0,-1.1,4 --up 0,-1,0 --mode shared ";
 const std::string kPath = kCamera + "--path still.csv --rate 10 ";

@@ -2,10 +2,6 @@
 #include "engine/picture/image_io.h"
 #include "engine/picture/metrics.h"
 #include "tests/run_program.h"
-#include "tests/suite.h"
-
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 SUITE(path) {
 

@@ -1,7 +1,6 @@
 // What the program says of a scene, and how it takes one of several levels.
 #include "tests/engine/scene/ply_files.h"
 #include "tests/run_program.h"
-#include "tests/suite.h"
 #ifdef BINOSPLAT_SOG
 #include "tests/engine/scene/streamed_scenes.h"
 #endif

@@ -3,10 +3,6 @@
 #include "engine/scene/procedural.h"
 #include "tests/engine/stream/split_scene.h"
 #include "tests/run_program.h"
-#include "tests/suite.h"
-
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 SUITE(stream_program) {
 

@@ -4,7 +4,6 @@
 #include "engine/scene/procedural.h"
 #include "tests/engine/web/web_runs.h"
 #include "tests/run_program.h"
-#include "tests/suite.h"
 
 SUITE(web_program) {
 

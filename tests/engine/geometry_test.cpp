@@ -1,6 +1,5 @@
 // Facts about poses, cameras and eyes.
 #include "engine/geometry.h"
-#include "engine/error.h"
 #include "tests/suite.h"
 
 SUITE(geometry) {

@@ -2,7 +2,6 @@
 // long ones.
 #include "engine/platform.h"
 
-#include "engine/error.h"
 #include "engine/picture/image_io.h"
 #include "engine/scene/part_file.h"
 #include "engine/setup/camera_file.h"
@@ -14,18 +13,13 @@
 #include "engine/setup/text_file.h"
 #include "tests/hostile.h"
 #include "tests/run_program.h"
-#include "tests/suite.h"
 
 #include <sys/stat.h>
 
 #include <cerrno>
 #include <regex>
-#include <thread>
-#include <utility>
 
 SUITE(platform) {
-
-namespace fs = std::filesystem;
 
 void makePipe(const fs::path& path) { REQUIRE(::mkfifo(path.c_str(), 0600) == 0); }
 
@@ -180,10 +174,7 @@ TEST_CASE("settings, headsets, cameras, head motion and pictures are files of a 
                                            {"long", fmt::format("longer than {} MiB", most)},
                                            {"none", "No such file or directory"}}) {
             const fs::path path = work.path / name;
-            std::string message;
-            try {
-                read(path);
-            } catch (const Error& error) { message = error.what(); }
+            const std::string message = test::errorOf([&] { read(path); });
             CHECK(message.starts_with(fmt::format("{}: cannot be read ({}), must be a", path.string(), reason)));
             CHECK(message.find('\n') == std::string::npos);
         }

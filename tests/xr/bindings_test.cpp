@@ -1,11 +1,8 @@
 // Facts about the controllers that the viewer binds, and the drawings of them in docs/controls.
 #include "xr/bindings.h"
 #include "tests/run_program.h"
-#include "tests/suite.h"
 #include "tests/xr/simulated/installed.h"
 #include "xr/simulated/api/profiles.h"
-
-#include <fmt/format.h>
 
 SUITE(bindings) {
 
@@ -15,11 +12,6 @@ std::set<std::string> namesIn(const std::filesystem::path& folder) {
     std::set<std::string> names;
     for (const auto& entry : std::filesystem::directory_iterator(folder)) { names.insert(entry.path().filename().string()); }
     return names;
-}
-
-std::string textOf(const std::filesystem::path& file) {
-    std::ifstream stream(file);
-    return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 TEST_CASE("every input and output that is bound is one of its controller") {
@@ -52,13 +44,13 @@ TEST_CASE("the drawings of docs/draw.py are those in docs, and docs/headset.md s
     const std::set<std::string> names = namesIn(docs / "controls");
     CHECK(names.size() >= 6);
     CHECK(namesIn(work.path / "controls") == names);
-    const std::string page = textOf(docs / "headset.md");
+    const std::string page = textIn(docs / "headset.md");
     for (const std::string& name : names) {
         CAPTURE(name);
-        CHECK((textOf(work.path / "controls" / name) == textOf(docs / "controls" / name)));
+        CHECK((textIn(work.path / "controls" / name) == textIn(docs / "controls" / name)));
         CHECK(page.find("controls/" + name) != std::string::npos);
     }
-    CHECK((textOf(work.path / "overlap.svg") == textOf(docs / "overlap.svg")));
+    CHECK((textIn(work.path / "overlap.svg") == textIn(docs / "overlap.svg")));
 }
 
 }  // SUITE(bindings)

@@ -6,13 +6,8 @@
 #include "tests/app/options/parsed.h"
 #include "tests/engine/picture/lpips_weights.h"
 #include "tests/run_program.h"
-#include "tests/suite.h"
-
-#include <nlohmann/json.hpp>
 
 SUITE(bench) {
-
-namespace fs = std::filesystem;
 
 const fs::path kConfigs = fs::path(BINOSPLAT_SOURCE_DIR) / "configs" / "bench";
 using Names = std::vector<std::string>;

@@ -8,11 +8,8 @@
 #include "engine/setup/output_files.h"
 #include "tests/app/options/parsed.h"
 #include "tests/run_program.h"
-#include "tests/suite.h"
 
 SUITE(options) {
-
-namespace fs = std::filesystem;
 
 const fs::path kSource = BINOSPLAT_SOURCE_DIR;
 
@@ -189,12 +186,8 @@ TEST_CASE("errors in a file of cameras name the camera and the key") {
 
 TEST_CASE("the documents of the options are those that the program makes, and every key of the default config is taken") {
     const Workplace work;
-    const auto textOfSource = [](const char* name) {
-        std::ifstream file(kSource / name, std::ios::binary);
-        return std::string(std::istreambuf_iterator<char>(file), {});
-    };
-    CHECK_MESSAGE(textOfSource("docs/options.md") == documentOf("markdown"), "run `binosplat document markdown > docs/options.md`");
-    const std::string text = textOfSource("configs/default.toml");
+    CHECK_MESSAGE(textIn(kSource / "docs/options.md") == documentOf("markdown"), "run `binosplat document markdown > docs/options.md`");
+    const std::string text = textIn(kSource / "configs/default.toml");
     CHECK_MESSAGE(text == documentOf("config"), "run `binosplat document config > configs/default.toml`");
     // Every key of a config is there, those without a default as comments; whoever takes out the mark has a key that is taken.
     const std::string one = (work.path / "one.toml").string();

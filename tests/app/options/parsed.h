@@ -2,14 +2,10 @@
 #pragma once
 
 #include "app/options/options.h"
-#include "engine/error.h"
 #include "engine/scene/scene.h"
+#include "tests/suite.h"
 
-#include <iterator>
-#include <sstream>
-#include <string>
 #include <variant>
-#include <vector>
 
 namespace binosplat::test {
 
@@ -33,15 +29,6 @@ Chosen parse(const std::string& line) {
 inline const std::string kRenderOne = "render builtin:one-splat --out out ";
 
 inline RunOptions renderOptions(const std::string& options) { return parse<RenderOptions>(kRenderOne + options).run; }
-
-// The message of the error that `act` throws; empty: it throws none.
-template <typename Act>
-std::string errorOf(Act&& act) {
-    try {
-        act();
-    } catch (const Error& error) { return error.what(); }
-    return "";
-}
 
 // A scene that fills the box from (-1, -2, -3) to (1, 2, 3).
 inline Scene makeBox(const std::string& name) {

@@ -5,11 +5,8 @@
 #include "engine/setup/output_files.h"
 #include "tests/app/options/parsed.h"
 #include "tests/run_program.h"
-#include "tests/suite.h"
 
 SUITE(start_view) {
-
-namespace fs = std::filesystem;
 
 TEST_CASE("eyes look at their lenses or where they are said to") {
     Headset headset;

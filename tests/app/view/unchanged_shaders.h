@@ -2,9 +2,7 @@
 // seconds of processor time.
 #pragma once
 
-#include <filesystem>
-#include <fstream>
-#include <string>
+#include "tests/suite.h"
 
 namespace binosplat::test {
 

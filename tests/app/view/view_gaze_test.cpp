@@ -1,9 +1,6 @@
 // The viewer where the headset sees where its wearer looks, or takes foveated insets: it is sharp there, if the wearer lets it.
 #include "engine/scene/procedural.h"
 #include "tests/app/view/view_acts.h"
-#include "tests/suite.h"
-
-#include <tuple>
 
 SUITE(view_gaze) {
 

@@ -1,9 +1,6 @@
 // Facts about controllers and hands: what their buttons and sticks do, and what is seen beside the scene: rays, hands, controllers, the way
 // to another place, the vignette, the room.
 #include "tests/app/view/view_acts.h"
-#include "tests/suite.h"
-
-#include <tuple>
 
 SUITE(view_hands) {
 

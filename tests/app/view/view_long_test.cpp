@@ -4,11 +4,6 @@
 // alive stays there, see tests/faults/live.h. Under the address sanitizer ASAN_OPTIONS=malloc_context_size=1:quarantine_size_mb=16 keeps
 // its own memory from growing: it remembers each stack that it sees, and those of drivers without frame pointers are never the same.
 #include "tests/app/view/view_acts.h"
-#include "tests/suite.h"
-
-#include <cstdlib>
-#include <iterator>
-#include <span>
 
 SUITE(view_long) {
 

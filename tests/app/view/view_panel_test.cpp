@@ -1,14 +1,9 @@
 // Facts about the viewer's panel: a ray points, the trigger clicks, what was chosen is so and is seen, and what was saved comes back.
 #include "tests/app/view/unchanged_shaders.h"
 #include "tests/app/view/view_acts.h"
-#include "tests/suite.h"
 #include "xr/simulated/extensions.h"
 
-#include <iterator>
-
 SUITE(view_panel) {
-
-namespace fs = std::filesystem;
 
 const std::string kBlind = "rate 50\nsize 64 64\nframes none\n", kSmall = "rate 50\nsize 96 96\nframes every 2\n";
 const std::string kScene = kWall + " --mode mono";
@@ -120,8 +115,7 @@ TEST_CASE("shaders are reloaded by a button, all or none, with a verdict") {
     // As they are; then one line is broken; then it draws nothing.
     fs::copy(kSources, work.path / "edited", fs::copy_options::recursive);
     const fs::path present = fs::path("edited") / "present" / "present.comp";
-    std::ifstream in(work.path / present);
-    const std::string text(std::istreambuf_iterator<char>(in), {}), line = "    const uvec3 bytes = uvec3(colour * 255 + 0.5);";
+    const std::string text = textIn(work.path / present), line = "    const uvec3 bytes = uvec3(colour * 255 + 0.5);";
     const std::size_t at = text.find(line);
     REQUIRE(at != std::string::npos);
     fs::create_directory(work.path / "edits");

@@ -1,7 +1,6 @@
 // Facts about holding the frame rate in the headset: on a device of which a layer says what frames take, and where displays are missed that
 // the device's own times do not tell of, as where a compositor or another program uses it as well.
 #include "tests/app/view/view_acts.h"
-#include "tests/suite.h"
 
 SUITE(view_quality) {
 

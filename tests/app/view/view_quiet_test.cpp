@@ -1,8 +1,5 @@
 // Facts about what frames do that may wait, as two layers count it (tests/faults/waits.h): those of a viewer that runs do nothing.
 #include "tests/app/view/view_runs.h"
-#include "tests/suite.h"
-
-#include <sstream>
 
 SUITE(view_quiet) {
 

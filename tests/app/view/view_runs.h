@@ -5,19 +5,8 @@
 #include "engine/picture/metrics.h"
 #include "tests/run_program.h"
 
-#include <doctest/doctest.h>
-#include <fmt/format.h>
 #include <glm/glm.hpp>
 #include <glm/gtc/quaternion.hpp>
-#include <nlohmann/json.hpp>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <fstream>
-#include <sstream>
-#include <string>
-#include <vector>
 
 namespace binosplat::test {
 

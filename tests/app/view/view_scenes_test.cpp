@@ -2,21 +2,13 @@
 // up.
 #include "app/options/start_view.h"
 #include "app/view/scenes/scene_up.h"
-#include "engine/scene/ply.h"
-#include "engine/scene/procedural.h"
-#include "engine/scene/scene.h"
 #include "tests/app/view/view_acts.h"
 #include "tests/engine/stream/moving_frames.h"
-#include "tests/suite.h"
 #ifdef BINOSPLAT_SOG
 #include "tests/engine/stream/split_scene.h"
 #endif
 
-#include <iterator>
-
 SUITE(view_scenes) {
-
-namespace fs = std::filesystem;
 
 // Scenes load in the meantime, as long as it takes them: not in lock-step, where frames come as fast as they can.
 const std::string kWhileLoading = kValidated + " SIMULATED_OPENXR_CLOCK=real";
@@ -51,8 +43,7 @@ TEST_CASE("another scene comes while this one stays, chosen or the next; one tha
                       first = (folder / "room10.ply").string();
     checkOrder(run, {"shows " + name + "/room10.ply", bad + ":", "shows " + next, "shows " + first});
     checkAlwaysShown(run);
-    std::ifstream file(work.base / "config" / "binosplat" / "recent-scenes.txt");
-    const std::string recent(std::istreambuf_iterator<char>(file), {});
+    const std::string recent = textIn(work.base / "config" / "binosplat" / "recent-scenes.txt");
     CHECK(recent.starts_with(first + "\n" + next + "\n"));
     CHECK(recent.find(bad) == std::string::npos);
 }

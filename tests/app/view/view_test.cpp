@@ -1,6 +1,5 @@
 // Facts about `binosplat view`, driven through the standard OpenXR loader by scripts of the simulated headset: what is seen, and where.
 #include "tests/app/view/view_acts.h"
-#include "tests/suite.h"
 
 SUITE(view) {
 

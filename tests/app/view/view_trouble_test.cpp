@@ -1,6 +1,5 @@
 // Facts about `binosplat view` when the headset misbehaves: it carries on or ends cleanly, within the frames of the script.
 #include "tests/app/view/view_acts.h"
-#include "tests/suite.h"
 
 SUITE(view_trouble) {
 

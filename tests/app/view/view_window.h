@@ -6,12 +6,8 @@
 #include "tests/xr/simulated/installed.h"
 
 #include <dlfcn.h>
-#include <doctest/doctest.h>
 #include <poll.h>
 #include <signal.h>
-
-#include <cstdio>
-#include <iterator>
 
 namespace binosplat::test {
 
@@ -86,8 +82,7 @@ public:
     [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
     // An X window dump of 32 bits a pixel: header, colour table, rows; the header's numbers have their highest byte first.
     [[nodiscard]] Image picture() const {
-        std::ifstream file(folder_ / "Xvfb_screen0", std::ios::binary);
-        const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+        const std::string bytes = textIn(folder_ / "Xvfb_screen0");
         const auto byte = [&](std::size_t at) { return static_cast<std::uint8_t>(bytes.at(at)); };
         const auto number = [&](std::size_t index) {
             std::size_t value = 0;
@@ -246,8 +241,7 @@ public:
     Similarity placement(const Workplace& work) {
         click(placeOf("Save", true));
         REQUIRE(program_.waitFor("slanted-wall.view.toml") != "");
-        std::ifstream file(work.base / "config" / "binosplat" / "scenes" / "slanted-wall.view.toml");
-        const std::string text{std::istreambuf_iterator<char>(file), {}};
+        const std::string text = textIn(work.base / "config" / "binosplat" / "scenes" / "slanted-wall.view.toml");
         const auto valueOf = [&](const std::string& key) {
             const std::size_t at = text.find(key + " = ");
             REQUIRE(at != std::string::npos);

@@ -1,10 +1,7 @@
 // Facts about the window beside the headset: what mouse, keys and files do there, what it shows, and how it ends.
 #include "tests/app/view/view_window.h"
-#include "app/view/panel/panel_font.h"
 #include "app/view/window/mirror_window.h"
-#include "engine/error.h"
 #include "tests/app/view/unchanged_shaders.h"
-#include "tests/suite.h"
 
 #include <GLFW/glfw3.h>
 

@@ -5,11 +5,6 @@
 #include "tests/engine/frame/gpu_scenes.h"
 #include "tests/engine/gpu/gpu_fixture.h"
 
-#include <algorithm>
-#include <array>
-#include <utility>
-#include <vector>
-
 namespace binosplat::test {
 
 struct AffiliatedFrame {

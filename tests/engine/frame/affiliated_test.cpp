@@ -2,7 +2,6 @@
 // written, that no byte depends on the run, and what it costs.
 #include "tests/engine/frame/affiliated_frames.h"
 #include "tests/engine/frame/frame_runs.h"
-#include "tests/suite.h"
 
 SUITE(affiliated) {
 

@@ -1,9 +1,5 @@
 // Facts about frames that are not waited for: the same pictures as of those that are, told a frame or two late, and lists with room ahead.
-#include "engine/error.h"
 #include "tests/engine/frame/frame_runs.h"
-#include "tests/suite.h"
-
-#include <memory>
 
 SUITE(frame_ahead) {
 

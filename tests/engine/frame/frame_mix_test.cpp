@@ -1,9 +1,6 @@
 // Facts about frames of any kind after frames of any other: modes, sizes, angles and whatever is kept change from frame to frame, as no
 // program does it, and each picture is what a frame that knows nothing of the ones before comes to, or near the full render.
 #include "tests/engine/frame/frame_runs.h"
-#include "tests/suite.h"
-
-#include <utility>
 
 SUITE(frame_mix) {
 

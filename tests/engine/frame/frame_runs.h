@@ -6,12 +6,6 @@
 #include "tests/engine/frame/gpu_scenes.h"
 #include "tests/engine/gpu/gpu_fixture.h"
 
-#include <algorithm>
-#include <array>
-#include <optional>
-#include <utility>
-#include <vector>
-
 namespace binosplat::test {
 
 // While it lives a frame on the tests' own device has the kernels that were made before it in this program. They are those of frames

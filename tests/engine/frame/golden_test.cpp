@@ -4,10 +4,6 @@
 #include "engine/reference/periphery.h"
 #include "engine/stream/moving_scene.h"
 #include "tests/engine/frame/frame_runs.h"
-#include "tests/suite.h"
-
-#include <cstdlib>
-#include <filesystem>
 
 SUITE(golden) {
 

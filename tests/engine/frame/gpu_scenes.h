@@ -2,14 +2,9 @@
 #pragma once
 
 #include "engine/picture/image.h"
-#include "engine/reference/reference.h"
 #include "engine/scene/procedural.h"
 #include "shaders/shared/constants.h"
 #include "tests/engine/reference/reference_scenes.h"
-
-#include <map>
-#include <string>
-#include <utility>
 
 namespace binosplat::test {
 

@@ -1,7 +1,6 @@
 // Facts about frames that are made from the ones before, in one picture an eye or in two: what they equal where nothing moves, and what
 // they cost. Pass by pass: past_passes_test.cpp.
 #include "tests/engine/frame/frame_runs.h"
-#include "tests/suite.h"
 
 SUITE(past_frames) {
 

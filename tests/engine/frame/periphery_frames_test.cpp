@@ -1,7 +1,6 @@
 // Facts about frames whose eye has half the resolution where it would not see more: against the twin, and against the same frames in full.
 #include "engine/reference/periphery.h"
 #include "tests/engine/frame/frame_runs.h"
-#include "tests/suite.h"
 
 SUITE(periphery_frames) {
 

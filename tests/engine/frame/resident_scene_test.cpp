@@ -1,8 +1,6 @@
 // Facts about scenes whose parts come and go: they look like the same splats as a scene that stays, and no frame waits for them.
-#include "engine/error.h"
 #include "tests/engine/frame/frame_runs.h"
 #include "tests/engine/passes/scene_pages.h"
-#include "tests/suite.h"
 
 SUITE(resident_scene) {
 

@@ -1,7 +1,6 @@
 // Facts about whole frames: what must not change a picture does not change a byte of it; and limits, counters, memory.
 #include "tests/engine/frame/affiliated_frames.h"
 #include "tests/engine/frame/frame_runs.h"
-#include "tests/suite.h"
 
 SUITE(stereo_frame) {
 

@@ -1,7 +1,6 @@
 // The device's stereo frames are like those of the twin, which moves a wall by its disparity.
 #include "tests/engine/frame/frame_runs.h"
 #include "tests/engine/passes/stereo_cases.h"
-#include "tests/suite.h"
 
 SUITE(stereo_twin) {
 

@@ -1,13 +1,7 @@
 // What compiled shaders say of their structs, and what they do with specialization constants and with structs of addresses: their SPIR-V.
 #pragma once
 
-#include <algorithm>
-#include <cstdint>
-#include <map>
-#include <set>
-#include <span>
-#include <string>
-#include <vector>
+#include "tests/suite.h"
 
 namespace binosplat::test {
 

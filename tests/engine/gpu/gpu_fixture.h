@@ -2,11 +2,7 @@
 #pragma once
 
 #include "engine/gpu/commands.h"
-
-#include <cstdint>
-#include <span>
-#include <string>
-#include <vector>
+#include "tests/suite.h"
 
 namespace binosplat::test {
 

@@ -1,23 +1,15 @@
 // The structs that C++ and GLSL share have the same fields at the same offsets in both: what the compiled shaders say of them is
 // held against offsetof and sizeof. Also what shaders do with their constants, and with structs of addresses.
-#include "engine/error.h"
 #include "engine/passes/passes.h"
 #include "engine/passes/past_passes.h"
 #include "engine/passes/periphery.h"
 #include "engine/passes/present.h"
 #include "engine/passes/warp_passes.h"
 #include "shaders/embedded_shaders.h"
-#include "shaders/shared/passes.h"
 #include "tests/engine/gpu/compiled_shader.h"
 #include "tests/engine/gpu/gpu_fixture.h"
 
-#include <cstddef>
-#include <filesystem>
-#include <span>
-
 SUITE(layout) {
-
-namespace fs = std::filesystem;
 
 // A struct of shaders/shared by its fields; one that is left out here is missed by the comparison.
 #define AGAIN(...) AGAIN_27(AGAIN_27(AGAIN_27(__VA_ARGS__)))
@@ -126,7 +118,6 @@ std::map<std::string, ListedPass> listedPasses() {
         passes[#shader].constants[id] = nameInShader(Name##Kernel::constants()[id].field); \
     }
 #include "shaders/passes.def"
-#include "tests/suite.h"
 #undef PASS
     return passes;
 }

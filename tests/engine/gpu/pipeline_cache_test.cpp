@@ -1,19 +1,12 @@
 // Facts about what a driver has compiled and the file that keeps it.
 #include "engine/gpu/pipeline_cache.h"
-#include "engine/gpu/kernel.h"
 #include "engine/passes/passes.h"
 #include "tests/engine/gpu/gpu_fixture.h"
 #include "tests/run_program.h"
-#include "tests/suite.h"
 
 #include <sys/stat.h>
 
-#include <cstring>
-#include <fstream>
-
 SUITE(pipeline_cache) {
-
-namespace fs = std::filesystem;
 
 using Bytes = std::vector<std::uint8_t>;
 

@@ -3,12 +3,9 @@
 
 #include "engine/gpu/gpu_scene.h"
 #include "engine/passes/eye_view.h"
-#include "shaders/shared/passes.h"
 #include "tests/engine/frame/gpu_scenes.h"
 #include "tests/engine/gpu/gpu_fixture.h"
 
-#include <bit>
-#include <cstddef>
 #include <glm/gtc/packing.hpp>
 
 namespace binosplat::test {

@@ -2,9 +2,6 @@
 #include "engine/passes/passes.h"
 #include "tests/engine/passes/pass_stages.h"
 #include "tests/engine/passes/scene_pages.h"
-#include "tests/suite.h"
-
-#include <bit>
 
 SUITE(passes) {
 

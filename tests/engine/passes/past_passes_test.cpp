@@ -3,7 +3,6 @@
 // depth or a place lies on a threshold, float32 may come to the other side: such flips have a budget.
 #include "engine/frame/changes.h"
 #include "tests/engine/passes/past_stages.h"
-#include "tests/suite.h"
 
 SUITE(past_passes) {
 

@@ -6,10 +6,6 @@
 #include "tests/engine/frame/frame_runs.h"
 #include "tests/engine/passes/stereo_cases.h"
 
-#include <array>
-#include <utility>
-#include <vector>
-
 namespace binosplat::test {
 
 inline constexpr double kErrorSteps = 0x1p20;

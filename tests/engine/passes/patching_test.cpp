@@ -4,7 +4,6 @@
 #include "tests/engine/frame/affiliated_frames.h"
 #include "tests/engine/frame/frame_runs.h"
 #include "tests/engine/passes/stereo_cases.h"
-#include "tests/suite.h"
 
 SUITE(patching) {
 

@@ -3,7 +3,6 @@
 #include "engine/reference/periphery.h"
 #include "tests/engine/gpu/gpu_fixture.h"
 #include "tests/engine/passes/past_stages.h"
-#include "tests/suite.h"
 
 SUITE(periphery) {
 

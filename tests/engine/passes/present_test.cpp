@@ -3,7 +3,6 @@
 #include "engine/reference/present.h"
 #include "tests/engine/gpu/gpu_fixture.h"
 #include "tests/engine/passes/stereo_cases.h"
-#include "tests/suite.h"
 
 SUITE(present) {
 

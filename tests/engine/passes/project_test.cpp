@@ -2,9 +2,6 @@
 #include "engine/reference/splat.h"
 #include "tests/engine/passes/pass_stages.h"
 #include "tests/engine/passes/stereo_cases.h"
-#include "tests/suite.h"
-
-#include <iterator>
 
 SUITE(project) {
 

@@ -2,9 +2,6 @@
 // left.
 #include "tests/engine/passes/stereo_cases.h"
 #include "tests/engine/passes/stereo_stages.h"
-#include "tests/suite.h"
-
-#include <tuple>
 
 SUITE(resample) {
 

@@ -4,11 +4,6 @@
 #include "engine/gpu/resident_scene.h"
 #include "tests/engine/frame/gpu_scenes.h"
 
-#include <algorithm>
-#include <numeric>
-#include <span>
-#include <vector>
-
 namespace binosplat::test {
 
 // These splats of a scene, in this order.

@@ -2,7 +2,6 @@
 // as the twin has them, and the lists and masks that patching goes by.
 #include "engine/passes/past_passes.h"
 #include "tests/engine/passes/past_stages.h"
-#include "tests/suite.h"
 
 SUITE(selection) {
 

@@ -3,8 +3,6 @@
 #include "engine/passes/sort.h"
 #include "tests/engine/gpu/gpu_fixture.h"
 
-#include <bit>
-
 SUITE(sort) {
 
 using Values = std::vector<std::uint32_t>;
@@ -109,7 +107,6 @@ struct SumUpPass {
 
 constexpr std::uint32_t kSumUpWords[] = {
 #include "sum_up.inc"
-#include "tests/suite.h"
 };
 
 struct Summed {

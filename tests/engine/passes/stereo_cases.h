@@ -5,12 +5,7 @@
 #include "engine/reference/stereo.h"
 #include "tests/engine/frame/affiliated_frames.h"
 
-#include <bit>
-#include <cmath>
 #include <glm/gtc/packing.hpp>
-#include <optional>
-#include <string>
-#include <vector>
 
 namespace binosplat::test {
 

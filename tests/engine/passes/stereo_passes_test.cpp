@@ -7,7 +7,6 @@
 #include "tests/engine/passes/stereo_cases.h"
 #include "tests/engine/passes/stereo_stages.h"
 #include "tests/shared_data.h"
-#include "tests/suite.h"
 
 SUITE(stereo_passes) {
 

@@ -6,10 +6,6 @@
 #include "tests/engine/passes/pass_stages.h"
 #include "tests/engine/passes/stereo_cases.h"
 
-#include <algorithm>
-#include <cstddef>
-#include <vector>
-
 namespace binosplat::test {
 
 // Where moving pixels and arrivals lie: by themselves, or row by row where the affiliated eye's colours come to lie; these are floats or

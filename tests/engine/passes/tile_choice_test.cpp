@@ -2,7 +2,6 @@
 // by hand, and against plainer algorithms.
 #include "tests/engine/passes/stereo_cases.h"
 #include "tests/engine/passes/stereo_stages.h"
-#include "tests/suite.h"
 
 SUITE(tile_choice) {
 

@@ -1,7 +1,6 @@
 // Facts about the passes over tiles, tile_ranges and rasterize, each started from what the twin's pass before it left.
 #include "tests/engine/passes/pass_stages.h"
 #include "tests/engine/passes/stereo_cases.h"
-#include "tests/suite.h"
 
 SUITE(tile_passes) {
 

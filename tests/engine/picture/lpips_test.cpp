@@ -1,17 +1,13 @@
 // Facts about LPIPS and the network below it.
 #include "engine/picture/lpips.h"
-#include "engine/error.h"
 #include "engine/picture/image_io.h"
 #include "tests/engine/picture/lpips_weights.h"
 #include "tests/engine/picture/pictures.h"
 #include "tests/shared_data.h"
-#include "tests/suite.h"
 
 #include <unistd.h>
 
 SUITE(lpips) {
-
-namespace fs = std::filesystem;
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInfinity = std::numeric_limits<float>::infinity();
 
@@ -90,12 +86,7 @@ TEST_CASE("pictures that cannot be compared are refused") {
 }
 
 TEST_CASE("broken weights are refused in one line, and so are those that overflow") {
-    const auto errorOf = [](const fs::path& file) {
-        try {
-            const Lpips lpips(file);
-        } catch (const Error& error) { return std::string(error.what()); }
-        return std::string();
-    };
+    const auto errorOf = [](const fs::path& file) { return test::errorOf([&] { const Lpips lpips(file); }); };
     const std::string kind = "the weights of LPIPS (SqueezeNet variant, version 0.1)";
     CHECK(errorOf("/nonexistent/w.bin") == "/nonexistent/w.bin: cannot be read (No such file or directory), must be " + kind);
     CHECK(errorOf("/tmp") == "/tmp: cannot be read (Is a directory), must be " + kind);

@@ -1,12 +1,7 @@
 // Weights for LPIPS that come from no training, and their files.
 #pragma once
 
-#include <cmath>
-#include <cstddef>
-#include <filesystem>
-#include <fstream>
-#include <random>
-#include <vector>
+#include "tests/suite.h"
 
 namespace binosplat::test {
 

@@ -1,10 +1,8 @@
 // Facts about the picture comparer, among them that it fails what must fail.
 #include "engine/picture/metrics.h"
-#include "engine/error.h"
 #include "engine/picture/resize.h"
 #include "engine/picture/visible_errors.h"
 #include "tests/engine/picture/pictures.h"
-#include "tests/suite.h"
 
 SUITE(metrics) {
 

@@ -1,16 +1,9 @@
 // Facts about image files: what is written comes back, and a failed write leaves nothing.
-#include "engine/error.h"
 #include "engine/picture/image_io.h"
 #include "engine/picture/netpbm.h"
 #include "tests/run_program.h"
-#include "tests/suite.h"
-
-#include <filesystem>
-#include <fstream>
 
 SUITE(picture_io) {
-
-namespace fs = std::filesystem;
 
 // Every value differs from its neighbours, some lie outside 0 to 1.
 Image makeRamp(glm::uvec2 size_px, int channels) {

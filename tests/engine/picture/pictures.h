@@ -2,9 +2,7 @@
 #pragma once
 
 #include "engine/picture/image.h"
-
-#include <cmath>
-#include <cstdint>
+#include "tests/suite.h"
 
 namespace binosplat::test {
 

@@ -1,9 +1,7 @@
 // Facts about the picture of what made each tile.
 #include "engine/picture/roi_picture.h"
-#include "engine/error.h"
 #include "shaders/shared/constants.h"
 #include "tests/engine/picture/pictures.h"
-#include "tests/suite.h"
 
 SUITE(roi_picture) {
 

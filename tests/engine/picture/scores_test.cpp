@@ -1,10 +1,8 @@
 // Facts about the scores of each pixel, SSIM and FLIP, and about the filters and colour spaces below them.
-#include "engine/error.h"
 #include "engine/picture/colour.h"
 #include "engine/picture/flip.h"
 #include "engine/picture/ssim.h"
 #include "tests/engine/picture/pictures.h"
-#include "tests/suite.h"
 
 SUITE(scores) {
 

@@ -1,10 +1,8 @@
 // Facts about the twins of reuse over time: pictures for which the answer is worked out by hand.
 #include "engine/reference/past.h"
 #include "tests/engine/reference/reference_scenes.h"
-#include "tests/suite.h"
 
 #include <complex>
-#include <numbers>
 
 SUITE(past_reference) {
 

@@ -2,9 +2,7 @@
 #pragma once
 
 #include "engine/reference/reference.h"
-
-#include <cmath>
-#include <random>
+#include "tests/suite.h"
 
 namespace binosplat::test {
 

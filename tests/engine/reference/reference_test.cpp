@@ -4,9 +4,6 @@
 #include "engine/reference/harmonics.h"
 #include "engine/reference/reach.h"
 #include "tests/engine/reference/reference_scenes.h"
-#include "tests/suite.h"
-
-#include <numbers>
 
 SUITE(reference) {
 

@@ -1,7 +1,6 @@
 // Facts about the twins of the stereo passes by themselves: small pictures for which the answer is worked out by hand.
 #include "engine/reference/stereo.h"
 #include "tests/engine/reference/reference_scenes.h"
-#include "tests/suite.h"
 
 SUITE(stereo_reference) {
 

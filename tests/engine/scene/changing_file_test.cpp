@@ -1,12 +1,10 @@
 // Facts about scene files that change while they are read, and how far ahead they are read. They change where reading reports its progress,
 // so no test waits for a time.
-#include "engine/error.h"
 #include "engine/scene/ply.h"
 #include "engine/scene/procedural.h"
 #include "engine/scene/read_ahead.h"
 #include "engine/scene/spz.h"
 #include "tests/engine/scene/hostile_scenes.h"
-#include "tests/suite.h"
 #ifdef BINOSPLAT_SOG
 #include "tests/engine/scene/sog_scenes.h"
 #endif
@@ -14,8 +12,6 @@
 #include <chrono>
 
 SUITE(changing_file) {
-
-namespace fs = std::filesystem;
 
 // Loads while `change` happens once; the message, or "read".
 std::string load(const std::string& path, const std::function<void()>& change, Scene* scene = nullptr) {

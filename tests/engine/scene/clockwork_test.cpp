@@ -1,9 +1,6 @@
 // The scene that moves, against the truth that procedural.h states.
 #include "engine/scene/procedural.h"
 #include "tests/engine/scene/ply_files.h"
-#include "tests/suite.h"
-
-#include <numbers>
 
 SUITE(clockwork) {
 

@@ -1,7 +1,6 @@
 // PlayCanvas compressed PLY: values worked out by hand, a real file, and headers that do not fit.
 #include "tests/engine/scene/hostile_scenes.h"
 #include "tests/shared_data.h"
-#include "tests/suite.h"
 
 SUITE(compressed_ply_format) {
 

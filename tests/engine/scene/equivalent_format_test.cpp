@@ -7,9 +7,6 @@
 #include "engine/scene/survey.h"
 #include "tests/engine/scene/scene_measures.h"
 #include "tests/shared_data.h"
-#include "tests/suite.h"
-
-#include <nlohmann/json.hpp>
 
 namespace binosplat::test::equivalent_format_suite {
 

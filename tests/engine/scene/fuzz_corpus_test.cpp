@@ -1,7 +1,6 @@
 // The inputs that fuzzing kept, replayed.
 #include "tests/engine/scene/ply_files.h"
 #include "tests/fuzz/targets.h"
-#include "tests/suite.h"
 
 SUITE(fuzz_corpus) {
 
@@ -10,7 +9,7 @@ TEST_CASE("every kept input is read or refused in one line") {
     for (const fuzz::Target& target : fuzz::targets()) {
         const std::size_t before = inputs;
         for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(BINOSPLAT_FUZZ_CORPUS) / target.name)) {
-            const std::string input = textOf(entry.path().string());
+            const std::string input = textIn(entry.path().string());
             CAPTURE(entry.path().string());
             fuzz::runTarget(target.name, {reinterpret_cast<const std::uint8_t*>(input.data()), input.size()});
             ++inputs, bytes += input.size();

@@ -5,10 +5,8 @@
 #include "tests/engine/scene/gltf_files.h"
 #include "tests/engine/scene/scene_measures.h"
 #include "tests/shared_data.h"
-#include "tests/suite.h"
 
 #include <glm/gtc/matrix_transform.hpp>
-#include <nlohmann/json.hpp>
 
 SUITE(gltf_format) {
 
@@ -182,7 +180,7 @@ TEST_CASE("the fifteen cases of the conformance matrix give the values that they
     const Folder folder;
     const std::string path = (*data / "formats/khr_conformance_matrix.glb").string();
     CHECK(contains(loadError(path), "lin_rec709_display and others of srgb_rec709_display"));
-    const std::string glb = textOf(path);
+    const std::string glb = textIn(path);
     std::uint32_t text_bytes = 0;
     std::memcpy(&text_bytes, glb.data() + 12, 4);
     nlohmann::json document = nlohmann::json::parse(glb.substr(20, text_bytes));

@@ -4,12 +4,9 @@
 #include "tests/engine/scene/hostile_scenes.h"
 #include "tests/engine/scene/ksplat_files.h"
 #include "tests/hostile.h"
-#include "tests/suite.h"
 #ifdef BINOSPLAT_SOG
 #include "tests/engine/scene/streamed_scenes.h"
 #endif
-
-#include <cstdlib>
 
 SUITE(hostile_scene) {
 
@@ -212,7 +209,7 @@ std::vector<Target> sogTargets(const Folder& folder) {
     }
     // As `convert` writes them, alone and as chunks.
     writeSog(loadScene(writeSogFolder(folder, "sog", makeSog())), folder.file("a.sog"));
-    const std::string written = textOf(folder.file("a.sog"));
+    const std::string written = textIn(folder.file("a.sog"));
     targets.push_back({.name = "written bundle", .good = written, .changes = 600, .most_splats = 40});
     std::filesystem::create_directories(folder.file("bundles"));
     std::string of_bundles = levels;

@@ -1,7 +1,6 @@
 // .ksplat: values in every level and degree, buckets and sections, and what does not fit.
 #include "tests/engine/scene/ksplat_files.h"
 #include "tests/shared_data.h"
-#include "tests/suite.h"
 
 SUITE(ksplat_format) {
 

@@ -1,11 +1,11 @@
 // Numbers and compressed streams as files hold them.
 #pragma once
 
+#include "tests/suite.h"
+
 #include <zlib.h>
 
-#include <cstdint>
 #include <stdexcept>
-#include <string>
 
 namespace binosplat::test {
 

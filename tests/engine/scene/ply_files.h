@@ -1,27 +1,10 @@
 // PLY files made to measure, in a folder that goes away with them.
 #pragma once
 
-#include "engine/error.h"
 #include "engine/scene/scene.h"
-
-#include <doctest/doctest.h>
+#include "tests/suite.h"
 
 #include <unistd.h>
-
-#include <algorithm>
-#include <bit>
-#include <cmath>
-#include <cstdint>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <functional>
-#include <iterator>
-#include <limits>
-#include <map>
-#include <string>
-#include <utility>
-#include <vector>
 
 namespace binosplat::test {
 
@@ -138,22 +121,10 @@ inline PlyText makePly(int rest_count = 0, bool three_scales = false) {
     return ply;
 }
 
-// The message of the Error that `action` throws; empty if it throws none.
-inline std::string errorOf(const std::function<void()>& action) {
-    try {
-        action();
-    } catch (const Error& error) { return error.what(); }
-    return {};
-}
 inline std::string loadError(const std::string& source, std::uint64_t splats = 0) {
     return errorOf([&] { (void)loadScene(source, splats); });
 }
 inline std::string loadError(const Folder& folder, const std::string& bytes) { return loadError(folder.write("broken.ply", bytes)); }
-
-inline std::string textOf(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-}
 
 // `action` tells how far it is from 0 to 1, at least so many times, and ends when whoever is told throws.
 inline void checkProgress(std::size_t times, const std::function<void(const Progress&)>& action) {

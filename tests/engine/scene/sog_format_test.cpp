@@ -1,6 +1,5 @@
 // SOG: values worked out by hand in both versions and both wrappings, and everything that does not fit.
 #include "tests/engine/scene/streamed_scenes.h"
-#include "tests/suite.h"
 
 SUITE(sog_format) {
 

@@ -4,7 +4,6 @@
 #include "engine/scene/sog.h"
 #include "engine/scene/sog_pack.h"
 #include "tests/engine/scene/scene_measures.h"
-#include "tests/suite.h"
 
 SUITE(sog_write) {
 
@@ -133,7 +132,7 @@ TEST_CASE("writing and reading back keeps every attribute within its quantum, al
         CHECK(sh < (degree == 1 ? 0.11f : 0.25f));  // 4096 rows for 5000 splats of noise
         // The same scene gives the same file.
         writeSog(scene, folder.file("b.sog"));
-        CHECK(textOf(folder.file("a.sog")) == textOf(folder.file("b.sog")));
+        CHECK(textIn(folder.file("a.sog")) == textIn(folder.file("b.sog")));
         std::filesystem::remove(folder.file("b.sog"));
     }
 }

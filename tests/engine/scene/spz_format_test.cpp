@@ -3,7 +3,6 @@
 #include "engine/scene/spz.h"
 #include "tests/engine/scene/scene_measures.h"
 #include "tests/engine/scene/spz_files.h"
-#include "tests/suite.h"
 
 SUITE(spz_format) {
 

@@ -1,14 +1,10 @@
 // Facts about headsets: their files, those of configs/headsets among them, and the eyes that look through them.
-#include "engine/error.h"
 #include "engine/setup/headset.h"
 #include "engine/setup/output_files.h"
 #include "shaders/shared/constants.h"
 #include "tests/run_program.h"
-#include "tests/suite.h"
 
 SUITE(headsets) {
-
-namespace fs = std::filesystem;
 
 TEST_CASE("every headset of the repository is one that a person could wear, and says who measured it") {
     std::set<std::string> names;

@@ -6,11 +6,7 @@
 #include "engine/setup/values.h"
 #include "tests/hostile.h"
 #include "tests/run_program.h"
-#include "tests/suite.h"
 #include "xr/simulated/files/toml_guard.h"
-
-#include <fstream>
-#include <iterator>
 
 SUITE(hostile_setup) {
 
@@ -46,10 +42,7 @@ struct TextAttempts {
     }
 };
 
-std::string textOf(const std::string& path) {
-    std::ifstream file(std::string(BINOSPLAT_SOURCE_DIR "/") + path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-}
+std::string textOf(const std::string& path) { return textIn(BINOSPLAT_SOURCE_DIR "/" + path); }
 
 // All values of a file through all readers of values.
 void readEverything(const std::string& path) {

@@ -1,10 +1,6 @@
 // Facts about recorded head motion.
-#include "engine/error.h"
 #include "engine/setup/head_motion.h"
 #include "tests/shared_data.h"
-#include "tests/suite.h"
-
-#include <numbers>
 
 SUITE(motion) {
 

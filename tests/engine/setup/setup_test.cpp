@@ -1,5 +1,4 @@
 // Facts about cameras, numbers and output files.
-#include "engine/error.h"
 #include "engine/setup/camera_file.h"
 #include "engine/setup/head_motion.h"
 #include "engine/setup/headset.h"
@@ -7,11 +6,8 @@
 #include "engine/setup/settings.h"
 #include "engine/setup/values.h"
 #include "tests/run_program.h"
-#include "tests/suite.h"
 
 SUITE(setup) {
-
-namespace fs = std::filesystem;
 
 fs::path writeFile(const fs::path& path, const std::string& text) {
     writeText(path, text);

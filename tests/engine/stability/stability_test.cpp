@@ -3,7 +3,6 @@
 #include "engine/stability/extreme_scenes.h"
 #include "engine/stability/run_case.h"
 #include "tests/engine/frame/frame_runs.h"
-#include "tests/suite.h"
 
 SUITE(stability) {
 

@@ -5,7 +5,6 @@
 #include "tests/engine/scene/streamed_scenes.h"
 #include "tests/engine/stream/split_scene.h"
 #include "tests/run_program.h"
-#include "tests/suite.h"
 #ifdef BINOSPLAT_WEB_TESTS
 #include "tests/engine/web/web_runs.h"
 #endif

@@ -2,8 +2,6 @@
 #include "engine/stream/level_chooser.h"
 #include "tests/suite.h"
 
-#include <numbers>
-
 SUITE(level_chooser) {
 
 constexpr std::uint32_t kNone = LevelChoices::kNone;

@@ -3,13 +3,7 @@
 
 #include "engine/scene/ply.h"
 #include "engine/scene/procedural.h"
-
-#include <fmt/format.h>
-
-#include <cmath>
-#include <filesystem>
-#include <map>
-#include <string>
+#include "tests/suite.h"
 
 namespace binosplat::test {
 

@@ -1,9 +1,7 @@
 // What differs between two frames of a moving scene, and what lies between them, against the same computed splat by splat.
 #include "engine/stream/scene_frames.h"
 
-#include "engine/error.h"
 #include "tests/engine/stream/moving_frames.h"
-#include "tests/suite.h"
 
 #include <glm/gtc/packing.hpp>
 

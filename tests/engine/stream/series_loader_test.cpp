@@ -2,9 +2,6 @@
 #include "engine/stream/series_loader.h"
 
 #include "tests/engine/stream/moving_frames.h"
-#include "tests/suite.h"
-
-#include <atomic>
 
 SUITE(series_loader) {
 

@@ -1,7 +1,6 @@
 // A build without network says so.
 #include "engine/web/web_files.h"
 #include "tests/engine/scene/ply_files.h"
-#include "tests/suite.h"
 
 SUITE(no_web) {
 

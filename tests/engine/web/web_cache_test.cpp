@@ -1,10 +1,7 @@
 // What is kept on the disk: asked about, not fetched again; there when the server is gone; within its limit; and whole, whoever uses it.
 #include "tests/engine/web/web_runs.h"
-#include "tests/suite.h"
 
 SUITE(web_cache) {
-
-namespace fs = std::filesystem;
 
 const std::string kPly = makePly(45).bytes(), kOther = makePly(9).bytes();
 
@@ -130,7 +127,7 @@ TEST_CASE("a broken cache is one without the file") {
     const WebSettings settings = webSettings(folder);
     (void)loadFromWeb(server.at("/a.ply"), settings);
     const std::string note = noteOf(folder).filename().string();
-    const std::string whole = textOf(folder.file("cache/" + note));
+    const std::string whole = textIn(folder.file("cache/" + note));
     for (const std::string& broken : {std::string(), std::string("{"), std::string("[]"), replaced(whole, "\"bytes\": ", "\"bytes\": 1"),
                                       replaced(whole, "/a.ply", "/b.ply"), replaced(whole, "\"changed_ns\": ", "\"changed_ns\": 1"),
                                       replaced(whole, "\"etag\": \"\\\"", "\"etag\": 7, \"x\": \"\\\"")}) {

@@ -50,7 +50,7 @@ inline WebPages filesOf(const std::filesystem::path& folder, const std::string& 
     WebPages files;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
         if (!entry.is_regular_file()) { continue; }
-        files[prefix + std::filesystem::relative(entry.path(), folder).generic_string()] = textOf(entry.path().string());
+        files[prefix + std::filesystem::relative(entry.path(), folder).generic_string()] = textIn(entry.path());
     }
     return files;
 }

@@ -7,7 +7,6 @@
 #endif
 #include "engine/scene/address.h"
 #include "tests/engine/web/web_runs.h"
-#include "tests/suite.h"
 
 SUITE(web_scene) {
 

@@ -1,7 +1,7 @@
 // A small HTTP server on the loopback address, as good or as bad as a test wants it.
 #pragma once
 
-#include "engine/error.h"
+#include "tests/suite.h"
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
@@ -9,17 +9,8 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <atomic>
-#include <functional>
 #include <list>
-#include <map>
 #include <mutex>
-#include <string>
-#include <string_view>
-#include <thread>
-#include <utility>
-#include <vector>
 
 namespace binosplat::test {
 

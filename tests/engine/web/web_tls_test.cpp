@@ -1,11 +1,9 @@
 // Somebody else's server, over TLS: whose certificate is trusted, and how many connections the files of a scene take.
 #include "tests/engine/scene/sog_scenes.h"
 #include "tests/engine/web/web_runs.h"
-#include "tests/suite.h"
 #include "tests/xr/simulated/installed.h"
 
 #include <csignal>
-#include <cstdio>
 
 SUITE(web_tls) {
 

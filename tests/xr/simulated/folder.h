@@ -1,13 +1,9 @@
 // An empty folder for a test's files, gone with the test. For what is independent of the engine, whose tests have Workplace.
 #pragma once
 
-#include <unistd.h>
+#include "tests/suite.h"
 
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <set>
-#include <string>
+#include <unistd.h>
 
 namespace simulated {
 
@@ -20,10 +16,7 @@ struct Folder {
     Folder& operator=(const Folder&) = delete;
 
     void write(const std::string& name, const std::string& text) const { std::ofstream(path / name, std::ios::binary) << text; }
-    [[nodiscard]] std::string bytesOf(const std::string& name) const {
-        std::ifstream stream(path / name, std::ios::binary);
-        return {std::istreambuf_iterator<char>(stream), {}};
-    }
+    [[nodiscard]] std::string bytesOf(const std::string& name) const { return binosplat::test::textIn(path / name); }
     [[nodiscard]] std::set<std::string> names() const {
         std::set<std::string> names;
         for (const auto& entry : std::filesystem::directory_iterator(path)) { names.insert(entry.path().filename().string()); }

@@ -2,10 +2,7 @@
 // .ci/run does after installing them all, that is a failure.
 #pragma once
 
-#include <doctest/doctest.h>
-
-#include <cstdlib>
-#include <string>
+#include "tests/suite.h"
 
 namespace binosplat::test {
 

@@ -2,19 +2,10 @@
 // was not written for it run by the page's script, its frame log read and compared.
 #include <sys/wait.h>
 
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <nlohmann/json.hpp>
-
-#include "tests/suite.h"
 #include "tests/xr/simulated/installed.h"
 #include "xr/simulated/compose/picture_file.h"
 
 SUITE(simulated_recipe) {
-
-namespace fs = std::filesystem;
 
 // The same place each time, so that a compiler cache knows it.
 const fs::path kWork = fs::path(BINOSPLAT_OUTPUT_DIR) / "simulated_alone";
@@ -27,18 +18,14 @@ struct Run {
 Run shell(const std::string& command) {
     const fs::path log = kWork / "log";
     const int status = std::system(("( " + command + " ) > " + log.string() + " 2>&1").c_str());
-    std::ifstream stream(log);
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, {std::istreambuf_iterator<char>(stream), {}}};
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, textIn(log)};
 }
 
 bool haveTools() {
     return binosplat::test::isInstalled("hello_xr", "libopenxr-utils") && binosplat::test::isInstalled("python3", "python3");
 }
 
-std::string pageText() {
-    std::ifstream stream(std::string(BINOSPLAT_SOURCE_DIR) + "/docs/test_your_openxr_program.md");
-    return {std::istreambuf_iterator<char>(stream), {}};
-}
+std::string pageText() { return textIn(BINOSPLAT_SOURCE_DIR "/docs/test_your_openxr_program.md"); }
 
 // The block in which a line of the page stands.
 std::string blockWith(const std::string& line) {

@@ -3,10 +3,6 @@
 #include "app/view/governor/splat_budget.h"
 #include "tests/suite.h"
 
-#include <fmt/format.h>
-
-#include <functional>
-
 SUITE(governor) {
 
 constexpr double kPeriodMs = 1000.0 / 90.0;

@@ -1,23 +1,14 @@
 // Facts about the panel's letters: names in any script can be read.
 #include "app/view/panel/shown_text.h"
-#include "engine/platform.h"
 #include "tests/app/view/panel/panel_sketch.h"
 #include "tests/run_program.h"
-#include "tests/suite.h"
-
-#include <fmt/format.h>
 
 SUITE(letters) {
-
-namespace fs = std::filesystem;
 
 // Where the vector font is, if this machine has it.
 std::string vectorFont() {
     for (const fs::path& file : fontFiles()) {
-        if (fs::exists(file)) {
-            std::ifstream stream(file, std::ios::binary);
-            return {std::istreambuf_iterator<char>(stream), {}};
-        }
+        if (fs::exists(file)) { return textIn(file); }
     }
     return {};
 }

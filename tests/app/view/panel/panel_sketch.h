@@ -5,14 +5,9 @@
 #include "app/view/panel/panel_font.h"
 #include "app/view/panel/panel_style.h"
 #include "app/view/wearer/wearer_controls.h"
+#include "tests/suite.h"
 
-#include <doctest/doctest.h>
 #include <imgui.h>
-
-#include <array>
-#include <limits>
-#include <memory>
-#include <string>
 
 namespace binosplat::test {
 

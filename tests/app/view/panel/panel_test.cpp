@@ -1,20 +1,14 @@
 // Facts about the panel's pages: what can be pointed at, whatever stands on them.
 #include "app/options/option_table.h"
-#include "app/view/panel/shown_text.h"
 #include "app/view/scenes/recent_scenes.h"
 #include "app/view/scenes/scene_clock.h"
 #include "app/view/settings/view_settings_table.h"
-#include "engine/platform.h"
 #include "tests/app/view/panel/panel_sketch.h"
 #include "tests/run_program.h"
-#include "tests/suite.h"
 
-#include <fmt/format.h>
 #include <imgui_internal.h>
 
 SUITE(panel) {
-
-namespace fs = std::filesystem;
 
 using Page = PanelPage;
 constexpr std::array kPages{Page::kView, Page::kScenes, Page::kMethod, Page::kTime};

@@ -7,7 +7,6 @@
 #include "app/view/settings/view_settings.h"
 #include "tests/app/options/parsed.h"
 #include "tests/run_program.h"
-#include "tests/suite.h"
 #include "xr/convert.h"
 
 SUITE(placement) {

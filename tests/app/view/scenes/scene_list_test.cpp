@@ -10,19 +10,13 @@
 #include "app/view/scenes/view_scenes.h"
 #include "app/view/scenes/viewpoints.h"
 #include "app/view/settings/view_files.h"
-#include "engine/error.h"
 #include "tests/run_program.h"
-#include "tests/suite.h"
 
-#include <fmt/format.h>
 #include <sys/stat.h>
 
 #include <future>
-#include <thread>
 
 SUITE(scene_list) {
-
-namespace fs = std::filesystem;
 
 // A user of one's own, with scenes.
 struct Home : Workplace {

@@ -5,25 +5,17 @@
 #include "app/view/panel/panel_content.h"
 #include "app/view/panel/panel_style.h"
 #include "app/view/settings/view_files.h"
-#include "engine/error.h"
 #include "engine/scene/procedural.h"
-#include "engine/scene/scene.h"
 #include "tests/engine/gpu/gpu_fixture.h"
 #include "tests/run_program.h"
 
-#include "tests/suite.h"
 #ifdef BINOSPLAT_SOG
 #include "tests/engine/scene/sog_scenes.h"
 #endif
 
 #include <sys/stat.h>
 
-#include <fstream>
-#include <thread>
-
 SUITE(shown_scene) {
-
-namespace fs = std::filesystem;
 
 struct Shown : Gpu, Workplace {
     using Workplace::run, Workplace::write;

@@ -7,8 +7,6 @@
 #include "app/view/wearer/wearer_controls.h"
 #include "tests/suite.h"
 
-#include <utility>
-
 SUITE(wearer) {
 
 // A hand that points straight at a place of a panel, half a metre before it.

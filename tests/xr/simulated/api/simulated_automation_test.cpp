@@ -1,6 +1,5 @@
 // XR_EXT_conformance_automation on the simulated runtime, where a program's own test moves inputs, poses and profiles from inside, and
 // XR_EXT_eye_gaze_interaction: where the wearer looks, as the script says it, or such a test.
-#include "tests/suite.h"
 #include "tests/xr/simulated/api/simulated_fixture.h"
 
 SUITE(simulated_automation) {

@@ -1,9 +1,6 @@
 // Extensions of the simulated runtime that need no graphics, in headless sessions and without a loader, and objects that end in every
 // order.
-#include "tests/suite.h"
 #include "tests/xr/simulated/api/simulated_direct.h"
-
-#include <functional>
 
 SUITE(simulated_extensions) {
 

@@ -2,6 +2,8 @@
 // Vulkan device with validation, or a headless one; frames and actions. Any message of the Vulkan validation layer fails the test.
 #pragma once
 
+#include "tests/suite.h"
+
 #define XR_USE_GRAPHICS_API_VULKAN
 #define XR_USE_TIMESPEC
 #include <time.h>
@@ -9,17 +11,6 @@
 //
 #include <openxr/openxr.h>
 #include <openxr/openxr_platform.h>
-
-#include <doctest/doctest.h>
-
-#include <cstring>
-#include <filesystem>
-#include <memory>
-#include <nlohmann/json.hpp>
-#include <string>
-#include <tuple>
-#include <utility>
-#include <vector>
 
 namespace doctest {
 template <>

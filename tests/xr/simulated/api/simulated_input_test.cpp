@@ -1,6 +1,5 @@
 // Chapter 11 of OpenXR on the simulated runtime: action sets, actions, suggested bindings, what actions read from the script's controllers,
 // and haptics.
-#include "tests/suite.h"
 #include "tests/xr/simulated/api/simulated_fixture.h"
 
 SUITE(simulated_input) {

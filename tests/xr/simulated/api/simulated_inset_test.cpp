@@ -1,5 +1,4 @@
 // Foveated insets (XR_VARJO_quad_views, and 1.1) on the simulated runtime: where they are, how large, and that of them the wearer sees.
-#include "tests/suite.h"
 #include "tests/xr/simulated/api/simulated_direct.h"
 #include "tests/xr/simulated/api/simulated_painter.h"
 #include "xr/simulated/compose/picture_file.h"

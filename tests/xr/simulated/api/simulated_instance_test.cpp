@@ -1,13 +1,8 @@
 // Chapters 4 to 6 of OpenXR on the simulated runtime, and XR_KHR_vulkan_enable2: the library, instances, systems, view configurations,
 // paths, names of values, Vulkan's instances and devices.
-#include "tests/suite.h"
 #include "tests/xr/simulated/api/simulated_direct.h"
 
 #include <unistd.h>
-
-#include <cstdio>
-#include <cstdlib>
-#include <fstream>
 
 SUITE(simulated_instance) {
 

@@ -1,6 +1,5 @@
 // Section 10.6 of OpenXR on the simulated runtime: the layers of xrEndFrame, also of XR_KHR_composition_layer_cylinder, _equirect2 and
 // _cube, and what of them reaches the wearer's eyes and the log.
-#include "tests/suite.h"
 #include "tests/xr/simulated/api/simulated_painter.h"
 #include "xr/simulated/compose/picture_file.h"
 

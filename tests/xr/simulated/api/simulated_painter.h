@@ -3,12 +3,6 @@
 
 #include "tests/xr/simulated/api/simulated_fixture.h"
 
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <cstring>
-#include <vector>
-
 namespace binosplat::test {
 
 class Painter {

@@ -1,6 +1,5 @@
 // Every input and output of every interaction profile on the simulated runtime, moved by XR_EXT_conformance_automation and read back, and
 // what may be bound with which version and extensions. There is no loader here; sessions are headless.
-#include "tests/suite.h"
 #include "tests/xr/simulated/api/simulated_direct.h"
 #include "xr/simulated/api/profiles.h"
 

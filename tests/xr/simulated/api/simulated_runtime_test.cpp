@@ -1,16 +1,11 @@
 // Programs that were not written for the simulated runtime: openxr_runtime_list and, of Khronos, hello_xr. What these do and see on it,
 // also where it is lost, and that runs in lock-step repeat bit for bit. BINOSPLAT_WRITE_GOLDENS=1 makes the golden picture anew.
 #include "tests/shared_data.h"
-#include "tests/suite.h"
 #include "tests/xr/simulated/api/simulated_fixture.h"
 #include "tests/xr/simulated/installed.h"
 #include "xr/simulated/compose/picture_file.h"
 
 #include <sys/wait.h>
-
-#include <cstdlib>
-#include <fstream>
-#include <iterator>
 
 SUITE(simulated_runtime) {
 
@@ -41,11 +36,6 @@ const char* const kLooking =
     "frames from 10 to 20 every 10\n"
     "at 0.3 exit\n";
 
-std::string readFile(const std::filesystem::path& path) {
-    std::ifstream stream(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 bool haveHelloXr() { return isInstalled("hello_xr", "libopenxr-utils"); }
 
 // A stranger's run. hello_xr ends when its session ends or when a key is pressed: its input is a pipe that stays open and silent.
@@ -61,7 +51,7 @@ struct Run : Headset {
                                  " 0<>" + keys + " > " + log + " 2>&1";
         const int status = std::system(line.c_str());
         exit_status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-        output = readFile(log);
+        output = textIn(log);
         for (const Json& json : logged()) {
             if (json.contains("frame")) { frames.push_back(json); }
         }
@@ -139,7 +129,7 @@ TEST_CASE("hello_xr runs on it from start to end, and no validation layer has an
         CHECK(std::filesystem::exists(hello.written / "frame_000010.png"));
         CHECK(std::filesystem::exists(hello.written / "frame_000030.png"));
         CHECK(hello.says("Core Validation output type: text"));
-        outputs = {hello.output, readFile(hello.folder / "test.script.validation")};
+        outputs = {hello.output, textIn(hello.folder / "test.script.validation")};
     }
     // By the older extension, paced by a real clock.
     const Run older(script, "hello_xr -g Vulkan", validation + "SIMULATED_OPENXR_CLOCK=real");

@@ -1,10 +1,6 @@
 // Chapter 9 and section 10.4 of OpenXR on the simulated runtime: the life of a session, its frame loop, the pace of its frames by script,
 // how either ends early, and sessions without graphics (XR_MND_headless; there is no loader then).
-#include "tests/suite.h"
 #include "tests/xr/simulated/api/simulated_direct.h"
-
-#include <atomic>
-#include <thread>
 
 SUITE(simulated_session) {
 

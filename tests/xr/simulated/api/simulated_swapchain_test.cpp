@@ -1,8 +1,5 @@
 // Section 10.1 of OpenXR on the simulated runtime: swapchains, and the layouts in which XR_KHR_vulkan_enable2 hands their images over.
-#include "tests/suite.h"
 #include "tests/xr/simulated/api/simulated_painter.h"
-
-#include <string_view>
 
 SUITE(simulated_swapchain) {
 

@@ -1,15 +1,10 @@
 // The simulated runtime called from many threads at once: every function may be, except for the handles that one of them destroys.
-#include "tests/suite.h"
 #include "tests/xr/simulated/api/simulated_fixture.h"
 
-#include <atomic>
 #include <barrier>
 #include <condition_variable>
-#include <cstdlib>
-#include <functional>
 #include <mutex>
 #include <queue>
-#include <thread>
 
 SUITE(simulated_threads) {
 

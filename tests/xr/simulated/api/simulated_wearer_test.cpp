@@ -1,5 +1,4 @@
 // Facts about the way from an application's swapchain images through the runtime to the wearer's eyes, pixel by pixel.
-#include "tests/suite.h"
 #include "tests/xr/simulated/api/simulated_painter.h"
 #include "xr/simulated/compose/compose.h"
 #include "xr/simulated/compose/picture_file.h"

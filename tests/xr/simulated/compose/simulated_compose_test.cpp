@@ -1,12 +1,10 @@
 // Facts about what the simulated wearer sees: pixels and blending derived by hand.
-#include "tests/suite.h"
 #include "tests/xr/simulated/folder.h"
 #include "xr/simulated/compose/compose.h"
 #include "xr/simulated/compose/picture_file.h"
 
 #include <glm/gtc/packing.hpp>
 
-#include <cstring>
 #include <stdexcept>
 
 SUITE(simulated_compose) {

@@ -1,10 +1,8 @@
 // Facts about the simulated runtime's log of frames.
-#include "tests/suite.h"
 #include "tests/xr/simulated/folder.h"
 #include "xr/simulated/compose/old_output.h"
 #include "xr/simulated/log/frame_log.h"
 
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 SUITE(simulated_log) {
@@ -59,8 +57,6 @@ TEST_CASE("lines are there before the log is closed") {
     CHECK_THROWS_WITH_AS(FrameLog(path).write(""), (path.string() + ": cannot be made (File exists)").c_str(), std::runtime_error);
     CHECK(std::filesystem::file_size(path) > 0);
 }
-
-namespace fs = std::filesystem;
 
 // A folder that an earlier run wrote to, among others.
 struct UsedFolder : Folder {

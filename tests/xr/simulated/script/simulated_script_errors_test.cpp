@@ -1,10 +1,8 @@
 // Facts about scripts with mistakes: each is named with its file and line, and nothing crashes.
-#include "tests/suite.h"
 #include "tests/xr/simulated/folder.h"
 #include "xr/simulated/script/script.h"
 
 #include <initializer_list>
-#include <utility>
 
 SUITE(simulated_script_errors) {
 
@@ -52,10 +50,7 @@ std::string replaced(std::string text, const std::string& what, const std::strin
     return text.replace(text.find(what), what.size(), with);
 }
 
-std::string walkScript() {
-    std::ifstream stream(std::string(BINOSPLAT_SOURCE_DIR) + "/configs/simulated/walk.script");
-    return {std::istreambuf_iterator<char>(stream), {}};
-}
+std::string walkScript() { return textIn(BINOSPLAT_SOURCE_DIR "/configs/simulated/walk.script"); }
 
 // How many of such texts are refused, each with its file's name.
 template <class Texts>

@@ -1,11 +1,8 @@
 // Facts about the simulated headset's scripts: what they say at a time.
 #include "tests/shared_data.h"
-#include "tests/suite.h"
 #include "tests/xr/simulated/folder.h"
 #include "xr/simulated/extensions.h"
 #include "xr/simulated/script/script.h"
-
-#include <numbers>
 
 SUITE(simulated_script) {
 
@@ -35,10 +32,7 @@ struct HeadCase {
     glm::dvec3 position, forward;
 };
 
-std::string textOf(const std::string& file) {
-    std::ifstream stream(BINOSPLAT_SOURCE_DIR + ("/" + file));
-    return {std::istreambuf_iterator<char>(stream), {}};
-}
+std::string textOf(const std::string& file) { return textIn(BINOSPLAT_SOURCE_DIR + ("/" + file)); }
 
 TEST_CASE("an empty script is the resting headset; comments, blanks and carriage returns do not count") {
     const Script script = parse("");
