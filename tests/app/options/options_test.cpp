@@ -298,7 +298,7 @@ TEST_CASE("splats go by depth or by distance: as the command line says, the conf
         return frameSettings({}, renderOptions(options).stereo, usual).order;
     };
     CHECK_FALSE(renderOptions("").stereo.order);
-    CHECK(frameSettings({}, renderOptions("").stereo).order == Order::kDepth);
+    CHECK(frameSettings({}, renderOptions("").stereo, Order::kDepth).order == Order::kDepth);
     CHECK(orderOf("", Order::kDistance) == Order::kDistance);
     CHECK(orderOf(file, Order::kDepth) == Order::kDistance);
     CHECK(orderOf("--order depth", Order::kDistance) == Order::kDepth);
@@ -310,7 +310,7 @@ TEST_CASE("splats go by depth or by distance: as the command line says, the conf
 TEST_CASE("half the resolution goes with foveation, and the headset has it unless it is told not to") {
     const auto refusal = [](const std::string& options) {
         const StereoOptions stereo = renderOptions(options).stereo;
-        CHECK(frameSettings({}, stereo).half_periphery == stereo.half_periphery);
+        CHECK(frameSettings({}, stereo, Order::kDepth).half_periphery == stereo.half_periphery);
         return errorOf([&] { requirePeriphery(stereo); });
     };
     CHECK_FALSE(renderOptions("").stereo.half_periphery);
