@@ -12,10 +12,9 @@ namespace binosplat {
 namespace {
 
 // A GPU has many subgroups under way to hide the latency of memory: sixteen, or eight if shared memory, of which each takes 1 KiB for its
-// digits, is as small as Vulkan allows. Narrow subgroups are a CPU's vectors, which run one after the other: four of these.
+// digits, is as small as Vulkan allows. A CPU's run one after the other: four of these.
 gpu::uint threadsOf(const Context& context) {
-    constexpr gpu::uint kWide = 32;
-    if (context.subgroupSize() < kWide) {
+    if (context.isSoftware()) {
         return std::clamp(gpu::kSortSubgroups * context.subgroupSize(), 32u, std::min(8 * context.minSubgroupSize(), 128u));
     }
     const gpu::uint most_subgroups = context.sharedMemory() >= 32768 ? 16 : 8;
