@@ -9,13 +9,13 @@ namespace {
 
 // A longer gap is not the device's fault: the runtime paused, or the machine slept.
 constexpr double kMostLostPeriods = 10.0;
-constexpr double kJitter = 0.02;  // tolerance of isMultiple, in periods
+constexpr double kJitter = 0.02;  // tolerance of isMultiple, as a share: what a runtime measures rather than knows grows with it
 
 // True if `stated` is `display` or a multiple of it.
 bool isMultiple(XrDuration stated, XrDuration display) {
     if (display <= 0) { return false; }
     const double times = static_cast<double>(stated) / static_cast<double>(display), whole = std::round(times);
-    return whole >= 1.0 && std::abs(times - whole) <= kJitter;
+    return whole >= 1.0 && std::abs(times - whole) <= kJitter * whole;
 }
 
 }  // namespace

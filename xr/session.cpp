@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace binosplat::xr {
 namespace {
@@ -58,6 +59,8 @@ FrameOutcome Session::beginFrame() {
     }
     pace_.begin(frame_state_.predictedDisplayTime, stated_period, told_period_);
     busy_from_seconds_ = threadSeconds();
+    open_from_ = std::chrono::steady_clock::now();
+    follows_shown_ = std::exchange(was_shown_, false);
     const XrFrameBeginInfo begin_info{XR_TYPE_FRAME_BEGIN_INFO, nullptr};
     {
         const std::lock_guard lock(context_.queueMutex());
@@ -76,7 +79,10 @@ void Session::endFrame(std::span<const XrCompositionLayerBaseHeader* const> laye
     info.environmentBlendMode = blend_mode_;
     info.layerCount = static_cast<std::uint32_t>(layers.size());
     info.layers = layers.empty() ? nullptr : layers.data();
-    pace_.end(!layers.empty(), threadSeconds() - busy_from_seconds_);
+    busy_seconds_ = threadSeconds() - busy_from_seconds_;
+    open_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - open_from_).count();
+    pace_.end(!layers.empty(), busy_seconds_);
+    was_shown_ = !layers.empty();
     const std::lock_guard lock(context_.queueMutex());
     BINOSPLAT_XR(xrEndFrame(handle(), &info));
 }
@@ -125,6 +131,7 @@ void Session::pollEvents() {
 
 void Session::changeState(XrSessionState state) {
     pace_.interrupt();
+    was_shown_ = false;
     switch (state) {
         case XR_SESSION_STATE_FOCUSED:
             ++times_focused_;

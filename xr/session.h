@@ -10,6 +10,7 @@
 #include "xr/spaces.h"
 
 #include <array>
+#include <chrono>
 #include <optional>
 #include <span>
 #include <string>
@@ -52,6 +53,11 @@ public:
     [[nodiscard]] double periodMs() const;
     // See DisplayPace.
     [[nodiscard]] double lostPeriods() const { return pace_.lostPeriods(); }
+    // True if the frame before the open one was shown, too.
+    [[nodiscard]] bool followsShown() const { return follows_shown_; }
+    // Of the last frame that was ended: this thread's processor time, and the time for which it was open.
+    [[nodiscard]] double busySeconds() const { return busy_seconds_; }
+    [[nodiscard]] double openSeconds() const { return open_seconds_; }
     // See RefreshRate. The period follows a request when the runtime reports it.
     [[nodiscard]] std::vector<double> refreshRates() const { return refresh_rate_.list(); }
     std::string askForRate(double rate_hz) { return refresh_rate_.request(rate_hz); }
@@ -102,6 +108,9 @@ private:
     DisplayPace pace_;
     XrDuration told_period_ = 0, told_for_ = 0;  // the display's period from the runtime, and the stated period at the time of the request
     double busy_from_seconds_ = 0.0;             // this thread's time when the frame began
+    std::chrono::steady_clock::time_point open_from_;
+    double busy_seconds_ = 0.0, open_seconds_ = 0.0;
+    bool was_shown_ = false, follows_shown_ = false;
     bool running_ = false, ended_ = false;
     std::string why_ended_;
     XrEnvironmentBlendMode blend_mode_;

@@ -74,10 +74,19 @@ void SceneRenderer::govern(ConnectedHeadset& headset, const ViewSettings& settin
 }
 
 ShownRate SceneRenderer::rate() const {
-    ShownRate rate{met_.metHz(), met_.displayHz(), governor_.settings().resolution_scale, {}, governor_.isBeaten()};
+    ShownRate rate{met_.metHz(), met_.displayHz(), met_.late(), governor_.settings().resolution_scale, {}, governor_.isBeaten()};
     const bool renders_both = frame_.mode == Mode::kPredicted && isInTwo(frame_, 2);
     if (hasBudget(frame_.mode) && !renders_both) { rate.budget = governor_.settings().budget; }
     return rate;
+}
+
+void SceneRenderer::meetDisplay(const xr::Session& session) {
+    const double period_ms = session.periodMs();
+    met_.add(session.displayTime(), period_ms, session.followsShown());
+    const bool is_late = met_.late() > 0;
+    if (std::exchange(is_late_, is_late) || !is_late) { return; }
+    const FrameCost cost{last_.gpu_total_ms, 1e3 * session.busySeconds(), 1e3 * session.openSeconds()};
+    log_.say(fmt::format("a frame was late (a display takes {:.1f} ms): {}", period_ms, whyLate(cost, period_ms)));
 }
 
 bool SceneRenderer::dropDepth(ConnectedHeadset& headset) {
@@ -189,7 +198,6 @@ void SceneRenderer::render(ConnectedHeadset& headset, ShownScene& shown, const V
     LoadedScene& scene = *shown.get();
     scene.count(last_.counters);
     if (known && scene.stream) { fitSplats(*scene.stream, headset.session.periodMs()); }
-    met_.add(headset.session.periodMs(), headset.session.lostPeriods());
     governor_.measure({.gpu_ms = last_.gpu_total_ms,
                        .period_ms = headset.session.periodMs(),
                        .is_old = !is_of_now,

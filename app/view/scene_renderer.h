@@ -59,7 +59,9 @@ public:
         splat_budget_.reset();
     }
     [[nodiscard]] const std::string& governorSentence() const { return governor_.sentence(); }
-    // How many displays have a new picture, and its resolution.
+    // For each frame that is going to be shown, before the panel. Says why if a frame was late: once, until none was for a second.
+    void meetDisplay(const xr::Session& session);
+    // How many frames reach the wearer, and their resolution.
     [[nodiscard]] ShownRate rate() const;
     [[nodiscard]] Presenter& presenter() { return presenter_; }
 
@@ -92,6 +94,7 @@ private:
     Governor governor_;
     std::optional<SplatBudget> splat_budget_;  // of the streamed scene that is shown
     MetDisplays met_;
+    bool is_late_ = false;       // any frame of the last second
     FrameSettings frame_;        // prepared
     std::vector<Eye> eyes_;      // prepared
     FrameSettings inset_frame_;  // prepared, for insets

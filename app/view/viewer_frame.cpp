@@ -32,6 +32,7 @@ void Viewer::drawFrame() {
         headset().session.endFrame({});
         return;
     }
+    renderer_.meetDisplay(headset().session);
     files_.deliver();
     if (scenes_.isNextReady()) { takeScene(); }
     const std::array<xr::EyeView, 2> eyes = withoutNoise(*located);

@@ -63,6 +63,9 @@ TEST_CASE("a stated period of several displays is not the display's: what it lea
     CHECK(pace.period() == kPeriod);
     CHECK(pace.after(1.0) == 0.0);
     CHECK(pace.after(9.0, true, kQuick, 9 * kPeriod) == doctest::Approx(8.0));
+    // What is measured at three frames a second.
+    CHECK(pace.after(33.3, true, kQuick, kPeriod * 333 / 10) == 0.0);
+    CHECK(pace.period() == kPeriod);
     // A shorter one, or one that is no multiple, is always the display's.
     CHECK(pace.after(1.0) == 0.0);
     CHECK(pace.period() == kPeriod);

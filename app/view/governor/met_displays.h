@@ -1,33 +1,71 @@
-// How many of the headset's recent displays had a new picture. Pure: no clock.
+// The frames that a wearer got in the last second, by the times at which the runtime displays them, and how many of them came late. Pure:
+// no clock. A frame is late by the period at its time: runtimes may state longer ones where frames are late.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cstdint>
 #include <deque>
+#include <string>
+#include <utility>
 
 namespace binosplat {
 
 class MetDisplays {
 public:
-    // A frame: the display's period, and how many displays passed before this one without a new picture.
-    void add(double period_ms, double lost) {
+    // A frame: when it is displayed, in nanoseconds of any clock, and the display's period. `follows`: the frame before was shown, too.
+    void add(std::int64_t display_time_ns, double period_ms, bool follows) {
         if (!(period_ms > 0.0)) { return; }
-        if (period_ms != period_ms_) { lost_.clear(); }
-        period_ms_ = period_ms;
-        lost_.push_back(std::max(lost, 0.0));
-        // Keeps one second.
-        if (static_cast<double>(lost_.size()) * period_ms > 1000.0) { lost_.pop_front(); }
+        const std::int64_t step_ns = frames_.empty() ? 0 : display_time_ns - frames_.back().time_ns;
+        const bool is_known = follows && step_ns > 0 && step_ns <= kPauseNs;
+        if (!is_known) { frames_.clear(); }
+        // Where the rate changes, the step may be of either.
+        const double longest_ms = kLatePeriods * std::max(period_ms, std::exchange(period_ms_, period_ms));
+        frames_.push_back({display_time_ns, is_known && 1e-6 * static_cast<double>(step_ns) > longest_ms});
+        // The last second's, and the one before these.
+        while (frames_.size() > 2 && frames_[1].time_ns <= display_time_ns - kSecondNs) { frames_.pop_front(); }
     }
     // 0: not known yet.
     [[nodiscard]] double displayHz() const { return period_ms_ > 0.0 ? 1000.0 / period_ms_ : 0.0; }
     [[nodiscard]] double metHz() const {
-        double displays = 0.0;
-        for (const double lost : lost_) { displays += 1.0 + lost; }
-        return displays > 0.0 ? displayHz() * static_cast<double>(lost_.size()) / displays : 0.0;
+        if (frames_.size() < 2) { return 0.0; }
+        return 1e9 * static_cast<double>(frames_.size() - 1) / static_cast<double>(frames_.back().time_ns - frames_.front().time_ns);
+    }
+    // Frames of the last second that were displayed more than a period after the one before.
+    [[nodiscard]] int late() const {
+        int late = 0;
+        for (std::size_t i = 1; i < frames_.size(); ++i) { late += frames_[i].is_late; }
+        return late;
     }
 
 private:
+    static constexpr std::int64_t kSecondNs = 1'000'000'000, kPauseNs = 5 * kSecondNs;  // longer: the machine slept
+    static constexpr double kLatePeriods = 1.5;                                         // displays may be irregular
+
+    struct Frame {
+        std::int64_t time_ns;
+        bool is_late;
+    };
+
     double period_ms_ = 0.0;
-    std::deque<double> lost_;
+    std::deque<Frame> frames_;
 };
+
+// What a frame took, in milliseconds: the GPU, the program's thread of a processor, and the time until the frame was handed over.
+struct FrameCost {
+    double gpu_ms = 0.0, busy_ms = 0.0, open_ms = 0.0;
+};
+
+// Why a frame of this cost was late.
+inline std::string whyLate(const FrameCost& cost, double period_ms) {
+    if (cost.gpu_ms > period_ms) { return fmt::format("the GPU took {:.1f} ms", cost.gpu_ms); }
+    if (cost.busy_ms > period_ms) { return fmt::format("the program took {:.1f} ms of processor time", cost.busy_ms); }
+    if (cost.open_ms > period_ms) {
+        return fmt::format("the program was held up: it took {:.1f} ms, {:.1f} of processor time", cost.open_ms, cost.busy_ms);
+    }
+    return fmt::format("neither the GPU ({:.1f} ms) nor the program ({:.1f} ms) took that long; another program or the runtime did",
+                       cost.gpu_ms, cost.open_ms);
+}
 
 }  // namespace binosplat

@@ -28,7 +28,8 @@ struct ShownPlace {
 
 // The rate and resolution that reach the eyes.
 struct ShownRate {
-    double met_hz = 0.0, display_hz = 0.0;  // displays that had a new picture, and all; 0: not known yet
+    double met_hz = 0.0, display_hz = 0.0;  // frames that the wearer got in the last second, and displays; 0: not known yet
+    int late = 0;                           // of these frames
     double resolution = 1.0;                // each way, of what the headset recommends
     std::optional<double> budget;           // the most that is rendered again, if the method has a budget
     bool is_beaten = false;                 // the rate cannot be held even with the least settings

@@ -30,8 +30,9 @@ void writeBefore(const std::string& words, float height_px) {
 // Rate and resolution, in plain words.
 std::string describeRate(const ShownRate& rate, Quality quality) {
     const std::string resolution = fmt::format("resolution {:.0f} %", 100.0 * rate.resolution);
-    if (!(rate.display_hz > 0.0)) { return resolution; }
-    std::string words = fmt::format("{:.0f} of {:.0f} Hz, {}", std::min(rate.met_hz, rate.display_hz), rate.display_hz, resolution);
+    if (!(rate.met_hz > 0.0)) { return resolution; }
+    const std::string late = rate.late > 0 ? fmt::format(" ({} late)", rate.late) : "";
+    std::string words = fmt::format("{:.0f} of {:.0f} Hz{}, {}", std::min(rate.met_hz, rate.display_hz), rate.display_hz, late, resolution);
     if (rate.is_beaten) { return words + ": too much for this computer even so"; }
     if (quality == Quality::kOff) { return words + "; choose one to keep motion smooth"; }
     return rate.budget ? fmt::format("{}, {:.0f} % of it redrawn", words, 100.0 * *rate.budget) : words;

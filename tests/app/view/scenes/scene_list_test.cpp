@@ -292,16 +292,36 @@ TEST_CASE("a scene that was shown has a small picture and a line, and favourites
     CHECK(favouriteScenes().empty());
 }
 
-TEST_CASE("the rate is that of displays with a new picture") {
+TEST_CASE("the rate is that of the frames of the last second, and those are late that come more than a display after the one before") {
     MetDisplays met;
     CHECK(met.displayHz() == 0.0);
-    for (int i = 0; i < 100; ++i) { met.add(10.0, 0.0); }
-    CHECK(met.metHz() == doctest::Approx(100.0));
-    for (int i = 0; i < 200; ++i) { met.add(10.0, 1.0); }
-    CHECK(met.displayHz() == doctest::Approx(100.0));
-    CHECK(met.metHz() == doctest::Approx(50.0));
-    met.add(20.0, 0.0);  // a rate of its own
-    CHECK(met.metHz() == doctest::Approx(50.0));
+    std::int64_t time_ns = 0;
+    const auto show = [&](int frames, std::int64_t step_ms, double period_ms, double met_hz, int late, bool follows = true) {
+        CAPTURE(step_ms);
+        for (int i = 0; i < frames; ++i) { met.add(time_ns += step_ms * 1'000'000, period_ms, follows); }
+        CHECK(met.displayHz() == doctest::Approx(1000.0 / period_ms));
+        CHECK(met.metHz() == doctest::Approx(met_hz));
+        CHECK(met.late() == late);
+    };
+    show(1, 0, 10.0, 0.0, 0);
+    show(150, 10, 10.0, 100.0, 0);
+    show(4, 330, 10.0, 1000.0 / 330.0, 4);   // the last and the three before reach back further than a second
+    show(3, 330, 330.0, 1000.0 / 330.0, 1);  // a runtime that then states that as its period
+    show(100, 10, 10.0, 100.0, 0);
+    show(50, 20, 10.0, 50.0, 50);
+    show(1, 800, 10.0, 0.0, 0, false);  // nobody was to see the frames before
+    show(50, 20, 20.0, 50.0, 0);        // another rate
+    show(1, 20, 10.0, 50.0, 0);         // and back
+    show(1, 60'000, 20.0, 0.0, 0);      // the machine slept
+}
+
+TEST_CASE("a late frame's reason is what took longer than a display") {
+    for (const auto& [cost, words] : {std::pair(FrameCost{12, 11, 13}, "the GPU took 12.0 ms"),
+                                      std::pair(FrameCost{9, 11, 13}, "the program took 11.0 ms of processor time"),
+                                      std::pair(FrameCost{9, 2, 13}, "the program was held up: it took 13.0 ms, 2.0 of processor time"),
+                                      std::pair(FrameCost{9, 2, 3}, "neither the GPU (9.0 ms) nor the program (3.0 ms) took that long")}) {
+        CHECK(whyLate(cost, 10.0).starts_with(words));
+    }
 }
 
 }  // SUITE(scene_list)
