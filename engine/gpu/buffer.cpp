@@ -7,6 +7,23 @@
 
 namespace binosplat {
 
+namespace {
+
+// From the first of the types whose heap has as much left.
+vk::raii::DeviceMemory allocate(const Context& context, const vk::MemoryRequirements& needs, const std::vector<std::uint32_t>& types,
+                                bool has_address) {
+    const vk::MemoryAllocateFlagsInfo flags(vk::MemoryAllocateFlagBits::eDeviceAddress);
+    for (std::size_t i = 0;; ++i) {
+        try {
+            return {context.device(), vk::MemoryAllocateInfo(needs.size, types[i], has_address ? &flags : nullptr)};
+        } catch (const vk::OutOfDeviceMemoryError&) {
+            if (i + 1 == types.size()) { throw; }
+        }
+    }
+}
+
+}  // namespace
+
 Buffer::Buffer(const Context& context, const std::string& name, std::uint64_t bytes, MemoryKind kind) {
     if (bytes == 0) { return; }
     using Usage = vk::BufferUsageFlagBits;
@@ -26,21 +43,12 @@ Buffer::Buffer(const Context& context, const std::string& name, std::uint64_t by
             context.device(),
             vk::BufferCreateInfo({}, bytes, kind == MemoryKind::kDevice ? usage : Usage::eTransferSrc | Usage::eTransferDst));
         const auto needs = buffer_.getMemoryRequirements();
-        std::uint32_t type = 0;
-        switch (kind) {
-            case MemoryKind::kDevice:
-                type = context.memoryType(needs.memoryTypeBits, {}, Property::eDeviceLocal);
-                break;
-            case MemoryKind::kUpload:
-                type = context.memoryType(needs.memoryTypeBits, Property::eHostVisible | Property::eHostCoherent, {});
-                break;
-            case MemoryKind::kReadback:
-                type = context.memoryType(needs.memoryTypeBits, Property::eHostVisible | Property::eHostCoherent, Property::eHostCached);
-                break;
-        }
-        const vk::MemoryAllocateFlagsInfo flags(vk::MemoryAllocateFlagBits::eDeviceAddress);
-        memory_ = vk::raii::DeviceMemory(context.device(),
-                                         vk::MemoryAllocateInfo(needs.size, type, kind == MemoryKind::kDevice ? &flags : nullptr));
+        const bool is_mapped = kind != MemoryKind::kDevice;
+        const vk::MemoryPropertyFlags wanted = is_mapped ? Property::eHostVisible | Property::eHostCoherent : vk::MemoryPropertyFlags();
+        const vk::MemoryPropertyFlags preferred = kind == MemoryKind::kDevice     ? Property::eDeviceLocal
+                                                  : kind == MemoryKind::kReadback ? Property::eHostCached
+                                                                                  : vk::MemoryPropertyFlags();
+        memory_ = allocate(context, needs, context.memoryTypes(needs.memoryTypeBits, wanted, preferred), !is_mapped);
         buffer_.bindMemory(*memory_, 0);
         allocated_bytes_ = needs.size;
     } catch (const vk::OutOfDeviceMemoryError&) {

@@ -283,17 +283,25 @@ std::uint64_t Context::deviceMemoryBytes() const {
     return most;
 }
 
-std::uint32_t Context::memoryType(std::uint32_t allowed_types, vk::MemoryPropertyFlags wanted, vk::MemoryPropertyFlags preferred) const {
+std::vector<std::uint32_t> Context::memoryTypes(std::uint32_t allowed_types, vk::MemoryPropertyFlags wanted,
+                                                vk::MemoryPropertyFlags preferred) const {
+    using Flag = vk::MemoryPropertyFlagBits;
+    // These want a feature or a use of their own.
+    constexpr vk::MemoryPropertyFlags kSpecial =
+        Flag::eProtected | Flag::eLazilyAllocated | Flag::eDeviceCoherentAMD | Flag::eDeviceUncachedAMD;
     const auto memory = physical_device_.getMemoryProperties();
-    std::optional<std::uint32_t> found;
-    for (std::uint32_t i = 0; i < memory.memoryTypeCount; ++i) {
-        const auto flags = memory.memoryTypes[i].propertyFlags;
-        if ((allowed_types & (1u << i)) == 0 || (flags & wanted) != wanted) { continue; }
-        if ((flags & preferred) == preferred) { return i; }
-        if (!found) { found = i; }
+    std::vector<std::uint32_t> found;
+    for (const bool is_preferred : {true, false}) {
+        for (std::uint32_t i = 0; i < memory.memoryTypeCount; ++i) {
+            const auto flags = memory.memoryTypes[i].propertyFlags;
+            const bool will_do = (allowed_types & (1u << i)) != 0 && (flags & wanted) == wanted && !(flags & kSpecial);
+            if (will_do && ((flags & preferred) == preferred) == is_preferred) { found.push_back(i); }
+        }
     }
-    if (!found) { throw Error(ExitCode::kNoDevice, fmt::format("{}: no memory of the kind {}", device_name_, vk::to_string(wanted))); }
-    return *found;
+    if (found.empty()) {
+        throw Error(ExitCode::kNoDevice, fmt::format("{}: no memory of the kind {}", device_name_, vk::to_string(wanted)));
+    }
+    return found;
 }
 
 void Context::nameObject(vk::ObjectType type, std::uint64_t handle, const std::string& object_name) const {

@@ -96,8 +96,13 @@ public:
     [[nodiscard]] const vk::raii::PipelineCache& pipelineCache() const { return pipeline_cache_.handle(); }
 
     [[nodiscard]] MemoryUse& memoryUse() const { return memory_use_; }
+    // Those that will do, of a buffer's or an image's allowed ones; the preferred ones first. Throws Error if there are none.
+    [[nodiscard]] std::vector<std::uint32_t> memoryTypes(std::uint32_t allowed_types, vk::MemoryPropertyFlags wanted,
+                                                         vk::MemoryPropertyFlags preferred) const;
     [[nodiscard]] std::uint32_t memoryType(std::uint32_t allowed_types, vk::MemoryPropertyFlags wanted,
-                                           vk::MemoryPropertyFlags preferred) const;
+                                           vk::MemoryPropertyFlags preferred) const {
+        return memoryTypes(allowed_types, wanted, preferred).front();
+    }
 
     // True if a device extension was asked for and is there.
     [[nodiscard]] bool hasDeviceExtension(const std::string& extension) const { return device_extensions_.contains(extension); }

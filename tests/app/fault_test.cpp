@@ -81,6 +81,12 @@ TEST_CASE("a limit of device memory is kept, and named where it does not suffice
     CHECK(machine.holds("out/pictures/mono" BINOSPLAT_FLOAT_EXTENSION));
 }
 
+TEST_CASE("where one type of memory is full, another serves that a buffer may lie in as well") {
+    const Machine machine;
+    machine.go(kRender, fault("allocate", 3, "type-full"));
+    CHECK(machine.holds("out/pictures/mono" BINOSPLAT_FLOAT_EXTENSION));
+}
+
 TEST_CASE("on a full disk the message names the file, and no file is left") {
     const Machine machine;
     machine.checkFails(kRender, filesOf(1), 1, "mono" BINOSPLAT_FLOAT_EXTENSION ": cannot be written (");

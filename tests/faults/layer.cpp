@@ -1,7 +1,8 @@
 // A Vulkan layer in which a call fails, or a signal comes, at a place that a test names: what machines do at a place nobody knows.
 // BINOSPLAT_FAULT=CALL:N:FAULT with CALL submit, wait, present or allocate, N from 1, and FAULT lost, surface-lost, no-device-memory,
-// no-host-memory, SIGINT or SIGTERM. From the Nth such call on what is lost stays lost and memory stays full; signals come once. Of a
-// lost device no wait until it is idle succeeds.
+// no-device-memory-once, no-host-memory, type-full, SIGINT or SIGTERM. From the Nth such call on what is lost stays lost and memory stays
+// full; signals come once. Of a lost device no wait until it is idle succeeds. type-full: buffers may lie in one more type of memory, and
+// the first type has no more of it.
 // BINOSPLAT_FAULT_TICKS=N: timestamps are N ticks apart, however long the work between them took.
 // BINOSPLAT_FAULT_TRACE=FILE: a line for each submission and each wait, in their order, with the fence: "submit 55d0", "wait 55d0";
 // "wait all" where the queue or the device is waited for.
@@ -55,10 +56,18 @@ PFN_vkQueueWaitIdle g_wait_queue = nullptr;
 std::atomic<bool> g_is_lost{false};
 PFN_vkAllocateMemory g_allocate = nullptr;
 PFN_vkGetQueryPoolResults g_results = nullptr;
+PFN_vkGetPhysicalDeviceMemoryProperties g_memory_properties = nullptr;
+PFN_vkGetBufferMemoryRequirements g_requirements = nullptr;
+std::uint32_t g_added_type = 0;  // of memory
+
+const Plan& thePlan() {
+    static const Plan plan;
+    return plan;
+}
 
 // What the call returns instead of being made; VK_SUCCESS: make it.
 VkResult strike(const char* call) {
-    static const Plan plan;
+    const Plan& plan = thePlan();
     static std::atomic<int> calls{0};
     if (plan.call != call) { return VK_SUCCESS; }
     const int number = ++calls;
@@ -67,8 +76,9 @@ VkResult strike(const char* call) {
         g_is_lost = true;
         return VK_ERROR_DEVICE_LOST;
     }
+    if (plan.fault == "no-device-memory-once") { return number == plan.number ? VK_ERROR_OUT_OF_DEVICE_MEMORY : VK_SUCCESS; }
     if (plan.fault == "surface-lost") { return VK_ERROR_SURFACE_LOST_KHR; }
-    if (plan.fault == "no-device-memory") { return VK_ERROR_OUT_OF_DEVICE_MEMORY; }
+    if (plan.fault == "no-device-memory" || plan.fault == "type-full") { return VK_ERROR_OUT_OF_DEVICE_MEMORY; }
     if (plan.fault == "no-host-memory") { return VK_ERROR_OUT_OF_HOST_MEMORY; }
     if (number == plan.number) { (void)std::raise(plan.fault == "SIGTERM" ? SIGTERM : SIGINT); }
     return VK_SUCCESS;
@@ -125,10 +135,25 @@ VKAPI_ATTR VkResult VKAPI_CALL waitForQueue(VkQueue queue) {
     return g_is_lost ? VK_ERROR_DEVICE_LOST : waited;
 }
 
+bool addsType() { return thePlan().fault == "type-full"; }
+
+VKAPI_ATTR void VKAPI_CALL memoryProperties(VkPhysicalDevice physical_device, VkPhysicalDeviceMemoryProperties* properties) {
+    g_memory_properties(physical_device, properties);
+    g_added_type = properties->memoryTypeCount++;
+    properties->memoryTypes[g_added_type] = properties->memoryTypes[0];
+}
+
+VKAPI_ATTR void VKAPI_CALL requirements(VkDevice device, VkBuffer buffer, VkMemoryRequirements* needs) {
+    g_requirements(device, buffer, needs);
+    if ((needs->memoryTypeBits & 1) != 0) { needs->memoryTypeBits |= 1u << g_added_type; }
+}
+
 VKAPI_ATTR VkResult VKAPI_CALL allocate(VkDevice device, const VkMemoryAllocateInfo* info, const VkAllocationCallbacks* callbacks,
                                         VkDeviceMemory* memory) {
-    const VkResult struck = strike("allocate");
-    const VkResult result = struck != VK_SUCCESS ? struck : g_allocate(device, info, callbacks, memory);
+    VkMemoryAllocateInfo own = *info;
+    if (addsType() && info->memoryTypeIndex == g_added_type) { own.memoryTypeIndex = 0; }
+    const VkResult struck = own.memoryTypeIndex == info->memoryTypeIndex ? strike("allocate") : VK_SUCCESS;
+    const VkResult result = struck != VK_SUCCESS ? struck : g_allocate(device, &own, callbacks, memory);
     if (result == VK_SUCCESS) { faults::countMemory(*memory, info->allocationSize); }
     return result;
 }
@@ -166,7 +191,10 @@ VKAPI_ATTR VkResult VKAPI_CALL createInstance(const VkInstanceCreateInfo* info, 
     link->u.pLayerInfo = link->u.pLayerInfo->pNext;
     const auto create = reinterpret_cast<PFN_vkCreateInstance>(g_instance_next(VK_NULL_HANDLE, "vkCreateInstance"));
     const VkResult result = create(info, callbacks, instance);
-    if (result == VK_SUCCESS) { g_instance = *instance; }
+    if (result != VK_SUCCESS) { return result; }
+    g_instance = *instance;
+    const auto memory = g_instance_next(*instance, "vkGetPhysicalDeviceMemoryProperties");
+    g_memory_properties = reinterpret_cast<PFN_vkGetPhysicalDeviceMemoryProperties>(memory);
     return result;
 }
 
@@ -190,6 +218,7 @@ VKAPI_ATTR VkResult VKAPI_CALL createDevice(VkPhysicalDevice physical_device, co
     g_wait_queue = reinterpret_cast<PFN_vkQueueWaitIdle>(g_device_next(*device, "vkQueueWaitIdle"));
     g_allocate = reinterpret_cast<PFN_vkAllocateMemory>(g_device_next(*device, "vkAllocateMemory"));
     g_results = reinterpret_cast<PFN_vkGetQueryPoolResults>(g_device_next(*device, "vkGetQueryPoolResults"));
+    g_requirements = reinterpret_cast<PFN_vkGetBufferMemoryRequirements>(g_device_next(*device, "vkGetBufferMemoryRequirements"));
     faults::beginCounting(g_device_next, *device);
     VkPhysicalDeviceProperties properties{};
     reinterpret_cast<PFN_vkGetPhysicalDeviceProperties>(instance_next(g_instance, "vkGetPhysicalDeviceProperties"))(physical_device,
@@ -216,6 +245,8 @@ PFN_vkVoidFunction ownFunction(const char* name) {
     if (std::strcmp(name, "vkQueueWaitIdle") == 0) { return asVoid(waitForQueue); }
     if (std::strcmp(name, "vkAllocateMemory") == 0) { return asVoid(allocate); }
     if (std::strcmp(name, "vkGetQueryPoolResults") == 0) { return asVoid(results); }
+    if (addsType() && std::strcmp(name, "vkGetBufferMemoryRequirements") == 0) { return asVoid(requirements); }
+    if (addsType() && std::strcmp(name, "vkGetPhysicalDeviceMemoryProperties") == 0) { return asVoid(memoryProperties); }
     if (std::strcmp(name, "vkGetDeviceProcAddr") == 0) { return asVoid(getDeviceProcAddr); }
     const PFN_vkVoidFunction load = faults::loadFunction(name);
     return load != nullptr ? load : faults::countingFunction(name);
