@@ -207,12 +207,32 @@ void Context::createDevice(const ContextOptions& options) {
     addresses.pNext = options.device_features;
     void* features = &scalar_layout;
     std::vector<const char*> extensions;
+    std::vector<const char*> all_wanted = options.device_extensions;
+    all_wanted.push_back(VK_EXT_SUBGROUP_SIZE_CONTROL_EXTENSION_NAME);
+    all_wanted.push_back(VK_KHR_SHADER_SUBGROUP_UNIFORM_CONTROL_FLOW_EXTENSION_NAME);
     for (const vk::ExtensionProperties& offered : physical_device_.enumerateDeviceExtensionProperties()) {
-        for (const char* wanted : options.device_extensions) {
+        for (const char* wanted : all_wanted) {
             if (std::strcmp(offered.extensionName, wanted) != 0) { continue; }
             extensions.push_back(wanted);
             device_extensions_.insert(wanted);
         }
+    }
+    // What kernels ask for where it can be had, see lib/group.glsl.
+    vk::PhysicalDeviceSubgroupSizeControlFeatures subgroups;
+    if (hasDeviceExtension(VK_EXT_SUBGROUP_SIZE_CONTROL_EXTENSION_NAME)) {
+        using Subgroups = vk::PhysicalDeviceSubgroupSizeControlFeatures;
+        subgroups = physical_device_.getFeatures2<vk::PhysicalDeviceFeatures2, Subgroups>().get<Subgroups>();
+        has_full_subgroups_ = subgroups.subgroupSizeControl && subgroups.computeFullSubgroups;
+        subgroups.pNext = features;
+        features = &subgroups;
+    }
+    vk::PhysicalDeviceShaderSubgroupUniformControlFlowFeaturesKHR flow;
+    if (hasDeviceExtension(VK_KHR_SHADER_SUBGROUP_UNIFORM_CONTROL_FLOW_EXTENSION_NAME)) {
+        using Flow = vk::PhysicalDeviceShaderSubgroupUniformControlFlowFeaturesKHR;
+        flow = physical_device_.getFeatures2<vk::PhysicalDeviceFeatures2, Flow>().get<Flow>();
+        has_subgroup_uniform_flow_ = flow.shaderSubgroupUniformControlFlow == VK_TRUE;
+        flow.pNext = features;
+        features = &flow;
     }
     vk::PhysicalDevicePipelineExecutablePropertiesFeaturesKHR statistics;
     if (hasDeviceExtension(VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME)) {
@@ -240,16 +260,18 @@ void Context::readLimits() {
     is_software_ = vulkan10.deviceType == vk::PhysicalDeviceType::eCpu;
     max_allocation_bytes_ = vulkan11.maxMemoryAllocationSize;
     subgroup_size_ = min_subgroup_size_ = max_subgroup_size_ = vulkan11.subgroupSize;
-    if (vulkan10.apiVersion >= VK_API_VERSION_1_3) {
+    if (vulkan10.apiVersion >= VK_API_VERSION_1_3 || hasDeviceExtension(VK_EXT_SUBGROUP_SIZE_CONTROL_EXTENSION_NAME)) {
         const auto sizes =
             physical_device_.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceSubgroupSizeControlProperties>();
         min_subgroup_size_ = sizes.get<vk::PhysicalDeviceSubgroupSizeControlProperties>().minSubgroupSize;
         max_subgroup_size_ = sizes.get<vk::PhysicalDeviceSubgroupSizeControlProperties>().maxSubgroupSize;
-        const auto buffers = physical_device_.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceMaintenance4Properties>();
-        max_allocation_bytes_ = std::min(max_allocation_bytes_, buffers.get<vk::PhysicalDeviceMaintenance4Properties>().maxBufferSize);
     } else {  // some drivers vary the size between 8 and 32 without saying so
         min_subgroup_size_ = std::min(8u, subgroup_size_);
         max_subgroup_size_ = std::max(32u, subgroup_size_);
+    }
+    if (vulkan10.apiVersion >= VK_API_VERSION_1_3) {
+        const auto buffers = physical_device_.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceMaintenance4Properties>();
+        max_allocation_bytes_ = std::min(max_allocation_bytes_, buffers.get<vk::PhysicalDeviceMaintenance4Properties>().maxBufferSize);
     }
     const std::uint32_t bits = physical_device_.getQueueFamilyProperties()[queue_family_].timestampValidBits;
     shared_memory_ = vulkan10.limits.maxComputeSharedMemorySize;
@@ -261,6 +283,14 @@ void Context::readLimits() {
 std::span<const std::uint32_t> Context::shaderWords(std::string_view name) const {
     const auto found = replaced_shaders_.find(name);
     return found == replaced_shaders_.end() ? embeddedShader(name) : std::span<const std::uint32_t>(found->second);
+}
+
+vk::PipelineShaderStageCreateFlags Context::fullSubgroups(std::uint32_t local_size_x) const {
+    using Flag = vk::PipelineShaderStageCreateFlagBits;
+    if (!has_full_subgroups_ || local_size_x % max_subgroup_size_ != 0) { return {}; }
+    // Of any width: some devices otherwise take their widest, which is their slowest.
+    return min_subgroup_size_ == max_subgroup_size_ ? Flag::eRequireFullSubgroups
+                                                    : Flag::eRequireFullSubgroups | Flag::eAllowVaryingSubgroupSize;
 }
 
 void Context::requireNoValidationMessages() const {

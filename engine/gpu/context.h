@@ -76,6 +76,10 @@ public:
     [[nodiscard]] std::uint32_t subgroupSize() const { return subgroup_size_; }
     [[nodiscard]] std::uint32_t minSubgroupSize() const { return min_subgroup_size_; }
     [[nodiscard]] std::uint32_t maxSubgroupSize() const { return max_subgroup_size_; }
+    // What a kernel with workgroups of this width asks of the device: subgroups without idle lanes, where they can be had. 0: nothing.
+    [[nodiscard]] vk::PipelineShaderStageCreateFlags fullSubgroups(std::uint32_t local_size_x) const;
+    // True if SPV_KHR_subgroup_uniform_control_flow may be used.
+    [[nodiscard]] bool hasSubgroupUniformFlow() const { return has_subgroup_uniform_flow_; }
     // For a workgroup that lies along x.
     [[nodiscard]] std::uint32_t maxGroupInvocations() const { return max_group_invocations_; }
     // Per workgroup, in bytes.
@@ -144,7 +148,7 @@ private:
     mutable std::mutex queue_mutex_;
     std::uint32_t queue_family_ = 0;
     std::string device_name_;
-    bool is_software_ = false;
+    bool is_software_ = false, has_full_subgroups_ = false, has_subgroup_uniform_flow_ = false;
     std::set<std::string> device_extensions_;
     std::uint64_t max_allocation_bytes_ = 0, memory_limit_bytes_ = 0;
     double timestamp_period_ns_ = 0.0;

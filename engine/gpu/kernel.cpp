@@ -29,24 +29,41 @@ void append(KernelTable& table, const KernelTable& more) { table.insert(table.en
 
 namespace {
 
-// A shader with these values of constant_id 0, 1, 2 ..., as plain constants. Not through VkSpecializationInfo, since not all drivers
-// remove what a value rules out before they do their slow work: SwiftShader takes a minute for a variant of resample then.
-std::vector<std::uint32_t> specialize(std::span<const std::uint32_t> words, const std::vector<std::uint32_t>& values) {
-    constexpr std::uint32_t kConstantTrue = 41, kConstantFalse = 42, kConstant = 43, kSpecConstantTrue = 48, kSpecConstantFalse = 49,
-                            kSpecConstant = 50, kDecorate = 71, kSpecId = 1;
-    constexpr std::size_t kHeaderWords = 5;
-    const auto isWhole = [&](std::size_t at) { return words[at] >> 16 > 0 && (words[at] >> 16) <= words.size() - at; };
+// Of SPIR-V, chapter 3.
+constexpr std::uint32_t kExtension = 10, kExecutionMode = 16, kConstantTrue = 41, kConstantFalse = 42, kConstant = 43,
+                        kConstantComposite = 44, kSpecConstantTrue = 48, kSpecConstantFalse = 49, kSpecConstant = 50,
+                        kSpecConstantComposite = 51, kDecorate = 71;
+constexpr std::uint32_t kSpecId = 1, kBuiltIn = 11, kLocalSize = 17, kWorkgroupSize = 25, kSubgroupUniformFlow = 4421;
+constexpr std::string_view kUniformFlowExtension = "SPV_KHR_subgroup_uniform_control_flow";
+constexpr std::size_t kHeaderWords = 5;
+
+// Calls `take` with each instruction and its opcode.
+template <typename Take>
+void eachInstruction(std::span<const std::uint32_t> words, const Take& take) {
     check(words.size() >= kHeaderWords, "a shader of {} words, which is none", words.size());
-    std::map<std::uint32_t, std::uint32_t> value_of;  // by the id of the constant
-    std::vector<std::uint32_t> specialized(words.begin(), words.begin() + kHeaderWords);
     for (std::size_t at = kHeaderWords; at < words.size(); at += words[at] >> 16) {
-        check(isWhole(at), "a shader of {} words that breaks off at word {}", words.size(), at);
-        const auto instruction = words.subspan(at, words[at] >> 16);
-        const std::uint32_t opcode = instruction[0] & 0xffff;
+        const bool is_whole = words[at] >> 16 > 0 && (words[at] >> 16) <= words.size() - at;
+        check(is_whole, "a shader of {} words that breaks off at word {}", words.size(), at);
+        take(words.subspan(at, words[at] >> 16), words[at] & 0xffff);
+    }
+}
+
+// A shader with these values of constant_id 0, 1, 2 ..., as plain constants. Not through VkSpecializationInfo, since not all drivers
+// remove what a value rules out before they do their slow work: SwiftShader takes a minute for a variant of resample then. Without
+// `has_uniform_flow` it does not ask for subgroup-uniform control flow.
+std::vector<std::uint32_t> specialize(std::span<const std::uint32_t> words, const std::vector<std::uint32_t>& values,
+                                      bool has_uniform_flow) {
+    std::map<std::uint32_t, std::uint32_t> value_of;  // by the id of the constant
+    std::vector<std::uint32_t> specialized(words.begin(), words.begin() + std::min(words.size(), kHeaderWords));
+    eachInstruction(words, [&](std::span<const std::uint32_t> instruction, std::uint32_t opcode) {
         if (opcode == kDecorate && instruction[2] == kSpecId) {
             if (instruction[3] < values.size()) { value_of[instruction[1]] = values[instruction[3]]; }
-            continue;  // decorations come before what they decorate
+            return;  // decorations come before what they decorate
         }
+        const bool is_of_flow = opcode == kExtension
+                                    ? std::string_view(reinterpret_cast<const char*>(&instruction[1])) == kUniformFlowExtension
+                                    : opcode == kExecutionMode && instruction[2] == kSubgroupUniformFlow;
+        if (is_of_flow && !has_uniform_flow) { return; }
         const auto put = [&](std::uint32_t other) { specialized.push_back((instruction[0] & 0xffff0000) | other); };
         const auto found = opcode >= kSpecConstantTrue && opcode <= kSpecConstant ? value_of.find(instruction[2]) : value_of.end();
         switch (opcode) {
@@ -62,8 +79,22 @@ std::vector<std::uint32_t> specialize(std::span<const std::uint32_t> words, cons
         }
         specialized.insert(specialized.end(), instruction.begin() + 1, instruction.end());
         if (opcode == kSpecConstant && found != value_of.end()) { specialized.back() = found->second; }
-    }
+    });
     return specialized;
+}
+
+// The width of its workgroups: a literal, or the first part of the constant that stands for all three.
+std::uint32_t localSizeX(std::span<const std::uint32_t> words) {
+    std::uint32_t size = 0, id_of_sizes = 0;
+    std::map<std::uint32_t, std::uint32_t> value_of;
+    eachInstruction(words, [&](std::span<const std::uint32_t> instruction, std::uint32_t opcode) {
+        if (opcode == kExecutionMode && instruction[2] == kLocalSize) { size = instruction[3]; }
+        if (opcode == kDecorate && instruction[2] == kBuiltIn && instruction[3] == kWorkgroupSize) { id_of_sizes = instruction[1]; }
+        if (opcode == kConstant) { value_of[instruction[2]] = instruction[3]; }
+        const bool is_composite = opcode == kConstantComposite || opcode == kSpecConstantComposite;
+        if (is_composite && instruction[2] == id_of_sizes) { size = value_of[instruction[3]]; }
+    });
+    return size;
 }
 
 }  // namespace
@@ -74,11 +105,12 @@ Kernel::Kernel(const Context& context, const std::string& shader, std::uint32_t 
     const auto general = context.shaderWords(shader);
     assert(!general.empty() && push_bytes <= 128);
     assert(keep == Keep::kNothing || context.hasKernelStatistics());
-    const std::vector<std::uint32_t> words = specialize(general, constants);
+    const std::vector<std::uint32_t> words = specialize(general, constants, context.hasSubgroupUniformFlow());
+    subgroups_ = context.fullSubgroups(localSizeX(words));
     const vk::raii::ShaderModule module(context.device(), vk::ShaderModuleCreateInfo({}, words.size() * sizeof(words[0]), words.data()));
     const vk::PushConstantRange range(vk::ShaderStageFlagBits::eCompute, 0, push_bytes);
     layout_ = vk::raii::PipelineLayout(context.device(), vk::PipelineLayoutCreateInfo({}, {}, range));
-    const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main");
+    const vk::PipelineShaderStageCreateInfo stage(subgroups_, vk::ShaderStageFlagBits::eCompute, *module, "main");
     const auto flags =
         keep == Keep::kStatistics ? vk::PipelineCreateFlags(vk::PipelineCreateFlagBits::eCaptureStatisticsKHR) : vk::PipelineCreateFlags();
     // A driver may have no statistics of a kernel that it did not compile just now.

@@ -31,6 +31,8 @@ public:
     [[nodiscard]] vk::Pipeline pipeline() const { return *pipeline_; }
     [[nodiscard]] vk::PipelineLayout layout() const { return *layout_; }
     [[nodiscard]] std::uint32_t pushBytes() const { return push_bytes_; }
+    // What it asks of its subgroups, see Context::fullSubgroups.
+    [[nodiscard]] vk::PipelineShaderStageCreateFlags subgroups() const { return subgroups_; }
     // Of a kernel that keeps them.
     [[nodiscard]] KernelStatistics statistics(const Context& context) const;
 
@@ -38,6 +40,7 @@ private:
     vk::raii::PipelineLayout layout_{nullptr};
     vk::raii::Pipeline pipeline_{nullptr};
     std::uint32_t push_bytes_ = 0;
+    vk::PipelineShaderStageCreateFlags subgroups_;
 };
 
 // Kernels, made when they are first needed: no mode pays for another's.

@@ -79,7 +79,7 @@ void sampleEdges(WarpView warp) {
     }
 }
 
-void main() {
+void main() [[subgroup_uniform_control_flow]] {
     const WarpView warp = pass.warp.at[0];
     findDepthBounds();
     sampleEdges(warp);

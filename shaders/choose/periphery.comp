@@ -83,7 +83,7 @@ void listTile(bool exists, bool chosen, uint tile, uvec2 size_tiles) {
     pass.chosen_tiles.at[0] = list;
 }
 
-void main() {
+void main() [[subgroup_uniform_control_flow]] {
     const uvec2 size_tiles = (pass.size_px + kTileSize - 1) / kTileSize, half_px = (pass.size_px + 1) / 2;
     if (kOfHalf) {
         const uvec2 half_tiles = (half_px + kTileSize - 1) / kTileSize;

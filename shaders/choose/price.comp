@@ -124,7 +124,7 @@ void findLastBin(float share, uint picture_cost) {
     }
 }
 
-void main() {
+void main() [[subgroup_uniform_control_flow]] {
     const uvec2 size_tiles = pass.warp.at[0].size_tiles;
     const uint tile = gl_WorkGroupID.x * kWarpGroup + gl_LocalInvocationIndex;
     if (tile < size_tiles.x * size_tiles.y) { pass.tile_prices.at[tile] = priceOf(tile, size_tiles); }

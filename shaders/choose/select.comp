@@ -57,7 +57,7 @@ bool isChosen(uint tile, uint tiles, out bool waits) {
     return chosen;
 }
 
-void main() {
+void main() [[subgroup_uniform_control_flow]] {
     const uvec2 size_tiles = pass.warp.at[0].size_tiles;
     const uint tiles = size_tiles.x * size_tiles.y;
     const uint tile = gl_WorkGroupID.x * kWarpGroup + threadIndex();

@@ -51,7 +51,7 @@ bool movingPays(WarpView warp, uint all_saved, uint picture_cost, uint tiles) {
     return saved > mending && (gain.y > cost.y || (gain.y == cost.y && gain.x > cost.x));
 }
 
-void main() {
+void main() [[subgroup_uniform_control_flow]] {
     const WarpView warp = pass.warp.at[0];
     const uint tiles = warp.size_tiles.x * warp.size_tiles.y;
     const uint tile = gl_WorkGroupID.x * kWarpGroup + gl_LocalInvocationIndex;

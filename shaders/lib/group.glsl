@@ -1,8 +1,13 @@
-// Workgroups: which one this is, which thread, and prefix sums across one. No subgroup width is assumed.
+// Workgroups: which one this is, which thread, and prefix sums across one. No subgroup width is assumed, but that no subgroup of a workgroup
+// has idle lanes: kernels ask for that where a device lets them (Context::fullSubgroups).
+//
+// What lanes tell each other after a branch that only some took needs them together again. Vulkan promises that where all of a workgroup
+// came to that branch, and with subgroup_uniform_control_flow where all of the subgroup did.
 //
 // Here and elsewhere hot loops test at their end whether to go on: a device that runs branches under a mask, as llvmpipe does, runs
 // the body of a `for` once more than there are items.
 #extension GL_EXT_control_flow_attributes : require
+#extension GL_EXT_subgroup_uniform_control_flow : require
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #extension GL_KHR_shader_subgroup_ballot : require

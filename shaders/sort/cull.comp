@@ -112,7 +112,7 @@ bool isVisible(CameraSplat splat, EyeView eye) {
 
 bool isWanted(CameraSplat splat, EyeView eye, Uints mask) { return isVisible(splat, eye) && (!kMasked || meetsMask(splat, eye, mask)); }
 
-void main() {
+void main() [[subgroup_uniform_control_flow]] {
     const uint group = groupIndex();
     if (gl_LocalInvocationIndex < kBlockWords) { visible_words[gl_LocalInvocationIndex] = 0; }
     if (gl_LocalInvocationIndex == 0) { visible_count = 0; }

@@ -78,7 +78,7 @@ void listPages(uint words) {
     } while (word < words);
 }
 
-void main() {
+void main() [[subgroup_uniform_control_flow]] {
     const uint group = groupIndex();
     if (gl_LocalInvocationIndex < kGroupWords) { visible_words[gl_LocalInvocationIndex] = 0; }
     const EyeView first_eye = shareEye(pass.eyes, pass.first_eye);

@@ -65,7 +65,7 @@ void sumRuns(uint runs) {
     }
 }
 
-void main() {
+void main() [[subgroup_uniform_control_flow]] {
     const uint count = pass.list.at[0].count;
     const uint block_keys = sortBlockKeys(count), blocks = groupsOver(count, block_keys);
     countDigits(gl_WorkGroupID.x, block_keys, count);

@@ -66,7 +66,7 @@ void placeDigits(uint block) {
     } while (digit < pass.digits);
 }
 
-void main() {
+void main() [[subgroup_uniform_control_flow]] {
     const uint count = pass.list.at[0].count;
     const uint block = gl_WorkGroupID.x;
     for (uint i = gl_LocalInvocationIndex; i < gl_NumSubgroups * pass.digits; i += kThreads) { subgroup_digits[i] = 0; }

@@ -12,13 +12,12 @@ layout(push_constant, scalar) uniform Push { BinPass pass; };
 
 #include "lib/pair.glsl"
 
-// Every lane of a subgroup must call it.
+// Every lane of a workgroup must call it; it returns to none early, see lib/group.glsl.
 void listLarge(bool is_large, uint rank, uint begin) {
     const uvec4 large_lanes = subgroupBallot(is_large);
     const uint large = subgroupBallotBitCount(large_lanes);
-    if (large == 0) { return; }
     uint place = 0;
-    if (subgroupElect()) { place = atomicAdd(pass.counters.at[0].large_splats, large); }
+    if (large > 0 && subgroupElect()) { place = atomicAdd(pass.counters.at[0].large_splats, large); }
     place = subgroupBroadcastFirst(place) + subgroupBallotExclusiveBitCount(large_lanes);
     if (is_large) {
         pass.large_splats.at[place] = rank;
@@ -28,7 +27,7 @@ void listLarge(bool is_large, uint rank, uint begin) {
 
 const uint kPerThread = kListBlock / kGroupSize;
 
-void main() {
+void main() [[subgroup_uniform_control_flow]] {
     const uint splats = pass.visible.at[0].count;
     const uint group = groupIndex();
     const uint first = group * kListBlock + threadIndex() * kPerThread;

@@ -72,7 +72,7 @@ void putLarge(uint i, uint lanes) {
     }
 }
 
-void main() {
+void main() [[subgroup_uniform_control_flow]] {
     const uint lanes = laneCount();
     const uint large = pass.counters.at[0].large_splats;
     uint i = gl_WorkGroupID.x * gl_NumSubgroups + gl_SubgroupID;

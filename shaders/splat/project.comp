@@ -119,7 +119,7 @@ void addSquareTiles(uint square_tiles) {
     }
 }
 
-void main() {
+void main() [[subgroup_uniform_control_flow]] {
     const uint count = pass.visible.at[0].count;
     const uint group = groupIndex();
     if (gl_LocalInvocationIndex == 0) { group_tiles = 0; }

@@ -199,7 +199,7 @@ void leaveTile(uint tile, uint cost, float error) {
     pass.past_tiles.at[tile] = PastTile(cost, 0, growth, vec4(0), uvec4(0));
 }
 
-void main() {
+void main() [[subgroup_uniform_control_flow]] {
     const EyeView eye = pass.eyes.at[pass.eye];
     const uvec2 size_px = eye.size_px;
     const uint max_inverse_depth_bits = floatBitsToUint(eye.max_inverse_depth);

@@ -63,7 +63,7 @@ void clear(uint tile, uint pixel_of_tile) {
     if (kPast) { pass.moving.at[at] = movingPixel(0, kLanded, 0); }
 }
 
-void main() {
+void main() [[subgroup_uniform_control_flow]] {
     const uint item = groupIndex() * kGroupSize + threadIndex();
     if (!kMasked) {
         const uvec2 size_tiles = (pass.size_px + kTileSize - 1) / kTileSize;

@@ -163,7 +163,7 @@ void hideTiles(uint y, uint first_tile, uint width) {
     }
 }
 
-void main() {
+void main() [[subgroup_uniform_control_flow]] {
     const WarpView warp = pass.warp.at[0];
     const uint y = pass.first_row + warp.rows_apart * spread(gl_WorkGroupID.x, gl_NumWorkGroups.x);
     if (y >= warp.size_px.y) { return; }  // the last row may be an even one

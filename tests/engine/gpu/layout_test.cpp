@@ -167,6 +167,17 @@ TEST_CASE_FIXTURE(Gpu, "every kernel reads each constant that it is compiled for
     }
 }
 
+TEST_CASE_FIXTURE(Gpu, "every kernel has full subgroups where its width and the device allow it") {
+    const std::uint32_t lanes = context().maxSubgroupSize();
+    const bool is_offered = context().fullSubgroups(lanes) != vk::PipelineShaderStageCreateFlags();
+    CHECK(is_offered == context().hasDeviceExtension(VK_EXT_SUBGROUP_SIZE_CONTROL_EXTENSION_NAME));
+    CHECK(context().fullSubgroups(lanes + 1) == vk::PipelineShaderStageCreateFlags());
+    // Its width is a literal, a constant, or another constant than the first.
+    CHECK(Kernel(context(), variantOf(BinKernel{})).subgroups() == context().fullSubgroups(gpu::kGroupSize));
+    CHECK(Kernel(context(), variantOf(SortCountKernel{.threads = 4 * lanes})).subgroups() == context().fullSubgroups(lanes));
+    CHECK(Kernel(context(), variantOf(SortCountKernel{.threads = 3 * lanes / 2})).subgroups() == context().fullSubgroups(lanes + 1));
+}
+
 TEST_CASE("no shader copies a struct of addresses, which some compilers do not survive, nor loads an address as if it lay anywhere") {
     for (const auto& [name, pass] : listedPasses()) {
         CAPTURE(name);
