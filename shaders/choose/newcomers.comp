@@ -34,7 +34,7 @@ const float kMostStepsOfOne = 2147483520.0;
 // True if the splat's centre, clamped to the picture, is clearly nearer than what the source sees in the middle of its tile; always in a
 // tile that is rendered.
 bool standsInFront(WarpView warp, vec2 pixel_px, float inverse_depth) {
-    const uint tile = tileOf(warp.size_tiles, uvec2(clamp(pixel_px, vec2(0), vec2(warp.size_px - 1))));
+    const uint tile = tileOf(warp.size_tiles, pixelAt(warp.size_px, pixel_px));
     const uint moving = pass.tile_depths.at[tile];
     return pass.tile_kinds.at[tile] != 0 || moving == 0 || inverse_depth > kInFrontRatio * inverseDepthOf(moving);
 }

@@ -29,10 +29,8 @@ uvec2 middleOf(WarpView warp, uint tile) {
 uint pairsNear(WarpView warp, uvec2 middle, uint moving) {
     const vec2 middle_px = vec2(middle) + 0.5;
     const vec3 moved = movePixel(warp.source_from_target, middle_px, moving == 0 ? 0 : inverseDepthOf(moving));
-    // Comparisons are written so that NaN stays where it is.
-    const bool sane = moved.z > 0 && abs(moved.x) < 1e9 && abs(moved.y) < 1e9;
-    const vec2 place_px = clamp(sane ? moved.xy : middle_px, vec2(0), vec2(warp.size_px) - 1);
-    const uvec2 range = pass.ranges.at[tileOf(warp.size_tiles, uvec2(place_px))];
+    const bool sane = isPositive(moved.z) && isPositive(1e9 - abs(moved.x)) && isPositive(1e9 - abs(moved.y));  // NaN stays where it is
+    const uvec2 range = pass.ranges.at[tileOf(warp.size_tiles, pixelAt(warp.size_px, sane ? moved.xy : middle_px))];
     return range.y - range.x;
 }
 

@@ -24,7 +24,7 @@ Copied copyArrived(WarpView warp, uint row, uvec2 at) {
     const int left = here ? int(at.x) : arrivedBefore(at.x), right = here ? int(at.x) : arrivedAfter(at.x, warp.size_px.x);
     if (left < 0 && right < 0) {
         const vec2 place_px = movePixel(warp.source_from_target, vec2(at) + 0.5, 0).xy;
-        const uvec2 source = uvec2(clamp(place_px, vec2(0.5), vec2(warp.size_px) - 0.5));
+        const uvec2 source = pixelAt(warp.size_px, place_px);
         return Copied(sourceAt(source.y * warp.size_px.x + source.x), kHole, 0);
     }
     const uint first = uint(left >= 0 ? left : right), last = uint(right >= 0 ? right : left);

@@ -7,6 +7,8 @@
 //
 // Rounding costs up to 2^-19 of the inverse depth: 1e-4 px where the eyes see a point 50 px apart.
 
+#include "lib/sign.glsl"
+
 const uint kLanded = 0x20u;
 const uint kSpreadBits = 0x1fu;
 
@@ -25,7 +27,7 @@ ivec2 pixelOfParity(vec2 place_px, uint moving) {
 // square. NaN counts as none.
 uint spreadCode(float variance_share) {
     const int octave = int(floatBitsToUint(variance_share * 1.41421356) >> 23) - 127;  // the nearest
-    return variance_share > 0 ? uint(clamp(octave - int(2 * kLeastSpreadLog2) + 1, 0, int(kSpreadCodes))) : 0;
+    return isPositive(variance_share) ? uint(clamp(octave - int(2 * kLeastSpreadLog2) + 1, 0, int(kSpreadCodes))) : 0;
 }
 float varianceShareOf(uint moving) {
     const int code = int(moving & kSpreadBits);

@@ -77,7 +77,7 @@ ivec2 unitsBetween(vec2 bounds_px, uint size, uint count) {
     if (!(first_pixel <= last_pixel)) { return ivec2(0, 0); }
     precise const vec2 units = vec2(floor(first_pixel / float(size)), floor(last_pixel / float(size)) + 1);
     const vec2 clipped = clamp(units, vec2(0), vec2(count));
-    return ivec2(clipped);
+    return clamp(ivec2(clipped), ivec2(0), ivec2(count));  // also of NaN, of which the first may make anything
 }
 
 // The tiles of a row that a splat meets, within its box of tiles; of a disc that reaches the eye's plane all of the box's.

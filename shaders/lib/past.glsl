@@ -34,7 +34,7 @@ bool isHiddenInPast(PastView view, uvec2 at) {
 }
 
 uint wordAt(PastView view, vec2 place_px) {
-    const uvec2 at = uvec2(clamp(place_px, vec2(0), vec2(view.past_size_px) - 1));
+    const uvec2 at = pixelAt(view.past_size_px, place_px);
     return isHiddenInPast(view, at) ? 0 : pass.source_words.at[at.y * view.past_size_px.x + at.x];
 }
 

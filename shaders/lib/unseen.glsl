@@ -1,7 +1,7 @@
 // Tiles of the target that the source's picture cannot fill, wherever the scene stands.
 
 bool isHiddenAt(WarpView warp, Uints shown_mask, vec2 place_px) {
-    const uvec2 tile = uvec2(clamp(place_px, vec2(0), vec2(warp.size_px) - 1)) / kTileSize;
+    const uvec2 tile = pixelAt(warp.size_px, place_px) / kTileSize;
     return !isInMask(shown_mask, warp.size_tiles, tile);
 }
 

@@ -16,6 +16,7 @@ layout(constant_id = 0) const uint kSplatKind = kDiscs;  // dimmed or not makes 
 #include "lib/gaussian.glsl"
 #include "lib/eye.glsl"
 #include "lib/tile_mask.glsl"
+#include "lib/sign.glsl"
 
 layout(local_size_x = kGroupSize) in;
 layout(push_constant, scalar) uniform Push { CullPass pass; };
@@ -33,20 +34,22 @@ float reachAlong(CameraSplat splat, float radius, vec3 normal) {
 }
 
 // True if any of the disc lies on the side of the plane through the eye that `normal` points to.
-bool reachesInside(CameraSplat splat, float radius, vec3 normal) { return dot(splat.centre, normal) + reachAlong(splat, radius, normal) >= 0; }
+bool reachesInside(CameraSplat splat, float radius, vec3 normal) { return isNotNegative(dot(splat.centre, normal) + reachAlong(splat, radius, normal)); }
 
 // True if a box around the projected centre meets the picture.
 bool isOnScreen(CameraSplat splat, EyeView eye, vec2 half_px) {
     const vec2 centre_px = eye.focal_px * splat.centre.xy / splat.centre.z + eye.principal_px;
-    return all(greaterThan(centre_px, -half_px)) && all(lessThan(centre_px, vec2(eye.size_px) + half_px));
+    const vec2 from_low = centre_px + half_px, to_high = (vec2(eye.size_px) + half_px) - centre_px;
+    return isPositive(from_low.x) && isPositive(from_low.y) && isPositive(to_high.x) && isPositive(to_high.y);
 }
 
 // True if any tile between two corners, in pixels, belongs to the mask.
 bool meetsMask(Uints mask, uvec2 size_tiles, vec2 low_px, vec2 high_px) {
     const vec2 last = vec2(size_tiles) - 1;
     const vec2 first_tile = floor(low_px / float(kTileSize)), last_tile = floor(high_px / float(kTileSize));
-    if (!(all(lessThanEqual(first_tile, last)) && all(greaterThanEqual(last_tile, vec2(0))))) { return false; }
-    const uvec2 begin = uvec2(clamp(first_tile, vec2(0), last)), end = uvec2(clamp(last_tile, vec2(0), last)) + 1;
+    if (any(greaterThan(first_tile, last)) || any(lessThan(last_tile, vec2(0)))) { return false; }
+    // Within the picture even where a corner is NaN, of which nothing is known.
+    const uvec2 begin = min(uvec2(clamp(first_tile, vec2(0), last)), size_tiles - 1), end = min(uvec2(clamp(last_tile, vec2(0), last)), size_tiles - 1) + 1;
     uint row = begin.y, bits = 0;
     [[dont_unroll]] do {
         uint x = begin.x;
@@ -89,17 +92,17 @@ bool meetsMask(CameraSplat splat, EyeView eye, Uints mask) {
     return meetsMask(mask, eye.size_tiles, low_px, high_px);
 }
 
-// Comparisons are written so that NaN is not visible.
+// NaN is not visible.
 bool isVisible(CameraSplat splat, EyeView eye) {
     const float cut = cutOf(splat.opacity);
-    if (!(cut > 0)) { return false; }
+    if (!isPositive(cut)) { return false; }
     if (kSplatKind != kDiscs) {
-        if (!(splat.centre.z > eye.near)) { return false; }
+        if (!isPositive(splat.centre.z - eye.near)) { return false; }
         const ScreenGaussian g = screenGaussian(splat, eye);
         return isOnScreen(splat, eye, sqrt(cut * vec2(g.xx, g.yy)) + kOutlinePadding);
     }
     const float radius = sqrt(cut);
-    if (!(splat.centre.z + reachAlong(splat, radius, vec3(0, 0, 1)) >= eye.near)) { return false; }
+    if (!isNotNegative(splat.centre.z + reachAlong(splat, radius, vec3(0, 0, 1)) - eye.near)) { return false; }
     const vec2 to_far_edge = vec2(eye.size_px) - eye.principal_px;
     if (reachesInside(splat, radius, vec3(eye.focal_px.x, 0, eye.principal_px.x)) &&
         reachesInside(splat, radius, vec3(-eye.focal_px.x, 0, to_far_edge.x)) &&
@@ -107,7 +110,7 @@ bool isVisible(CameraSplat splat, EyeView eye) {
         reachesInside(splat, radius, vec3(0, -eye.focal_px.y, to_far_edge.y))) {
         return true;
     }
-    return splat.centre.z > eye.near && isOnScreen(splat, eye, vec2(sqrt(cut / eye.low_pass)));
+    return isPositive(splat.centre.z - eye.near) && isOnScreen(splat, eye, vec2(sqrt(cut / eye.low_pass)));
 }
 
 bool isWanted(CameraSplat splat, EyeView eye, Uints mask) { return isVisible(splat, eye) && (!kMasked || meetsMask(splat, eye, mask)); }

@@ -13,6 +13,7 @@ layout(constant_id = 0) const uint kSplatKind = kDiscs;
 
 #include "lib/splat.glsl"
 #include "lib/eye.glsl"
+#include "lib/sign.glsl"
 
 layout(local_size_x = kGroupSize) in;
 layout(push_constant, scalar) uniform Push { CullPagesPass pass; };
@@ -31,7 +32,7 @@ struct Box {
 bool reaches(Box box, EyeView eye, vec3 normal, float least) {
     const vec3 n = normal.x * eye.camera_from_world_x + normal.y * eye.camera_from_world_y + normal.z * eye.camera_from_world_z;
     const float rounding = kRounding * dot(abs(box.middle) + box.half_size, abs(n));
-    return !(dot(box.middle, n) + dot(box.half_size, abs(n)) + rounding < least);
+    return !isNegative(dot(box.middle, n) + dot(box.half_size, abs(n)) + rounding - least);
 }
 
 // One side of the view, widened or not: the points of a disc that cull tests may lie behind the eye, where a wider plane is no wider.

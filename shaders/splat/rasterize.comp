@@ -176,11 +176,11 @@ void blendBatch(uint splats, uint cell, vec2 first_px, uint max_inverse_depth_bi
 // The pixel as it is going to be warped: at the depth that stands for it, infinitely far where nothing was blended.
 uint toMove(float alpha, float depth_sum, vec2 inverse_depth_sums) {
     const float mean = inverse_depth_sums.x / alpha;
-    const float inverse_depth = !(alpha > 0)                   ? 0
+    const float inverse_depth = !isPositive(alpha)             ? 0
                                 : kDepthChoice == kDepthInverse ? mean
                                 : kDepthChoice == kDepthMean    ? alpha / depth_sum
                                                                 : 1 / depth_sum;
-    if (!(inverse_depth >= 0 && inverse_depth < 1e30)) { return 0; }
+    if (floatBitsToUint(inverse_depth) >= floatBitsToUint(1e30)) { return 0; }  // neither are negative ones and NaN less
     const float variance = max(inverse_depth_sums.y / alpha - mean * mean, 0);
     return movingPixel(inverse_depth, kLanded, kSpread ? spreadCode(variance / (inverse_depth * inverse_depth)) : 0);
 }

@@ -253,7 +253,7 @@ void main() {
         float spread;
         const bool as_one = findBlock(view, first, last, moves, depths, source_px, spread);
         if (isInPast(view, source_px)) {
-            const uvec2 at = uvec2(source_px), tile = at / kTileSize, quarter = at % kTileSize / kCellSize;
+            const uvec2 at = pixelAt(view.past_size_px, source_px), tile = at / kTileSize, quarter = at % kTileSize / kCellSize;
             const float carried = pass.source_tiles.at[tile.y * view.past_size_tiles.x + tile.x].errors[2 * quarter.y + quarter.x];
             atomicMax(cell_carried[cell], floatBitsToUint(carried));
         }
@@ -290,7 +290,7 @@ void main() {
     // The tile's cost and how fast its error grows are those of where its middle comes from.
     const vec2 middle_px = min(vec2(tile * kTileSize) + 0.5 * float(kTileSize), vec2(view.size_px));
     const float guess = look(view, movePixelAnywhere(view.past_from_now, middle_px, 0).xy, middle_px).inverse_depth;
-    const uvec2 from = uvec2(clamp(movePixelAnywhere(view.past_from_now, middle_px, guess).xy, vec2(0), vec2(view.past_size_px) - 1)) / kTileSize;
+    const uvec2 from = pixelAt(view.past_size_px, movePixelAnywhere(view.past_from_now, middle_px, guess).xy) / kTileSize;
     const PastTile before = pass.source_tiles.at[from.y * view.past_size_tiles.x + from.x];
     PastTile now = PastTile(before.cost, before.age + 1, before.growth, vec4(0), uvec4(0));
     [[unroll]] for (uint q = 0; q < 4; ++q) {

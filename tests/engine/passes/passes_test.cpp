@@ -1,5 +1,6 @@
 // Facts about the passes over a scene, cull_pages, cull and compact, each started from what the twin's pass before it left.
 #include "engine/passes/passes.h"
+#include "shaders/embedded_shaders.h"
 #include "tests/engine/passes/pass_stages.h"
 #include "tests/engine/passes/scene_pages.h"
 
@@ -43,8 +44,11 @@ public:
         gpu::ListState state;
     };
 
-    Pages(Gpu& gpu, const std::vector<gpu::ScenePage>& pages, std::uint32_t shape, const std::vector<Eye>& eyes)
-        : gpu_(gpu), kernel_(gpu.kernel(CullPagesKernel{.splat_kind = shape})), count_(static_cast<gpu::uint>(pages.size())) {
+    Pages(Gpu& gpu, const std::vector<gpu::ScenePage>& pages, std::uint32_t shape, const std::vector<Eye>& eyes,
+          const Kernel* kernel = nullptr)
+        : gpu_(gpu),
+          kernel_(kernel != nullptr ? *kernel : gpu.kernel(CullPagesKernel{.splat_kind = shape})),
+          count_(static_cast<gpu::uint>(pages.size())) {
         std::vector<gpu::EyeView> views;
         for (const Eye& eye : eyes) { views.push_back(viewOf(eye, kSettings.near)); }
         table_ = gpu.upload("pages", pages);
@@ -78,16 +82,34 @@ private:
     Buffer table_, eyes_, bits_, offsets_, list_, state_;
 };
 
+// A kernel as a device may make it that does not promise to keep NaN apart: it is less than anything, greater, and equal. Such a device may
+// turn any comparison of floats into the negation of its opposite.
+template <typename K>
+Kernel withoutNan(Gpu& gpu, const K& variant) {
+    constexpr std::uint32_t kOrderedEqual = 180, kUnorderedGreaterThanEqual = 191;
+    const auto embedded = embeddedShader(K::kShader);
+    std::vector<std::uint32_t>& words = gpu.context().replacedShaders()[K::kShader];
+    words.assign(embedded.begin(), embedded.end());
+    for (std::size_t at = 5; at < words.size(); at += words[at] >> 16) {
+        const std::uint32_t opcode = words[at] & 0xffff;
+        if (opcode >= kOrderedEqual && opcode <= kUnorderedGreaterThanEqual) { words[at] |= 1; }
+    }
+    Kernel kernel(gpu.context(), variantOf(variant));
+    gpu.context().replacedShaders().erase(K::kShader);
+    return kernel;
+}
+
 struct Culled {
     std::vector<std::uint32_t> bits, group_offsets;
     gpu::ListState visible;
     [[nodiscard]] bool has(std::size_t splat) const { return ((bits[splat / 32] >> (splat % 32)) & 1) != 0; }
 };
 
-Culled cullOnDevice(Gpu& gpu, const SceneOnDevice& device, std::size_t first_eye, std::uint32_t eye_count) {
+Culled cullOnDevice(Gpu& gpu, const SceneOnDevice& device, std::size_t first_eye, std::uint32_t eye_count,
+                    const Kernel* other_kernel = nullptr) {
     const std::uint32_t count = device.scene.splatCount();
     const std::size_t groups = test::pagesOf(count);
-    const Kernel& kernel = gpu.kernel(CullKernel{.splat_kind = device.scene.splatShape()});
+    const Kernel& kernel = other_kernel != nullptr ? *other_kernel : gpu.kernel(CullKernel{.splat_kind = device.scene.splatShape()});
     const Buffer bits = gpu.allocate<std::uint32_t>("bits", groups * kGroupWords), counts = gpu.allocate<std::uint32_t>("counts", groups);
     const Buffer list = gpu.upload("visible", std::vector{gpu::ListState{}});
     gpu::CullPass pass{};
@@ -244,7 +266,26 @@ TEST_CASE_FIXTURE(Gpu, "a page whose bounds are not numbers, or too large for th
         {.low = glm::vec3(kNone), .reach = 1.0f, .high = glm::vec3(kNone), .count = 1},
         {.low = {-1.0f, -1.0f, -3.0f}, .reach = std::numeric_limits<float>::infinity(), .high = {1.0f, 1.0f, 3.0f}, .count = 1}};
     for (const std::uint32_t shape : {gpu::kDiscs, gpu::kGaussians}) {
-        CHECK(Pages(*this, pages, shape, {test::makeEye({64, 64})}).cull(0, 1).list == std::vector<std::uint32_t>{0, 1, 2});
+        const Kernel without_nan = withoutNan(*this, CullPagesKernel{.splat_kind = shape});
+        for (const Kernel* kernel : {static_cast<const Kernel*>(nullptr), &without_nan}) {
+            CHECK(Pages(*this, pages, shape, {test::makeEye({64, 64})}, kernel).cull(0, 1).list == std::vector<std::uint32_t>{0, 1, 2});
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu, "a splat that is not all numbers is not visible") {
+    constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+    const Eye eye = test::makeEye({64, 64});
+    for (const bool is_gaussian : {false, true}) {
+        CAPTURE(is_gaussian);
+        Scene scene = test::makeScene(std::vector<test::Splat>(6, {{0, 0, 2}, {1, 0, 0, 0}, {0.1f, 0.1f}, 0.9f, glm::vec3(0.5f)}));
+        if (is_gaussian) { scene.thicknesses.assign(6, 0.1f); }
+        scene.positions[1].x = scene.positions[2].z = scene.scales[3].y = scene.opacities[4] = scene.rotations[5].x = kNone;
+        const SceneOnDevice device(*this, scene, {eye}, kSettings.near);
+        const Kernel without_nan = withoutNan(*this, CullKernel{.splat_kind = device.scene.splatShape()});
+        for (const Kernel* kernel : {static_cast<const Kernel*>(nullptr), &without_nan}) {
+            CHECK(cullOnDevice(*this, device, 0, 1, kernel).bits[0] == 1);
+        }
     }
 }
 
