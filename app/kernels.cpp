@@ -25,7 +25,7 @@ using Json = nlohmann::ordered_json;
 KernelTable allKernels(const Context& context) {
     KernelTable table = passKernels(context);
     append(table, warpKernels(context));
-    append(table, pastKernels());
+    append(table, pastKernels(context.isSoftware()));
     append(table, peripheryKernels());
     append(table, presentKernels());
     return table;

@@ -35,9 +35,9 @@ gpu::PastView pastViewOf(const Eye& now, const Eye& past, double near, const glm
             .background = background};
 }
 
-KernelTable pastKernels() {
-    KernelTable table = everyVariant<WarpPastKernel>();
-    append(table, everyVariant<WarpPixelsKernel>());
+KernelTable pastKernels(bool by_address) {
+    KernelTable table = everyVariant<WarpPastKernel>([=](const WarpPastKernel& k) { return k.by_address == by_address; });
+    append(table, everyVariant<WarpPixelsKernel>([=](const WarpPixelsKernel& k) { return k.by_address == by_address; }));
     append(table, everyVariant<MarkChangedKernel>());
     append(table, everyVariant<PriceKernel>([](const PriceKernel& k) { return k.past == 1; }));
     append(table, everyVariant<SelectKernel>([](const SelectKernel& k) { return k.past == 1 && k.predicted == 1; }));
@@ -69,7 +69,8 @@ void PastPasses::recordWarp(Commands& commands, const PastInputs& in) {
     const WarpPastKernel kernel{.half_colours = in.target.half_floats,
                                 .hidden_tiles = in.shown.value != 0,
                                 .some_tiles = in.some_tiles.value != 0,
-                                .whole_blocks = size_px.x % gpu::kPastColumns == 0};
+                                .whole_blocks = size_px.x % gpu::kPastColumns == 0,
+                                .by_address = by_address_};
     if (in.some_tiles.value != 0) {
         const std::uint64_t wanted = FrameBuffers::targetField(in.index, offsetof(TargetState, wanted_tiles));
         commands.dispatchIndirect(kernels_.get(kernel), pass, in.buffers.state, wanted + offsetof(gpu::ListState, per_item));
@@ -78,8 +79,10 @@ void PastPasses::recordWarp(Commands& commands, const PastInputs& in) {
                           groupsOver(size_px.y, gpu::kTileSize));
     }
     commands.beginPass({in.role, WarpPixelsKernel::kStage, WarpPixelsKernel::kShader});
-    const WarpPixelsKernel pixels{
-        .half_colours = kernel.half_colours, .hidden_tiles = kernel.hidden_tiles, .some_tiles = kernel.some_tiles};
+    const WarpPixelsKernel pixels{.half_colours = kernel.half_colours,
+                                  .hidden_tiles = kernel.hidden_tiles,
+                                  .some_tiles = kernel.some_tiles,
+                                  .by_address = by_address_};
     commands.dispatchIndirect(kernels_.get(pixels), pass, in.buffers.state, blocks + offsetof(gpu::PastBlockList, per_group));
 }
 

@@ -33,11 +33,12 @@ struct PastInputs {
 // The eye `now` and the one whose picture is its past, for the device. `near`: nothing is seen before this, in scene units.
 gpu::PastView pastViewOf(const Eye& now, const Eye& past, double near, const glm::vec3& background);
 
-KernelTable pastKernels();
+// `by_address`: as lib/past.glsl has it; of software devices.
+KernelTable pastKernels(bool by_address);
 
 class PastPasses {
 public:
-    explicit PastPasses(const Context& context) : kernels_(context, pastKernels()) {}
+    explicit PastPasses(const Context& context) : by_address_(context.isSoftware()), kernels_(context, pastKernels(by_address_)) {}
     // As in WarpPasses.
     void rebuildKernels() { kernels_.rebuild(); }
     [[nodiscard]] std::size_t kernelCount() const { return kernels_.size(); }
@@ -51,6 +52,7 @@ public:
     void recordChoice(Commands& commands, std::span<const PastInputs> eyes);
 
 private:
+    bool by_address_;
     KernelCache kernels_;
 };
 

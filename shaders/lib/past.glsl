@@ -1,13 +1,13 @@
 // For shaders that make a picture from a past one, block by block or pixel by pixel, and say what kind of pictures these are: kHalfColours,
-// kHiddenTiles, kSomeTiles; after their push constants, lib/tile_mask.glsl, lib/picture.glsl, lib/moving_pixel.glsl, lib/move_pixel.glsl.
+// kHiddenTiles, kSomeTiles, kByAddress; after their push constants, lib/tile_mask.glsl, lib/picture.glsl, lib/moving_pixel.glsl, lib/move_pixel.glsl.
 
 const uvec2 kBlock = uvec2(kPastColumns, kPastRows);
 
 bool isInPast(PastView view, vec2 place_px) { return all(greaterThanEqual(place_px, vec2(0))) && all(lessThan(place_px, vec2(view.past_size_px))); }
 
-// Eight bytes in one access, and sixteen in two, as if they were addresses: llvmpipe goes from lane to lane once per number of a vector,
-// however wide it is. A 64-bit integer would do as well, but not every device has these. GPUs join the two accesses. glslang gives an
-// address the alignment of what it points to.
+// With kByAddress eight bytes in one access, and sixteen in two, as if they were addresses: llvmpipe goes from lane to lane once per number of
+// a vector, however wide it is. A 64-bit integer would do as well, but not every device has these. glslang gives an address the alignment of
+// what it points to. Not on GPUs, whose compilers may take an address for a multiple of that alignment, which pixels are not.
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer Eights { HalfColours at[]; };
 struct Sixteen {
     FloatColours low;
@@ -15,9 +15,15 @@ struct Sixteen {
 };
 layout(buffer_reference, scalar, buffer_reference_align = 16) buffer Sixteens { Sixteen at[]; };
 
-void putSixteen(Sixteens sixteens, uint i, uvec4 words) {
-    sixteens.at[i].low = FloatColours(words.xy);
-    sixteens.at[i].high = HalfColours(words.zw);
+layout(buffer_reference, scalar, buffer_reference_align = 16) buffer UVec4s { uvec4 at[]; };
+
+void putSixteen(uvec2 address, uint i, uvec4 words) {
+    if (kByAddress) {
+        Sixteens(address).at[i].low = FloatColours(words.xy);
+        Sixteens(address).at[i].high = HalfColours(words.zw);
+    } else {
+        UVec4s(address).at[i] = words;
+    }
 }
 
 // What the past shows at a place.
@@ -61,7 +67,10 @@ bool isHidden(PastView view, uvec2 pixel) {
 }
 
 vec4 sourceAt(uint i) {
-    if (kHalfColours) { return unpackHalves(uvec2(Eights(uvec2(pass.source)).at[i])); }
+    if (kHalfColours) {
+        return unpackHalves(kByAddress ? uvec2(Eights(uvec2(pass.source)).at[i]) : HalfColours(uvec2(pass.source)).at[i]);
+    }
+    if (!kByAddress) { return pass.source.at[i]; }
     Sixteens pixels = Sixteens(uvec2(pass.source));
     return uintBitsToFloat(uvec4(uvec2(pixels.at[i].low), uvec2(pixels.at[i].high)));
 }
@@ -73,9 +82,11 @@ void putWord(PastView view, uvec2 pixel, uint word) {
 void putPixel(PastView view, uvec2 pixel, vec4 colour) {
     const uint at = pixel.y * view.size_px.x + pixel.x;
     const vec4 shown = isHidden(view, pixel) ? vec4(view.background, 0) : colour;
-    if (kHalfColours) {
+    if (kHalfColours && kByAddress) {
         Eights(uvec2(pass.target)).at[at] = HalfColours(packHalves(shown));
+    } else if (kHalfColours) {
+        HalfColours(uvec2(pass.target)).at[at] = packHalves(shown);
     } else {
-        putSixteen(Sixteens(uvec2(pass.target)), at, floatBitsToUint(shown));
+        putSixteen(uvec2(pass.target), at, floatBitsToUint(shown));
     }
 }

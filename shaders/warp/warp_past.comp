@@ -11,6 +11,7 @@ layout(constant_id = 0) const bool kHalfColours = false;
 layout(constant_id = 1) const bool kHiddenTiles = false;  // a lens hides parts
 layout(constant_id = 2) const bool kSomeTiles = false;    // only those of a list
 layout(constant_id = 3) const bool kWholeBlocks = false;  // the picture's width is a multiple of a block's
+layout(constant_id = 4) const bool kByAddress = false;    // lib/past.glsl; of software devices
 
 layout(local_size_x = kPastGroup) in;
 layout(push_constant, scalar) uniform Push { WarpPastPass pass; };
@@ -41,7 +42,7 @@ void putWords(PastView view, uvec2 first, uvec4 words) {
     if (first.y >= view.size_px.y) { return; }
     if (kWholeBlocks) {
         const uint at = (first.y * view.size_px.x + first.x) / kPastColumns;
-        putSixteen(Sixteens(uvec2(pass.target_words)), at, isHidden(view, first) ? uvec4(0) : words);
+        putSixteen(uvec2(pass.target_words), at, isHidden(view, first) ? uvec4(0) : words);
         return;
     }
     [[unroll]] for (uint c = 0; c < kPastColumns; ++c) {
@@ -56,7 +57,7 @@ void putPixels(PastView view, uvec2 first, vec4 colours[kPastColumns]) {
         const uint at = (first.y * view.size_px.x + first.x) / 2;
         [[unroll]] for (uint c = 0; c < kPastColumns; c += 2) {
             const vec4 left = hidden ? vec4(view.background, 0) : colours[c], right = hidden ? vec4(view.background, 0) : colours[c + 1];
-            putSixteen(Sixteens(uvec2(pass.target)), at + c / 2, uvec4(packHalves(left), packHalves(right)));
+            putSixteen(uvec2(pass.target), at + c / 2, uvec4(packHalves(left), packHalves(right)));
         }
         return;
     }

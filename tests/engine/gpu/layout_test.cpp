@@ -150,7 +150,7 @@ TEST_CASE("every shader's structs have the fields, offsets and sizes that C++ gi
 TEST_CASE_FIXTURE(Gpu, "every kernel reads each constant that it is compiled for, calls it what C++ does, and has no other") {
     KernelTable table = passKernels(context());
     append(table, warpKernels(context()));
-    append(table, pastKernels());
+    append(table, pastKernels(context().isSoftware()));
     append(table, peripheryKernels());
     append(table, presentKernels());
     std::set<std::string> made;

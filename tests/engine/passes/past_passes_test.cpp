@@ -2,6 +2,7 @@
 // warp_past and warp_pixels, what rasterize measures (price and select: selection_test.cpp), and what a scene changes meanwhile. Where a
 // depth or a place lies on a threshold, float32 may come to the other side: such flips have a budget.
 #include "engine/frame/changes.h"
+#include "shaders/embedded_shaders.h"
 #include "tests/engine/passes/past_stages.h"
 
 SUITE(past_passes) {
@@ -201,6 +202,31 @@ void checkFirst(Gpu& gpu, const Way& way) {
 TEST_CASE_FIXTURE(Gpu, "warp_past and warp_pixels make the twin's picture, and expect the twin's errors") {
     checkWarped(*this, {atelier(), false, true});
     checkWarped(*this, {evenFence(), true, false});
+}
+
+TEST_CASE_FIXTURE(Gpu, "pixels are the same whether they are moved as addresses, as on software devices, or as what they are") {
+    const auto walk = [](Walk& of) {
+        for (int step = 0; step < 3; ++step) { of.go(step, 0.0); }
+        return of.read(kRight).past.rgba;
+    };
+    for (const bool half_floats : {false, true}) {
+        const ViewedScene& view = half_floats ? evenFence() : atelier();
+        Walk own(*this, view, {.half_floats = half_floats});
+        const auto expected = walk(own);
+        for (const auto& [name, last_constant] : {std::pair("warp_past", 4u), std::pair("warp_pixels", 3u)}) {
+            constexpr std::uint32_t kDecorate = 71, kSpecId = 1;
+            const auto embedded = embeddedShader(name);
+            std::vector<std::uint32_t>& words = context().replacedShaders()[name];
+            words.assign(embedded.begin(), embedded.end());
+            for (std::size_t at = 5; at < words.size(); at += words[at] >> 16) {
+                const bool is_it = (words[at] & 0xffff) == kDecorate && words[at + 2] == kSpecId && words[at + 3] == last_constant;
+                if (is_it) { words[at + 3] = 99; }  // which nobody sets: by_address keeps its default
+            }
+        }
+        Walk other(*this, view, {.half_floats = half_floats});
+        CHECK(walk(other) == expected);
+        context().replacedShaders().clear();
+    }
 }
 
 TEST_CASE_FIXTURE(Gpu, "where there is no past both pictures are predicted's, and what they leave for later is the twin's") {
