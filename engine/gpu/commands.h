@@ -64,12 +64,18 @@ public:
         recordKernel(kernel, &pass, sizeof(Pass));
         command_buffer_.dispatchIndirect(sizes.handle(), offset_bytes);
     }
+    // `groups` workgroups in rows of equal length, as lib/list.glsl has it: fewer than there are rows are left over.
+    static vk::Extent2D rowsOf(std::uint32_t groups) {
+        const std::uint32_t rows = (groups + gpu::kMaxGroupsX - 1) / gpu::kMaxGroupsX;
+        return {(groups + rows - 1) / std::max(rows, 1u), rows};
+    }
     // One workgroup for every `group_items` of `items`, folded into rows (see groupIndex in the shaders).
     template <typename Pass>
     void dispatchOver(const Kernel& kernel, const Pass& pass, std::uint64_t items, gpu::uint group_items = gpu::kGroupSize) {
         const auto groups = static_cast<std::uint32_t>((items + group_items - 1) / group_items);
         if (groups == 0) { return; }
-        dispatch(kernel, pass, std::min(groups, gpu::kMaxGroupsX), (groups + gpu::kMaxGroupsX - 1) / gpu::kMaxGroupsX);
+        const vk::Extent2D rows = rowsOf(groups);
+        dispatch(kernel, pass, rows.width, rows.height);
     }
     void fillZero(const Buffer& buffer);
     // At most 64 KiB, carried by the command buffer itself.

@@ -219,6 +219,15 @@ TEST_CASE_FIXTURE(Gpu, "a list of sums that does not fit is empty and says what 
     }
 }
 
+TEST_CASE("dispatches of the host fold so, too: of one workgroup more than a row holds, as of 16.8 million splats, hardly one is idle") {
+    for (const std::uint32_t groups : {1u, gpu::kMaxGroupsX, gpu::kMaxGroupsX + 1, 2 * gpu::kMaxGroupsX + 1, 4'194'304u}) {
+        const vk::Extent2D rows = Commands::rowsOf(groups);
+        CHECK(rows.width <= gpu::kMaxGroupsX);
+        CHECK(rows.width * rows.height >= groups);
+        CHECK(rows.width * rows.height < groups + rows.height);
+    }
+}
+
 TEST_CASE_FIXTURE(Gpu, "dispatches over a list fold into rows beyond the groups of one row") {
     constexpr std::uint32_t kRow = gpu::kMaxGroupsX * gpu::kGroupSize;
     for (const std::uint32_t total : {kRow - 1, kRow, kRow + 1, gpu::kMaxGroupsX * gpu::kListBlock, gpu::kMaxGroupsX * gpu::kListBlock + 1,
