@@ -47,9 +47,10 @@ FrameBuffers makeFrameBuffers(const Context& context, std::uint32_t splat_count,
     buffers.splat_count = splat_count;
     buffers.state = Buffer(context, "frame state", sizeof(FrameState));
     buffers.visibility =
-        Buffer(context, "visibility", std::max<std::uint64_t>(buffers.cullGroups(), 1) * (gpu::kCullBlock / 8 + sizeof(gpu::uint)));
+        Buffer(context, "visibility", buffers.cullGroups() * (gpu::kCullBlock / 8 + sizeof(gpu::uint)) + gpu::kSumRuns * sizeof(gpu::uint));
     if (in_pages) {
-        buffers.pages = Buffer(context, "visible pages", (buffers.cullGroups() + 2 * buffers.pageWords()) * sizeof(gpu::uint));
+        buffers.pages =
+            Buffer(context, "visible pages", (buffers.cullGroups() + gpu::kSumRuns + 2 * buffers.pageWords()) * sizeof(gpu::uint));
     }
     return buffers;
 }

@@ -124,8 +124,8 @@ private:
 struct FrameBuffers {
     std::uint32_t splat_count = 0;
     Buffer state;       // FrameState
-    Buffer visibility;  // one bit per splat, then one count per workgroup
-    Buffer pages;       // of a scene in pages: the list, then one bit per page, then one count per word of these
+    Buffer visibility;  // one bit per splat, then one count per workgroup and per run of these
+    Buffer pages;       // of a scene in pages: the list, a word per run of it, then one bit per page, then one count per word of these
     VisibleBuffers visible;
     PairBuffers pairs;
     Buffer scratch;      // sums of workgroups or histograms of the list at hand
@@ -140,7 +140,7 @@ struct FrameBuffers {
     [[nodiscard]] std::uint64_t cullGroups() const { return (std::uint64_t{splat_count} + gpu::kCullBlock - 1) / gpu::kCullBlock; }
     [[nodiscard]] std::uint64_t pageWords() const { return (cullGroups() + 31) / 32; }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> pageList() const { return pages.address<gpu::uint>(); }
-    [[nodiscard]] gpu::DeviceAddress<gpu::uint> pageBits() const { return pageList().at(cullGroups()); }
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> pageBits() const { return pageList().at(cullGroups() + gpu::kSumRuns); }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> pageWordOffsets() const { return pageBits().at(pageWords()); }
     // Offsets of the lists within `state`.
     static std::uint64_t visibleList(int i) {

@@ -6,8 +6,8 @@ shared uint group_is_last;
 // True if all other workgroups of the dispatch are done; `list` counts them and is back at 0 afterwards. In uniform control flow, by
 // every workgroup, once.
 bool isLastGroup(ListStates list);
-// The same for the `blocks` workgroups of one run of a sort's blocks, at most 16.
-bool isLastOfRun(ListStates list, uint run, uint blocks);
+// The same for the `groups` workgroups of one run, of which the list counts 128 / bits; `groups` is less than 2^bits.
+bool isLastOfRun(ListStates list, uint run, uint groups, uint bits);
 
 // What the others wrote can then be read, if it is read and written through a `coherent` array. In the words of Vulkan's memory model
 // each memoryBarrierBuffer releases and acquires for the whole device; two of them synchronize where a barrier() lies between them, or the
@@ -37,13 +37,14 @@ bool isLastGroup(ListStates list) {
     return endLast();
 }
 
-bool isLastOfRun(ListStates list, uint run, uint blocks) {
+bool isLastOfRun(ListStates list, uint run, uint groups, uint bits) {
     beginLast();
     if (gl_LocalInvocationIndex == 0) {
         memoryBarrierBuffer();
-        const uint shift = 8 * (run % 4), before = atomicAdd(list.at[0].run_groups_done[run / 4], 1u << shift) >> shift & 0xff;
-        group_is_last = before + 1 == blocks ? 1 : 0;
-        if (group_is_last != 0) { atomicAdd(list.at[0].run_groups_done[run / 4], 0u - (blocks << shift)); }
+        const uint in_word = 32 / bits, word = run / in_word, shift = bits * (run % in_word);
+        const uint before = atomicAdd(list.at[0].run_groups_done[word], 1u << shift) >> shift & ((1u << bits) - 1);
+        group_is_last = before + 1 == groups ? 1 : 0;
+        if (group_is_last != 0) { atomicAdd(list.at[0].run_groups_done[word], 0u - (groups << shift)); }
         memoryBarrierBuffer();
     }
     return endLast();

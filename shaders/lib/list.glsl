@@ -8,6 +8,18 @@ DispatchSize dispatchOver(uint count, uint group_items) {
     return DispatchSize(groupsOver(groups, max(rows, 1)), rows, 1);
 }
 
+// Where many counts are summed up in two steps: how many a run of them has, of which there are at most kSumRuns. `count`: there is one step,
+// since there are no more than `most_in_one`, or more than a run can count the workgroups of.
+uint sumRunLength(uint count, uint most_in_one) {
+    return count > most_in_one && count <= kSumRuns * ((1u << kSumRunBits) - 1) ? groupsOver(count, kSumRuns) : count;
+}
+
+// The sum of what comes before one of `count` counts that sumUp summed up.
+uint sumBefore(Uints sums, uint i, uint count) {
+    const uint length = sumRunLength(count, kMostInOneRun);
+    return sums.at[i] + (length < count ? sums.at[count + i / length] : 0);
+}
+
 // The keys of a list of `count` that one workgroup of a sort takes: a longer list has no more than kMaxSortBlocks blocks.
 uint sortBlockKeys(uint count) { return kSortBlock * max(groupsOver(count, kSortBlock * kMaxSortBlocks), 1); }
 

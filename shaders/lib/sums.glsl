@@ -1,18 +1,19 @@
-// Sums up what each workgroup counted, in the last of them. For workgroups of kGroupSize; after lib/group.glsl and lib/list.glsl.
+// Sums up what each workgroup counted. For workgroups of kGroupSize; after lib/group.glsl, lib/last_group.glsl and lib/list.glsl. The last
+// workgroup does so; many counts in two steps, by runs of them (sumRunLength), each by the last workgroup of its run.
 
 const uint kSumsPerThread = 8;
 
-// Replaces `count` values by the sums of those before them, and writes `result`: a list as long as their total, empty if that is more
-// than `capacity`, needing 0xffffffff if that is more than kMaxItems. By all threads of one workgroup.
-void sumUp(CoherentUints sums, uint count, ListStates result, uint capacity) {
+// Replaces the values from `step_begin` to `end` by the sums of those before them and returns the sum of all; 0xffffffff if that is more than
+// kMaxItems. By all threads of one workgroup.
+uint sumRange(CoherentUints sums, uint step_begin, uint end) {
     const uint thread = threadIndex();
     uint before_step = 0;
     // The total may not fit into 32 bits: each thread's part of it has 33, the highest for "that much or more".
-    uint own = 0, own_carry = 0, step_begin = 0;
+    uint own = 0, own_carry = 0;
     [[dont_unroll]] do {
         const uint first = step_begin + thread * kSumsPerThread;
         uint values[kSumsPerThread];
-        [[unroll]] for (uint i = 0; i < kSumsPerThread; ++i) { values[i] = first + i < count ? sums.at[first + i] : 0; }
+        [[unroll]] for (uint i = 0; i < kSumsPerThread; ++i) { values[i] = first + i < end ? sums.at[first + i] : 0; }
         uint in_step = 0;
         [[unroll]] for (uint i = 0; i < kSumsPerThread; ++i) {
             uint carry;
@@ -23,18 +24,51 @@ void sumUp(CoherentUints sums, uint count, ListStates result, uint capacity) {
         uint of_step;
         uint before = before_step + scanGroup(in_step, of_step);
         [[unroll]] for (uint i = 0; i < kSumsPerThread; ++i) {
-            if (first + i < count) { sums.at[first + i] = before; }
+            if (first + i < end) { sums.at[first + i] = before; }
             before += values[i];
         }
         before_step += of_step;
         step_begin += kGroupSize * kSumsPerThread;
-    } while (step_begin < count);
+    } while (step_begin < end);
     // By halves the sum over the threads fits. That of the lower ones follows, since it is known modulo 2^32.
     uint upper_halves;
     scanGroup((own >> 16) + (own_carry << 16), upper_halves);
     const uint lower_halves = before_step - (upper_halves << 16);
-    if (gl_LocalInvocationIndex == 0) {
-        const bool fits = upper_halves + (lower_halves >> 16) < 0x10000u && before_step <= kMaxItems;
-        result.at[0] = makeList(fits ? before_step : 0xffffffffu, capacity);
-    }
+    const bool fits = upper_halves + (lower_halves >> 16) < 0x10000u && before_step <= kMaxItems;
+    return fits ? before_step : 0xffffffffu;
+}
+
+// Makes `result` a list as long as the sum of the first `count` values, empty if that is more than `capacity`. By all threads of one workgroup.
+void sumUpAtOnce(CoherentUints sums, uint count, ListStates result, uint capacity) {
+    const uint total = sumRange(sums, 0, count);
+    if (gl_LocalInvocationIndex == 0) { result.at[0] = makeList(total, capacity); }
+}
+
+// The same in as many steps as `count` asks for. Every workgroup calls it, once, when its count is written; `group` is its place among `count`, or beyond if it has none.
+// What is left before each count, and in kSumRuns words behind them all, is for sumBefore.
+void sumUp(CoherentUints sums, uint group, uint count, ListStates result, uint capacity) {
+    const uint length = sumRunLength(count, kMostInOneRun);
+    bool of_all = length >= count;
+    [[dont_unroll]] do {  // compilers would make code for each call of sumRange
+        uint begin = 0, end = count;
+        if (!of_all) {
+            begin = group / length * length;
+            end = min(begin + length, count);
+        } else if (length < count) {
+            begin = count;
+            end = count + groupsOver(count, length);
+        }
+        if (of_all ? isLastGroup(result) : group < count && isLastOfRun(result, begin / length, end - begin, kSumRunBits)) {
+            const uint total = sumRange(sums, begin, end);
+            if (gl_LocalInvocationIndex == 0) {
+                if (of_all) {
+                    result.at[0] = makeList(total, capacity);
+                } else {
+                    sums.at[count + begin / length] = min(total, kMaxItems + 1);
+                }
+            }
+        }
+        if (of_all) { return; }
+        of_all = true;
+    } while (true);
 }

@@ -12,7 +12,7 @@ struct CullPagesPass {
     EyeViews eyes;
     CoherentUints page_bits;     // out: one bit per page
     CoherentUints word_offsets;  // out: visible pages before each word of page_bits
-    Uints page_list;             // out: the visible pages, ascending
+    CoherentUints page_list;     // out: the visible pages, ascending, and what lib/block.glsl needs to find them
     ListStates visible_pages;    // out; per_item: one workgroup per page
     uint page_count;
     uint first_eye;

@@ -103,7 +103,7 @@ struct ListState {
     uint needed;  // 0xffffffff: more than kMaxItems
     uint count;
     uint groups_done;             // of a dispatch under way, see lib/last_group.glsl; otherwise 0
-    uvec4 run_groups_done;        // the same for each of the kMaxSortRuns runs of a sort's blocks, a byte each
+    uvec4 run_groups_done;        // the same for each run of the dispatch: kMaxSortRuns of a sort's, a byte each, or kSumRuns
     DispatchSize per_item;        // workgroups of kGroupSize
     DispatchSize per_block;       // workgroups of kListBlock
     DispatchSize per_sort_block;  // workgroups of sortBlockKeys, see lib/list.glsl

@@ -56,11 +56,12 @@ void main() {
     } else {
         eye = shareEye(pass.eyes, pass.order_eye);
     }
+    const uint blocks = blockCount(), before_block = group < blocks ? sumBefore(pass.group_offsets, group, blocks) : 0;
     uint in_block = gl_LocalInvocationIndex;
     [[dont_unroll]] do {
         const uint bits = visible_words[in_block / 32], bit = 1u << (in_block & 31);
         if ((bits & bit) != 0) {
-            const uint place = pass.group_offsets.at[group] + visible_before[in_block / 32] + bitCount(bits & (bit - 1));
+            const uint place = before_block + visible_before[in_block / 32] + bitCount(bits & (bit - 1));
             const uint i = first + in_block;
             pass.keys.at[place] = sortableBits(keyOf(eye, positionOf(pass.chunks, placeOfSplat(i, pass.chunk_bits))));
             pass.splats.at[place] = i;

@@ -145,5 +145,5 @@ void main() [[subgroup_uniform_control_flow]] {
         }
         if (gl_LocalInvocationIndex == 0) { pass.group_counts.at[group] = visible_count; }
     }
-    if (isLastGroup(pass.visible)) { sumUp(pass.group_counts, groups, pass.visible, pass.capacity); }
+    sumUp(pass.group_counts, group, groups, pass.visible, pass.capacity);
 }

@@ -59,24 +59,24 @@ bool mayShow(ScenePage page, EyeView eye) {
            reachesSide(box, eye, vec3(0, -eye.focal_px.y, to_far_edge.y), wider_px, least.y);
 }
 
-// By the last workgroup: the pages of all words, in their order.
-void listPages(uint words) {
-    sumUp(pass.word_offsets, words, pass.visible_pages, pass.page_count);
+// By one workgroup: the visible pages of some words in their order, from where the first of these words' pages would lie. Returns their number.
+uint listPages(uint first_word, uint words) {
+    const uint total = sumRange(pass.word_offsets, first_word, first_word + words);
     memoryBarrierBuffer();  // as in lib/last_group.glsl: the sums are handed from the threads that made them to all
     barrier();
     memoryBarrierBuffer();
-    if (gl_LocalInvocationIndex == 0) { pass.visible_pages.at[0].per_item = dispatchOver(pass.visible_pages.at[0].count, 1); }
-    uint word = gl_LocalInvocationIndex;
+    uint word = first_word + gl_LocalInvocationIndex;
     [[dont_unroll]] do {
-        if (word >= words) { break; }
-        uint bits = pass.page_bits.at[word], place = pass.word_offsets.at[word];
+        if (word >= first_word + words) { break; }
+        uint bits = pass.page_bits.at[word], place = 32 * first_word + pass.word_offsets.at[word];
         [[dont_unroll]] while (bits != 0) {
             pass.page_list.at[place] = 32 * word + findLSB(bits);
             bits &= bits - 1;
             ++place;
         }
         word += kGroupSize;
-    } while (word < words);
+    } while (word < first_word + words);
+    return total;
 }
 
 void main() [[subgroup_uniform_control_flow]] {
@@ -97,5 +97,19 @@ void main() [[subgroup_uniform_control_flow]] {
         pass.page_bits.at[word] = visible_words[gl_LocalInvocationIndex];
         pass.word_offsets.at[word] = bitCount(visible_words[gl_LocalInvocationIndex]);
     }
-    if (isLastGroup(pass.visible_pages)) { listPages(words); }
+    // As sumUp, for lib/block.glsl: where there are many, each run of pages has its own part of the list.
+    const uint groups = groupsOver(pass.page_count, kGroupSize), length = sumRunLength(groups, kMostPageGroupsInOneRun);
+    if (length < groups && group < groups) {
+        const uint run = group / length, first = run * length, in_run = min(length, groups - first);
+        if (isLastOfRun(pass.visible_pages, run, in_run, kSumRunBits)) {
+            const uint total = listPages(first * kGroupWords, min(in_run * kGroupWords, words - first * kGroupWords));
+            if (gl_LocalInvocationIndex == 0) { pass.page_list.at[pass.page_count + run] = total; }
+        }
+    }
+    if (!isLastGroup(pass.visible_pages)) { return; }
+    const uint total = length < groups ? sumRange(pass.page_list, pass.page_count, pass.page_count + groupsOver(groups, length)) : listPages(0, words);
+    if (gl_LocalInvocationIndex != 0) { return; }
+    ListState list = makeList(total, pass.page_count);
+    list.per_item = dispatchOver(total, 1);
+    pass.visible_pages.at[0] = list;
 }

@@ -70,6 +70,6 @@ void main() [[subgroup_uniform_control_flow]] {
     const uint block_keys = sortBlockKeys(count), blocks = groupsOver(count, block_keys);
     countDigits(gl_WorkGroupID.x, block_keys, count);
     const uint run = gl_WorkGroupID.x / kSortRun, run_blocks = min(blocks - run * kSortRun, kSortRun);
-    if (isLastOfRun(pass.list, run, run_blocks)) { sumBlocksOfRun(run, run_blocks); }
+    if (isLastOfRun(pass.list, run, run_blocks, 8)) { sumBlocksOfRun(run, run_blocks); }
     if (isLastGroup(pass.list)) { sumRuns(groupsOver(blocks, kSortRun)); }
 }

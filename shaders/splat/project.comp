@@ -142,5 +142,6 @@ void main() [[subgroup_uniform_control_flow]] {
     if (subgroupElect()) { atomicAdd(group_tiles, subgroup_tiles); }
     barrier();
     if (gl_LocalInvocationIndex == 0 && group * kListBlock < count) { pass.group_sums.at[group] = group_tiles; }
-    if (isLastGroup(pass.pairs)) { sumUp(pass.group_sums, groupsOver(count, kListBlock), pass.pairs, pass.capacity); }
+    // In one step: in two the shader takes more registers, which every frame would pay for.
+    if (isLastGroup(pass.pairs)) { sumUpAtOnce(pass.group_sums, groupsOver(count, kListBlock), pass.pairs, pass.capacity); }
 }

@@ -55,7 +55,7 @@ public:
         eyes_ = gpu.upload("eyes", views);
         bits_ = gpu.allocate<gpu::uint>("bits", (pages.size() + 31) / 32);
         offsets_ = gpu.allocate<gpu::uint>("offsets", (pages.size() + 31) / 32);
-        list_ = gpu.allocate<gpu::uint>("list", pages.size());
+        list_ = gpu.allocate<gpu::uint>("list", pages.size() + gpu::kSumRuns);
         state_ = gpu.upload("state", std::vector{gpu::ListState{}});
     }
 
@@ -72,10 +72,24 @@ public:
                                       .eye_count = static_cast<gpu::uint>(eyes)};
         gpu_.run([&](Commands& commands) { commands.dispatchOver(kernel_, pass, count_); });
         const auto state = gpu_.readBack<gpu::ListState>(state_, 1)[0];
-        return {gpu_.readBack<gpu::uint>(list_, state.count), state};
+        return {listed(gpu_.readBack<gpu::uint>(list_, count_ + gpu::kSumRuns), state.count), state};
     }
 
 private:
+    // As lib/block.glsl finds them.
+    [[nodiscard]] std::vector<std::uint32_t> listed(const std::vector<std::uint32_t>& list, std::uint32_t visible) const {
+        const std::uint32_t groups = (count_ + gpu::kGroupSize - 1) / gpu::kGroupSize;
+        const bool one_run = groups <= gpu::kMostPageGroupsInOneRun;
+        const std::uint32_t length = one_run ? groups : (groups + gpu::kSumRuns - 1) / gpu::kSumRuns, runs = (groups + length - 1) / length;
+        std::vector<std::uint32_t> found;
+        for (std::uint32_t run = 0; run < runs; ++run) {
+            const std::uint32_t begin = one_run ? 0 : list[count_ + run], end = run + 1 < runs ? list[count_ + run + 1] : visible;
+            const auto first = list.begin() + run * length * gpu::kGroupSize;
+            found.insert(found.end(), first, first + (end - begin));
+        }
+        return found;
+    }
+
     Gpu& gpu_;
     const Kernel& kernel_;
     gpu::uint count_;
@@ -239,7 +253,7 @@ TEST_CASE_FIXTURE(Gpu, "cull_pages does so from many more places" * test::nightl
 
 TEST_CASE_FIXTURE(Gpu, "the list of pages is right at every size") {
     std::mt19937 random(3);
-    for (const std::uint32_t count : {1u, 2u, 31u, 32u, 33u, 127u, 128u, 129u, 1023u, 1024u, 1025u, 4097u, 40000u}) {
+    for (const std::uint32_t count : {1u, 2u, 31u, 32u, 33u, 127u, 128u, 129u, 1023u, 1024u, 1025u, 4096u, 4097u, 40000u}) {
         CAPTURE(count);
         std::vector<gpu::ScenePage> pages;
         std::vector<std::uint32_t> expected;

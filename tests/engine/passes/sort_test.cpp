@@ -110,7 +110,7 @@ constexpr std::uint32_t kSumUpWords[] = {
 };
 
 struct Summed {
-    Values sums;  // and what comes after the last
+    Values sums;  // then those before each run, and what comes after
     gpu::ListState result;
 };
 
@@ -118,16 +118,16 @@ Summed sumUp(Gpu& gpu, const Values& values, std::uint32_t capacity = UINT32_MAX
     gpu.context().replacedShaders()["sum_up"].assign(std::begin(kSumUpWords), std::end(kSumUpWords));
     const Kernel& kernel = gpu.kernel("sum_up", sizeof(SumUpPass));
     const std::size_t count = values.size();
-    const Buffer buffer = gpu.upload("values", values), sums = gpu.upload("sums", Values(count + 1, kUntouched));
+    const Buffer buffer = gpu.upload("values", values), sums = gpu.upload("sums", Values(count + gpu::kSumRuns + 1, kUntouched));
     const Buffer result = gpu.upload("result", std::vector{gpu::ListState{}});
     const SumUpPass pass{buffer.address<gpu::uint>(), sums.address<gpu::uint>(), result.address<gpu::ListState>(),
                          static_cast<gpu::uint>(count), capacity};
     gpu.run([&](Commands& commands) {
         // Twice, since the last workgroup must leave the count of workgroups as it was.
-        commands.dispatchOver(kernel, pass, count, 1024);
-        commands.dispatchOver(kernel, pass, count, 1024);
+        commands.dispatchOver(kernel, pass, count, 1);
+        commands.dispatchOver(kernel, pass, count, 1);
     });
-    return {gpu.readBack<std::uint32_t>(sums, count + 1), gpu.readBack<gpu::ListState>(result, 1)[0]};
+    return {gpu.readBack<std::uint32_t>(sums, count + gpu::kSumRuns + 1), gpu.readBack<gpu::ListState>(result, 1)[0]};
 }
 
 auto wordsOf(const gpu::ListState& list) { return std::bit_cast<std::array<std::uint32_t, sizeof(list) / 4>>(list); }
@@ -135,13 +135,21 @@ auto wordsOf(const gpu::ListState& list) { return std::bit_cast<std::array<std::
 void checkSums(Gpu& gpu, std::size_t count) {
     CAPTURE(count);
     std::mt19937 random(static_cast<unsigned>(count));
-    Values values, expected{0};
+    const std::size_t length =
+        count > gpu::kMostInOneRun && count <= gpu::kSumRuns * 0xffffu ? (count + gpu::kSumRuns - 1) / gpu::kSumRuns : count;
+    Values values, expected;
+    std::uint32_t total = 0;
     for (std::size_t i = 0; i < count; ++i) {
         values.push_back(static_cast<std::uint32_t>(random()) % 100);
-        expected.push_back(expected.back() + values.back());
+        expected.push_back(total);
+        total += values.back();
     }
-    const std::uint32_t total = std::exchange(expected.back(), kUntouched);
-    const Summed summed = sumUp(gpu, values);
+    Summed summed = sumUp(gpu, values);
+    const Values runs(summed.sums.begin() + static_cast<std::ptrdiff_t>(count), summed.sums.end());
+    CHECK((runs[0] == kUntouched) == (length == count));
+    CHECK(runs.back() == kUntouched);
+    summed.sums.resize(count);
+    for (std::size_t i = 0; i < count && length < count; ++i) { summed.sums[i] += runs[i / length]; }
     CHECK(summed.sums == expected);
     CHECK(wordsOf(summed.result) == wordsOf(test::makeList(total)));
 }
@@ -193,12 +201,15 @@ TEST_CASE_FIXTURE(Gpu, "a list without room is as good as empty: its keys stay a
 }
 
 TEST_CASE_FIXTURE(Gpu, "sums are right at every size across a boundary") {
-    for (const std::size_t count : {1u, 2u, 7u, 8u, 9u, 127u, 128u, 129u, 1023u, 1024u, 1025u, 2049u, (1u << 17) + 1}) {
+    for (const std::size_t count : {1u, 2u, 7u, 8u, 9u, 127u, 128u, 129u, 1023u, 1024u, 1025u, 2049u, 4096u, 4097u, (1u << 17) + 1}) {
         checkSums(*this, count);
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "sums of millions are right" * nightly()) { checkSums(*this, 5'000'000); }
+// As many counts as two steps take, and one more: above 16.8 million splats, and above 268 million.
+TEST_CASE_FIXTURE(Gpu, "sums of millions are right" * nightly()) {
+    for (const std::size_t count : {gpu::kSumRuns * 0xffffu, gpu::kSumRuns * 0xffffu + 1}) { checkSums(*this, count); }
+}
 
 TEST_CASE_FIXTURE(Gpu, "a list of sums that does not fit is empty and says what it needs, and one beyond 31 bits is told as such") {
     for (const std::uint32_t capacity : {60u, 59u}) {

@@ -1,4 +1,4 @@
-// For sums_test: a workgroup brings 1024 values to where they are summed up, and the last one does that.
+// For sort_test: each workgroup brings a value to where they are summed up.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -18,7 +18,7 @@ layout(push_constant, scalar) uniform Push {
 } pass;
 
 void main() {
-    const uint begin = groupIndex() * 1024;
-    for (uint i = begin + gl_LocalInvocationIndex; i < min(begin + 1024, pass.count); i += kGroupSize) { pass.sums.at[i] = pass.values.at[i]; }
-    if (isLastGroup(pass.result)) { sumUp(pass.sums, pass.count, pass.result, pass.capacity); }
+    const uint group = groupIndex();
+    if (group < pass.count && gl_LocalInvocationIndex == 0) { pass.sums.at[group] = pass.values.at[group]; }
+    sumUp(pass.sums, group, pass.count, pass.result, pass.capacity);
 }
