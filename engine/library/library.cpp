@@ -76,6 +76,7 @@ FrameSettings frameSettingsOf(const Settings& settings, Order order) {
     // Of reports: nobody asks here.
     frame.keep_depth = false;
     frame.square_boxes = false;
+    frame.half_floats = settings.half_floats;
     frame.stereo.budget = settings.budget;
     frame.stereo.move_cost = kDefaultMoveCost;
     return frame;

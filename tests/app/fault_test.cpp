@@ -87,6 +87,36 @@ TEST_CASE("where one type of memory is full, another serves that a buffer may li
     CHECK(machine.holds("out/pictures/mono" BINOSPLAT_FLOAT_EXTENSION));
 }
 
+#ifdef BINOSPLAT_LIBRARY_USER
+
+// What tests/app/library_user.cpp says of its second load where the Nth allocation fails, and of the pictures after it; empty: it came to
+// none.
+std::string loadWithout(const Machine& machine, int number) {
+    CAPTURE(number);
+    const Outcome outcome = machine.runCommand(fault("allocate", number, "no-device-memory-once") + " '" BINOSPLAT_LIBRARY_USER "'");
+    INFO(outcome.output << outcome.errors);
+    if (outcome.exit_code == 1) { return ""; }
+    REQUIRE(outcome.exit_code == 0);
+    CHECK((outcome.output == "loaded\n" || outcome.output.ends_with("\nthe same pictures\n")));
+    return outcome.output;
+}
+
+TEST_CASE("a load() of the library that fails as the frame makes room leaves the scene before, and renders it as before") {
+    CHECK(loadWithout(Machine(), 28).find("visibility needs ") != std::string::npos);
+}
+
+TEST_CASE("wherever a load() of the library fails it does so" * nightly()) {
+    const Machine machine;
+    int failed = 0;
+    for (int number = 1;; ++number) {
+        const std::string said = loadWithout(machine, number);
+        if (said == "loaded\n") { break; }
+        failed += said.empty() ? 0 : 1;
+    }
+    CHECK(failed >= 3);
+}
+#endif
+
 TEST_CASE("on a full disk the message names the file, and no file is left") {
     const Machine machine;
     machine.checkFails(kRender, filesOf(1), 1, "mono" BINOSPLAT_FLOAT_EXTENSION ": cannot be written (");
