@@ -176,6 +176,7 @@ TEST_CASE("displays that are missed whatever is drawn cost no quality for long")
     CHECK(run.widths[60] == kWhole);
     CHECK(run.widths.back() == kWhole);
     CHECK(run.says("displays are missed whatever is drawn"));
+    CHECK(run.says("a frame was late (a display takes 100.0 ms): neither the GPU"));
 }
 
 TEST_CASE("irregular periods, frames that nobody is to see, other rates and a headset that is taken off are no missed displays") {
