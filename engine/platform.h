@@ -26,6 +26,11 @@ std::filesystem::path programFile();
 std::string environment(const char* name);
 void setEnvironment(const char* name, const std::string& value);
 
+// The user's own folder; empty if there is none.
+std::filesystem::path userHomeFolder();
+// Where paths begin: /, or the drives.
+std::vector<std::filesystem::path> fileSystemRoots();
+
 // Where programs keep what they can make again, and what the user has chosen; empty if the user has no such place.
 std::filesystem::path userCacheFolder();
 std::filesystem::path userConfigFolder();

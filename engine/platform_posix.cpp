@@ -51,11 +51,18 @@ std::string environment(const char* name) {
 
 void setEnvironment(const char* name, const std::string& value) { ::setenv(name, value.c_str(), 1); }
 
+fs::path userHomeFolder() {
+    const fs::path home = environment("HOME");
+    return home.is_absolute() ? home : fs::path();
+}
+
+std::vector<fs::path> fileSystemRoots() { return {"/"}; }
+
 // By the XDG base directory specification, where relative paths are nobody's.
 static fs::path userFolder(const char* variable, const char* at_home) {
-    const fs::path chosen = environment(variable), home = environment("HOME");
+    const fs::path chosen = environment(variable), home = userHomeFolder();
     if (chosen.is_absolute()) { return chosen; }
-    return home.is_absolute() ? home / at_home : fs::path();
+    return home.empty() ? fs::path() : home / at_home;
 }
 
 fs::path userCacheFolder() { return userFolder("XDG_CACHE_HOME", ".cache"); }

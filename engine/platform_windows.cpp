@@ -82,6 +82,17 @@ static fs::path userFolder(const char* variable) {
     return folder.is_absolute() ? folder : fs::path();
 }
 
+fs::path userHomeFolder() { return userFolder("USERPROFILE"); }
+
+std::vector<fs::path> fileSystemRoots() {
+    std::vector<fs::path> drives;
+    const DWORD there = ::GetLogicalDrives();  // a bit each, from A on
+    for (int letter = 0; letter < 26; ++letter) {
+        if ((there >> letter & 1) != 0) { drives.emplace_back(fmt::format("{}:\\", static_cast<char>('A' + letter))); }
+    }
+    return drives;
+}
+
 fs::path userCacheFolder() { return userFolder("LOCALAPPDATA"); }
 
 fs::path userConfigFolder() { return userFolder("APPDATA"); }

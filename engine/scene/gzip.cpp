@@ -54,12 +54,7 @@ std::size_t GzipReader::read(std::span<std::byte> target) {
     z_stream& stream = state_->stream;
     std::size_t done = 0;
     while (done < target.size() && !state_->ended) {
-        if (stream.avail_in == 0) {
-            const std::span<const std::byte> block = file_.readBlock(kBlockBytes);
-            check(!block.empty(), "{}: ends within its gzip stream, at byte {}", file_.name(), file_.positionBytes());
-            stream.next_in = zlibBytes(block.data());  // valid until the next block is asked for, which is when this one is used up
-            stream.avail_in = zlibCount(block.size());
-        }
+        check(fill(), "{}: ends within its gzip stream, at byte {}", file_.name(), file_.positionBytes());
         stream.next_out = zlibBytes(target.data() + done);
         stream.avail_out = zlibCount(target.size() - done);
         const uInt room = stream.avail_out;
@@ -71,6 +66,22 @@ std::size_t GzipReader::read(std::span<std::byte> target) {
         state_->ended = result == Z_STREAM_END;
     }
     return done;
+}
+
+bool GzipReader::fill() {
+    z_stream& stream = state_->stream;
+    if (stream.avail_in > 0) { return true; }
+    const std::span<const std::byte> block = file_.readBlock(kBlockBytes);
+    stream.next_in = zlibBytes(block.data());  // valid until the next block is asked for, which is when this one is used up
+    stream.avail_in = zlibCount(block.size());
+    return !block.empty();
+}
+
+bool GzipReader::next() {
+    if (!fill()) { return false; }
+    inflateReset(&state_->stream);
+    state_->ended = false;
+    return true;
 }
 
 struct GzipWriter::State {

@@ -23,9 +23,12 @@ public:
 
     // Fills `target` as far as the stream goes and returns how many bytes it gave. Throws Error if the stream is broken or the file ends.
     std::size_t read(std::span<std::byte> target);
+    // Goes on with the stream behind the one that has ended; false if the file ends there, too.
+    bool next();
 
 private:
     struct State;
+    bool fill();  // false: the file has ended
     InputFile& file_;
     std::unique_ptr<State> state_;
 };

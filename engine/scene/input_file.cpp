@@ -24,22 +24,28 @@ std::string_view withoutByteOrderMark(std::string_view start) {
     return start;
 }
 
-InputFile::InputFile(const std::string& path) : name_(path) { open(path); }
+InputFile::InputFile(const std::string& path) : path_(path), name_(path) { open(); }
 
-InputFile::InputFile(const std::filesystem::path& path, std::string name, SceneFiles& others) : name_(std::move(name)), others_(&others) {
-    open(path);
+InputFile::InputFile(const std::filesystem::path& path, std::string name, SceneFiles& others)
+    : path_(path), name_(std::move(name)), others_(&others) {
+    open();
 }
 
-void InputFile::open(const std::filesystem::path& path) {
+InputFile::InputFile(TemporaryFolder folder, const std::string& file, std::string name)
+    : folder_(std::move(folder)), path_(folder_->path() / file), name_(std::move(name)) {
+    open();
+}
+
+void InputFile::open() {
     std::error_code error;
-    const std::filesystem::file_status status = std::filesystem::status(path, error);
+    const std::filesystem::file_status status = std::filesystem::status(path_, error);
     check(status.type() != std::filesystem::file_type::not_found, "{}: no such file", name_);
     check(!error, "{}: cannot be read: {}", name_, error.message());
     check(status.type() != std::filesystem::file_type::directory, "{}: is a directory, expected a file", name_);
     check(status.type() == std::filesystem::file_type::regular, "{}: is not a regular file (a pipe or a device), expected a file on disk",
           name_);
     std::string reason;
-    file_ = openRegularFile(path, reason);
+    file_ = openRegularFile(path_, reason);
     check(file_ != nullptr, "{}: cannot be opened: {}", name_, reason);
     opened_ = stamp();
     std::setvbuf(file_.get(), nullptr, _IONBF, 0);

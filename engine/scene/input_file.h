@@ -2,10 +2,13 @@
 #pragma once
 
 #include "engine/platform.h"
+#include "engine/temporary_folder.h"
 
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -25,8 +28,12 @@ public:
     explicit InputFile(const std::string& path);
     // A file that messages call `name`; its scene's other files are had from `others`, which outlive it.
     InputFile(const std::filesystem::path& path, std::string name, SceneFiles& others);
+    // A file in a folder of its own, which is gone with it; messages call it `name`.
+    InputFile(TemporaryFolder folder, const std::string& file, std::string name);
 
     [[nodiscard]] const std::string& name() const { return name_; }
+    // Where it lies on the disk.
+    [[nodiscard]] const std::filesystem::path& path() const { return path_; }
     // Null: they lie beside it, on the disk.
     [[nodiscard]] SceneFiles* others() const { return others_; }
     [[nodiscard]] std::uint64_t sizeBytes() const { return opened_.size_bytes; }
@@ -61,10 +68,12 @@ public:
     [[nodiscard]] File release() { return std::move(file_); }
 
 private:
-    void open(const std::filesystem::path& path);
+    void open();
     [[nodiscard]] FileStamp stamp() const;
     void fillTo(std::size_t count);  // at least `count` unread bytes in the buffer, or all that is left
 
+    std::optional<TemporaryFolder> folder_;  // removed after the file is closed
+    std::filesystem::path path_;
     std::string name_;
     SceneFiles* others_ = nullptr;
     File file_;

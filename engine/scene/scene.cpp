@@ -7,6 +7,7 @@
 #include "engine/scene/input_file.h"
 #include "engine/scene/ksplat.h"
 #include "engine/scene/not_a_scene.h"
+#include "engine/scene/packed_scene.h"
 #include "engine/scene/ply.h"
 #include "engine/scene/procedural.h"
 #include "engine/scene/scene_folder.h"
@@ -114,7 +115,18 @@ const SceneFormat* findFormat(Source& source) {
         folder.path);
 }
 
+// Unpacking's share of loading.
+constexpr double kUnpackingShare = 0.4;
+
 Scene loadFrom(Source& source, LoadNotes& notes, const Progress& progress) {
+    if (source.file && isPacked(*source.file)) {
+        const auto part = [&](double first, double share) {
+            return progress ? Progress([&, first, share](double done) { progress(first + share * done); }) : Progress();
+        };
+        Source unpacked{source.path, unpackScene(std::move(source.file), part(0.0, kUnpackingShare)), source.level};
+        check(!isPacked(*unpacked.file), "{}: is packed twice, expected once", source.path);
+        return loadFrom(unpacked, notes, part(kUnpackingShare, 1.0 - kUnpackingShare));
+    }
     if (const SceneFormat* format = findFormat(source)) {
         if (!format->has_levels) { requireNoLevel(source.path, format->name, source.level); }
         return readWhole(*format, source, notes, progress);
@@ -152,6 +164,7 @@ Scene loadFrom(Source& source, LoadNotes& notes, const Progress& progress) {
 std::string formatOfFile(const std::string& path) {
     const LevelChoice no_level;
     Source source{path, std::make_unique<InputFile>(path), no_level};
+    if (isPacked(*source.file)) { source.file = unpackScene(std::move(source.file), {}); }
     const SceneFormat* const format = findFormat(source);
     return format == nullptr ? "" : format->name;
 }

@@ -1,10 +1,10 @@
-// A directory through InputFile or SceneFiles, an archive through libzip, which also makes one.
+// A directory through InputFile or SceneFiles, an archive through ZipArchive; libzip also makes one.
 #include "engine/scene/sog_files.h"
 
 #include "engine/error.h"
+#include "engine/scene/zip_archive.h"
 
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string_view>
 
@@ -74,74 +74,47 @@ private:
 struct ArchiveCloser {
     void operator()(zip_t* archive) const { zip_discard(archive); }
 };
-struct EntryCloser {
-    void operator()(zip_file_t* entry) const { zip_fclose(entry); }
-};
 struct SourceCloser {
     void operator()(zip_source_t* source) const { zip_source_free(source); }
 };
 constexpr zip_uint16_t kFirstDosDate = 1 << 5 | 1;  // 1 January 1980
 
+#endif
+
 class BundleFiles final : public SogFiles {
 public:
-    using Open = std::function<std::unique_ptr<InputFile>()>;
-    BundleFiles(std::string path, std::uint64_t size_bytes, Open open)
-        : path_(std::move(path)), size_bytes_(size_bytes), open_(std::move(open)) {
+    BundleFiles(std::string path, std::uint64_t size_bytes, ZipArchive::Open open)
+        : path_(std::move(path)), size_bytes_(size_bytes), archive_(path_, "a .sog bundle", std::move(open)) {
         findPrefix();
     }
 
     std::vector<std::byte> read(const std::string& name, std::uint64_t max_bytes) override {
-        const zip_stat_t entry = find(name);
+        const ZipArchive::Entry entry = find(name);
         // Pictures are compressed already and meta.json is text: what grows a hundredfold is there to fill the memory.
         const std::uint64_t bound = std::min(max_bytes, 100 * size_bytes_);
-        check(entry.size <= bound, "{}: is {} bytes long, expected at most {}", place(name), entry.size, bound);
-        const std::unique_ptr<zip_file_t, EntryCloser> opened(zip_fopen_index(archive(), entry.index, 0));
-        check(opened != nullptr, "{}: cannot be read ({})", place(name), zip_strerror(archive()));
-        std::vector<std::byte> bytes(entry.size);
-        std::uint64_t done = 0;
-        while (done < entry.size) {
-            const zip_int64_t got = zip_fread(opened.get(), bytes.data() + done, entry.size - done);
-            check(got >= 0, "{}: cannot be read ({})", place(name), zip_file_strerror(opened.get()));
-            check(got > 0, "{}: ends after {} of {} bytes", place(name), done, entry.size);
-            done += static_cast<std::uint64_t>(got);
-        }
+        check(entry.size_bytes <= bound, "{}: is {} bytes long, expected at most {}", place(name), entry.size_bytes, bound);
+        ZipReader opened(archive_, entry);
+        std::vector<std::byte> bytes(entry.size_bytes);
+        const std::size_t got = opened.read(bytes);
+        check(got == bytes.size(), "{}: ends after {} of {} bytes", place(name), got, entry.size_bytes);
         // The checksum is compared where the entry ends.
         std::byte behind{};
-        check(zip_fread(opened.get(), &behind, 1) == 0, "{}: cannot be read ({})", place(name), zip_file_strerror(opened.get()));
+        check(opened.read({&behind, 1}) == 0, "{}: is longer than its {} bytes", place(name), entry.size_bytes);
         return bytes;
     }
-    std::uint64_t sizeBytes(const std::string& name) const override { return find(name).size; }
-    void close() override { archive_.reset(); }
+    std::uint64_t sizeBytes(const std::string& name) const override { return find(name).size_bytes; }
+    void close() override { archive_.close(); }
     std::string place(const std::string& name) const override { return path_ + ": " + prefix_ + name; }
 
 private:
-    zip_t* archive() const {
-        if (archive_ != nullptr) { return archive_.get(); }
-        zip_error_t error;
-        zip_error_init(&error);
-        File file = open_()->release();
-        zip_source_t* source = zip_source_filep_create(file.get(), 0, -1, &error);
-        if (source != nullptr) { (void)file.release(); }  // closed with the source
-        archive_.reset(source != nullptr ? zip_open_from_source(source, ZIP_RDONLY, &error) : nullptr);
-        if (archive_ == nullptr) {
-            if (source != nullptr) { zip_source_free(source); }
-            const std::string reason = zip_error_strerror(&error);
-            zip_error_fini(&error);
-            fail("{}: not a whole zip archive ({}), expected a .sog bundle", path_, reason);
-        }
-        return archive_.get();
-    }
-
     // Some archives hold the folder, not its files: all are looked for where meta.json is, and that is the one with the shortest path.
     void findPrefix() {
-        constexpr std::string_view kMeta = "meta.json";
+        constexpr std::string_view kMeta = kMetaName;
         std::optional<std::string> found;
-        for (zip_int64_t i = 0; i < zip_get_num_entries(archive(), 0); ++i) {
-            const char* text = zip_get_name(archive(), static_cast<zip_uint64_t>(i), 0);
-            const std::string_view name = text != nullptr ? text : "";
+        for (const std::string& name : archive_.names()) {
             if (!name.ends_with(kMeta)) { continue; }
-            const std::string_view folder = name.substr(0, name.size() - kMeta.size());
             // Some writers of Windows have backslashes between folders.
+            const std::string_view folder = std::string_view(name).substr(0, name.size() - kMeta.size());
             const bool is_meta = folder.empty() || folder.ends_with('/') || folder.ends_with('\\');
             if (is_meta && (!found || name.size() < found->size())) { found = name; }
         }
@@ -149,28 +122,15 @@ private:
         prefix_ = found->substr(0, found->size() - kMeta.size());
     }
 
-    // Where an entry is and how long it says it is.
-    zip_stat_t find(const std::string& name) const {
-        requirePlainName(place("meta.json"), name);
-        const zip_int64_t index = zip_name_locate(archive(), (prefix_ + name).c_str(), 0);
-        check(index >= 0, "{}: not in the archive", place(name));
-        zip_stat_t entry;
-        zip_stat_init(&entry);
-        check(zip_stat_index(archive(), static_cast<zip_uint64_t>(index), 0, &entry) == 0 && (entry.valid & ZIP_STAT_SIZE) != 0,
-              "{}: its size cannot be read", place(name));
-        check((entry.valid & ZIP_STAT_ENCRYPTION_METHOD) == 0 || entry.encryption_method == ZIP_EM_NONE,
-              "{}: is encrypted and asks for a password, expected an archive without one (unpack it, and give the folder)", place(name));
-        entry.index = static_cast<zip_uint64_t>(index);
-        return entry;
+    ZipArchive::Entry find(const std::string& name) const {
+        requirePlainName(place(kMetaName), name);
+        return archive_.find(prefix_ + name);
     }
 
     std::string path_, prefix_;
     std::uint64_t size_bytes_;
-    Open open_;
-    mutable std::unique_ptr<zip_t, ArchiveCloser> archive_;
+    ZipArchive archive_;
 };
-
-#endif
 
 }  // namespace
 
@@ -180,17 +140,18 @@ std::unique_ptr<SogFiles> openSogFolder(SceneFiles& files, const std::string& me
     return std::make_unique<ElsewhereFiles>(files, meta);
 }
 
-#ifdef BINOSPLAT_SOG
-
 std::unique_ptr<SogFiles> openSogBundle(const InputFile& file) {
     if (file.others() != nullptr) { return openSogBundle(*file.others(), ""); }
-    return std::make_unique<BundleFiles>(file.name(), file.sizeBytes(), [path = file.name()] { return std::make_unique<InputFile>(path); });
+    return std::make_unique<BundleFiles>(file.name(), file.sizeBytes(),
+                                         [path = file.path().string()] { return std::make_unique<InputFile>(path); });
 }
 
 std::unique_ptr<SogFiles> openSogBundle(SceneFiles& files, const std::string& bundle) {
     const std::uint64_t size_bytes = files.open(bundle)->sizeBytes();
     return std::make_unique<BundleFiles>(files.place(bundle), size_bytes, [&files, bundle] { return files.open(bundle); });
 }
+
+#ifdef BINOSPLAT_SOG
 
 std::vector<std::byte> packSogBundle(const std::vector<NamedBytes>& files, const std::string& place) {
     const auto require = [&](bool done) { check(done, "{}: libzip cannot make the archive", place); };
@@ -225,12 +186,6 @@ std::vector<std::byte> packSogBundle(const std::vector<NamedBytes>& files, const
 }
 
 #else
-
-std::unique_ptr<SogFiles> openSogBundle(const InputFile& file) { fail("{}: cannot be read, this build is without libzip", file.name()); }
-
-std::unique_ptr<SogFiles> openSogBundle(SceneFiles& files, const std::string& bundle) {
-    fail("{}: cannot be read, this build is without libzip", files.place(bundle));
-}
 
 std::vector<std::byte> packSogBundle(const std::vector<NamedBytes>&, const std::string& place) {
     fail("{}: cannot be written, this build is without libzip", place);

@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstring>
 #include <ctime>
 
 namespace binosplat {
@@ -33,24 +32,13 @@ fs::path webCacheFolder() {
     return folder.empty() ? folder : folder / "binosplat" / "web";
 }
 
-WebFiles::OwnFolder::OwnFolder(const fs::path& chosen) : path_(chosen), is_temporary_(chosen.empty()) {
-    if (!is_temporary_) { return; }
-    path_ = createFolder(fs::temp_directory_path(), "binosplat-web-");
-    check(!path_.empty(), "{}: no folder can be made there for scenes from the web: {}", fs::temp_directory_path().string(),
-          std::strerror(errno));
-}
-
-WebFiles::OwnFolder::~OwnFolder() {
-    std::error_code ignored;
-    if (is_temporary_) { fs::remove_all(path_, ignored); }
-}
-
 WebFiles::WebFiles(const std::string& address, const WebSettings& settings, Progress waiting)
     : address_(parseAddress(address)),
       waiting_(std::move(waiting)),
       cache_bytes_(settings.cache_bytes),
-      folder_(settings.cache_folder),
-      cache_(folder_.path()),
+      own_folder_(settings.cache_folder.empty() ? std::optional(TemporaryFolder("binosplat-web-", "scenes from the web")) : std::nullopt),
+      folder_(own_folder_ ? own_folder_->path() : settings.cache_folder),
+      cache_(folder_),
       fetcher_(cache_, settings.fetch) {}
 
 WebFiles::~WebFiles() { cache_.trim(cache_bytes_); }
@@ -109,8 +97,7 @@ std::unique_ptr<InputFile> WebFiles::open(const std::string& name, std::uint64_t
         }
         settled_.erase(address);
     }
-    fail("{}: is thrown out of the cache in {} before it can be read, expected more room there (--cache-limit)", address,
-         folder_.path().string());
+    fail("{}: is thrown out of the cache in {} before it can be read, expected more room there (--cache-limit)", address, folder_.string());
 }
 
 Scene loadSceneFromAnywhere(const std::string& source, std::uint64_t builtin_splats, LoadNotes& notes, const Progress& progress,

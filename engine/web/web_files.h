@@ -50,24 +50,11 @@ private:
     // Until there is a copy in the cache, or not. Throws Error if there is none.
     void settle(const std::string& address);
 
-    // Gone with it.
-    class OwnFolder {
-    public:
-        explicit OwnFolder(const std::filesystem::path& chosen);
-        OwnFolder(const OwnFolder&) = delete;
-        OwnFolder& operator=(const OwnFolder&) = delete;
-        ~OwnFolder();
-        [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
-    private:
-        std::filesystem::path path_;
-        bool is_temporary_;
-    };
-
     Address address_;
     Progress waiting_;
     std::uint64_t cache_bytes_;
-    OwnFolder folder_;
+    std::optional<TemporaryFolder> own_folder_;
+    std::filesystem::path folder_;
     WebCache cache_;
     std::map<std::string, std::future<Fetched>> asked_;
     std::set<std::string> settled_;

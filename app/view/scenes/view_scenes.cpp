@@ -3,13 +3,12 @@
 
 #include "app/view/scenes/natural_order.h"
 #include "engine/scene/address.h"
+#include "engine/scene/packed_scene.h"
 #include "engine/scene/procedural.h"
 #include "engine/scene/scene_folder.h"
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
-#include <string_view>
 
 namespace binosplat {
 
@@ -29,17 +28,12 @@ bool looksMoving(const fs::path& folder) {
 }  // namespace
 
 bool looksLikeScene(const fs::path& path) {
-    static constexpr std::array<std::string_view, 7> kExtensions{".ply", ".splat", ".ksplat", ".spz", ".sog", ".gltf", ".glb"};
     std::error_code ignored;
     if (fs::is_directory(path, ignored)) {
         return fs::exists(path / "meta.json", ignored) || fs::exists(path / "lod-meta.json", ignored) || findTrainingOutput(path) ||
                looksMoving(path);
     }
-    std::string extension = path.extension().string();
-    for (char& letter : extension) {
-        if (letter >= 'A' && letter <= 'Z') { letter = static_cast<char>(letter - 'A' + 'a'); }
-    }
-    return std::ranges::find(kExtensions, extension) != kExtensions.end();
+    return hasSceneName(path);
 }
 
 std::vector<std::string> scenesBeside(const std::string& scene) {

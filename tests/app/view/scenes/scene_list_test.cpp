@@ -228,6 +228,8 @@ TEST_CASE("a folder of many numbered scenes is one that moves; of a few it is on
     CHECK_FALSE(looksLikeScene(work.path));
     for (int number = 24; number <= 45; ++number) { work.add(fmt::format("frame_{}.ply", number)); }
     CHECK(looksLikeScene(work.path));
+    for (const char* name : {"a.PLY", "a.ply.gz", "a.zip", "a.sog"}) { CHECK(looksLikeScene(work.path / name)); }
+    for (const char* name : {"a.gz", "a.txt.gz", "a.txt", "ply"}) { CHECK_FALSE(looksLikeScene(work.path / name)); }
 }
 
 TEST_CASE("at a viewpoint the eyes are there, look that way and stand upright, wherever the head is in the room, at the same scale") {

@@ -1,0 +1,143 @@
+// Unpacking into a temporary file: formats want to look at a file's beginning first, and some at its end.
+#include "engine/scene/packed_scene.h"
+
+#include "engine/error.h"
+#include "engine/scene/gzip.h"
+#include "engine/scene/zip_archive.h"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace binosplat {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// What grows more is there to fill the disk: as for SPZ.
+constexpr std::uint64_t kMostGrowth = 256, kAlwaysAllowedBytes = 65536;
+constexpr std::size_t kPieceBytes = std::size_t{1} << 20;
+constexpr std::size_t kMostNames = 3;  // in a message
+
+// The second is that of an empty one.
+bool isZip(InputFile& file) {
+    return file.peek(4) == std::string_view("PK\x03\x04", 4) || file.peek(4) == std::string_view("PK\x05\x06", 4);
+}
+
+bool isNamed(const std::string& path, std::string_view name) { return std::string_view(path).substr(path.rfind('/') + 1) == name; }
+
+std::string extensionOf(const fs::path& file) {
+    std::string extension = file.extension().string();
+    std::ranges::transform(extension, extension.begin(),
+                           [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+    return extension;
+}
+
+bool hasPlainSceneName(const fs::path& file) {
+    static constexpr std::array<std::string_view, 7> kExtensions{".ply", ".splat", ".ksplat", ".spz", ".sog", ".gltf", ".glb"};
+    return std::ranges::find(kExtensions, extensionOf(file)) != kExtensions.end();
+}
+
+ZipArchive openArchive(const InputFile& file) {
+    if (file.others() != nullptr) {
+        return {file.name(), "one with a scene in it", [others = file.others()] { return others->open(""); }};
+    }
+    return {file.name(), "one with a scene in it", [path = file.path().string()] { return std::make_unique<InputFile>(path); }};
+}
+
+// Without folders, hidden files and what macOS adds.
+std::vector<std::string> filesIn(const ZipArchive& archive) {
+    std::vector<std::string> files = archive.names();
+    std::erase_if(files, [](const std::string& name) {
+        const std::string file = name.substr(name.rfind('/') + 1);
+        return file.empty() || file.starts_with('.') || name.starts_with("__MACOSX/");
+    });
+    return files;
+}
+
+bool isLevels(const std::string& path) { return isNamed(path, "lod-meta.json"); }
+
+std::string findScene(const std::string& path, std::vector<std::string> files) {
+    check(std::ranges::none_of(files, isLevels), "{}: a streamed SOG scene in a zip archive, expected it unpacked", path);
+    const std::size_t count = files.size();
+    if (count > 1) {
+        std::erase_if(files, [](const std::string& name) { return !hasPlainSceneName(name); });
+    }
+    check(!files.empty(), "{}: a zip archive of {} files without a scene, expected one", path, count);
+    std::string shown;
+    for (std::size_t i = 0; i < std::min(files.size(), kMostNames); ++i) { shown += (i == 0 ? "" : ", ") + files[i]; }
+    check(files.size() == 1, "{}: a zip archive with {} scenes ({}{}), expected one: unpack it and choose", path, files.size(), shown,
+          files.size() > kMostNames ? ", ..." : "");
+    return files.front();
+}
+
+// All that `read` gives, in a file that messages call `name`.
+template <typename Read>
+std::unique_ptr<InputFile> unpack(const InputFile& packed, const std::string& name, const Read& read) {
+    TemporaryFolder folder("binosplat-unpacked-", "a packed scene");
+    constexpr const char* kName = "scene";
+    const std::uint64_t most_bytes = kMostGrowth * packed.sizeBytes() + kAlwaysAllowedBytes;
+    const auto requireWritten = [&](bool written) {
+        check(written, "{}: cannot be unpacked into {}: {}", name, folder.path().string(), std::strerror(errno));
+    };
+    File target = createFile(folder.path() / kName);
+    requireWritten(target != nullptr);
+    std::vector<std::byte> piece(kPieceBytes);
+    std::uint64_t done = 0;
+    while (const std::size_t got = read(std::span(piece))) {
+        done += got;
+        check(done <= most_bytes, "{}: is longer than {} bytes unpacked, expected at most {} times as many as packed", name, most_bytes,
+              kMostGrowth);
+        requireWritten(std::fwrite(piece.data(), 1, got, target.get()) == got);
+    }
+    requireWritten(std::fclose(target.release()) == 0);
+    packed.requireUnchanged();
+    return std::make_unique<InputFile>(std::move(folder), kName, name);
+}
+
+}  // namespace
+
+bool hasSceneName(const fs::path& file) {
+    const std::string extension = extensionOf(file);
+    return hasPlainSceneName(file) || extension == ".zip" || (extension == ".gz" && hasPlainSceneName(file.stem()));
+}
+
+bool isPacked(InputFile& file) {
+    if (isZip(file)) {
+        if (!ZipArchive::kIsBuiltIn) { return false; }  // SOG's reader says so
+        const std::vector<std::string> files = filesIn(openArchive(file));
+        const bool is_sog = std::ranges::any_of(files, [](const std::string& name) { return isNamed(name, "meta.json"); });
+        return !is_sog || std::ranges::any_of(files, isLevels);
+    }
+    const std::vector<std::byte> start = peekGzip(file, 4);
+    return !start.empty() && std::memcmp(start.data(), "NGSP", start.size()) != 0;
+}
+
+std::unique_ptr<InputFile> unpackScene(std::unique_ptr<InputFile> file, const Progress& progress) {
+    if (!isZip(*file)) {
+        GzipReader stream(*file);
+        return unpack(*file, file->name(), [&](std::span<std::byte> target) {
+            if (progress) { progress(1.0 - static_cast<double>(file->bytesLeft()) / static_cast<double>(file->sizeBytes())); }
+            std::size_t got = stream.read(target);
+            while (got < target.size() && stream.next()) { got += stream.read(target.subspan(got)); }
+            return got;
+        });
+    }
+    const ZipArchive archive = openArchive(*file);
+    const ZipArchive::Entry entry = archive.find(findScene(file->name(), filesIn(archive)));
+    ZipReader stream(archive, entry);
+    double done = 0.0;
+    return unpack(*file, entry.place, [&](std::span<std::byte> target) {
+        if (progress) { progress(std::min(done / static_cast<double>(entry.size_bytes), 1.0)); }
+        const std::size_t got = stream.read(target);
+        done += static_cast<double>(got);
+        return got;
+    });
+}
+
+}  // namespace binosplat

@@ -1,0 +1,22 @@
+// Scenes within gzip (garden.ply.gz), or alone in a zip archive.
+#pragma once
+
+#include "engine/scene/input_file.h"
+#include "engine/scene/scene.h"
+
+#include <filesystem>
+#include <memory>
+
+namespace binosplat {
+
+// True if a file's name ends as those of scenes do, packed or not.
+bool hasSceneName(const std::filesystem::path& file);
+
+// True for gzip and zip but those of SPZ and SOG, which are formats of their own.
+bool isPacked(InputFile& file);
+
+// The scene in a packed file, as a file of its own. Throws Error for an archive that is broken or encrypted, or that holds no scene or
+// several, and for a scene that is more than 256 times as long as what it is packed in.
+std::unique_ptr<InputFile> unpackScene(std::unique_ptr<InputFile> file, const Progress& progress);
+
+}  // namespace binosplat
