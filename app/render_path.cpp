@@ -54,6 +54,7 @@ void requireNoOthers(const std::filesystem::path& folder, std::size_t frames, bo
 
 HeadPath readHeadPath(const RenderOptions& options) {
     HeadMotion motion = readHeadMotion(options.path, options.path_axes, options.segment);
+    if (!motion.note().empty()) { fmt::print(stderr, "binosplat: {}\n", motion.note()); }
     std::vector<double> times_s = frameTimes(motion, options.segment, options.path);
     requireNoOthers(options.out, times_s.size(), options.run.stereo.mode == Mode::kMono);
     return {std::move(motion), std::move(times_s)};

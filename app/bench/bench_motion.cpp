@@ -72,6 +72,7 @@ void playView(const Context& context, const BenchOptions& options, const BenchPl
 void benchMotion(const BenchOptions& options, const BenchPlan& plan) {
     requireScenes(plan);
     const HeadMotion motion = readHeadMotion(options.motion_file, options.motion_axes, options.segment);
+    if (!motion.note().empty()) { fmt::print(stderr, "binosplat: {}\n", motion.note()); }
     OutputFiles files(options.out);
     const Context context(contextOptions(options.run));
     MotionRun run{context.deviceName(), options.run.config, std::filesystem::path(options.motion_file).filename().string(), {}};

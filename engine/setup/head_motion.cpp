@@ -19,7 +19,7 @@ Pose poseFromRecording(const glm::dvec3& position, const glm::dquat& orientation
     return {glm::dquat(orientation.w, -orientation.x, orientation.y, -orientation.z), {position.x, -position.y, position.z}};
 }
 
-HeadMotion::HeadMotion(std::vector<HeadSample> samples) : samples_(std::move(samples)) {
+HeadMotion::HeadMotion(std::vector<HeadSample> samples, std::string note) : samples_(std::move(samples)), note_(std::move(note)) {
     assert(!samples_.empty() && samples_.front().time_s == 0.0);
 }
 
@@ -39,7 +39,7 @@ HeadMotion HeadMotion::startingAt(double from_s) const {
     for (const HeadSample& sample : samples_) {
         if (sample.time_s > from_s) { samples.push_back({sample.time_s - from_s, sample.world_from_head}); }
     }
-    return HeadMotion(std::move(samples));
+    return HeadMotion(std::move(samples), note_);
 }
 
 std::vector<double> frameTimes(const HeadMotion& motion, const MotionSegment& segment, const std::string& file) {

@@ -28,8 +28,10 @@ struct HeadSample {
 class HeadMotion {
 public:
     // At least one sample, times strictly increasing from 0.
-    explicit HeadMotion(std::vector<HeadSample> samples);
+    explicit HeadMotion(std::vector<HeadSample> samples, std::string note = {});
 
+    // A sentence on what of its file was left out; empty: nothing.
+    [[nodiscard]] const std::string& note() const { return note_; }
     [[nodiscard]] const std::vector<HeadSample>& samples() const { return samples_; }
     [[nodiscard]] double duration_s() const { return samples_.back().time_s; }
 
@@ -46,6 +48,7 @@ public:
 
 private:
     std::vector<HeadSample> samples_;
+    std::string note_;
 };
 
 // The part of a recording that is played.

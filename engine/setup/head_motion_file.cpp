@@ -10,12 +10,13 @@ namespace binosplat {
 HeadMotion parseHeadMotion(std::string_view text, const std::string& file, MotionAxes axes) {
     try {
         std::vector<HeadSample> samples;
-        for (const files::MotionSample& sample : files::parseMotion(text, file)) {
+        files::MotionFile motion = files::parseMotion(text, file);
+        for (const files::MotionSample& sample : motion.samples) {
             const auto& [x, y, z] = sample.position_m;
             const auto& [qx, qy, qz, qw] = sample.orientation_xyzw;
             samples.push_back({sample.time_s, poseFromRecording({x, y, z}, glm::dquat(qw, qx, qy, qz), axes)});
         }
-        return HeadMotion(std::move(samples));
+        return HeadMotion(std::move(samples), std::move(motion.note));
     } catch (const files::Error& error) { throw Error(error.what()); }
 }
 

@@ -2,6 +2,7 @@
 #include "xr/simulated/api/simulation.h"
 
 #include <cmath>
+#include <cstdio>
 #include <stdexcept>
 #include <string_view>
 
@@ -72,6 +73,7 @@ std::unique_ptr<Simulation> Simulation::begin() {
         return survived;
     }
     Script script = loadScriptOfEnvironment();
+    for (const std::string& note : script.notes) { std::fprintf(stderr, "simulated runtime: %s\n", note.c_str()); }
     const Clock clock(wantsRealClock(), std::llround(1e9 / script.rate_hz), script.irregularity);
     std::string profile = findFavouriteProfile(script);
     std::optional<Output> output = makeOutput(script);

@@ -3,6 +3,7 @@
 
 #include "xr/simulated/files/file_words.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <utility>
@@ -13,6 +14,7 @@ namespace {
 
 constexpr std::size_t kColumns = 8;
 constexpr std::array<const char*, kColumns> kNames{"time", "x", "y", "z", "qx", "qy", "qz", "qw"};
+constexpr std::string_view kBlank(" \t\r\n\0", 5);  // a file whose end never reached the disk may end in zeros
 constexpr std::string_view kExpected = "time, position x, y, z, orientation x, y, z, w";
 
 // The contents of a header.
@@ -60,6 +62,15 @@ Layout readHeader(const std::vector<std::string_view>& fields) {
     return layout;
 }
 
+// As a row is that a recorder was stopped in.
+bool isUnfinished(const std::vector<std::string_view>& fields, bool has_break) {
+    const auto isBlank = [](std::string_view field) { return field.find_first_not_of(kBlank) == std::string_view::npos; };
+    const auto isNumber = [](std::string_view field) { return parseNumber(field).has_value(); };
+    if (fields.size() != kColumns) { return fields.size() < kColumns; }
+    return std::all_of(fields.begin() + 1, fields.end(), isBlank) ||
+           (!has_break && std::all_of(fields.begin(), fields.end() - 1, isNumber));
+}
+
 std::optional<Time> parseTime(std::string_view text) {
     const std::optional<double> count = parseNumber(text);
     // Differences of numbers up to 4e18 do not overflow.
@@ -100,25 +111,20 @@ void readPose(const Line& line, bool w_first, MotionSample& sample) {
 
 }  // namespace
 
-std::vector<MotionSample> parseMotion(std::string_view text, const std::string& file) {
+MotionFile parseMotion(std::string_view text, const std::string& file) {
     if (text.starts_with("\xef\xbb\xbf")) { text.remove_prefix(3); }
-    std::vector<MotionSample> samples;
+    MotionFile motion;
+    std::vector<MotionSample>& samples = motion.samples;
     Layout layout;
     Time first;
     bool header_possible = true;
-    for (std::size_t number = 1; !text.empty(); ++number) {
-        const std::size_t length = std::min(text.find('\n'), text.size());
-        const std::string_view words = trim(text.substr(0, length));
-        text.remove_prefix(std::min(length + 1, text.size()));
-        if (words.empty() || words.starts_with('#')) { continue; }
-
-        const Line line{file, number, splitFields(words)};
+    const auto readRow = [&](const Line& line) {
         if (line.fields.size() != kColumns) { line.fail(line.fields.size(), " columns, must be 8: ", kExpected); }
         const std::optional<Time> time = parseTime(line.fields[0]);
         // A header has names in place of the first two numbers; otherwise it is a line with a mistake.
         if (std::exchange(header_possible, false) && !time && !parseNumber(line.fields[1])) {
             layout = readHeader(line.fields);
-            continue;
+            return;
         }
         if (!time) {
             line.fail("time is ", line.fields[0].empty() ? "empty" : shown(line.fields[0]), ", must be a finite number of at most 4e18");
@@ -134,9 +140,24 @@ std::vector<MotionSample> parseMotion(std::string_view text, const std::string& 
         }
         readPose(line, layout.w_first, sample);
         samples.push_back(sample);
+    };
+    for (std::size_t number = 1; !text.empty(); ++number) {
+        const std::size_t length = std::min(text.find('\n'), text.size());
+        const bool has_break = length < text.size();
+        const std::string_view words = trim(text.substr(0, length));
+        text.remove_prefix(std::min(length + 1, text.size()));
+        if (words.empty() || words.starts_with('#')) { continue; }
+        const Line line{file, number, splitFields(words)};
+        try {
+            readRow(line);
+        } catch (const Error& error) {
+            const bool is_last = text.find_first_not_of(kBlank) == std::string_view::npos;
+            if (!is_last || samples.empty() || !isUnfinished(line.fields, has_break)) { throw; }
+            motion.note = std::string(error.what()) + "; the last row, cut off, is left out";
+        }
     }
     if (samples.empty()) { throw Error(file + ": holds no poses, must be lines of " + std::string(kExpected)); }
-    return samples;
+    return motion;
 }
 
 }  // namespace files

@@ -147,6 +147,7 @@ struct Script {
 
     [[nodiscard]] bool allowsExtension(std::string_view name) const { return !extensions_off.contains(name); }
 
+    std::vector<std::string> notes;  // a sentence each on what was left out of files that it names
     double rate_hz = 90.0;
     bool rate_is_fixed = false;     // requests of programs are refused
     double irregularity = 0.0;      // of display times, as a share of the period

@@ -46,9 +46,11 @@ std::string readText(const fs::path& path, const std::string& place, const char*
 
 files::HeadsetFile readHeadset(const std::string& text, const std::string& name) { return readWith(files::parseHeadset, text, name); }
 
-Track<Pose> readHeadTrack(std::string_view text, const std::string& name, MotionAxes axes) {
+Track<Pose> readHeadTrack(std::string_view text, const std::string& name, MotionAxes axes, std::vector<std::string>& notes) {
     Track<Pose> track;
-    for (const files::MotionSample& sample : readWith(files::parseMotion, text, name)) {
+    const files::MotionFile motion = readWith(files::parseMotion, text, name);
+    if (!motion.note.empty()) { notes.push_back(motion.note); }
+    for (const files::MotionSample& sample : motion.samples) {
         const auto& [x, y, z] = sample.position_m;
         const auto& [qx, qy, qz, qw] = sample.orientation_xyzw;
         // Unity's axes: a reflection in z mirrors the axis and reverses the rotation.

@@ -22,7 +22,8 @@ enum class MotionAxes {
     kOpenXr,  // right-handed, the wearer looks along -z
     kUnity,   // left-handed, the wearer looks along +z
 };
-// Head poses by time since the first one, from a text as motion_file.h describes it. Throws ScriptError with the file's own line.
-[[nodiscard]] Track<Pose> readHeadTrack(std::string_view text, const std::string& name, MotionAxes axes);
+// Head poses by time since the first one, from a text as motion_file.h describes it; its note goes to `notes`. Throws ScriptError with the
+// file's own line.
+[[nodiscard]] Track<Pose> readHeadTrack(std::string_view text, const std::string& name, MotionAxes axes, std::vector<std::string>& notes);
 
 }  // namespace simulated

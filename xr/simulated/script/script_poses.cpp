@@ -69,8 +69,8 @@ void Parser::parseHeadMotionLine(Words& words) {
     if (words.takeIf("start")) { motion_start_s_ = words.takeTime("the time at which the motion starts"); }
     if (words.takeIf("skip")) { motion_skip_s_ = words.takeNumber("the seconds to skip", 0.0, 1e6); }
     words.requireEnd();
-    head_motion_ =
-        readHeadTrack(readText(path, words.place() + ": ", "a CSV file of head motion", kMostRecordingBytes), path.string(), axes);
+    const std::string text = readText(path, words.place() + ": ", "a CSV file of head motion", kMostRecordingBytes);
+    head_motion_ = readHeadTrack(text, path.string(), axes, script_.notes);
     if (motion_skip_s_ > head_motion_->lastTime()) {
         words.fail("the seconds to skip are {}, must be at most {}, the recording's length", motion_skip_s_, head_motion_->lastTime());
     }

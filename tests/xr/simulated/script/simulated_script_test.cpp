@@ -272,6 +272,11 @@ TEST_CASE("recorded motion starts where the head line says and keeps its tilt") 
     // Of Unity: left-handed with z ahead, so a positive turn about y looks right, and +z is ahead.
     folder.write("unity.csv", "0,0,0,0,0,0,0,1\n1,1,0,2,0,0.70710678118654752,0,0.70710678118654752\n");
     folder.write("long.csv", "0,0,0,0,0,0,0,1\n2,2,0,0,0,0,0,1\n4,2,0,8,0,0,0,1\n");
+    folder.write("cut.csv", "0,0,0,0,0,0,0,1\n1,2,0,0,0,0,0,1\n2,9,0");
+    const std::vector<std::string> notes = folder.script("head-motion cut.csv").notes;
+    REQUIRE(notes.size() == 1);
+    CHECK(notes[0].ends_with(
+        "cut.csv:3: 3 columns, must be 8: time, position x, y, z, orientation x, y, z, w; the last row, cut off, is left out"));
     constexpr const char* kStanding = "head 0 position 0 1.6 0\nhead-motion m.csv start 2";
     constexpr const char* kTilted = "head 0 position 0 1.6 0\nhead-motion tilted.csv";
     constexpr const char* kUnity = "head 0 position 0 0 0\nhead-motion unity.csv axes unity";
