@@ -68,7 +68,7 @@ std::string findScene(const std::string& path, std::vector<std::string> files) {
     if (count > 1) {
         std::erase_if(files, [](const std::string& name) { return !hasPlainSceneName(name); });
     }
-    check(!files.empty(), "{}: a zip archive of {} files without a scene, expected one", path, count);
+    check(!files.empty(), "{}: a zip archive of {} files without a scene or the meta.json of one, expected one scene", path, count);
     std::string shown;
     for (std::size_t i = 0; i < std::min(files.size(), kMostNames); ++i) { shown += (i == 0 ? "" : ", ") + files[i]; }
     check(files.size() == 1, "{}: a zip archive with {} scenes ({}{}), expected one: unpack it and choose", path, files.size(), shown,

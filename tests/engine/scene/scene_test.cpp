@@ -400,7 +400,7 @@ TEST_CASE("a zip archive with one scene in it is that scene; one with several, n
     const std::pair<std::string, std::string> faults[]{
         {zip({{"a.ply", ply}, {"b.spz", spz}}), "b.zip: a zip archive with 2 scenes (a.ply, b.spz), expected one: unpack it and choose"},
         {zip({{"1.ply", ply}, {"2.ply", ply}, {"3.ply", ply}, {"4.ply", ply}}), "with 4 scenes (1.ply, 2.ply, 3.ply, ...)"},
-        {zip({{"a.txt", "x"}, {"b.txt", "y"}}), "b.zip: a zip archive of 2 files without a scene, expected one"},
+        {zip({{"a.txt", "x"}, {"b.txt", "y"}}), "b.zip: a zip archive of 2 files without a scene or the meta.json of one"},
         {zip({}), "b.zip: a zip archive of 0 files without a scene"},
         {zip({{"a/meta.json", "{}"}, {"lod-meta.json", "{}"}}), "b.zip: a streamed SOG scene in a zip archive, expected it unpacked"},
         {secret, "b.zip: a.ply: is encrypted, expected an archive without a password"},

@@ -216,8 +216,8 @@ TEST_CASE("a bundle's files may come in any order, and among others; archives th
     entries.emplace_back("not-meta.json", "");
     checkSameScene(scene, loadScene(folder.write("a.sog", makeZip(entries))));
 
-    for (const auto& [missing, message] :
-         {std::pair("meta.json", "a.sog: a zip archive without a meta.json"), std::pair("q.webp", "a.sog: q.webp: not in the archive")}) {
+    for (const auto& [missing, message] : {std::pair("meta.json", "files without a scene or the meta.json of one"),
+                                           std::pair("q.webp", "a.sog: q.webp: not in the archive")}) {
         SogText less = files;
         less.erase(missing);
         CHECK(contains(loadError(folder.write("a.sog", makeZip(less))), message));
