@@ -87,16 +87,29 @@ std::vector<std::string> readableArguments(std::vector<std::string> words) {
     return words;
 }
 
+bool isScene(const std::string& word) {
+    std::error_code unknown;
+    return word.starts_with("builtin:") || isAddress(word) || std::filesystem::exists(word, unknown);
+}
+
+// No command looks like that.
+bool looksLikeFile(const std::string& word) {
+    return word.find_first_of("/\\") != std::string::npos || std::filesystem::path(word).has_extension();
+}
+
 // A scene in place of a command is viewed: a file that was dropped onto the program, or opened with it. For any other word CLI11 would only
 // say that a command is missing.
 std::vector<std::string> withCommand(std::vector<std::string> words) {
     const std::string word = words.empty() ? "-" : words.front();
     if (word.starts_with('-') || std::ranges::find(commands(), word, &Command::name) != commands().end()) { return words; }
-    std::error_code unknown;
-    if (word.starts_with("builtin:") || isAddress(word) || std::filesystem::exists(word, unknown)) {
+    if (isScene(word)) {
+        if (words.size() > 1 && !words[1].starts_with('-') && (isScene(words[1]) || looksLikeFile(words[1]))) {
+            throw Error(ExitCode::kUsage, fmt::format("{} and {} are two scenes, must be one to view at a time", word, words[1]));
+        }
         words.insert(words.begin(), "view");
         return words;
     }
+    check(!looksLikeFile(word), "{}: no such file, must be a scene to view, or a command (see `binosplat --help`)", word);
     std::string names;
     for (const Command& command : shownCommands()) { names += fmt::format("{}{}", names.empty() ? "" : ", ", command.name); }
     throw Error(ExitCode::kUsage,
@@ -111,8 +124,9 @@ std::string oneLine(std::string text) {
 }  // namespace
 
 Options parseOptions(int argument_count, const char* const* arguments) {
-    const std::vector<std::string> words =
-        withCommand(argument_count > 1 ? std::vector<std::string>(arguments + 1, arguments + argument_count) : std::vector<std::string>());
+    std::vector<std::string> words(arguments + std::min(argument_count, 1), arguments + argument_count);
+    for (const std::string& word : words) { requireNoUser(word); }  // before any message repeats it
+    words = withCommand(std::move(words));
     CLI::App app{"binosplat: Gaussian splatting scenes in stereo and in a VR headset", "binosplat"};
     app.allow_windows_style_options(false);  // a path may begin with a slash there, too
     app.require_subcommand(1);

@@ -1,19 +1,33 @@
 // Distinguishes an address on the web from the name of a file.
 #pragma once
 
+#include "engine/error.h"
+
 #include <algorithm>
+#include <string>
 #include <string_view>
 
 namespace binosplat {
 
+// True for a prefix in small letters, which `source` may have in either case.
+inline bool beginsWith(std::string_view source, std::string_view prefix) {
+    return source.size() >= prefix.size() && std::ranges::equal(source.substr(0, prefix.size()), prefix, [](char a, char b) {
+               return (a >= 'A' && a <= 'Z' ? static_cast<char>(a - 'A' + 'a') : a) == b;
+           });
+}
+
+inline bool isPlainHttp(std::string_view source) { return beginsWith(source, "http://"); }
+
 // http:// or https:// and more, in letters of either case. Whether the rest is an address turns out when it is requested.
-inline bool isAddress(std::string_view source) {
-    const auto beginsWith = [&](std::string_view scheme) {
-        return source.size() >= scheme.size() && std::ranges::equal(source.substr(0, scheme.size()), scheme, [](char a, char b) {
-                   return (a >= 'A' && a <= 'Z' ? static_cast<char>(a - 'A' + 'a') : a) == b;
-               });
-    };
-    return beginsWith("http://") || beginsWith("https://");
+inline bool isAddress(std::string_view source) { return isPlainHttp(source) || beginsWith(source, "https://"); }
+
+// Throws Error for an address that names a user, perhaps with a password, which the message leaves out.
+inline void requireNoUser(std::string_view source) {
+    if (!isAddress(source)) { return; }
+    const std::size_t host = source.find("//") + 2;
+    const std::size_t at = source.substr(0, source.find_first_of("/?#", host)).rfind('@');
+    check(at == std::string_view::npos || at < host, "{}...{}: names a user, expected an address that anybody may read",
+          source.substr(0, host), source.substr(std::min(at, source.size())));
 }
 
 }  // namespace binosplat

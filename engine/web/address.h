@@ -11,8 +11,11 @@ struct Address {
     std::string server;  // its scheme, host and port
 };
 
-// Throws Error if `source` is no http or https address, or names a user.
+// Throws Error if `source` is no http or https address, or names a user, whose password no message repeats.
 Address parseAddress(const std::string& source);
+
+// True for the address of a machine, in numbers, that is not on the public web: this one, or one on a private network or link.
+bool isPrivateAddress(const std::string& ip);
 
 // The address of the file `name` in the folder of `address`; for the empty name `address` itself. Throws Error if it would lead out.
 std::string addressOf(const Address& address, const std::string& name);

@@ -1,10 +1,12 @@
 // Fetches files from the web, several at once, on a thread of its own. A build without libcurl has none: no_fetcher.cpp.
 #pragma once
 
+#include "engine/web/address.h"
 #include "engine/web/web_cache.h"
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <future>
 #include <memory>
 #include <string>
@@ -14,11 +16,13 @@ namespace binosplat {
 struct FetchSettings {
     using Milliseconds = std::chrono::milliseconds;
     std::uint64_t most_bytes = std::uint64_t{64} << 30;  // of one file
+    std::uint64_t cache_bytes = 0;                       // that the whole cache may have; 0: nothing is kept, and this is no bound
     int attempts = 4;
     Milliseconds first_pause{500};   // before the second attempt, then doubled each time
     Milliseconds most_pause{20000};  // that a server may ask for
     Milliseconds patience{20000};    // with a server that sends next to nothing
     std::size_t at_once = 8;
+    std::function<bool(const std::string& ip)> is_private = isPrivateAddress;  // a server's address; no redirect leads there from others
 };
 
 struct FetchRequest {

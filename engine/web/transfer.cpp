@@ -69,6 +69,10 @@ Transfer::Transfer(const WebCache& cache, const FetchSettings& settings, FetchTa
     set(CURLOPT_FOLLOWLOCATION, 1l);
     set(CURLOPT_MAXREDIRS, kMostRedirects);
     set(CURLOPT_DISALLOW_USERNAME_IN_URL, 1l);
+    // Whole files are asked for as they are (setHeaders), but some servers hold packed ones and send no others.
+    set(CURLOPT_ACCEPT_ENCODING, "gzip, deflate");
+    set(CURLOPT_PREREQFUNCTION, &Transfer::checkServer);
+    set(CURLOPT_PREREQDATA, static_cast<void*>(this));
     set(CURLOPT_HTTP_VERSION, static_cast<long>(CURL_HTTP_VERSION_2TLS));
     set(CURLOPT_PIPEWAIT, 1l);
     set(CURLOPT_NOSIGNAL, 1l);
@@ -85,6 +89,7 @@ Transfer::Transfer(const WebCache& cache, const FetchSettings& settings, FetchTa
 void Transfer::start() {
     ++attempts_;
     error_[0] = '\0';
+    began_private_.reset();
     got_bytes_ = kept_bytes_ = file_ != nullptr ? file_->sizeBytes() : 0;
     setHeaders();
     watched_since_ = Clock::now();
@@ -100,6 +105,7 @@ void Transfer::setHeaders() {
         (void)headers.release();
         headers.reset(longer);
     };
+    add("Accept-Encoding", "identity");
     if (kept_bytes_ == 0) {
         add("If-None-Match", request_.version.etag);
         add("If-Modified-Since", request_.version.last_modified);
@@ -109,6 +115,16 @@ void Transfer::setHeaders() {
     curl_easy_setopt(easy_.get(), CURLOPT_RANGE, kept_bytes_ == 0 ? nullptr : fmt::format("{}-", kept_bytes_).c_str());
     curl_easy_setopt(easy_.get(), CURLOPT_HTTPHEADER, headers.get());
     headers_ = std::move(headers);
+}
+
+// A public server must not make us ask those that only this machine, or its network, can reach.
+int Transfer::checkServer(void* transfer, char* ip, char*, int, int) {
+    auto& self = *static_cast<Transfer*>(transfer);
+    const bool is_private = self.settings_.is_private(ip);
+    if (!self.began_private_) { self.began_private_ = is_private; }
+    if (!is_private || *self.began_private_) { return CURL_PREREQFUNC_OK; }
+    self.refused_ = fmt::format("redirects from the public web to {}, which is on a private network, expected a public server", ip);
+    return CURL_PREREQFUNC_ABORT;
 }
 
 bool Transfer::isStalled() {
@@ -144,8 +160,10 @@ std::size_t Transfer::take(const char* data, std::size_t bytes) {
     }
     if (file_->sizeBytes() + bytes > request_.most_bytes) {
         refused_ = fmt::format("is longer than {} bytes, which is the most that is taken", request_.most_bytes);
-        return 0;
+    } else if (exceedsCache(file_->sizeBytes() + bytes)) {
+        refused_ = fmt::format("is longer than {}", cacheLimit());
     }
+    if (!refused_.empty()) { return 0; }
     if (!file_->write(data, bytes)) {
         refused_ = "cannot be kept: there is no room on the disk of the cache; make some";
         return 0;
@@ -174,7 +192,7 @@ std::optional<Transfer::ContentRange> Transfer::contentRange() const {
 
 bool Transfer::isTheRest() const {
     const std::optional<ContentRange> range = contentRange();
-    if (!range || range->first != kept_bytes_ || header("ETag") != version_.etag) { return false; }
+    if (!range || isEncoded() || range->first != kept_bytes_ || header("ETag") != version_.etag) { return false; }
     return is_sized_ ? range->total == 0 || range->total == expected_bytes_ : range->total > 0;
 }
 
@@ -187,10 +205,12 @@ bool Transfer::beginBody() {
         return false;
     }
     version_ = versionSent();
-    if (said < 0) { return true; }
+    if (said < 0 || isEncoded()) { return true; }
     const auto expected = static_cast<std::uint64_t>(said);
     if (expected > request_.most_bytes) {
         refused_ = fmt::format("is {} bytes long, expected at most {}", expected, request_.most_bytes);
+    } else if (exceedsCache(expected)) {
+        refused_ = fmt::format("is {} bytes long, more than {}", expected, cacheLimit());
     } else if (expected > file_->roomBytes()) {
         refused_ = fmt::format("is {} bytes long, but the disk of the cache has room for {}; make some", expected, file_->roomBytes());
     }
@@ -215,7 +235,18 @@ void Transfer::startOver() {
 
 bool Transfer::canGoOn() const {
     const bool is_strong = version_.etag.starts_with('"');
-    return file_ != nullptr && file_->sizeBytes() > 0 && is_strong && !isNoRest();
+    return file_ != nullptr && file_->sizeBytes() > 0 && is_strong && !isEncoded() && !isNoRest();
+}
+
+bool Transfer::isEncoded() const {
+    const std::string encoding = header("Content-Encoding");
+    return !encoding.empty() && encoding != "identity";
+}
+
+bool Transfer::exceedsCache(std::uint64_t bytes) const { return settings_.cache_bytes > 0 && bytes > settings_.cache_bytes; }
+
+std::string Transfer::cacheLimit() const {
+    return fmt::format("the cache's {} bytes; a larger --cache-limit takes it, and 0, which keeps nothing", settings_.cache_bytes);
 }
 
 long Transfer::status() const {
@@ -276,7 +307,8 @@ std::optional<Fetched> Transfer::judge(CURLcode code, bool is_stalled) {
         }
         return Fetched{Kind::kNew, "", std::move(file_), version_};
     }
-    if (!is_stalled && code == CURLE_OK && answer == 304 && kept_bytes_ == 0 && headers_ != nullptr) {
+    if (!is_stalled && code == CURLE_OK && answer == 304 && kept_bytes_ == 0 &&
+        (!request_.version.etag.empty() || !request_.version.last_modified.empty())) {
         return Fetched{Kind::kUnchanged, ""};
     }
 

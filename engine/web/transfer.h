@@ -51,6 +51,7 @@ public:
     [[nodiscard]] bool finish(CURLcode code, bool is_stalled = false);
 
 private:
+    static int checkServer(void* transfer, char* ip, char* own_ip, int port, int own_port);
     static std::size_t writeBody(char* data, std::size_t size, std::size_t count, void* transfer);
     std::size_t take(const char* data, std::size_t bytes);
     // False, with the reason, if the body is not to be had.
@@ -64,6 +65,10 @@ private:
     // The rest was requested, and the answer says that it cannot be had that way.
     [[nodiscard]] bool isNoRest() const;
     [[nodiscard]] bool canGoOn() const;
+    // True if the body is packed on its way: lengths and places that the server tells are not those of the file.
+    [[nodiscard]] bool isEncoded() const;
+    [[nodiscard]] bool exceedsCache(std::uint64_t bytes) const;
+    [[nodiscard]] std::string cacheLimit() const;
     void setHeaders();
     [[nodiscard]] long status() const;
     [[nodiscard]] std::string header(const char* name) const;
@@ -93,9 +98,10 @@ private:
     std::uint64_t got_bytes_ = 0, watched_bytes_ = 0, expected_bytes_ = 0;
     bool is_sized_ = false;  // the server has said how long it is
     std::unique_ptr<IncomingFile> file_;
-    FileVersion version_;           // of the bytes in file_
-    std::uint64_t kept_bytes_ = 0;  // of them, those from earlier attempts; more than 0: the rest was asked for
-    std::string refused_;           // why the body was not taken
+    FileVersion version_;                // of the bytes in file_
+    std::uint64_t kept_bytes_ = 0;       // of them, those from earlier attempts; more than 0: the rest was asked for
+    std::optional<bool> began_private_;  // whether the first server that was asked is on a private network
+    std::string refused_;                // why the body was not taken
 };
 
 }  // namespace binosplat

@@ -13,11 +13,13 @@
 
 namespace binosplat {
 
+// How much may be written to a disk: the smaller of 1 GiB and 5 % of it stays free for other programs.
+std::uint64_t roomOn(const std::filesystem::space_info& disk);
+
 // A file on its way into the cache: removed again unless it is kept.
 class IncomingFile {
 public:
-    explicit IncomingFile(std::filesystem::path path, File file, std::uint64_t room_bytes)
-        : path_(std::move(path)), file_(std::move(file)), room_bytes_(room_bytes) {}
+    IncomingFile(std::filesystem::path path, File file);
     IncomingFile(const IncomingFile&) = delete;
     IncomingFile& operator=(const IncomingFile&) = delete;
     ~IncomingFile();
@@ -32,7 +34,7 @@ private:
     friend class WebCache;
     std::filesystem::path path_;
     File file_;
-    std::uint64_t room_bytes_, size_bytes_ = 0;
+    std::uint64_t room_bytes_, size_bytes_ = 0, looked_at_bytes_ = 0;
     bool is_kept_ = false;
 };
 

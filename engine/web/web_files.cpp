@@ -25,6 +25,12 @@ constexpr int kMostTurns = 3;
 
 std::string dateOf(std::int64_t seconds) { return fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(static_cast<std::time_t>(seconds))); }
 
+FetchSettings withCacheLimit(const WebSettings& settings) {
+    FetchSettings fetch = settings.fetch;
+    if (!settings.cache_folder.empty()) { fetch.cache_bytes = settings.cache_bytes; }
+    return fetch;
+}
+
 }  // namespace
 
 fs::path webCacheFolder() {
@@ -39,7 +45,7 @@ WebFiles::WebFiles(const std::string& address, const WebSettings& settings, Prog
       own_folder_(settings.cache_folder.empty() ? std::optional(TemporaryFolder("binosplat-web-", "scenes from the web")) : std::nullopt),
       folder_(own_folder_ ? own_folder_->path() : settings.cache_folder),
       cache_(folder_),
-      fetcher_(cache_, settings.fetch) {}
+      fetcher_(cache_, withCacheLimit(settings)) {}
 
 WebFiles::~WebFiles() { cache_.trim(cache_bytes_); }
 
@@ -118,6 +124,9 @@ Scene loadSceneFromAnywhere(const std::string& source, std::uint64_t builtin_spl
     };
     WebFiles files(source, settings, fetching);
     Scene scene = loadScene(files.open(""), notes, progress ? Progress(reading) : Progress(), level);
+    if (isPlainHttp(source)) {
+        notes.lines.push_back(fmt::format("{}: came by http, so that others on the way could read and change it; https is safer", source));
+    }
     notes.stale = files.stale();
     if (!notes.stale.empty()) { notes.lines.push_back(notes.stale); }
     return scene;

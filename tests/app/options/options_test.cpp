@@ -36,8 +36,15 @@ TEST_CASE("a scene in the place of a command is viewed, any other word is a usag
     CHECK(viewed.frames == 3);
     CHECK(parse<ViewOptions>(work.path.string()).scene == work.path.string());
     CHECK(parse<ViewOptions>("builtin:no-such-scene").scene == "builtin:no-such-scene");
-    checkRefused((work.path / "gone.ply").string(), ExitCode::kUsage,
-                 "gone.ply is not a command; must be one of: render, bench, view, info, scene, convert, compare");
+    checkRefused("rendre", ExitCode::kUsage, "rendre is not a command; must be one of: render, bench, view, info, scene, convert, compare");
+    for (const char* gone : {"gone.ply", "gone/", "a/gone", "gone.ply --frames 3"}) {
+        checkRefused(gone, ExitCode::kBadInput, "no such file, must be a scene to view, or a command");
+    }
+    checkRefused("builtin:fence gone.ply", ExitCode::kUsage, "builtin:fence and gone.ply are two scenes, must be one to view at a time");
+    for (const char* line :
+         {"https://me:secret@server/a.ply", "info https://me:secret@server/a.ply", "bench a https://me:secret@server/a.ply --bogus"}) {
+        checkRefused(line, ExitCode::kBadInput, "https://...@server/a.ply: names a user");
+    }
 }
 
 TEST_CASE("a command line that is not understood is a usage error, which names what is wrong") {

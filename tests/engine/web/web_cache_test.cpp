@@ -98,10 +98,23 @@ TEST_CASE("the cache keeps its limit, and what was used last") {
     CHECK(filesIn(folder.file("cache")).size() == 4);
     CHECK(bytesIn(folder.file("cache")) <= settings.cache_bytes);
     CHECK(fs::exists(first));
-    // One that is larger than all of it is shown, and not kept.
+    // One that is larger than all of it is not taken, whether or not the server says so before; without a cache it is shown, and not kept.
+    const WebServer silent([](const WebRequest&) { return WebAnswer{"HTTP/1.1 200 OK\r\n\r\n" + kPly, WebAnswer::Then::kClose}; });
     settings.cache_bytes = kPly.size() / 2;
+    CHECK(contains(webError(server.at("/a.ply"), settings),
+                   fmt::format("is {} bytes long, more than the cache's {}", kPly.size(), kPly.size() / 2)));
+    CHECK(contains(webError(silent.at("/a.ply"), settings), "a larger --cache-limit takes it"));
+    settings.cache_bytes = 0;
     CHECK(loadFromWeb(server.at("/a.ply"), settings).size() > 0);
     CHECK(filesIn(folder.file("cache")).empty());
+}
+
+TEST_CASE("the smaller of 1 GiB and 5 % of the disk stays free") {
+    constexpr std::uint64_t kGib = std::uint64_t{1} << 30;
+    for (const auto& [capacity, available, room] : std::vector<std::array<std::uint64_t, 3>>{
+             {1000 * kGib, 500 * kGib, 499 * kGib}, {1000 * kGib, kGib, 0}, {1000 * kGib, 0, 0}, {10 * kGib, kGib, kGib / 2}, {0, 0, 0}}) {
+        CHECK(roomOn({capacity, available, available}) == room);
+    }
 }
 
 TEST_CASE("without a folder for a cache nothing stays") {

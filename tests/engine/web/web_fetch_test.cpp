@@ -1,4 +1,5 @@
 // Servers that are busy, cut off, lie, lead elsewhere or vanish: the scene all the same, or one plain line and nothing left behind.
+#include "tests/engine/scene/packed_bytes.h"
 #include "tests/engine/web/web_runs.h"
 
 SUITE(web_fetch) {
@@ -212,6 +213,54 @@ TEST_CASE("redirects are followed on the web, and never to a file") {
               "redirects to an address that may not be followed, expected one of http or https, and of https after https");
     }
     CHECK(errorOf(leadTo("/a.ply"), webSettings, 6) == "redirects more than 5 times, expected a file");
+    CHECK_FALSE(contains(errorOf(leadTo("http://me:secret@127.0.0.1/a.ply")), "secret"));
+}
+
+TEST_CASE("no redirect leads from the public web to a machine of this network") {
+    const Folder folder;
+    const WebServer server([&](const WebRequest& request) {
+        return request.path == "/1" ? answer("302 Found", "Location: /a.ply\r\n") : answer("200 OK", "", kPly);
+    });
+    struct {
+        bool first_is_private, second_is_private, is_followed;
+    } const ways[]{{false, false, true}, {true, false, true}, {true, true, true}, {false, true, false}};
+    for (const auto& way : ways) {
+        WebSettings settings = webSettings(folder);
+        settings.fetch.is_private = [&way, servers = 0](const std::string& ip) mutable {
+            CHECK(ip == "127.0.0.1");
+            return servers++ == 0 ? way.first_is_private : way.second_is_private;
+        };
+        const std::string message = webError(server.at("/1"), settings);
+        CHECK(message.empty() == way.is_followed);
+        if (!way.is_followed) {
+            CHECK(contains(message, "redirects from the public web to 127.0.0.1, which is on a private network, expected a public server"));
+        }
+    }
+    CHECK(server.asked() == std::vector<std::string>{"/1", "/a.ply", "/1", "/a.ply", "/1", "/a.ply", "/1"});
+}
+
+TEST_CASE("a body that is packed on its way is unpacked, and never resumed") {
+    const Folder folder;
+    const Scene scene = loadScene(folder.write("a.ply", kPly));
+    for (const auto& [encoding, window_bits] :
+         {std::pair("gzip", MAX_WBITS + 16), {"x-gzip", MAX_WBITS + 16}, {"deflate", MAX_WBITS}, {"deflate", -MAX_WBITS}}) {
+        const std::string packed = deflated(kPly, window_bits);
+        const WebServer server([&, &name = encoding](const WebRequest& request) {
+            CHECK(request.header("accept-encoding") == "identity");
+            CHECK(request.header("range").empty());
+            WebAnswer given = answer("200 OK", fmt::format("ETag: \"1\"\r\nContent-Encoding: {}\r\n", name), packed);
+            if (request.number == 0) { given = {given.bytes.substr(0, given.bytes.size() - 20), WebAnswer::Then::kClose}; }
+            return given;
+        });
+        LoadNotes notes;
+        checkSameScene(scene, loadFromWeb(server.at("/a.ply"), webSettings(folder), &notes));
+        CHECK(server.asked().size() == 2);
+        CHECK(std::ranges::count_if(notes.lines, [](const std::string& line) { return contains(line, "came by http, so that others"); }) ==
+              1);
+        std::filesystem::remove_all(folder.file("cache"));
+    }
+    CHECK(errorOf(answer("200 OK", "Content-Encoding: gzip\r\n", kPly)).starts_with("cannot be had ("));
+    CHECK(errorOf(answer("200 OK", "Content-Encoding: unknown\r\n", kPly)).starts_with("cannot be had ("));
 }
 
 TEST_CASE("a server that falls silent is given up") {

@@ -35,8 +35,24 @@ TEST_CASE("an address begins with http or https; a name in its folder cannot lea
     }
     const auto parse = [](const std::string& text) { (void)parseAddress(text); };
     CHECK_THROWS_WITH_AS(parse("http:///a.ply"), "http:///a.ply: names no server, expected https://SERVER/FILE", Error);
-    CHECK_THROWS_WITH_AS(parse("https://me:secret@server/a.ply"), doctest::Contains("names a user"), Error);
+    for (const std::string rest : {"server/a.ply", "server/a@b.ply?c", "server"}) {
+        const std::string host = rest.substr(0, rest.find('/'));
+        CHECK_THROWS_WITH_AS(parse("https://me:sec@ret@" + rest),
+                             ("https://...@" + rest + ": names a user, expected an address that anybody may read").c_str(), Error);
+    }
+    CHECK(parseAddress("https://server/a@b/c.ply").server == "https://server");
     CHECK_THROWS_WITH_AS(parse("https://server/" + std::string(5000, 'a')), doctest::Contains("at most 4096 bytes"), Error);
+}
+
+TEST_CASE("machines of this network are told from those of the public web") {
+    for (const char* ip : {"127.0.0.1", "10.1.2.3", "172.16.0.1", "172.31.255.255", "192.168.0.1", "169.254.169.254", "100.64.0.1",
+                           "0.0.0.0", "::1", "::", "fe80::1", "febf::1", "fc00::1", "fd12:3456::1", "::ffff:10.0.0.1"}) {
+        CHECK_MESSAGE(isPrivateAddress(ip), ip);
+    }
+    for (const char* ip : {"8.8.8.8", "172.15.0.1", "172.32.0.1", "192.169.0.1", "169.253.0.1", "100.128.0.1", "2606:4700::1", "fec0::1",
+                           "fb00::1", "::ffff:8.8.8.8"}) {
+        CHECK_FALSE_MESSAGE(isPrivateAddress(ip), ip);
+    }
 }
 
 TEST_CASE("a scene at an address is the same as on the disk, whatever its format") {
