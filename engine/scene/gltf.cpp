@@ -8,9 +8,12 @@
 #include "engine/scene/quantized.h"
 #include "engine/scene/scene_builder.h"
 #include "engine/scene/sh_turn.h"
+#include "engine/srgb.h"
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <span>
 #include <string_view>
 
 namespace binosplat {
@@ -34,11 +37,13 @@ bool holdsLogarithms(const GltfDocument& document) {
 
 // Fills blocks with a part's splats in world axes.
 class PartReader {
+    using Curve = double (*)(double);
+
 public:
-    PartReader(const GltfSplats& part, bool logarithms, int sh_degree)
+    PartReader(const GltfSplats& part, bool logarithms, const GltfDocument& document)
         : part_(part),
           logarithms_(logarithms),
-          sh_degree_(sh_degree),
+          sh_degree_(document.sh_degree),
           linear_(part.world_from_node),
           is_rigid_(linear_ == glm::dmat3(1.0)),
           is_similarity_(isSimilarity(linear_)),
@@ -48,12 +53,16 @@ public:
         const double sign = glm::determinant(turn_) < 0.0 ? -1.0 : 1.0;
         turned_ = glm::quat_cast(sign * turn_);
         scale_ = std::cbrt(std::abs(glm::determinant(linear_)));
+        if (part.is_linear != document.is_linear) {
+            convert_ = part.is_linear ? static_cast<Curve>(encodedOf) : static_cast<Curve>(lightOf);
+        }
     }
 
     void read(std::uint64_t first, StoredBlock& block) {
         readPlaces(first, block);
         readShapes(first, block);
         readColours(first, block);
+        if (convert_ != nullptr) { convertColours(block); }
     }
 
 private:
@@ -131,6 +140,25 @@ private:
         }
     }
 
+    // The constant colour exactly; what is added by direction with the curve's mean slope over its usual range.
+    void convertColours(StoredBlock& block) const {
+        const std::size_t per_channel = static_cast<std::size_t>(shCoefficientCount(sh_degree_)) - 1;
+        for (std::size_t row = 0; row < block.rows; ++row) {
+            for (std::size_t channel = 0; channel < 3; ++channel) {
+                float& constant = block.column(kStoredDc0 + static_cast<int>(channel))[row];
+                const std::span<float> rest(block.rest(row) + channel * per_channel, per_channel);
+                double squares = 0.0;
+                for (const float value : rest) { squares += static_cast<double>(value) * static_cast<double>(value); }
+                // The basis is orthonormal on the sphere: this is the root of the mean square over all directions.
+                const double range = std::max(std::sqrt(squares / (4.0 * std::numbers::pi)), 1e-3);
+                const double colour = 0.5 + static_cast<double>(kShConstant) * static_cast<double>(constant);
+                const double slope = (convert_(colour + range) - convert_(colour - range)) / (2.0 * range);
+                constant = storedColour(static_cast<float>(convert_(colour)));
+                for (float& value : rest) { value *= static_cast<float>(slope); }
+            }
+        }
+    }
+
     const GltfSplats& part_;
     bool logarithms_;
     int sh_degree_;
@@ -139,6 +167,7 @@ private:
     glm::dmat3 turn_;
     glm::dquat turned_{};
     double scale_ = 1.0;
+    Curve convert_ = nullptr;  // of a colour's channel; null: it stays as it is
     ShTurn harmonics_;
     std::vector<float> values_, scales_;
 };
@@ -170,7 +199,7 @@ Scene readGltf(InputFile& file, LoadNotes& notes, const Progress& progress) {
     StoredBlock block;
     std::uint64_t done = 0, blocks = 0;
     for (const GltfSplats& part : document.parts) {
-        PartReader reader(part, logarithms, document.sh_degree);
+        PartReader reader(part, logarithms, document);
         sheared = sheared || !isSimilarity(glm::dmat3(part.world_from_node));
         for (std::uint64_t first = 0; first < part.count(); first += block.rows) {
             if (progress && blocks++ % 128 == 0) { progress(static_cast<double>(done) / static_cast<double>(total)); }

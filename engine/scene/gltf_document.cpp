@@ -198,7 +198,8 @@ GltfSplats openSplats(const Place& place, const glm::dmat4& world_from_node) {
                       requireColumn(place, prefix + "OPACITY", 1, Integers::kNormalized),
                       findHarmonics(place),
                       std::nullopt,
-                      world_from_node};
+                      world_from_node,
+                      false};
     if (splats.sh.empty()) { splats.colour = findColumn(place, "COLOR_0", 4, Integers::kNormalized); }
     check(!splats.sh.empty() || splats.colour, "{}: has neither {}SH_DEGREE_0_COEF_0 nor COLOR_0, expected colours", place.name, kPrefix);
     const auto requireCount = [&](const GltfColumn& column) {
@@ -216,7 +217,9 @@ class Wishes {
 public:
     explicit Wishes(const std::string& file) : file_(file) {}
 
-    void add(const gltf::Splatting& asked) {
+    static bool isLinear(const gltf::Splatting& asked) { return asked.colour_space == kLinear; }
+
+    void add(const gltf::Splatting& asked, std::uint64_t splats) {
         const auto noteOther = [&](const char* key, const std::string& value, std::string_view known, const char* instead) {
             if (value != known && !value.empty()) {
                 others_.insert(fmt::format("{}: {} is {}, which is not known: {}", file_, key, value, instead));
@@ -224,11 +227,11 @@ public:
         };
         noteOther("kernel", asked.kernel, "ellipse", "drawn as ellipse");
         noteOther("projection", asked.projection, "perspective", "drawn as perspective");
-        if (asked.colour_space == "lin_rec709_display") {
-            linear_ = true;
+        if (isLinear(asked)) {
+            linear_ += splats;
         } else {
-            encoded_ = true;
-            noteOther("colorSpace", asked.colour_space, "srgb_rec709_display", "shown as srgb_rec709_display");
+            encoded_ += splats;
+            noteOther("colorSpace", asked.colour_space, kEncoded, "shown as srgb_rec709_display");
         }
         if (asked.sorting == "zDepth") {
             by_depth_ = true;
@@ -239,10 +242,15 @@ public:
     }
 
     void finish(GltfDocument& document) {
-        check(!linear_ || !encoded_,
-              "{}: has splats of colorSpace lin_rec709_display and others of srgb_rec709_display, expected one: they cannot be blended",
-              file_);
-        document.is_linear = linear_;
+        // Splats are blended in one space: the fewer are converted.
+        document.is_linear = linear_ > encoded_;
+        if (linear_ > 0 && encoded_ > 0) {
+            const auto [kept, converted] = document.is_linear ? std::pair(kLinear, kEncoded) : std::pair(kEncoded, kLinear);
+            others_.insert(fmt::format(
+                "{}: {} of {} splats have colours in {} and were converted to {}, that of the others, in which all are blended; "
+                "where a colour depends on the direction, approximately",
+                file_, std::min(linear_, encoded_), linear_ + encoded_, converted, kept));
+        }
         document.by_distance = by_distance_;
         if (by_distance_ && by_depth_) {
             others_.insert(fmt::format("{}: two values of sortingMethod, all sorted as cameraDistance", file_));
@@ -251,8 +259,11 @@ public:
     }
 
 private:
+    static constexpr const char *kLinear = "lin_rec709_display", *kEncoded = "srgb_rec709_display";
+
     const std::string& file_;
-    bool linear_ = false, encoded_ = false, by_distance_ = false, by_depth_ = false;
+    std::uint64_t linear_ = 0, encoded_ = 0;  // splats
+    bool by_distance_ = false, by_depth_ = false;
     std::set<std::string> others_;
 };
 
@@ -284,7 +295,8 @@ void placeParts(const gltf::Model& model, const std::string& file, GltfDocument&
             check(std::abs(glm::determinant(linear)) > 1e-30 && std::isfinite(glm::determinant(linear)),
                   "{}: nodes[{}]: its transform has no inverse, expected splats that keep their extent", file, index);
             document.parts.push_back(openSplats(place, world_from_node));
-            wishes.add(*primitives[i].splatting);
+            document.parts.back().is_linear = Wishes::isLinear(*primitives[i].splatting);
+            wishes.add(*primitives[i].splatting, document.parts.back().count());
         }
     }
     check(!document.parts.empty(), "{}: a glTF without splats: none of its {} primitives has the extension KHR_gaussian_splatting", file,

@@ -39,6 +39,7 @@ struct GltfSplats {
     std::vector<GltfColumn> sh;  // by coefficient, from the constant one on; empty: `colour` stands for the constant one
     std::optional<GltfColumn> colour;
     glm::dmat4 world_from_node{1.0};
+    bool is_linear = false;  // its colours are light; otherwise display-encoded
 
     [[nodiscard]] std::uint64_t count() const { return position.count(); }
 };
@@ -48,7 +49,7 @@ struct GltfDocument {
     std::vector<GltfSplats> parts;
     std::uint64_t bytes = 0;   // of the file and all buffers
     int sh_degree = 0;         // the highest of the parts'
-    bool is_linear = false;    // colours of linear light; otherwise display-encoded
+    bool is_linear = false;    // most splats' colours are light, and the scene's shall be
     bool by_distance = false;  // the blending order
     std::vector<std::string> notes;
 };

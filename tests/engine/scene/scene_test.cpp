@@ -403,7 +403,7 @@ TEST_CASE("a zip archive with one scene in it is that scene; one with several, n
         {zip({{"a.txt", "x"}, {"b.txt", "y"}}), "b.zip: a zip archive of 2 files without a scene or the meta.json of one"},
         {zip({}), "b.zip: a zip archive of 0 files without a scene"},
         {zip({{"a/meta.json", "{}"}, {"lod-meta.json", "{}"}}), "b.zip: a streamed SOG scene in a zip archive, expected it unpacked"},
-        {secret, "b.zip: a.ply: is encrypted, expected an archive without a password"},
+        {secret, "b.zip: a.ply: is encrypted and asks for a password, expected an archive without one"},
         {broken, "b.zip: a.ply: cannot be read"},
         {zip({{"a.ply", ply}}).substr(0, 500), "b.zip: not a whole zip archive"},
         {zip({{"a.ply.gz", gzip(ply)}}), "b.zip: is packed twice"},
