@@ -8,7 +8,7 @@ packages=(
     libvulkan-dev mesa-vulkan-drivers vulkan-validationlayers
     glslang-tools spirv-tools
     libglm-dev libfmt-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev
-    libtinygltf-dev libopenimageio-dev libwebp-dev libzip-dev libpng-dev zlib1g-dev libzstd-dev libcurl4-openssl-dev ca-certificates
+    libopenimageio-dev libwebp-dev libzip-dev libpng-dev zlib1g-dev libzstd-dev libcurl4-openssl-dev ca-certificates
     libopenxr-dev libopenxr-utils openxr-layer-corevalidation libimgui-dev libfribidi-dev libfontconfig-dev libharfbuzz-dev libfreetype-dev libglfw3-dev
     fonts-dejavu-core fonts-droid-fallback fonts-lohit-deva
     doctest-dev python3 xvfb xdotool openssl nghttp2-server

@@ -10,7 +10,7 @@ namespace binosplat {
 bool isGltf(InputFile& file);
 
 // All splats that the default scene's nodes place, in that scene's axes; the harmonics are rotated with them. Nodes without splats are left
-// out, with a note. Throws Error in a build without tinygltf.
+// out, with a note.
 Scene readGltf(InputFile& file, LoadNotes& notes, const Progress& progress);
 
 }  // namespace binosplat

@@ -2,14 +2,15 @@
 #include "engine/scene/gltf_buffers.h"
 
 #include "engine/error.h"
-#include "engine/scene/gltf_parser.h"
 #include "engine/scene/scene_files.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cstring>
 #include <filesystem>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 namespace binosplat {
@@ -32,6 +33,36 @@ std::optional<std::string> decodePercents(const std::string& uri) {
         i += 2;
     }
     return text;
+}
+
+// RFC 4648, section 4; none if it is anything else.
+std::optional<std::vector<std::byte>> decodeBase64(std::string_view text) {
+    constexpr std::string_view kLetters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    if (text.size() % 4 != 0) { return std::nullopt; }
+    for (int padding = 0; padding < 2 && text.ends_with('='); ++padding) { text.remove_suffix(1); }
+    std::array<int, 256> values{};
+    values.fill(-1);
+    for (std::size_t i = 0; i < kLetters.size(); ++i) { values[static_cast<unsigned char>(kLetters[i])] = static_cast<int>(i); }
+    std::vector<std::byte> bytes;
+    bytes.reserve(text.size() / 4 * 3 + 2);
+    std::uint32_t bits = 0;
+    int count = 0;
+    for (const char letter : text) {
+        const int value = values[static_cast<unsigned char>(letter)];
+        if (value < 0) { return std::nullopt; }
+        bits = bits << 6 | static_cast<std::uint32_t>(value);
+        if ((count += 6) < 8) { continue; }
+        count -= 8;
+        bytes.push_back(static_cast<std::byte>(bits >> count & 0xff));
+    }
+    return bytes;
+}
+
+// The bytes within a data URI of any type (RFC 2397); none if they are not in base64.
+std::optional<std::vector<std::byte>> decodeDataUri(std::string_view uri) {
+    const std::size_t comma = uri.find(',');
+    if (comma == std::string_view::npos || !uri.substr(0, comma).ends_with(";base64")) { return std::nullopt; }
+    return decodeBase64(uri.substr(comma + 1));
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ namespace binosplat {
 
 namespace {
 
-constexpr std::uint64_t kMostTextBytes = std::uint64_t{1} << 31;
+constexpr std::uint64_t kMostTextBytes = std::uint64_t{32} << 20;            // in memory ten times as long; splats belong into a buffer
 constexpr std::uint32_t kJsonChunk = 0x4e4f534a, kBinaryChunk = 0x004e4942;  // "JSON", "BIN\0"
 constexpr const char* kPrefix = "KHR_gaussian_splatting:";
 
@@ -60,34 +60,6 @@ Content readContent(InputFile& file) {
         file.skip(bytes);
     }
     return content;
-}
-
-// The parts that hold splats, for the library: it reads every picture and keeps every buffer otherwise, and takes what is no whole number
-// for nothing.
-std::string structureOf(const nlohmann::json& document, const std::string& file) {
-    const JsonNode root{document, file};
-    root.requireObject();
-    nlohmann::json kept = nlohmann::json::object();
-    for (const char* key :
-         {"asset", "scene", "scenes", "nodes", "meshes", "accessors", "bufferViews", "extensionsUsed", "extensionsRequired"}) {
-        if (root.has(key)) { kept[key] = document[key]; }
-    }
-    for (const char* array : {"accessors", "bufferViews"}) {
-        if (!root.has(array)) { continue; }
-        const JsonNode items = root.at(array);
-        for (std::size_t i = 0; i < items.arraySize(); ++i) {
-            const JsonNode item = items.at(i);
-            for (const char* key : {"byteOffset", "byteLength", "byteStride", "count"}) {
-                if (item.has(key)) { (void)item.at(key).count(); }
-            }
-        }
-    }
-    kept["buffers"] = nlohmann::json::array();
-    const std::size_t buffers = root.has("buffers") ? root.at("buffers").arraySize() : 0;
-    for (std::size_t i = 0; i < buffers; ++i) {
-        kept["buffers"].push_back({{"byteLength", 1}, {"uri", "data:application/octet-stream;base64,AA=="}});
-    }
-    return kept.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 std::vector<GltfBuffer> openBuffers(const InputFile& file, const nlohmann::json& document, std::optional<GltfBuffer> chunk) {
@@ -344,11 +316,10 @@ void GltfColumn::read(std::uint64_t first, std::size_t rows, std::vector<float>&
 }
 
 GltfDocument openGltf(InputFile& file) {
-    requireGltfParser(file.name());
     Content content = readContent(file);
     const nlohmann::json document = parseJson(content.text, file.name(), "a glTF scene");
     content.text = {};
-    const gltf::Model model = gltf::parse(structureOf(document, file.name()), file.name());
+    const gltf::Model model = gltf::parse(document, file.name());
     for (const std::string& extension : model.required_extensions) {
         check(extension == "KHR_gaussian_splatting" || extension == "KHR_mesh_quantization",
               "{}: requires the extension {}, which is not known", file.name(), extension.substr(0, 100));

@@ -1,143 +1,164 @@
-// From tinygltf's model to ours, with every index checked: the library takes any.
+// From JSON to the structure, with every index checked.
 #include "engine/scene/gltf_parser.h"
 
 #include "engine/error.h"
-
-#ifdef BINOSPLAT_GLTF
+#include "engine/scene/json_node.h"
 
 #include <glm/gtc/quaternion.hpp>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <fstream>  // which the library leaves out without its files
+#include <string_view>
+#include <utility>
 
-#define TINYGLTF_IMPLEMENTATION
-#define TINYGLTF_NO_INCLUDE_JSON
-#define TINYGLTF_NO_FS
-#define TINYGLTF_NO_STB_IMAGE
-#define TINYGLTF_NO_STB_IMAGE_WRITE
-#include <tiny_gltf.h>
-
-namespace binosplat {
-
-void requireGltfParser(const std::string& /*source*/) {}
-
-namespace gltf {
+namespace binosplat::gltf {
 
 namespace {
 
 constexpr const char* kExtension = "KHR_gaussian_splatting";
 
-std::size_t indexOf(int index, std::size_t size, const std::string& place, const char* what) {
-    check(index >= 0 && static_cast<std::size_t>(index) < size, "{}: names {} {} of {}", place, what, index, size);
-    return static_cast<std::size_t>(index);
+// What lies at the index that `node` holds as `key`, which is one of `size`.
+std::size_t indexOf(const JsonNode& index, std::size_t size, const std::string& place, const char* what) {
+    const std::uint64_t value = index.count();
+    check(value < size, "{}: names {} {} of {}", place, what, value, size);
+    return value;
 }
 
-BufferView viewOf(const tinygltf::BufferView& view, std::size_t buffers, const std::string& place) {
-    return {indexOf(view.buffer, buffers, place, "buffer"), view.byteOffset, view.byteLength, view.byteStride};
+std::uint64_t countOr(const JsonNode& node, const char* key, std::uint64_t otherwise) {
+    return node.has(key) ? node.at(key).count() : otherwise;
 }
 
-Accessor accessorOf(const tinygltf::Accessor& accessor, std::size_t views, const std::string& place) {
+std::vector<std::size_t> indicesOf(const JsonNode& node, const char* key, std::size_t size, const char* what) {
+    std::vector<std::size_t> indices;
+    const std::size_t count = node.has(key) ? node.at(key).arraySize() : 0;
+    for (std::size_t i = 0; i < count; ++i) { indices.push_back(indexOf(node.at(key).at(i), size, node.place(), what)); }
+    return indices;
+}
+
+std::string textOf(const JsonNode& node, const char* key) {
+    return node.has(key) && node.at(key).value.is_string() ? node.at(key).text() : "";
+}
+
+BufferView viewOf(const JsonNode& node, std::size_t buffers) {
+    return {indexOf(node.at("buffer"), buffers, node.place(), "buffer"), countOr(node, "byteOffset", 0), node.at("byteLength").count(),
+            countOr(node, "byteStride", 0)};
+}
+
+Accessor accessorOf(const JsonNode& node, std::size_t views) {
     Accessor result;
-    if (accessor.bufferView != -1) { result.view = indexOf(accessor.bufferView, views, place, "bufferView"); }
-    result.offset = accessor.byteOffset;
-    result.count = accessor.count;
-    const int type = accessor.componentType;
-    check(type == 5120 || type == 5121 || type == 5122 || type == 5123 || type == 5125 || type == 5126,
-          "{}: componentType is {}, expected 5120 to 5123, 5125 or 5126", place, type);
-    result.component = static_cast<Component>(type);
-    result.normalized = accessor.normalized;
-    result.is_sparse = accessor.sparse.isSparse;
-    const bool is_matrix = accessor.type >= TINYGLTF_TYPE_MAT2 && accessor.type <= TINYGLTF_TYPE_MAT4;
-    result.components = is_matrix ? 0 : tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type));
+    if (node.has("bufferView")) { result.view = indexOf(node.at("bufferView"), views, node.place(), "bufferView"); }
+    result.offset = countOr(node, "byteOffset", 0);
+    result.count = node.at("count").count();
+    const std::uint64_t component = node.at("componentType").count();
+    check((component >= 5120 && component <= 5123) || component == 5125 || component == 5126,
+          "{}: componentType is {}, expected 5120 to 5123, 5125 or 5126", node.place(), component);
+    result.component = static_cast<Component>(component);
+    result.normalized = node.has("normalized") && node.at("normalized").flag();
+    result.is_sparse = node.has("sparse");
+    constexpr std::array<std::pair<std::string_view, int>, 7> kTypes{
+        {{"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT2", 0}, {"MAT3", 0}, {"MAT4", 0}}};
+    const std::string type = node.at("type").text();
+    const auto* found = std::ranges::find(kTypes, type, &std::pair<std::string_view, int>::first);
+    check(found != kTypes.end(), "{}: type is {}, expected SCALAR, VEC2 to VEC4 or MAT2 to MAT4", node.place(), type.substr(0, 40));
+    result.components = found->second;
     return result;
 }
 
-std::string textOf(const tinygltf::Value& object, const char* key) {
-    const tinygltf::Value& value = object.Get(std::string(key));
-    return value.IsString() ? value.Get<std::string>() : "";
-}
-
-Primitive primitiveOf(const tinygltf::Primitive& primitive, std::size_t accessors, const std::string& place) {
+Primitive primitiveOf(const JsonNode& node, std::size_t accessors) {
     Primitive result;
-    for (const auto& [name, index] : primitive.attributes) {
-        result.attributes.emplace(name, indexOf(index, accessors, place, "accessor"));
+    if (node.has("attributes")) {
+        const JsonNode attributes = node.at("attributes");
+        attributes.requireObject();
+        for (const auto& [name, index] : attributes.value.items()) {
+            result.attributes.emplace(name, indexOf(attributes.at(name), accessors, node.place(), "accessor"));
+        }
     }
-    result.is_points = primitive.mode == TINYGLTF_MODE_POINTS;
-    if (const auto found = primitive.extensions.find(kExtension); found != primitive.extensions.end()) {
-        const tinygltf::Value& value = found->second;
-        check(value.IsObject(), "{}: {} is no object, expected one", place, kExtension);
-        result.splatting = Splatting{
-            textOf(value, "kernel"), textOf(value, "colorSpace"), textOf(value, "projection"), textOf(value, "sortingMethod"), {}};
-        if (value.Get("extensions").IsObject()) { result.splatting->extensions = value.Get("extensions").Keys(); }
+    constexpr std::uint64_t kPoints = 0, kTriangles = 4;
+    result.is_points = countOr(node, "mode", kTriangles) == kPoints;
+    if (!node.has("extensions") || !node.at("extensions").has(kExtension)) { return result; }
+    const JsonNode splatting = node.at("extensions").at(kExtension);
+    splatting.requireObject();
+    result.splatting = Splatting{textOf(splatting, "kernel"),
+                                 textOf(splatting, "colorSpace"),
+                                 textOf(splatting, "projection"),
+                                 textOf(splatting, "sortingMethod"),
+                                 {}};
+    if (splatting.has("extensions")) {
+        const JsonNode extensions = splatting.at("extensions");
+        extensions.requireObject();
+        for (const auto& [name, content] : extensions.value.items()) { result.splatting->extensions.push_back(name); }
     }
     return result;
 }
 
-glm::dmat4 transformOf(const tinygltf::Node& node, const std::string& place) {
-    const auto requireSize = [&](const std::vector<double>& values, std::size_t size, const char* what) {
-        check(values.empty() || values.size() == size, "{}: {} has {} numbers, expected {}", place, what, values.size(), size);
-        check(std::ranges::all_of(values, [](double v) { return std::abs(v) < 1e30; }), "{}: {} has a number over 1e30", place, what);
-    };
-    requireSize(node.matrix, 16, "matrix");
-    requireSize(node.translation, 3, "translation");
-    requireSize(node.rotation, 4, "rotation");
-    requireSize(node.scale, 3, "scale");
+// None: the node has none.
+std::vector<double> numbersOf(const JsonNode& node, const char* key, std::size_t size) {
+    std::vector<double> numbers;
+    if (!node.has(key)) { return numbers; }
+    const JsonNode array = node.at(key);
+    array.requireArray(size);
+    for (const nlohmann::json& value : array.value) {
+        check(value.is_number() && std::abs(value.get<double>()) < 1e30, "{}: is {}, expected numbers under 1e30", array.place(),
+              array.value.dump().substr(0, 200));
+        numbers.push_back(value.get<double>());
+    }
+    return numbers;
+}
+
+glm::dmat4 transformOf(const JsonNode& node) {
+    const std::vector<double> matrix = numbersOf(node, "matrix", 16), translation = numbersOf(node, "translation", 3),
+                              turn = numbersOf(node, "rotation", 4), scale = numbersOf(node, "scale", 3);
     glm::dmat4 transform(1.0);
-    if (!node.matrix.empty()) {
-        for (int i = 0; i < 16; ++i) { transform[i / 4][i % 4] = node.matrix[static_cast<std::size_t>(i)]; }
+    if (!matrix.empty()) {
+        for (int i = 0; i < 16; ++i) { transform[i / 4][i % 4] = matrix[static_cast<std::size_t>(i)]; }
         return transform;
     }
-    if (!node.rotation.empty()) {
+    if (!turn.empty()) {
         glm::dquat rotation = glm::identity<glm::dquat>();
-        rotation.x = node.rotation[0], rotation.y = node.rotation[1], rotation.z = node.rotation[2], rotation.w = node.rotation[3];
-        check(glm::length(rotation) > 0.0, "{}: rotation has length 0, expected a unit quaternion", place);
+        rotation.x = turn[0], rotation.y = turn[1], rotation.z = turn[2], rotation.w = turn[3];
+        check(glm::length(rotation) > 0.0, "{}: rotation has length 0, expected a unit quaternion", node.place());
         transform = glm::mat4_cast(glm::normalize(rotation));
     }
     for (int i = 0; i < 3; ++i) {
-        if (!node.scale.empty()) { transform[i] *= node.scale[static_cast<std::size_t>(i)]; }
-        if (!node.translation.empty()) { transform[3][i] = node.translation[static_cast<std::size_t>(i)]; }
+        if (!scale.empty()) { transform[i] *= scale[static_cast<std::size_t>(i)]; }
+        if (!translation.empty()) { transform[3][i] = translation[static_cast<std::size_t>(i)]; }
     }
     return transform;
 }
 
-Node nodeOf(const tinygltf::Node& node, const tinygltf::Model& model, const std::string& place) {
+Node nodeOf(const JsonNode& node, std::size_t meshes, std::size_t nodes) {
     Node result;
-    result.parent_from_node = transformOf(node, place);
-    if (node.mesh != -1) { result.mesh = indexOf(node.mesh, model.meshes.size(), place, "mesh"); }
-    for (const int child : node.children) { result.children.push_back(indexOf(child, model.nodes.size(), place, "node")); }
+    result.parent_from_node = transformOf(node);
+    if (node.has("mesh")) { result.mesh = indexOf(node.at("mesh"), meshes, node.place(), "mesh"); }
+    result.children = indicesOf(node, "children", nodes, "node");
     return result;
 }
 
 }  // namespace
 
-Model parse(const std::string& text, const std::string& file) {
-    tinygltf::TinyGLTF parser;
-    tinygltf::Model read;
-    std::string errors, warnings;
-    const bool whole = parser.LoadASCIIFromString(&read, &errors, &warnings, text.data(), static_cast<unsigned>(text.size()), "");
-    check(whole, "{}: not a whole glTF 2.0: {}", file, errors.substr(0, 200));
+Model parse(const nlohmann::json& document, const std::string& file) {
+    const JsonNode root{document, file};
+    root.requireObject();
+    const std::string version = root.at("asset").at("version").text();
+    check(version.starts_with("2."), "{}: asset.version is {}, expected 2.0", file, version.substr(0, 40));
 
     Model model;
-    const auto each = [&](const auto& items, const char* name, auto&& put) {
-        for (std::size_t i = 0; i < items.size(); ++i) { put(items[i], fmt::format("{}: {}[{}]", file, name, i)); }
+    const auto sizeOf = [&](const char* key) { return root.has(key) ? root.at(key).arraySize() : 0; };
+    const auto each = [&](const char* key, auto&& put) {
+        for (std::size_t i = 0; i < sizeOf(key); ++i) { put(root.at(key).at(i)); }
     };
-    each(read.bufferViews, "bufferViews",
-         [&](const auto& view, const std::string& place) { model.views.push_back(viewOf(view, read.buffers.size(), place)); });
-    each(read.accessors, "accessors", [&](const auto& accessor, const std::string& place) {
-        model.accessors.push_back(accessorOf(accessor, read.bufferViews.size(), place));
-    });
-    each(read.meshes, "meshes", [&](const auto& mesh, const std::string& place) {
+    each("bufferViews", [&](const JsonNode& node) { model.views.push_back(viewOf(node, sizeOf("buffers"))); });
+    each("accessors", [&](const JsonNode& node) { model.accessors.push_back(accessorOf(node, model.views.size())); });
+    each("meshes", [&](const JsonNode& node) {
         std::vector<Primitive>& primitives = model.meshes.emplace_back();
-        for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
-            primitives.push_back(primitiveOf(mesh.primitives[i], read.accessors.size(), fmt::format("{}.primitives[{}]", place, i)));
-        }
+        const JsonNode array = node.at("primitives");
+        for (std::size_t i = 0; i < array.arraySize(); ++i) { primitives.push_back(primitiveOf(array.at(i), model.accessors.size())); }
     });
-    each(read.nodes, "nodes", [&](const auto& node, const std::string& place) { model.nodes.push_back(nodeOf(node, read, place)); });
-    model.required_extensions = read.extensionsRequired;
+    each("nodes", [&](const JsonNode& node) { model.nodes.push_back(nodeOf(node, model.meshes.size(), sizeOf("nodes"))); });
+    each("extensionsRequired", [&](const JsonNode& node) { model.required_extensions.push_back(node.text()); });
 
-    if (read.scenes.empty()) {  // then every node without a parent counts
+    if (sizeOf("scenes") == 0) {  // then every node without a parent counts
         std::vector<bool> is_child(model.nodes.size(), false);
         for (const Node& node : model.nodes) {
             for (const std::size_t child : node.children) { is_child[child] = true; }
@@ -147,35 +168,9 @@ Model parse(const std::string& text, const std::string& file) {
         }
         return model;
     }
-    const std::size_t scene = read.defaultScene == -1 ? 0 : indexOf(read.defaultScene, read.scenes.size(), file, "scene");
-    for (const int node : read.scenes[scene].nodes) {
-        model.roots.push_back(indexOf(node, model.nodes.size(), fmt::format("{}: scenes[{}]", file, scene), "node"));
-    }
+    const std::size_t scene = root.has("scene") ? indexOf(root.at("scene"), sizeOf("scenes"), file, "scene") : 0;
+    model.roots = indicesOf(root.at("scenes").at(scene), "nodes", model.nodes.size(), "node");
     return model;
 }
 
-}  // namespace gltf
-
-std::optional<std::vector<std::byte>> decodeDataUri(const std::string& uri) {
-    std::vector<unsigned char> bytes;
-    std::string type;
-    if (!tinygltf::IsDataURI(uri) || !tinygltf::DecodeDataURI(&bytes, type, uri, 0, false)) { return std::nullopt; }
-    const auto* begin = reinterpret_cast<const std::byte*>(bytes.data());
-    return std::vector<std::byte>(begin, begin + bytes.size());
-}
-
-}  // namespace binosplat
-
-#else
-
-namespace binosplat {
-
-void requireGltfParser(const std::string& source) {
-    fail("{}: a glTF scene, which this build cannot read: configure with BINOSPLAT_GLTF=ON, or convert it to PLY or SPZ", source);
-}
-gltf::Model gltf::parse(const std::string& /*text*/, const std::string& file) { fail("{}: this build is without tinygltf", file); }
-std::optional<std::vector<std::byte>> decodeDataUri(const std::string& /*uri*/) { return std::nullopt; }
-
-}  // namespace binosplat
-
-#endif
+}  // namespace binosplat::gltf

@@ -1,7 +1,8 @@
-// The program's only place that knows tinygltf: the structure of a glTF, without the bytes of its buffers.
+// The structure of a glTF, without the bytes of its buffers.
 #pragma once
 
 #include <glm/glm.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include <cstddef>
 #include <cstdint>
@@ -10,12 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace binosplat {
-
-// Throws Error in a build without tinygltf.
-void requireGltfParser(const std::string& source);
-
-namespace gltf {
+namespace binosplat::gltf {
 
 struct BufferView {
     std::size_t buffer = 0;
@@ -60,13 +56,7 @@ struct Model {
     std::vector<std::string> required_extensions;
 };
 
-// `text` is JSON whose buffers are named without their bytes; `file` is the name for messages. Every index in the model is one of its
-// arrays'.
-Model parse(const std::string& text, const std::string& file);
+// `file` is the name for messages. Every index in the model is one of its arrays', or of the document's buffers.
+Model parse(const nlohmann::json& document, const std::string& file);
 
-}  // namespace gltf
-
-// The bytes of a data URI; none if it is not one that glTF knows.
-std::optional<std::vector<std::byte>> decodeDataUri(const std::string& uri);
-
-}  // namespace binosplat
+}  // namespace binosplat::gltf

@@ -128,7 +128,6 @@ TEST_CASE("a training's output is rendered from its own cameras") {
     CHECK(options["cameras"] == "garden/cameras.json");
 }
 
-#ifdef BINOSPLAT_GLTF
 TEST_CASE("a glTF says in which order its splats are blended unless the user does") {
     const Workplace work;
     GltfText gltf = makeGltf(9);
@@ -139,7 +138,6 @@ TEST_CASE("a glTF says in which order its splats are blended unless the user doe
     CHECK(reportOf(work, "own")["options"]["order"] == "distance");
     CHECK(reportOf(work, "asked")["options"]["order"] == "depth");
 }
-#endif
 
 TEST_CASE("of a camera that sees no splat one line says so, and where the nearest is") {
     const Workplace work;

@@ -150,9 +150,7 @@ constexpr auto kTargets = std::to_array<Target>({
     {"spz_bare", readBareSpz},
     {"convert", convert},
     {"ksplat", readScene},
-#ifdef BINOSPLAT_GLTF
     {"gltf", readScene},
-#endif
     {"sog_meta", readSogMeta},
     {"lod_meta", readLodMeta},
 #ifdef BINOSPLAT_SOG

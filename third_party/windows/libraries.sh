@@ -91,10 +91,9 @@ add_headers() {
     headers nlohmann_json nlohmann_json::nlohmann_json nlohmann
     headers tomlplusplus tomlplusplus::tomlplusplus toml++
     headers doctest doctest::doctest doctest
-    headers tinygltf tinygltf::tinygltf tiny_gltf.h
     rm -rf "$installed/include/vulkan" "$installed/include/vk_video"
     cp -RLp /usr/include/vulkan /usr/include/vk_video "$installed/include"
-    for package in libglm-dev libfmt-dev libcli11-dev nlohmann-json3-dev libtomlplusplus-dev libtinygltf-dev libvulkan-dev libz-mingw-w64-dev \
+    for package in libglm-dev libfmt-dev libcli11-dev nlohmann-json3-dev libtomlplusplus-dev libvulkan-dev libz-mingw-w64-dev \
         mingw-w64-x86-64-dev g++-mingw-w64-x86-64-posix; do
         mkdir -p "$installed/licences/$package"
         cp "/usr/share/doc/$package/copyright" "$installed/licences/$package/"

@@ -133,9 +133,7 @@ void checkFormats(const std::vector<std::string>& sources, const std::vector<glm
 
 TEST_CASE("scenes of every format that is read go through every format that is written, as the same pictures" * needsSharedData()) {
     std::vector<std::string> sources{"formats/minimal.ksplat", "formats/minimal.splat", "playbot/playbot_streamed"};
-#ifdef BINOSPLAT_GLTF
     sources.emplace_back("formats/khr_extensible_fallback.gltf");
-#endif
     checkFormats(sources, {{0.8, -0.5, 0.5}});
 }
 

@@ -302,12 +302,12 @@ TEST_CASE("a glTF that does not fit is named with its place") {
     const std::string json = gltf.json(""), nodes = R"("nodes":[{"mesh":0}])", extension = R"("extensions":{"KHR_gaussian_splatting":)";
     const std::vector<Fault> faults{
         {R"("mode":0)", R"("mode":4)", "meshes[0].primitives[0]: its mode is another, expected 0"},
-        {extension + gltf.extension, extension + "[]", "a glTF without splats"},
+        {extension + gltf.extension, extension + "[]", "KHR_gaussian_splatting: is array, expected an object"},
         {nodes, R"("nodes":[{}])", "a glTF without splats"},
         {nodes, R"("nodes":[{"children":[1]},{"children":[0]}])", "is a child twice"},
         {nodes, R"("nodes":[{"mesh":1}])", "nodes[0]: names mesh 1 of 1"},
         {nodes, R"("nodes":[{"mesh":0,"scale":[1,1,0]}])", "has no inverse"},
-        {nodes, R"("nodes":[{"mesh":0,"matrix":[1,2]}])", "matrix has 2 numbers, expected 16"},
+        {nodes, R"("nodes":[{"mesh":0,"matrix":[1,2]}])", "matrix: has 2 entries, expected 16"},
         {R"("extensionsUsed")", R"("extensionsRequired":["EXT_meshopt_compression"],"extensionsUsed")",
          "requires the extension EXT_meshopt_compression"},
         {extension + "{", extension + R"({"extensions":{"KHR_gaussian_splatting_compression_spz_2":{"bufferView":0}},)",
@@ -318,13 +318,22 @@ TEST_CASE("a glTF that does not fit is named with its place") {
         {R"("count":3)", R"("count":18446744073709551615)", "do not fit"},
         {R"("bufferView":0,)", "", "has no bufferView"},
         {R"("buffers":[{"byteLength":)", R"("buffers":[{"byteLength":9)", "bytes are there"},
-        {R"("version":"2.0")", R"("version":2)", "not a whole glTF"}};
+        {nodes, R"("nodes":[{"mesh":0,"scale":[1,"1",1]}])", "scale: is [1,\"1\",1], expected numbers under 1e30"},
+        {nodes, R"("nodes":[{"mesh":0,"children":[7]}])", "nodes[0]: names node 7 of 1"},
+        {R"("buffer":0)", R"("buffer":1)", "bufferViews[0]: names buffer 1 of 1"},
+        {R"("type":"VEC3")", R"("type":"VEC5")", "accessors[0]: type is VEC5"},
+        {R"("componentType":5126)", R"("componentType":5124)", "componentType is 5124"},
+        {R"("version":"2.0")", R"("version":2)", "asset.version: is number, expected a text"},
+        {R"("version":"2.0")", R"("version":"1.0")", "asset.version is 1.0, expected 2.0"}};
     checkFaults(faults,
                 [&](const Fault& fault) { return glbError(GltfText::makeGlb(replaced(json, fault.from, fault.to), gltf.binary())); });
     CHECK(contains(glbError(gltf.glb().substr(0, 15)), "expected a GLB's header of 20"));
     CHECK(contains(glbError(replaced(gltf.glb(), std::string("glTF\2", 5), std::string("glTF\1", 5))), "version 1, expected 2"));
     std::vector<std::pair<std::string, std::string>> uris{{"gone.bin", "gone.bin: no such file"},
-                                                          {"data:x,y", "buffers[0]: uri begins with 'data:x,y'"}};
+                                                          {"data:x,y", "buffers[0]: uri begins with 'data:x,y'"},
+                                                          {"data:;base64,AAA", "buffers[0]: uri begins with 'data:;base64,AAA'"},
+                                                          {"data:;base64,A*AA", "buffers[0]: uri begins with"},
+                                                          {"data:;base64,AAA=", "byteLength is"}};
     for (const char* uri : {"../x.bin", "/etc/passwd", "a%2", "http://a/b", ""}) {
         uris.emplace_back(uri, "expected a path within the folder");
     }
@@ -332,6 +341,10 @@ TEST_CASE("a glTF that does not fit is named with its place") {
         CHECK(contains(loadError(folder.write("out.gltf", gltf.json(fmt::format(",\"uri\":\"{}\"", uri)))), message));
     }
     CHECK(contains(loadError(folder.write("out.gltf", json)), "buffers[0]: has no uri"));
+    CHECK(contains(loadError(folder.write("long.gltf", json + std::string(std::size_t{32} << 20, ' '))),
+                   "bytes of JSON, expected at most 33554432"));
+    CHECK(contains(glbError(GltfText::makeGlb(json + std::string(std::size_t{32} << 20, ' '), gltf.binary())),
+                   "bytes of JSON, expected at most"));
     // A thousand nodes that show a million splats each would fill the memory.
     GltfText many = makeGltf(0);
     many.nodes = "[";

@@ -118,7 +118,6 @@ std::vector<Target> sceneTargets() {
                        .changes = 400,
                        .must_be_whole = false,
                        .wrap = [spz](const std::string& records) { return makeSpzContainer(spz, records); }});
-#ifdef BINOSPLAT_GLTF
     GltfText gltf = makeGltf(9);
     gltf.nodes = R"([{"children":[1,2]},{"mesh":0,"rotation":[0.5,0.5,0.5,0.5],"scale":[1,2,-3]},{"mesh":0,"translation":[1,2,3]}])";
     gltf.other_primitives = R"(,{"mode":4,"attributes":{"POSITION":0}})";
@@ -131,7 +130,6 @@ std::vector<Target> sceneTargets() {
     targets.back().more = {
         R"({"asset":)" + std::string(100'000, '['),
         replaced(embedded, R"("nodes":[)", R"("extras":)" + std::string(60, '[') + std::string(60, ']') + R"(,"nodes":[)")};
-#endif
     return targets;
 }
 

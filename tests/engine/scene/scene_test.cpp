@@ -223,11 +223,6 @@ TEST_CASE("a folder is streamed SOG, SOG, a training's output, a moving scene or
         CHECK(contains(loadError(root + source), without));
     }
 #endif
-#ifndef BINOSPLAT_GLTF
-    const std::string message = loadError(garden.write("a.gltf", R"({"asset":{"version":"2.0"}})"));
-    CHECK(contains(message, "a.gltf: a glTF scene, which this build cannot read"));
-    CHECK(contains(message, "BINOSPLAT_GLTF=ON"));
-#endif
 }
 
 TEST_CASE("checkpoints of a training, as folders or files with round numbers, are no film: the newest is shown, the others are named") {

@@ -62,9 +62,7 @@ TEST_CASE("a scene at an address is the same as on the disk, whatever its format
                    {"/a.splat", makeSplatFile()},
                    {"/a.ksplat", KsplatText().bytes()},
                    {"/a.spz", gzip(makeSpz(3).bytes())}};
-#ifdef BINOSPLAT_GLTF
     files["/a.glb"] = makeGltf().glb();
-#endif
 #ifdef BINOSPLAT_SOG
     files["/a.sog"] = makeZip(makeSog());
 #endif
@@ -80,7 +78,6 @@ TEST_CASE("a scene at an address is the same as on the disk, whatever its format
     CHECK(server.asked().size() == files.size());
 }
 
-#ifdef BINOSPLAT_GLTF
 TEST_CASE("the buffers of a glTF scene are fetched from beside it") {
     const Folder folder;
     const std::string gltf = makeGltf().json(R"(,"uri":"parts/a%20b.bin")"), binary = makeGltf().binary();
@@ -90,7 +87,6 @@ TEST_CASE("the buffers of a glTF scene are fetched from beside it") {
     checkSameScene(loadScene(folder.write("a.gltf", gltf)), loadFromWeb(server.at("/in/a.gltf"), webSettings(folder)));
     CHECK(server.asked() == std::vector<std::string>{"/in/a.gltf", "/in/parts/a%20b.bin"});
 }
-#endif
 
 #ifdef BINOSPLAT_SOG
 TEST_CASE("the pictures of a SOG scene are fetched from beside its meta.json, each once") {
