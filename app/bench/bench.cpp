@@ -101,6 +101,7 @@ void benchSpeed(const BenchOptions& options, const BenchPlan& plan) {
 
 void requireScenes(const BenchPlan& plan) {
     for (const std::string& source : plan.scenes) {
+        requireNoUser(source);
         const bool there = isAddress(source) || (isBuiltin(source) ? builtinView(source).has_value() : std::filesystem::exists(source));
         check(there, "{}: no such scene", source);
     }
