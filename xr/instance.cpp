@@ -17,7 +17,7 @@ namespace binosplat::xr {
 namespace {
 
 [[noreturn]] void refuse(const std::string& what, XrResult result) {
-    const std::string line = fmt::format("{} ({}); {}", what, nameOf(result), kRuntimeHint);
+    const std::string line = fmt::format("{} ({}); {}", what, nameOf(result), runtimeHint());
     if (result == XR_ERROR_RUNTIME_FAILURE) { throw RuntimeFailed(ExitCode::kNoDevice, line); }
     throw Error(ExitCode::kNoDevice, line);
 }

@@ -9,6 +9,6 @@ namespace binosplat::xr {
 std::string whereRuntimeIs();
 
 // Advice for users without a runtime, or with one that does not fit.
-extern const char* const kRuntimeHint;
+std::string runtimeHint();
 
 }  // namespace binosplat::xr

@@ -3,9 +3,9 @@
 
 #include "engine/error.h"
 #include "engine/platform.h"
+#include "engine/temporary_folder.h"
 #include "shaders/embedded_shaders.h"
 
-#include <cerrno>
 #include <chrono>
 #include <cstring>
 #include <fstream>
@@ -17,20 +17,6 @@ namespace binosplat {
 namespace {
 
 namespace fs = std::filesystem;
-
-// A temporary folder, removed with this object.
-struct TemporaryFolder {
-    TemporaryFolder() : path(createFolder(fs::temp_directory_path(), "binosplat-shaders-")) {
-        check(!path.empty(), "{}: cannot be written ({})", fs::temp_directory_path().string(), std::strerror(errno));
-    }
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-    ~TemporaryFolder() {
-        std::error_code ignored;
-        fs::remove_all(path, ignored);
-    }
-    fs::path path;
-};
 
 std::vector<std::uint32_t> readWords(const fs::path& file) {
     std::ifstream stream(file, std::ios::binary);
@@ -69,11 +55,11 @@ std::vector<std::uint32_t> compileShader(const fs::path& folder, const std::stri
 fs::path shaderFolder(const fs::path& folder) { return folder.empty() ? fs::path(environment("BINOSPLAT_SHADERS")) : folder; }
 
 ShaderWords compileShaders(const fs::path& folder) {
-    const TemporaryFolder scratch;
+    const TemporaryFolder scratch("binosplat-shaders-", "compiled shaders");
     std::vector<std::pair<std::string, std::future<std::vector<std::uint32_t>>>> results;
     for (const auto& [stage, name] : embeddedShaderNames()) {
         results.emplace_back(name,
-                             std::async(std::launch::async, compileShader, folder, std::string(stage), std::string(name), scratch.path));
+                             std::async(std::launch::async, compileShader, folder, std::string(stage), std::string(name), scratch.path()));
     }
     ShaderWords shaders;
     for (auto& [name, words] : results) { shaders[name] = words.get(); }

@@ -16,7 +16,7 @@ namespace {
 constexpr float kRowPx = 66.0f, kStarPx = 60.0f;
 
 void drawPlaces(PanelWidgets& widgets, SceneChooser& chooser) {
-    const std::string home = environment("HOME");
+    const std::string home = userHomeFolder().string();
     ImGui::BeginDisabled(chooser.list().above.empty());
     if (widgets.button("Up")) { chooser.goUp(); }
     ImGui::EndDisabled();

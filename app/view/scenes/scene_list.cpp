@@ -38,6 +38,15 @@ SceneList listBuiltinScenes() {
     return list;
 }
 
+// Nothing is asked of them: an empty or distant one may take its time.
+SceneList listDrives(const std::vector<fs::path>& roots) {
+    SceneList list{"Drives", {}, {}, {}};
+    for (const fs::path& root : roots) {
+        list.entries.push_back({(root.has_root_name() ? root.root_name() : root).string(), root.string(), true, {}});
+    }
+    return list;
+}
+
 // Without a trailing slash, which would count as an empty name.
 fs::path wholePath(const fs::path& place) {
     std::error_code ignored;
@@ -51,10 +60,11 @@ std::string folderOf(const std::string& scene) {
     return isBuiltin(scene) || isAddress(scene) ? kBuiltinFolder : wholePath(scene).parent_path().string();
 }
 
-SceneList listFolder(const std::string& folder) {
+SceneList listFolder(const std::string& folder, const std::vector<fs::path>& roots) {
     if (folder == kBuiltinFolder) { return listBuiltinScenes(); }
+    if (folder == kDrives) { return listDrives(roots); }
     const fs::path whole = wholePath(folder);
-    SceneList list{whole.string(), whole.has_relative_path() ? whole.parent_path().string() : "", {}, {}};
+    SceneList list{whole.string(), whole.has_relative_path() ? whole.parent_path().string() : roots.size() > 1 ? kDrives : "", {}, {}};
     std::error_code error;
     for (fs::directory_iterator entry(whole, error), end; !error && entry != end; entry.increment(error)) {
         const fs::path& place = entry->path();

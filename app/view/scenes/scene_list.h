@@ -2,7 +2,9 @@
 #pragma once
 
 #include "app/view/scenes/seen_scenes.h"
+#include "engine/platform.h"
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -31,8 +33,11 @@ inline constexpr const char* kBuiltinFolder = "builtin:";
 // The folder that a scene lies in, in full, or kBuiltinFolder.
 std::string folderOf(const std::string& scene);
 
+// Stands for the drives, where paths begin in several places, in place of a folder's path.
+inline constexpr const char* kDrives = "drives:";
+
 // Folders first, then scenes; hidden files and files that do not look like scenes are left out.
-SceneList listFolder(const std::string& folder);
+SceneList listFolder(const std::string& folder, const std::vector<std::filesystem::path>& roots = fileSystemRoots());
 
 // Adds what is known of the scenes, and puts favourites first.
 void describeScenes(SceneList& list);

@@ -95,6 +95,17 @@ TEST_CASE("what cannot be opened is listed with the reason, and nothing waits fo
 
 TEST_CASE("the way up ends at the top, and built-in scenes have a place of their own") {
     CHECK(listFolder("/").above.empty());
+    // Where there are drives, they lie above their roots.
+    const Home work;
+    const std::vector<fs::path> drives{"/", work.path};
+    CHECK(listFolder("/", drives).above == kDrives);
+    CHECK(listFolder(work.path.string(), drives).above == work.base.string());
+    const SceneList all = listFolder(kDrives, drives);
+    CHECK(all.above.empty());
+    REQUIRE(all.entries.size() == 2);
+    CHECK(all.entries[0].name == "/");
+    CHECK(all.entries[1].place == work.path.string());
+    CHECK(all.entries[1].is_folder);
     CHECK(listFolder("/").title == "/");
     CHECK(folderOf("builtin:fence") == kBuiltinFolder);
     CHECK(folderOf("a/b/../c.ply") == (fs::current_path() / "a").string());
