@@ -3,6 +3,7 @@
 
 #include "engine/error.h"
 #include "engine/platform.h"
+#include "engine/temporary_folder.h"
 
 #include <cerrno>
 #include <cstring>
@@ -12,6 +13,9 @@
 namespace binosplat {
 
 namespace fs = std::filesystem;
+
+// As long as most names of files that are written.
+static constexpr const char* kLongName = "frame_000000_a_name_of_the_usual_length";
 
 OutputFiles::OutputFiles(const fs::path& folder) : folder_(folder) {
     // Remember which folders are new, so that a failed run can take them away again.
@@ -28,10 +32,17 @@ OutputFiles::OutputFiles(const fs::path& folder) : folder_(folder) {
         fail("{}: cannot be used as output directory ({}), must be a directory that can be made and written", folder_.string(),
              error ? error.message() : "not a directory");
     }
-    // A folder made inside proves that the place is writable, whatever its permission bits say.
+    // A folder made inside proves that the place is writable, whatever its permission bits say; a file in that, that its path is not too
+    // long: some systems then make the folder, but nothing in it.
     makeStaging();
-    fs::remove(staging_, error);
+    const fs::path probe = staging_ / kLongName;
+    const bool fits = createFile(probe) != nullptr && entriesOf(staging_) == std::vector<fs::path>{probe};
+    removeFolder(staging_);
     staging_.clear();
+    if (fits) { return; }
+    removeUnpublished();
+    fail("{}: files in it cannot be made and found again: its path may be too long, with {} letters; must be a shorter one",
+         folder_.string(), fs::absolute(folder_).string().size());
 }
 
 const fs::path& OutputFiles::staging() {
@@ -52,7 +63,7 @@ OutputFiles::~OutputFiles() { removeUnpublished(); }
 
 void OutputFiles::removeUnpublished() noexcept {
     std::error_code ignored;
-    if (!staging_.empty()) { fs::remove_all(staging_, ignored); }
+    if (!staging_.empty()) { removeFolder(staging_); }
     // Only empty folders go: `remove` refuses the others.
     for (auto folder = made_folders_.rbegin(); folder != made_folders_.rend(); ++folder) { fs::remove(*folder, ignored); }
     made_folders_.clear();
@@ -61,17 +72,18 @@ void OutputFiles::removeUnpublished() noexcept {
 void OutputFiles::publish() {
     if (staging_.empty()) { return; }
     // A folder in a file's place, or a pipe or a device, which moving would replace, is known before the first file moves.
-    for (const fs::directory_entry& entry : fs::directory_iterator(staging_)) {
-        const fs::path target = folder_ / entry.path().filename();
+    const std::vector<fs::path> staged = entriesOf(staging_);
+    for (const fs::path& entry : staged) {
+        const fs::path target = folder_ / entry.filename();
         std::error_code none;
         const fs::file_status there = fs::status(target, none);
         check(!fs::exists(there) || fs::is_regular_file(there), "{}: cannot be written ({}), must be a file or not there", target.string(),
               fs::is_directory(there) ? "is a directory" : "not a regular file");
     }
-    for (const fs::directory_entry& entry : fs::directory_iterator(staging_)) {
-        const fs::path target = folder_ / entry.path().filename();
+    for (const fs::path& entry : staged) {
+        const fs::path target = folder_ / entry.filename();
         std::error_code error;
-        fs::rename(entry.path(), target, error);
+        fs::rename(entry, target, error);
         check(!error, "{}: cannot be written ({})", target.string(), error.message());
         made_folders_.clear();
     }

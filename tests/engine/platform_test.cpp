@@ -225,6 +225,7 @@ TEST_CASE("the user's folders are where the environment says, and relative ones 
         for (const auto& [name, value] : {std::pair("HOME", home), {"XDG_CACHE_HOME", cache}, {"XDG_CONFIG_HOME", config}}) {
             setEnvironment(name, value);
         }
+        CHECK(userHomeFolder() == (*home == '/' ? fs::path(home) : fs::path()));
         return std::pair(userCacheFolder(), userConfigFolder());
     };
     const std::string home = environment("HOME"), cache = environment("XDG_CACHE_HOME"), config = environment("XDG_CONFIG_HOME");
@@ -232,6 +233,8 @@ TEST_CASE("the user's folders are where the environment says, and relative ones 
     CHECK(foldersWith("/home/somebody", "", "here") == Folders("/home/somebody/.cache", "/home/somebody/.config"));
     CHECK(foldersWith("/home/somebody", "/caches", "/settings") == Folders("/caches", "/settings"));
     CHECK(foldersWith("", "", "") == Folders());
+    CHECK(foldersWith("here", "", "") == Folders());
+    CHECK(fileSystemRoots() == std::vector<fs::path>{"/"});
     foldersWith(home.c_str(), cache.c_str(), config.c_str());
 }
 

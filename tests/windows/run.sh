@@ -87,6 +87,8 @@ makeScenes() {
 
 tryInfo() {
     local scene
+    # The LGPL wants it.
+    if compgen -G "$program/licences/fribidi/source/*.orig.tar.*" >/dev/null; then right "FriBidi's source is there"; else wrong "no source of FriBidi"; fi
     for scene in "${scenes[@]}" "$fence"; do
         bothSucceed info "$scene" || continue
         if diff Linux/said Windows/said; then right "info $scene: the same words"; else wrong "info $scene"; fi
@@ -205,6 +207,8 @@ tryTrouble() {
     refused 1 convert Zimmer.ply "%OUT/kein Ordner/x.spz"
     refused 1 view "$fence" --simulate fehlt.script
     refused 1 render "$fence" --mode dreifach --out "%OUT/nichts"
+    refused 1 "nicht da ü.ply"
+    refused 2 Zimmer.ply halb.ply
     refused 2 rendre "$fence"
     refused 2 render "$fence"
     # Wine has no Vulkan where there is no display.
@@ -214,9 +218,18 @@ tryTrouble() {
     export DISPLAY=$display
     unset VK_ICD_FILENAMES
     forgetRuntime
-    systems='SteamVR.*--simulate' XR_RUNTIME_JSON=/nowhere.json refused 3 view "$fence"
+    systems='without administrator rights, or set that value to' XR_RUNTIME_JSON=/nowhere.json refused 3 view "$fence"
+    # A path that may be too long.
+    local code=0 long
+    long=Windows/$(printf '%0240d' 0)
+    windows render "$fence" --size 64x64 --mode mono --out "$long" >/dev/null 2>Windows/complained || code=$?
+    if [[ $code = 0 || $code = 1 && $(cat Windows/complained) = *'path may be too long'* ]] && ! compgen -G "$long/.binosplat-*" >/dev/null; then
+        right "a folder of 240 letters: $code, $(cat Windows/complained)"
+    else
+        wrong "a folder of 240 letters: exit code $code: $(cat Windows/complained)"
+    fi
     # Ctrl-C in the middle.
-    local code=0
+    code=0
     wine "$program/binosplat.exe" render Zimmer.ply --size 1024x1024 --path Weg.csv --out Windows/nichts 2>Windows/complained &
     sleep 3
     kill -INT $!

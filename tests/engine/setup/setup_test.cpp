@@ -5,7 +5,10 @@
 #include "engine/setup/output_files.h"
 #include "engine/setup/settings.h"
 #include "engine/setup/values.h"
+#include "engine/temporary_folder.h"
 #include "tests/run_program.h"
+
+#include <climits>
 
 SUITE(setup) {
 
@@ -74,6 +77,33 @@ TEST_CASE("output files appear together or not at all, and a run that fails keep
     CHECK(std::distance(fs::directory_iterator(folder), {}) == 2);
     CHECK(fs::file_size(folder / "one") == 1);
     CHECK(fs::file_size(folder / "two") == 1);
+}
+
+TEST_CASE("an output folder whose path leaves no room for files is refused, and nothing of it stays") {
+    const Workplace work;
+    fs::path folder = work.path;
+    constexpr std::size_t kLength = PATH_MAX - 50;  // its hidden folder fits, and then 40 letters do not
+    while (folder.string().size() + 102 < kLength) { folder /= std::string(100, 'x'); }
+    folder /= std::string(kLength - folder.string().size() - 1, 'y');
+    CHECK_THROWS_WITH_AS(OutputFiles{folder}, doctest::Contains("its path may be too long, with 4046 letters; must be a shorter one"),
+                         Error);
+    CHECK(work.isEmpty());
+}
+
+TEST_CASE("a folder is removed with all in it, and what its links lead to stays") {
+    const Workplace work;
+    const fs::path kept = work.path / "kept", gone = work.path / "gone";
+    fs::create_directories(kept);
+    fs::create_directories(gone / "a" / "b");
+    for (const fs::path& file : {kept / "1", gone / "1", gone / "a" / "2", gone / "a" / "b" / "3"}) { writeText(file, "x"); }
+    fs::create_directory_symlink(kept, gone / "a" / "link");
+    fs::create_directory_symlink(gone, gone / "a" / "round");
+    CHECK(entriesOf(gone).size() == 2);
+    removeFolder(gone);
+    CHECK_FALSE(fs::exists(gone));
+    CHECK(fs::exists(kept / "1"));
+    CHECK(entriesOf(gone).empty());
+    removeFolder(gone);  // as nothing is there
 }
 
 }  // SUITE(setup)
