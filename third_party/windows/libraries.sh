@@ -44,9 +44,15 @@ fetch() {
     # The newest; a mirror may lack the package of a correction that its list names, and has the one before.
     (cd "$sources/unpacked" && { apt apt-get source "$name" || apt apt-get source -t "$VERSION_CODENAME" "$name"; }) >>"$log" 2>&1
     mv "$(find "$sources/unpacked" -mindepth 1 -maxdepth 1 -type d)" "$sources/$name"
-    rm -rf "$sources/unpacked"
     mkdir -p "$installed/licences/$name"
     cp "$sources/$name/debian/copyright" "$installed/licences/$name/"
+    # The LGPL wants the source of a library to come with it: the archives that it was compiled from, with Debian's patches.
+    if [ "$name" = fribidi ]; then
+        rm -rf "$installed/licences/$name/source"
+        mkdir "$installed/licences/$name/source"
+        find "$sources/unpacked" -mindepth 1 -maxdepth 1 -type f -exec cp {} "$installed/licences/$name/source/" \;
+    fi
+    rm -rf "$sources/unpacked"
 }
 
 with_cmake() { # NAME OPTIONS...: configures, compiles and installs
