@@ -200,6 +200,18 @@ TEST_CASE_FIXTURE(Gpu, "colours of light are blended as light, over the light of
     }
 }
 
+TEST_CASE_FIXTURE(Gpu, "colours above 1 are blended as they are, light or not: whoever shows them clamps them") {
+    ViewedScene view = test::viewGaussians({64, 48}, false);
+    const std::size_t stride = 3 * static_cast<std::size_t>(shCoefficientCount(view.scene.sh_degree));
+    for (std::size_t i = 0; i < view.scene.size(); ++i) { view.scene.sh[i * stride] += 8.0f; }
+    for (const bool is_linear : {false, true}) {
+        view.scene.is_linear = is_linear;
+        const Image picture = renderMono(context(), view.scene, view.eye, makeSettings()).picture;
+        CHECK(*std::ranges::max_element(picture.values) > 1.2f);
+        CHECK(compare(picture, test::toImage(renderTwin(view, makeSettings())), 4).psnrDb() >= 65.0);
+    }
+}
+
 TEST_CASE_FIXTURE(Gpu, "a flat 3D Gaussian that faces the eye is its disc with the low-pass's variance added") {
     const glm::uvec2 size_px(160, 120);
     const Eye eye = test::makeEye(size_px);
