@@ -34,8 +34,8 @@ BINOSPLAT_CONSTANT uint kSortRun = 16;
 BINOSPLAT_CONSTANT uint kMaxSortRuns = kMaxSortBlocks / kSortRun;
 BINOSPLAT_CONSTANT uint kSortSubgroups = 4;
 
-// The counts of workgroups are summed up by the last of them, 1024 at a time. Beyond four times that, runs of them are summed up beside each
-// other first: as many runs as a list has counters of kSumRunBits bits for, ListState::run_groups_done.
+// The counts of workgroups are summed up by the last of them, 1024 at a time. Beyond four times that, runs of them are summed up beside
+// each other first: as many runs as a list has counters of kSumRunBits bits for, ListState::run_groups_done.
 BINOSPLAT_CONSTANT uint kMostInOneRun = 4096;
 BINOSPLAT_CONSTANT uint kSumRuns = 8;
 BINOSPLAT_CONSTANT uint kSumRunBits = 16;
