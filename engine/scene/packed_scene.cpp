@@ -29,7 +29,10 @@ bool isZip(InputFile& file) {
     return file.peek(4) == std::string_view("PK\x03\x04", 4) || file.peek(4) == std::string_view("PK\x05\x06", 4);
 }
 
-bool isNamed(const std::string& path, std::string_view name) { return std::string_view(path).substr(path.rfind('/') + 1) == name; }
+// Some writers of Windows have backslashes between folders.
+std::string fileNameOf(const std::string& path) { return path.substr(path.find_last_of("/\\") + 1); }
+
+bool isNamed(const std::string& path, std::string_view name) { return fileNameOf(path) == name; }
 
 std::string extensionOf(const fs::path& file) {
     std::string extension = file.extension().string();
@@ -54,7 +57,7 @@ ZipArchive openArchive(const InputFile& file) {
 std::vector<std::string> filesIn(const ZipArchive& archive) {
     std::vector<std::string> files = archive.names();
     std::erase_if(files, [](const std::string& name) {
-        const std::string file = name.substr(name.rfind('/') + 1);
+        const std::string file = fileNameOf(name);
         return file.empty() || file.starts_with('.') || name.starts_with("__MACOSX/");
     });
     return files;

@@ -139,7 +139,7 @@ TEST_CASE("a path may begin on the way, where the camera then stands, and end be
 TEST_CASE("a path that cannot be used is one line and one, and leaves nothing") {
     Way("").checkNoWay("", 1, "poses.csv: holds no poses");
     Way("time_s,x,y,z,qx,qy,qz,qw\n").checkNoWay("", 1, "poses.csv: holds no poses");
-    Way("0,0,0,0,0,0,0,1\n1,0,0,0,0,0,0\n").checkNoWay("", 1, "poses.csv:2: 7 columns, must be 8");
+    Way("0,0,0,0,0,0,0,1\n1,0,0,0,0,0,0\n2,0,0,0,0,0,0,1\n").checkNoWay("", 1, "poses.csv:2: 7 columns, must be 8");
     Way("0,0,0,0,0,0,0,1\n1,0,nan,0,0,0,0,1\n").checkNoWay("", 1, "poses.csv:2: y is nan");
     Way("0,0,0,0,0,0,0,1\n1000,0,0,0,0,0,0,1\n")
         .checkNoWay("--rate 1000", 1, "makes 1000001 frames of --rate 1000, must be at most 1000000");

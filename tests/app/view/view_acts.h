@@ -117,8 +117,8 @@ inline void checkAgreesWithRender(const Workplace& work, const ViewRun& run, std
     const glm::dvec3 eye = start + inScene(head.position - glm::dvec3(0.0, 1.6, 0.0));
     const glm::dvec3 look = eye + inScene(head.orientation * glm::dvec3(0, 0, -1)), up = inScene(head.orientation * glm::dvec3(0, 1, 0));
     const auto numbers = [](const glm::dvec3& v) { return fmt::format("{:.9f},{:.9f},{:.9f}", v.x, v.y, v.z); };
-    const Outcome rendered = work.run(fmt::format("render builtin:fence --out expected --eye {} --look {} --up {} {}", numbers(eye),
-                                                  numbers(look), numbers(up), arguments));
+    const Outcome rendered = work.run(fmt::format("render builtin:fence --order distance --out expected --eye {} --look {} --up {} {}",
+                                                  numbers(eye), numbers(look), numbers(up), arguments));
     INFO(rendered.errors);
     REQUIRE(rendered.exit_code == 0);
     for (const int side : {kLeft, kRight}) {

@@ -177,7 +177,8 @@ TEST_CASE("the near plane is in metres of the wearer, however large the scene is
         runView(work, "near", kBeginning + "at 0.1 exit\n", "builtin:fence --load-first --hide-panel --hide-hands --near 0.3 " + camera);
     checkClean(run);
     const auto rendered = [&](const std::string& near) {
-        REQUIRE(work.run("render builtin:fence --out expected --size 128x128 --fov-x 90 " + camera + " --near " + near).exit_code == 0);
+        REQUIRE(work.run("render builtin:fence --order distance --out expected --size 128x128 --fov-x 90 " + camera + " --near " + near)
+                    .exit_code == 0);
         return readPicture(work.path / "expected" / "left.png");
     };
     CHECK(compare(run.eye(5, kLeft), rendered("1.2")).psnrDb() > 45.0);

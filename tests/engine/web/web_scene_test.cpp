@@ -145,7 +145,8 @@ TEST_CASE("of a streamed scene the files of the level that is read are fetched, 
     const WebServer without(filesOf(path, "/s/"));
     LoadNotes notes;
     CHECK(loadFromWeb(without.at("/s/lod-meta.json"), webSettings(folder), &notes, {1, {}}).size() == 8);
-    CHECK(contains(notes.lines.back(), "is shown without its environment: " + without.at("/s/env/meta.json")));
+    const std::string said = "is shown without its environment: " + without.at("/s/env/meta.json");
+    CHECK(std::ranges::any_of(notes.lines, [&](const std::string& line) { return contains(line, said); }));
 }
 #endif
 
