@@ -19,7 +19,7 @@ struct TextAttempts {
     TextAttempts(std::string what, std::function<void(const std::string& path)> reader) : name(std::move(what)), read(std::move(reader)) {}
     ~TextAttempts() {
         MESSAGE(fmt::format("{}: {} broken files, {} read, {} refused", name, tally.inputs, tally.read, tally.refused));
-        CHECK(tally.refused > tally.inputs / 8);
+        CHECK(tally.refused > tally.inputs / 10);
         CHECK(peakMebibytes() < 512);
     }
     TextAttempts(const TextAttempts&) = delete;
