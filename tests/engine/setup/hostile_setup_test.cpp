@@ -19,7 +19,7 @@ struct TextAttempts {
     TextAttempts(std::string what, std::function<void(const std::string& path)> reader) : name(std::move(what)), read(std::move(reader)) {}
     ~TextAttempts() {
         MESSAGE(fmt::format("{}: {} broken files, {} read, {} refused", name, tally.inputs, tally.read, tally.refused));
-        CHECK(tally.refused > tally.inputs / 10);
+        CHECK(tally.refused > tally.inputs / 8);
         CHECK(peakMebibytes() < 512);
     }
     TextAttempts(const TextAttempts&) = delete;
@@ -72,7 +72,12 @@ void readCameras(const std::string& path) {
 // `changes` times each kind of harm.
 void breakAll(int changes) {
     TextAttempts settings("settings", readEverything);
-    settings.run(textOf("configs/default.toml").substr(0, 1500), changes);
+    // Every key of the file has a value: where it is commented, harm is none.
+    std::string every_key = textOf("configs/default.toml").substr(0, 1500);
+    for (std::size_t at = every_key.find("[camera]"); (at = every_key.find("\n# ", at)) != std::string::npos;) {
+        every_key.erase(at + 1, 2);
+    }
+    settings.run(every_key, changes);
     settings.run(
         "[bench]\nscenes = [\"a\", \"b\"]\nrepeats = 3\n[[methods]]\nname = 'x'\nbudget = [0.1, 2e-1]\n[[views]]\nfov_x = 90\n"
         "when = 1979-05-27\n",
