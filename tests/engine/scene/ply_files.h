@@ -180,4 +180,10 @@ inline void checkFaults(const std::vector<Fault>& faults, const std::function<st
     }
 }
 
+inline PlyText makeIn(Encoding encoding, int rest_count = 0, bool three_scales = false) {
+    PlyText ply = makePly(rest_count, three_scales);
+    ply.encoding = encoding;
+    return ply;
+}
+
 }  // namespace binosplat::test

@@ -1,6 +1,7 @@
 // Scenes at random, and what two of them have in common.
 #pragma once
 
+#include "engine/scene/ply.h"
 #include "tests/engine/scene/ply_files.h"
 
 #include <random>
@@ -49,6 +50,12 @@ inline std::pair<float, float> shDifferences(const Scene& a, const Scene& b, con
         of_band = std::max(of_band, std::abs(a.sh[width * splat + i % width] - b.sh[i]));
     }
     return most;
+}
+
+// Written as PLY, and read again.
+inline Scene writtenAndRead(const Folder& folder, const Scene& scene) {
+    writePly(scene, folder.file("again.ply"));
+    return loadScene(folder.file("again.ply"));
 }
 
 }  // namespace binosplat::test
