@@ -20,8 +20,12 @@ FrameShape askedApartFromSizes(const FrameSettings& settings) { return shapeOf({
 }  // namespace
 
 StereoFrame::StereoFrame(const Context& context, const GpuScene& scene, const FrameOptions& options)
+    : StereoFrame(context, scene, options, nullptr) {}
+
+StereoFrame::StereoFrame(const Context& context, const GpuScene& scene, const FrameOptions& options, FrameKernels* others)
     : context_(context),
-      kernels_(std::make_shared<FrameKernels>(context, options.threads_per_cell)),
+      own_kernels_(others == nullptr ? std::make_unique<FrameKernels>(context, options.threads_per_cell) : nullptr),
+      kernels_(others == nullptr ? *own_kernels_ : *others),
       room_(context, options.first_capacity,
             [this] {
                 for (const Flight& flight : flights_) { flight.commands.waitForDevice(); }
@@ -32,10 +36,8 @@ StereoFrame::StereoFrame(const Context& context, const GpuScene& scene, const Fr
 
 StereoFrame::~StereoFrame() = default;
 
-std::unique_ptr<StereoFrame> StereoFrame::beside(const StereoFrame& other) {
-    auto frame = std::make_unique<StereoFrame>(other.context_, *other.scene_);
-    frame->kernels_ = other.kernels_;
-    return frame;
+std::unique_ptr<StereoFrame> StereoFrame::beside(StereoFrame& other) {
+    return std::unique_ptr<StereoFrame>(new StereoFrame(other.context_, *other.scene_, {}, &other.kernels_));
 }
 
 void StereoFrame::show(const GpuScene& scene) {
@@ -50,13 +52,13 @@ void StereoFrame::show(const GpuScene& scene) {
 
 void StereoFrame::rebuildKernels() {
     finish();
-    kernels_->rebuild();
+    kernels_.rebuild();
 }
 
 void StereoFrame::takeKernels(StereoFrame& from) {
     finish();
     from.finish();
-    kernels_->take(*from.kernels_);
+    kernels_.take(from.kernels_);
 }
 
 void StereoFrame::makeKernels(std::span<const Eye> eyes, const FrameSettings& settings) {

@@ -22,9 +22,9 @@ public:
     StereoFrame(const StereoFrame&) = delete;
     StereoFrame& operator=(const StereoFrame&) = delete;
     ~StereoFrame();
-    // Another frame of the scene that `other` shows, with pictures and pasts of its own. Both share the kernels that either makes, and
-    // must be used by one thread.
-    static std::unique_ptr<StereoFrame> beside(const StereoFrame& other);
+    // Another frame of the scene that `other` shows, with pictures and pasts of its own. It uses the kernels of `other`, which must outlive
+    // it, and on the same thread.
+    static std::unique_ptr<StereoFrame> beside(StereoFrame& other);
 
     // From now on frames are of `scene`, on the same device. Kernels stay compiled. Waits for frames under way. Throws Error if the device
     // lacks the memory: then frames are of the scene before.
@@ -55,7 +55,7 @@ public:
     // one scene need not be made again for the next. If the other goes on, it makes what it lacks anew.
     void takeKernels(StereoFrame& from);
     // The number of its kernels, without those of sorting.
-    [[nodiscard]] std::size_t kernelCount() const { return kernels_->count(); }
+    [[nodiscard]] std::size_t kernelCount() const { return kernels_.count(); }
     // Makes the kernels of such frames, so that none of these waits for a driver's compiler: records them, but draws nothing.
     void makeKernels(std::span<const Eye> eyes, const FrameSettings& settings);
 
@@ -86,6 +86,9 @@ public:
     [[nodiscard]] const WarpBuffers& warpBuffers() const { return room_.warp(plan_.warpedTarget().value_or(0)); }
 
 private:
+    // Null: with kernels of its own.
+    StereoFrame(const Context& context, const GpuScene& scene, const FrameOptions& options, FrameKernels* others);
+
     using Append = std::function<void(Commands&)>;
     // A frame on the device, and what must be remembered to interpret its report. Two take turns. What only the device touches they
     // share, since every command waits for those before it, even those of the frame before.
@@ -104,10 +107,10 @@ private:
     [[nodiscard]] Flight& flight() { return flights_[turn_]; }
     // `drops`: the recording is dropped, and so must leave the scene's changes to the next.
     [[nodiscard]] FrameRecorder recorder(bool drops = false) {
-        return {kernels_->passes,
-                kernels_->warp_passes,
-                kernels_->past_passes,
-                kernels_->periphery_passes,
+        return {kernels_.passes,
+                kernels_.warp_passes,
+                kernels_.past_passes,
+                kernels_.periphery_passes,
                 *scene_,
                 room_,
                 drops ? std::nullopt : std::optional(changes_known_)};
@@ -143,7 +146,8 @@ private:
 
     const Context& context_;
     const GpuScene* scene_ = nullptr;
-    std::shared_ptr<FrameKernels> kernels_;
+    std::unique_ptr<FrameKernels> own_kernels_;  // null if they are another frame's
+    FrameKernels& kernels_;
     FrameRoom room_;
     FramePlan plan_;                                        // of the last frame
     Pasts pasts_;                                           // that the last frame leaves

@@ -134,7 +134,7 @@ private:
 bool standsAlone(const FrameSettings& settings) { return !hasPast(settings.mode) || !settings.keep_past; }
 
 // Of frames that know of none before.
-std::vector<Image> picturesAlone(const StereoFrame& other, const std::vector<Eye>& eyes, const FrameSettings& settings) {
+std::vector<Image> picturesAlone(StereoFrame& other, const std::vector<Eye>& eyes, const FrameSettings& settings) {
     const auto frame = StereoFrame::beside(other);
     frame->render(eyes, settings);
     std::vector<Image> pictures;
