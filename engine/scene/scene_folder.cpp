@@ -118,13 +118,12 @@ fs::path findCameraFile(const fs::path& scene) {
 }
 
 std::optional<std::string> findOnlyScene(const fs::path& folder) {
-    constexpr int kMostFiles = 64;  // each is opened
     std::optional<std::string> found;
     int files = 0;
     std::error_code error, ignored;
     for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
         if (entry->path().filename().string().starts_with('.') || !entry->is_regular_file(ignored)) { continue; }
-        if (++files > kMostFiles) { return std::nullopt; }
+        if (++files > kMostFilesOpened) { return std::nullopt; }
         const std::string path = entry->path().string();
         try {
             if (formatOfFile(path).empty()) { continue; }

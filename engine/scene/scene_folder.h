@@ -25,6 +25,7 @@ std::optional<TrainingOutput> findTrainingOutput(const std::filesystem::path& fo
 std::filesystem::path findCameraFile(const std::filesystem::path& scene);
 
 // The one file of a folder that is a scene, by its content; none if there are several, or more files than are worth opening.
+inline constexpr int kMostFilesOpened = 64;
 std::optional<std::string> findOnlyScene(const std::filesystem::path& folder);
 
 struct NumberedFile {

@@ -25,13 +25,27 @@ bool looksMoving(const fs::path& folder) {
     });
 }
 
+// One scene, as findOnlyScene finds it, but by its name: nothing is opened. What lies in further folders could not be reached.
+bool holdsOneScene(const fs::path& folder) {
+    int files = 0, scenes = 0;
+    std::error_code error, ignored;
+    for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+        if (entry->path().filename().string().starts_with('.')) { continue; }
+        if (entry->is_directory(ignored)) { return false; }
+        if (!entry->is_regular_file(ignored)) { continue; }
+        scenes += hasSceneName(entry->path());
+        if (++files > kMostFilesOpened || scenes > 1) { return false; }
+    }
+    return scenes == 1;
+}
+
 }  // namespace
 
 bool looksLikeScene(const fs::path& path) {
     std::error_code ignored;
     if (fs::is_directory(path, ignored)) {
         return fs::exists(path / "meta.json", ignored) || fs::exists(path / "lod-meta.json", ignored) || findTrainingOutput(path) ||
-               looksMoving(path);
+               looksMoving(path) || holdsOneScene(path);
     }
     return hasSceneName(path);
 }
