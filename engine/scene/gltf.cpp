@@ -2,6 +2,7 @@
 #include "engine/scene/gltf.h"
 
 #include "engine/error.h"
+#include "engine/scene/floor_plane.h"
 #include "engine/scene/gltf_document.h"
 #include "engine/scene/json_node.h"
 #include "engine/scene/placed_splat.h"
@@ -11,6 +12,7 @@
 #include "engine/srgb.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <span>
@@ -35,13 +37,40 @@ bool holdsLogarithms(const GltfDocument& document) {
     return false;
 }
 
+// Of what nodes move there, in float64: positions that are themselves far from 0 have lost their detail already.
+glm::dvec3 findOrigin(const GltfDocument& document) {
+    constexpr std::size_t kMostSamples = 4096;
+    const std::size_t most = std::max<std::size_t>(kMostSamples / document.parts.size(), 1);
+    std::array<std::vector<double>, 3> places, moves;
+    std::vector<float> values;
+    for (const GltfSplats& part : document.parts) {
+        const auto rows = static_cast<std::size_t>(std::min<std::uint64_t>(part.count(), most));
+        part.position.read(0, rows, values);
+        for (std::size_t row = 0; row < rows; ++row) {
+            const glm::dvec4 place = part.world_from_node * glm::dvec4(values[3 * row], values[3 * row + 1], values[3 * row + 2], 1.0);
+            for (int axis = 0; axis < 3; ++axis) {
+                if (!std::isfinite(place[axis])) { continue; }
+                places[static_cast<std::size_t>(axis)].push_back(place[axis]);
+                moves[static_cast<std::size_t>(axis)].push_back(part.world_from_node[3][axis]);
+            }
+        }
+    }
+    glm::dvec3 origin(0.0);
+    for (int axis = 0; axis < 3; ++axis) {
+        std::vector<double>&place = places[static_cast<std::size_t>(axis)], &move = moves[static_cast<std::size_t>(axis)];
+        if (!place.empty() && originAbout(findQuantile(move, 0.5)) != 0.0) { origin[axis] = originAbout(findQuantile(place, 0.5)); }
+    }
+    return origin;
+}
+
 // Fills blocks with a part's splats in world axes.
 class PartReader {
     using Curve = double (*)(double);
 
 public:
-    PartReader(const GltfSplats& part, bool logarithms, const GltfDocument& document)
+    PartReader(const GltfSplats& part, bool logarithms, const GltfDocument& document, const glm::dvec3& origin)
         : part_(part),
+          origin_(origin),
           logarithms_(logarithms),
           sh_degree_(document.sh_degree),
           linear_(part.world_from_node),
@@ -70,7 +99,7 @@ private:
         part_.position.read(first, block.rows, values_);
         for (std::size_t row = 0; row < block.rows; ++row) {
             const glm::dvec4 in_node(values_[3 * row], values_[3 * row + 1], values_[3 * row + 2], 1.0);
-            const glm::dvec4 position = part_.world_from_node * in_node;
+            const glm::dvec3 position = glm::dvec3(part_.world_from_node * in_node) - origin_;
             for (int axis = 0; axis < 3; ++axis) { block.put(kStoredX + axis, row, static_cast<float>(position[axis])); }
         }
         part_.opacity.read(first, block.rows, values_);
@@ -160,6 +189,7 @@ private:
     }
 
     const GltfSplats& part_;
+    glm::dvec3 origin_;
     bool logarithms_;
     int sh_degree_;
     glm::dmat3 linear_;
@@ -184,6 +214,8 @@ bool isGltf(InputFile& file) {
     return std::ranges::any_of(kKeys, [&](std::string_view key) { return start.find(key) != std::string_view::npos; });
 }
 
+glm::dvec3 originOfGltf(InputFile& file) { return findOrigin(openGltf(file)); }
+
 Scene readGltf(InputFile& file, LoadNotes& notes, const Progress& progress) {
     if (progress) { progress(0.0); }
     const GltfDocument document = openGltf(file);
@@ -194,12 +226,13 @@ Scene readGltf(InputFile& file, LoadNotes& notes, const Progress& progress) {
               file.name(), total, kMostSplatsPerByte, document.bytes);
     }
     const bool logarithms = holdsLogarithms(document);
+    const glm::dvec3 origin = findOrigin(document);
     bool sheared = false;
     SceneBuilder builder(file.name(), total, document.sh_degree, true);
     StoredBlock block;
     std::uint64_t done = 0, blocks = 0;
     for (const GltfSplats& part : document.parts) {
-        PartReader reader(part, logarithms, document);
+        PartReader reader(part, logarithms, document, origin);
         sheared = sheared || !isSimilarity(glm::dmat3(part.world_from_node));
         for (std::uint64_t first = 0; first < part.count(); first += block.rows) {
             if (progress && blocks++ % 128 == 0) { progress(static_cast<double>(done) / static_cast<double>(total)); }
@@ -212,6 +245,7 @@ Scene readGltf(InputFile& file, LoadNotes& notes, const Progress& progress) {
     for (const GltfBuffer& buffer : document.buffers) { buffer.requireUnchanged(); }
     if (progress) { progress(1.0); }
     Scene scene = builder.finish(notes);
+    setOrigin(scene, origin, notes);
     scene.y_up = true;
     scene.vertical_axis = 1;
     notes.axes = "x left, y up, z front; right-handed (glTF's own)";

@@ -13,4 +13,7 @@ bool isGltf(InputFile& file);
 // out, with a note.
 Scene readGltf(InputFile& file, LoadNotes& notes, const Progress& progress);
 
+// The Scene::origin that the reader of that file will choose.
+glm::dvec3 originOfGltf(InputFile& file);
+
 }  // namespace binosplat

@@ -141,15 +141,13 @@ bool looksActivated(const StoredBlock& block, bool three_scales) {
            all(kStoredScale1, is_positive) && (!three_scales || all(kStoredScale2, is_positive));
 }
 
-// A whole number near the middle of each axis in float64 that lies so far out that float32 has steps of a millimetre and more there.
+// Of the axes in float64: what is float32 has lost its detail already.
 glm::dvec3 findOrigin(const ply::Element& vertex, const Layout& layout, const StoredBlock& some) {
-    constexpr double kFar = 1e4;
     glm::dvec3 origin(0.0);
     for (int axis = 0; axis < 3; ++axis) {
         const ply::Column& column = layout.columns[static_cast<std::size_t>(axis)];
-        const double middle = medianOf(some, column.attribute);
-        const bool is_far = vertex.properties[column.property].type == ply::Type::kFloat64 && std::abs(middle) >= kFar;
-        if (is_far) { origin[axis] = std::round(middle); }
+        if (vertex.properties[column.property].type != ply::Type::kFloat64) { continue; }
+        origin[axis] = originAbout(medianOf(some, column.attribute));
     }
     return origin;
 }
@@ -218,11 +216,7 @@ Scene readPly(InputFile& file, LoadNotes& notes, const Progress& progress) {
     scene.antialiased = ply.header.antialiased && layout.three_scales;
     scene.vertical_axis = ply.header.vertical_axis;
     if (scene.vertical_axis >= 0) { notes.axes = fmt::format("{} is vertical (named by the file)", "xyz"[scene.vertical_axis]); }
-    scene.origin = ply.origin;
-    if (scene.origin != glm::dvec3(0.0)) {
-        notes.lines.push_back(fmt::format("{}: its positions are in float64 and far from 0: they count from {}, views and --crop, too",
-                                          file.name(), describeOrigin(scene)));
-    }
+    setOrigin(scene, ply.origin, notes);
     if (layout.sh_degree_in_file > layout.sh_degree) {
         notes.lines.push_back(
             fmt::format("{}: SH of degree {} were left out, degree {} is kept", file.name(), layout.sh_degree_in_file, layout.sh_degree));

@@ -143,6 +143,15 @@ Scene SceneBuilder::finish(LoadNotes& notes) {
     return std::move(scene_);
 }
 
+double originAbout(double middle) { return std::abs(middle) >= 1e4 ? std::round(middle) : 0.0; }
+
+void setOrigin(Scene& scene, const glm::dvec3& origin, LoadNotes& notes) {
+    scene.origin = origin;
+    if (origin == glm::dvec3(0.0)) { return; }
+    notes.lines.push_back(
+        fmt::format("{}: its positions are far from 0: in memory, as float32, they count from {}", scene.name, describeOrigin(scene)));
+}
+
 void takeAsDiscs(Scene& scene, LoadNotes& notes) {
     scene.thicknesses = {};
     scene.antialiased = false;

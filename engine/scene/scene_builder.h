@@ -37,6 +37,13 @@ private:
     ActiveBlock active_;
 };
 
+// The Scene::origin along an axis for positions about `middle` that a file has in more than float32: a whole number near it where float32
+// has steps of a millimetre and more; otherwise 0.
+double originAbout(double middle);
+
+// For the positions that were read already; says so, unless it is 0.
+void setOrigin(Scene& scene, const glm::dvec3& origin, LoadNotes& notes);
+
 // For a file that says that its splats are discs, though it has a third scale for each: the shortest one has no meaning.
 void takeAsDiscs(Scene& scene, LoadNotes& notes);
 

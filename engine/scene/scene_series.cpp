@@ -4,6 +4,7 @@
 #include "engine/error.h"
 #include "engine/scene/address.h"
 #include "engine/scene/compressed_ply.h"
+#include "engine/scene/gltf.h"
 #include "engine/scene/ply.h"
 #include "engine/scene/procedural.h"
 #include "engine/scene/scene_folder.h"
@@ -39,7 +40,8 @@ std::vector<std::vector<NumberedFile>> findSceneGroups(const std::string& folder
 glm::dvec3 originOf(const std::string& path) {
     try {
         InputFile file(path);
-        return isPly(file) && !isCompressedPly(file) ? originOfPly(file) : glm::dvec3(0.0);
+        if (isPly(file) && !isCompressedPly(file)) { return originOfPly(file); }
+        return isGltf(file) ? originOfGltf(file) : glm::dvec3(0.0);
     } catch (const Error&) { return glm::dvec3(0.0); }  // whoever reads it says why
 }
 

@@ -2,6 +2,7 @@
 #include "engine/reference/harmonics.h"
 #include "engine/scene/ply.h"
 #include "engine/scene/quantized.h"
+#include "engine/scene/scene_series.h"
 #include "engine/scene/spz.h"
 #include "engine/srgb.h"
 #include "tests/engine/scene/gltf_files.h"
@@ -125,6 +126,34 @@ TEST_CASE("nodes place their splats: positions, shapes and colours go along, mir
     CHECK(contains(notes.lines[0], "unevenly"));
     const glm::dmat4 inner = glm::translate(glm::dmat4(1.0), {1, 2, 3}) * glm::mat4_cast(glm::dquat(0.5, 0.5, 0.5, 0.5));
     checkPlaced(scene, plain, scaled(2, 1, -0.25) * inner, 1e-5);
+}
+
+TEST_CASE("a node that lies far from 0, as those of 3D Tiles do, keeps its splats' detail: they count from an origin near them") {
+    const Folder folder;
+    const Scene plain = loadScene(folder.write("plain.glb", makeGltf(9).glb()));
+    const glm::dvec3 away(4'485'123.25, -1'870'456.5, 0.0);
+    const glm::dquat turn = glm::angleAxis(0.9, glm::normalize(glm::dvec3(1.0, -2.0, 0.5)));
+    GltfText gltf = makeGltf(9);
+    gltf.nodes = R"([{"mesh":0,"matrix":)" + quoted(glm::translate(glm::dmat4(1.0), away) * glm::mat4_cast(turn)) + "}]";
+    LoadNotes notes;
+    const Scene scene = loadScene(folder.write("far.glb", gltf.glb()), 0, &notes);
+    CHECK(glm::distance(scene.origin, away) < 10.0);
+    CHECK(scene.origin.z == 0.0);
+    CHECK(scene.origin == glm::round(scene.origin));
+    REQUIRE(notes.lines.size() == 1);
+    CHECK(contains(notes.lines[0], "count from " + describeOrigin(scene)));
+    for (std::size_t i = 0; i < 3; ++i) {
+        const glm::dvec3 expected = turn * glm::dvec3(plain.positions[i]) + away;
+        CHECK(glm::distance(glm::dvec3(scene.positions[i]) + scene.origin, expected) < 1e-6);
+    }
+    // All files of a moving scene count from the first one's.
+    (void)folder.write("f1.glb", gltf.glb());
+    (void)folder.write("f2.glb", gltf.glb());
+    const std::string all = std::filesystem::path(folder.file("f1.glb")).parent_path().string();
+    CHECK(SceneSeries(all).load(1, notes).origin == scene.origin);
+    // Nearer than that it stays where it is.
+    gltf.nodes = R"([{"mesh":0,"translation":[100,0,-9000]}])";
+    CHECK(loadScene(folder.write("near.glb", gltf.glb())).origin == glm::dvec3(0.0));
 }
 
 TEST_CASE("several primitives and nodes are one scene, of the highest degree among them") {
