@@ -158,7 +158,7 @@ std::optional<FloorPlane> chooseFloor(const std::vector<SplatSample>& samples, c
         if (!isKnownNotToBe(along_usual)) {
             const bool is_above = !hints.seen_from || glm::dot(plane.up, *hints.seen_from) > plane.height;
             const bool may_be_wall = !hints.seen_from && glm::dot(plane.up, hints.front) > kAboutCosine && isRelief(rating);
-            const bool is_floor = along_usual >= kTiltedCosine || (looks_like_one && !may_be_wall);
+            const bool is_floor = (along_usual >= kTiltedCosine && !hints.is_doubtful) || (looks_like_one && !may_be_wall);
             candidates.push_back({plane, scoreOf(plane, rating), is_above && is_floor});
         }
         if (along_usual <= -kAboutCosine && !hints.seen_from) {
@@ -175,8 +175,9 @@ std::optional<FloorPlane> chooseFloor(const std::vector<SplatSample>& samples, c
         return glm::dot(other->floor.up, than.floor.up) > kOtherCosine || other->score >= kBetterThanOthers * than.score;
     };
     // Whichever is the usual up, cameras are above the ground.
-    const bool is_better = hints.seen_from ? usual == nullptr || (other != nullptr && other->score > usual->score)
-                                           : other != nullptr && std::ranges::all_of(candidates, isBetter);
+    const bool is_better = hints.is_doubtful ? usual == nullptr
+                           : hints.seen_from ? usual == nullptr || (other != nullptr && other->score > usual->score)
+                                             : other != nullptr && std::ranges::all_of(candidates, isBetter);
     if (other != nullptr && is_better) { return other->floor; }
     return usual != nullptr ? std::optional(usual->floor) : std::nullopt;
 }

@@ -289,8 +289,9 @@ double usualNear(const Scene& scene) {
     return size > 0.0 ? kUsualNear * std::min(size, 1.0) : kUsualNear;
 }
 
-std::optional<glm::dvec3> upBeneath(const Scene& scene, const glm::dvec3& cameras) {
+std::optional<glm::dvec3> upBeneath(const Scene& scene, const glm::dvec3& cameras, const std::optional<glm::dvec3>& doubtful) {
     UpHints hints = hintsOf(scene);
+    if (doubtful && hints.known == UpHints::Known::kNothing) { hints.usual = *doubtful, hints.is_doubtful = true; }
     hints.seen_from = cameras;
     const std::optional<FloorPlane> floor = chooseFloor(coreOf(sampleSplats(scene, kMostForRoom)), hints);
     return floor ? std::optional(floor->up) : std::nullopt;

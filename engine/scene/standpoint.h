@@ -35,8 +35,9 @@ double usualNear(const Scene& scene);
 // not count.
 double coreSize(const Scene& scene);
 
-// The up of the plane that lies beneath cameras whose mean place is given, if there is one.
-std::optional<glm::dvec3> upBeneath(const Scene& scene, const glm::dvec3& cameras);
+// The up of the plane that lies beneath cameras whose mean place is given, if there is one. `doubtful`: up as they have it, unless the file
+// says how it is; any floor about that is taken before the others.
+std::optional<glm::dvec3> upBeneath(const Scene& scene, const glm::dvec3& cameras, const std::optional<glm::dvec3>& doubtful = {});
 
 // The height of the floor along `up`, a unit vector, if there is one: dot(up, p) of its points.
 std::optional<double> floorHeight(const Scene& scene, const glm::dvec3& up);

@@ -170,6 +170,14 @@ inline Maker car() {
     return made.sized(0.06).wall({-6, 0, -6}, {12, 0, 0}, {0, 0, 12}, 60.0, 0.03);
 }
 
+// A wall with balconies, seen from the front.
+inline Maker relief() {
+    Maker made;
+    made.wall({-5, -6, 0}, {10, 0, 0}, {0, 6, 0}, 300.0);
+    for (const double x : {-3.5, -1.0, 1.5}) { made.box({x, -4.5, -0.8}, {x + 1.5, -3.0, 0}, 400.0, false); }
+    return made;
+}
+
 // A wall with something before it, in which most of the splats lie.
 inline Maker fence() {
     Maker made;

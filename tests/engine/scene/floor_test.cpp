@@ -58,10 +58,7 @@ TEST_CASE("real things are seen upright, from outside, whichever axis of the fil
 }
 
 TEST_CASE("a facade is no ground: a wall with a relief, seen from the front, stays upright") {
-    Maker made;
-    made.wall({-5, -6, 0}, {10, 0, 0}, {0, 6, 0}, 300.0);
-    for (const double x : {-3.5, -1.0, 1.5}) { made.box({x, -4.5, -0.8}, {x + 1.5, -3.0, 0}, 400.0, false); }
-    const Standpoint point = judgeStandpoint(made.scene());
+    const Standpoint point = judgeStandpoint(relief().scene());
     CAPTURE(point.up_why);
     CHECK(degreesBetween(point.view.up, kUp) < 2.0);
     CHECK(point.view.eye.z < -3.0);
@@ -93,6 +90,25 @@ TEST_CASE("one stands beneath nothing: the floor is on the other side of cameras
     REQUIRE(up);
     CHECK(degreesBetween(*up, {0, 0, -1}) < 2.0);
     CHECK_FALSE(upBeneath(scene, {0, 0, 80}));
+}
+
+TEST_CASE("cameras that all look one way look down where no floor bears out their up, and ahead where one does") {
+    const auto beneath = [](const Scene& scene, const glm::dvec3& cameras, const glm::dvec3& their_up) {
+        const std::optional<glm::dvec3> up = upBeneath(scene, cameras, their_up);
+        return up ? degreesBetween(*up, kUp) : 180.0;
+    };
+    // From above, whichever way the pictures' upper edge leads.
+    for (const glm::dvec3 their_up : {glm::dvec3(1, 0, 0), glm::dvec3(0, 0, -1), glm::normalize(glm::dvec3(-1, 0, 1))}) {
+        CHECK(beneath(town().scene(), {0, -80, 0}, their_up) < 2.0);
+        CHECK(beneath(car().scene(), {0, -8, 0}, their_up) < 2.0);
+    }
+    // Before a facade, with a street at its foot.
+    Maker facade = relief();
+    CHECK(beneath(facade.wall({-5, 0, -3}, {10, 0, 0}, {0, 0, 3}, 300.0).scene(), {0, -3, -8}, kUp) < 2.0);
+    // What the file says is kept to.
+    Scene scene = town().scene();
+    scene.vertical_axis = 2;
+    CHECK(beneath(scene, {0, -80, 0}, {0, 0, 1}) == 180.0);
 }
 
 TEST_CASE("what has no floor has none: a ball, a wall and a handful of splats") {
