@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,7 +34,7 @@ enum class Method {
 // An eye: where it is and what it sees.
 struct View {
     std::array<double, 4> orientation{1.0, 0.0, 0.0, 0.0};  // world from camera: a unit quaternion w, x, y, z
-    std::array<double, 3> position{};                       // in the world
+    std::array<double, 3> position{};                       // in the coordinates of the scene's file
     // Signed angles from the optical axis, as in OpenXR: of a usual eye, left and down are negative.
     double left_rad = -0.5, right_rad = 0.5, up_rad = 0.5, down_rad = -0.5;
 };
@@ -49,7 +50,7 @@ struct Settings {
     Method method = Method::kPredicted;
     unsigned width = 1024, height = 1024;  // pixels of each eye, 1 to 16384
     double budget = 0.2;                   // 0 to 1: share of an eye's work (kPredicted) or of both eyes' (kTemporal) that mends the warp
-    double near = 0.2;                     // nearest depth that is drawn, more than 0
+    std::optional<double> near;            // nearest depth that is drawn, more than 0; absent: 0.2, or a fifth of a smaller scene's size
     std::array<double, 3> background{};    // red, green, blue, as they are displayed
     bool half_floats = false;              // pictures of 11 bits a value, for display: half the memory, and less time
 };

@@ -46,7 +46,7 @@ Mode modeOf(Method method) {
     fail("method is {}, must be one of Method", static_cast<int>(method));
 }
 
-Eye eyeOf(const View& view, glm::uvec2 size_px) {
+Eye eyeOf(const View& view, glm::uvec2 size_px, const glm::dvec3& origin) {
     const auto& [w, x, y, z] = view.orientation;
     const glm::dquat orientation(w, x, y, z);
     const double length = glm::length(orientation);
@@ -59,17 +59,18 @@ Eye eyeOf(const View& view, glm::uvec2 size_px) {
           "angles of a view are {}, {}, {}, {} (left, right, up, down), must be within pi / 2, left less than right and down less than up",
           view.left_rad, view.right_rad, view.up_rad, view.down_rad);
     const ViewAngles angles{view.left_rad, view.right_rad, view.up_rad, view.down_rad};
-    return {{glm::normalize(orientation), position}, intrinsicsFromAngles(angles, size_px), size_px};
+    return {{glm::normalize(orientation), position - origin}, intrinsicsFromAngles(angles, size_px), size_px};
 }
 
-FrameSettings frameSettingsOf(const Settings& settings, Order order) {
+FrameSettings frameSettingsOf(const Settings& settings, Order order, double usual_near) {
     check(settings.budget >= 0.0 && settings.budget <= 1.0, "budget is {}, must be 0 to 1", settings.budget);
-    check(std::isfinite(settings.near) && settings.near > 0.0, "near is {}, must be more than 0", settings.near);
+    const double near = settings.near.value_or(usual_near);
+    check(std::isfinite(near) && near > 0.0, "near is {}, must be more than 0", near);
     const glm::dvec3 background = vectorOf(settings.background);
     check(isFinite(background), "background is not finite");
     FrameSettings frame;
     frame.mode = modeOf(settings.method);
-    frame.near = settings.near;
+    frame.near = near;
     frame.background = background;
     frame.order = order;
     frame.keep_past = hasPast(frame.mode);
@@ -106,7 +107,9 @@ struct Renderer::State {
     Context context;
     std::unique_ptr<GpuScene> scene;
     std::optional<StereoFrame> frame;  // after what it shows
-    binosplat::View start{};
+    binosplat::View start{};           // in the file's coordinates
+    glm::dvec3 origin{0.0};            // see Scene
+    double usual_near = kUsualNear;
     double gpu_ms = 0.0;
     bool rendered = false;
 };
@@ -120,7 +123,9 @@ void Renderer::load(const std::string& scene) {
     LoadNotes notes;
     const Scene loaded = loadSceneFromAnywhere(scene, 0, notes, {}, {}, {webCacheFolder(), kCacheBytes, {}});
     const std::optional<binosplat::View> own = isBuiltin(scene) ? builtinView(scene) : std::nullopt;
-    const binosplat::View start = own ? *own : judgeStandpoint(loaded).view;
+    binosplat::View start = own ? *own : judgeStandpoint(loaded).view;
+    start.eye += loaded.origin, start.look += loaded.origin;
+    const double usual_near = usualNear(loaded);
     // The scene before stays until the frame has room for the new one, and for good if it has not.
     auto uploaded = std::make_unique<GpuScene>(state_->context, loaded);
     if (state_->frame) {
@@ -130,6 +135,8 @@ void Renderer::load(const std::string& scene) {
     }
     state_->scene = std::move(uploaded);
     state_->start = start;
+    state_->origin = loaded.origin;
+    state_->usual_near = usual_near;
     state_->rendered = false;
 }
 
@@ -148,8 +155,8 @@ void Renderer::render(const Views& views, const Settings& settings) {
     check(state_->frame.has_value(), "render: no scene is loaded, must be loaded first");
     checkSize(settings.width, settings.height);
     const glm::uvec2 size_px(settings.width, settings.height);
-    const std::array<Eye, 2> eyes{eyeOf(views[0], size_px), eyeOf(views[1], size_px)};
-    const FrameSettings frame = frameSettingsOf(settings, state_->scene->usualOrder());
+    const std::array<Eye, 2> eyes{eyeOf(views[0], size_px, state_->origin), eyeOf(views[1], size_px, state_->origin)};
+    const FrameSettings frame = frameSettingsOf(settings, state_->scene->usualOrder(), state_->usual_near);
     state_->rendered = false;
     state_->gpu_ms = state_->frame->render(eyes, frame).gpu_total_ms;
     state_->rendered = true;

@@ -1,5 +1,8 @@
 // Facts about machines that fail under the program: a device that is lost or full, a disk that is full, a signal. What fails, and where, a
 // Vulkan layer says (tests/faults), or the shell's limit of file sizes; each time one line, its exit code, and nothing left behind.
+#include "engine/scene/ply.h"
+#include "engine/scene/procedural.h"
+#include "engine/scene/standpoint.h"
 #include "tests/run_program.h"
 
 SUITE(fault) {
@@ -99,6 +102,36 @@ std::string loadWithout(const Machine& machine, int number) {
     REQUIRE(outcome.exit_code == 0);
     CHECK((outcome.output == "loaded\n" || outcome.output.ends_with("\nthe same pictures\n")));
     return outcome.output;
+}
+
+TEST_CASE("the library draws a small scene as near as it is small, and one far from 0 where its file has it") {
+    const Machine machine;
+    struct Seen {
+        double share = 0.0;
+        glm::dvec3 from{0.0};
+    };
+    // A room of this size.
+    const auto look = [&](double size, const glm::dvec3& at) {
+        Scene scene = makeBuiltin("builtin:atelier", 3000);
+        const double factor = size / coreSize(scene);
+        for (glm::vec3& position : scene.positions) { position *= static_cast<float>(factor); }
+        for (glm::vec2& scale : scene.scales) { scale *= static_cast<float>(factor); }
+        scene.origin = at;
+        writePly(scene, (machine.path / "scene.ply").string());
+        const Outcome outcome = machine.runCommand("'" BINOSPLAT_LIBRARY_USER "' scene.ply");
+        INFO(outcome.errors);
+        REQUIRE(outcome.exit_code == 0);
+        Seen seen;
+        std::istringstream(outcome.output) >> seen.share >> seen.from.x >> seen.from.y >> seen.from.z;
+        return seen;
+    };
+    const Seen large = look(8.0, glm::dvec3(0.0)), small = look(0.08, glm::dvec3(0.0));
+    CHECK(large.share > 0.5);
+    CHECK(small.share == doctest::Approx(large.share).epsilon(0.1));
+    const glm::dvec3 away(500'000.0, -4'200'000.0, 0.0);
+    const Seen far = look(8.0, away);
+    CHECK(far.share == doctest::Approx(large.share).epsilon(0.01));
+    CHECK(glm::distance(far.from - away, large.from) < 0.01);
 }
 
 TEST_CASE("a load() of the library that fails as the frame makes room leaves the scene before, and renders it as before") {

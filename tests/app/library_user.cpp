@@ -1,5 +1,6 @@
 // For fault_test: a program that renders with the library and loads a second scene, for which there may be no memory. Says how that ended,
-// and whether the first scene's pictures are what they were where it stays. Its half floats are its floats, rounded.
+// and whether the first scene's pictures are what they were where it stays. Its half floats are its floats, rounded. With SCENE: says how
+// much of that is seen from where one begins, with the usual near plane, and where that is.
 #include "engine/library/binosplat.h"
 
 #include <algorithm>
@@ -31,9 +32,19 @@ float offBy(const engine::Picture& a, const engine::Picture& b) {
 
 }  // namespace
 
-int main() {
+int main(int count, char** words) {
     try {
         engine::Renderer renderer;
+        if (count == 2) {
+            renderer.load(words[1]);
+            const engine::Views views = renderer.startViews(0.0, 1.2, 64, 48);
+            const engine::Picture seen = picturesOf(renderer, views)[0];
+            double alpha = 0.0;
+            for (std::size_t i = 3; i < seen.values.size(); i += 4) { alpha += static_cast<double>(seen.values[i]); }
+            const auto& [x, y, z] = views[0].position;
+            std::printf("%.6f %.6f %.6f %.6f\n", alpha / (64.0 * 48.0), x, y, z);
+            return 0;
+        }
         renderer.load("builtin:one-splat");
         const engine::Views views = renderer.startViews(0.063, 1.2, 64, 48);
         const float rounding = offBy(picturesOf(renderer, views, true)[0], picturesOf(renderer, views)[0]);
