@@ -1,6 +1,8 @@
 // Finds the nearest splat, by its centre.
 #include "app/blind_camera.h"
 
+#include "engine/scene/describe.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,7 +10,7 @@
 
 namespace binosplat {
 
-std::string describeNearest(const Pose& world_from_camera, std::span<const glm::vec3> positions, double near) {
+std::string describeNearest(const Pose& world_from_camera, std::span<const glm::vec3> positions, double near, const glm::dvec3& origin) {
     if (positions.empty()) { return "no splat is seen: the scene has none"; }
     const glm::dvec3 eye = world_from_camera.position, forward = world_from_camera.orientation * glm::dvec3(0.0, 0.0, 1.0);
     const auto distanceTo = [&](const glm::vec3& position) { return glm::distance(eye, glm::dvec3(position)); };
@@ -16,9 +18,9 @@ std::string describeNearest(const Pose& world_from_camera, std::span<const glm::
     const double nearest = glm::length(towards);
     const double cosine = nearest > 0.0 ? glm::dot(towards, forward) / nearest : 1.0;
     return fmt::format(
-        "no splat is seen from {:.4g},{:.4g},{:.4g}: the nearest is {:.4g} scene units away, {:.0f} degrees off the middle of the "
+        "no splat is seen from {}: the nearest is {:.4g} scene units away, {:.0f} degrees off the middle of the "
         "picture{}",
-        eye.x, eye.y, eye.z, nearest, glm::degrees(std::acos(std::clamp(cosine, -1.0, 1.0))),
+        describePlace(eye + origin, nearest), nearest, glm::degrees(std::acos(std::clamp(cosine, -1.0, 1.0))),
         nearest < near ? fmt::format("; nothing nearer than {:.4g} is drawn (near)", near) : "");
 }
 

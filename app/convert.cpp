@@ -19,7 +19,7 @@ void runConvert(const ConvertOptions& options) {
     Scene scene = loadWithProgress(options.scene, options.load, notes);
     if (options.crop) {
         const std::size_t before = scene.size();
-        keepWithin(scene, glm::dvec3(*options.crop), options.crop->w);
+        keepWithin(scene, glm::dvec3(*options.crop) - scene.origin, options.crop->w);
         check(scene.size() > 0, "{}: none of its {} splats lies within --crop {},{},{},{}", options.scene, before, options.crop->x,
               options.crop->y, options.crop->z, options.crop->w);
         notes.lines.push_back(fmt::format("{} of {} splats lie within the sphere of --crop", scene.size(), before));

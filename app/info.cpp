@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 #include <vector>
 
@@ -26,15 +25,6 @@ void printQuantiles(const char* name, const std::array<float, 5>& quantiles) {
     printRow(name, "{:.4g}  {:.4g}  {:.4g}  {:.4g}  {:.4g}", quantiles[0], quantiles[1], quantiles[2], quantiles[3], quantiles[4]);
 }
 
-// With four digits, or as many as tell thousandths of `size`.
-std::string inDigits(const glm::dvec3& place, double size) {
-    const auto digitsOf = [&](double value) {
-        const double more = size > 0.0 && value != 0.0 ? std::ceil(std::log10(std::abs(value) / size)) : 0.0;
-        return static_cast<int>(std::clamp(4.0 + more, 4.0, 17.0));
-    };
-    return fmt::format("{:.{}g},{:.{}g},{:.{}g}", place.x, digitsOf(place.x), place.y, digitsOf(place.y), place.z, digitsOf(place.z));
-}
-
 std::string nameKind(const Scene& scene, const LoadNotes& notes) {
     if (!notes.three_scales) { return "2DGS: drawn as discs"; }
     const std::string how = !scene.isGaussian3d() ? "flattened to discs"
@@ -46,7 +36,7 @@ std::string nameKind(const Scene& scene, const LoadNotes& notes) {
 double mebibytes(std::uint64_t bytes) { return static_cast<double>(bytes) / (1024.0 * 1024.0); }
 
 void printOrigin(const Scene& scene, const LoadNotes& notes) {
-    if (scene.origin != glm::dvec3(0.0)) { printRow("origin", "{} in the file: bounds and views count from there", describeOrigin(scene)); }
+    if (scene.origin != glm::dvec3(0.0)) { printRow("origin", "{}: in memory positions count from there", describeOrigin(scene)); }
     printRow("axes", "{}",
              notes.axes.empty() ? "the file does not say; taken as a training's: x right, y down, z front; right-handed" : notes.axes);
     printRow("colour space", "{}",
@@ -84,8 +74,8 @@ void printDeviceMemory(const Scene& scene, const LoadNotes& notes, const SceneSu
     if (scene.sh_degree > 0) { ways.push_back(fmt::format("--sh-degree 0: {:.1f} MiB", mebibytes(bytesOf(scene.size(), 0)))); }
     if (survey.half_radius > 0.0) {
         // The numbers are rounded, by less than what is added.
-        ways.push_back(fmt::format("convert --crop={},{:.4g} keeps half of the splats", inDigits(survey.middle, survey.half_radius),
-                                   1.002 * survey.half_radius));
+        ways.push_back(fmt::format("convert --crop={},{:.4g} keeps half of the splats",
+                                   describePlace(survey.middle + scene.origin, survey.half_radius), 1.002 * survey.half_radius));
     }
     for (std::size_t i = 0; i < ways.size(); ++i) { printRow(i == 0 ? "  if too much" : "", "{}", ways[i]); }
 }
@@ -94,8 +84,9 @@ void printDeviceMemory(const Scene& scene, const LoadNotes& notes, const SceneSu
 void printStart(const Scene& scene) {
     const auto [view, why, up_why] = startView(scene);
     const double distance = glm::distance(view.eye, view.look);
-    printRow("start", "{} looking at {}, {}", inDigits(view.eye, distance), inDigits(view.look, distance), why);
-    printRow("up", "{}: {}", inDigits(0.001 * glm::round(1000.0 * view.up) + 0.0, 1.0), up_why);
+    printRow("start", "{} looking at {}, {}", describePlace(view.eye + scene.origin, distance),
+             describePlace(view.look + scene.origin, distance), why);
+    printRow("up", "{}: {}", describePlace(0.001 * glm::round(1000.0 * view.up) + 0.0, 1.0), up_why);
 }
 
 }  // namespace
@@ -114,9 +105,9 @@ void runInfo(const InfoOptions& options) {
     if (notes.environment_splats > 0) { printRow("", "environment: {} splats (loaded)", notes.environment_splats); }
     printRow("splats in file", "{}", notes.splats_in_file);
     printRow("skipped", "{} not finite, {} with a rotation of length zero", notes.skipped_not_finite, notes.skipped_zero_rotation);
-    const glm::vec3 &low = summary.min_position, &high = summary.max_position;
-    const double extent = glm::distance(glm::dvec3(low), glm::dvec3(high));
-    printRow("bounds", "{} to {}", inDigits(glm::dvec3(low), extent), inDigits(glm::dvec3(high), extent));
+    const glm::dvec3 low(summary.min_position), high(summary.max_position);
+    const double extent = glm::distance(low, high);
+    printRow("bounds", "{} to {}", describePlace(low + scene.origin, extent), describePlace(high + scene.origin, extent));
     printRow("SH degree", "{} (file: {})", summary.sh_degree, notes.sh_degree_in_file);
     for (int band = 1; band <= summary.sh_degree; ++band) {
         printRow("", "band {}: {} splats", band, summary.splats_using_band[static_cast<std::size_t>(band)]);

@@ -76,7 +76,7 @@ void warnOfBlindFrames(const PathReport& report, std::span<const glm::vec3> posi
     if (first == report.frames.end()) { return; }
     warn(fmt::format("{}: frame {}, the first of {} of {}: {}", report.options.scene, first - report.frames.begin(),
                      std::ranges::count_if(report.frames, is_blind), report.frames.size(),
-                     describeNearest(first->cameras.middle.world_from_camera, positions, first->cameras.near)));
+                     describeNearest(first->cameras.middle.world_from_camera, positions, first->cameras.near, first->cameras.origin)));
 }
 
 }  // namespace
@@ -142,7 +142,8 @@ void runRender(const RenderOptions& options) {
         report(FrameReport{context.deviceName(), used, cameras, result});
         for (const std::string& phrase : result.left_out) { fmt::print("  left out: {}\n", phrase); }
         if (result.sees_nothing) {
-            warn(fmt::format("{}: {}", options.scene, describeNearest(cameras.middle.world_from_camera, positions, cameras.near)));
+            warn(fmt::format("{}: {}", options.scene,
+                             describeNearest(cameras.middle.world_from_camera, positions, cameras.near, cameras.origin)));
         } else if (const std::string cut = describeCut(cameras.middle, positions, cameras.near); !cut.empty()) {
             warn(fmt::format("{}: {}", options.scene, cut));
         }

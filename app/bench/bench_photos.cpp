@@ -9,6 +9,7 @@
 #include "engine/error.h"
 #include "engine/picture/image_io.h"
 #include "engine/picture/metrics.h"
+#include "engine/scene/standpoint.h"
 #include "engine/setup/output_files.h"
 
 #include <nlohmann/json.hpp>
@@ -17,6 +18,7 @@
 #include <filesystem>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 namespace binosplat {
 
@@ -45,12 +47,13 @@ fs::path findPhoto(const fs::path& folder, const std::string& name) {
 }
 
 // Both eyes with the affiliated one at the photograph's camera.
-Cameras besidePhoto(const Eye& photo, double eye_distance, int affiliated) {
+Cameras besidePhoto(const Eye& photo, double eye_distance, int affiliated, double near) {
     const glm::dvec3 right = photo.world_from_camera.orientation * glm::dvec3(1.0, 0.0, 0.0);
     Eye middle = photo;
     middle.world_from_camera.position += (affiliated == kRight ? -0.5 : 0.5) * eye_distance * right;
     Cameras cameras{middle, stereoPair(middle, eye_distance), eye_distance, std::nullopt};
     cameras.eyes[static_cast<std::size_t>(affiliated)] = photo;
+    cameras.near = near;
     return cameras;
 }
 
@@ -145,7 +148,7 @@ std::string photosTable(const std::string& device, const std::vector<Means>& mea
 
 void benchPhotos(const BenchOptions& options, const BenchPlan& plan) {
     requireScenes(plan);
-    const std::vector<FileCamera> cameras = readCameraFile(options.run.camera.cameras_file);
+    const std::vector<FileCamera> cameras = readCameraFile(options.run.camera.cameras_file, glm::dvec3(0.0));
     std::vector<fs::path> photos;
     for (std::size_t i = 0; i < cameras.size(); i += options.every) { photos.push_back(findPhoto(options.photos_folder, cameras[i].name)); }
     OutputFiles files(options.out);
@@ -156,13 +159,18 @@ void benchPhotos(const BenchOptions& options, const BenchPlan& plan) {
 
     std::vector<PhotoRow> rows;
     for (const std::string& source : plan.scenes) {
-        const GpuScene gpu_scene(context, loadAs(options.run, source));
+        Scene scene = loadAs(options.run, source);
+        const double near = options.run.camera.near ? *options.run.camera.near : usualNear(scene);
+        const glm::dvec3 origin = scene.origin;
+        const GpuScene gpu_scene(context, std::exchange(scene, {}));
         MethodFrames frames(context, gpu_scene);
         ProgressLine progress("photographs");
         for (std::size_t i = 0; i < photos.size(); ++i) {
             const FileCamera& camera = cameras[i * options.every];
             const Image photo = readPicture(photos[i]);
-            const Cameras eyes = besidePhoto(resize(camera.eye, photo.size_px), eye_distance, affiliated);
+            Eye taken = resize(camera.eye, photo.size_px);
+            taken.world_from_camera.position -= origin;
+            const Cameras eyes = besidePhoto(taken, eye_distance, affiliated, near);
             const Image full = frames.render(eyes, options.run.camera, shared).readPicture(affiliated);
             for (const BenchMethod& method : plan.methods) {
                 if (method.stereo.mode == Mode::kMono) { continue; }

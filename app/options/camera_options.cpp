@@ -17,7 +17,8 @@ Cameras placeCameras(const RunOptions& options, const CameraFiles& files, const 
     const double eye_distance = options.stereo.ipd_m.value_or(default_ipd_m) / options.metres_per_unit;
 
     if (files.camera) {
-        const Eye middle = camera.size_px ? resize(files.camera->eye, *camera.size_px) : files.camera->eye;
+        Eye middle = camera.size_px ? resize(files.camera->eye, *camera.size_px) : files.camera->eye;
+        middle.world_from_camera.position -= scene.origin;
         return {middle, stereoPair(middle, eye_distance), eye_distance, std::nullopt};
     }
     View view = startView(scene, camera, options.metres_per_unit);
@@ -38,11 +39,15 @@ Cameras placeCameras(const RunOptions& options, const CameraFiles& files, const 
 
 }  // namespace
 
+void requireView(const CameraOptions& options, const std::vector<FileCamera>& cameras) {
+    check(options.view < cameras.size(), "{}: --view is {}, must be 0 to {}", options.cameras_file, options.view, cameras.size() - 1);
+}
+
 CameraFiles readCameraFiles(const CameraOptions& options) {
     CameraFiles files;
     if (!options.cameras_file.empty()) {
-        const std::vector<FileCamera> cameras = readCameraFile(options.cameras_file);
-        check(options.view < cameras.size(), "{}: --view is {}, must be 0 to {}", options.cameras_file, options.view, cameras.size() - 1);
+        const std::vector<FileCamera> cameras = readCameraFile(options.cameras_file, glm::dvec3(0.0));
+        requireView(options, cameras);
         files.camera = cameras[options.view];
     }
     if (!options.headset.empty()) { files.headset = readHeadset(findHeadset(options.headset)); }
@@ -52,6 +57,8 @@ CameraFiles readCameraFiles(const CameraOptions& options) {
 Cameras makeCameras(const RunOptions& options, const CameraFiles& files, const Scene& scene) {
     Cameras cameras = placeCameras(options, files, scene);
     cameras.near = options.camera.near ? *options.camera.near : usualNear(scene);
+    cameras.origin = scene.origin;
+    if (cameras.view) { cameras.view->eye += scene.origin, cameras.view->look += scene.origin; }
     return cameras;
 }
 

@@ -17,6 +17,7 @@ constexpr double kUsualFovXDegrees = 60.0;
 // A camera that sees a smaller share of the splats belongs to another scene.
 constexpr double kLeastSeen = 0.02;
 constexpr std::size_t kMostForCameras = 4096;
+constexpr double kAbout = 0.8660254;  // 30 degrees
 
 std::optional<std::size_t> firstThatSees(const std::vector<FileCamera>& cameras, const Scene& scene) {
     const std::vector<SplatSample> samples = sampleSplats(scene, kMostForCameras);
@@ -35,37 +36,69 @@ std::optional<StartView> viewAtCamera(const Scene& scene, const SceneCameras& ow
     if (!first) { return std::nullopt; }
     const FileCamera& camera = own.cameras[*first];
     const std::string at = fmt::format("at camera {} ({}) of {}", *first, camera.name, own.file.string());
-    const auto with = [&](const std::optional<glm::dvec3>& up, const char* up_why) {
-        return StartView{viewFrom(camera.eye.world_from_camera, up, scene, wish.fov_x_deg), at, up_why};
+    const auto with = [&](const std::optional<glm::dvec3>& up, const std::string& up_why) {
+        const View view = viewFrom(camera.eye.world_from_camera, up, scene, wish.fov_x_deg);
+        const bool keeps_own = up && glm::dot(view.up, glm::normalize(*up)) < kAbout;
+        return StartView{view, at, up_why + (keeps_own ? "; this one looks along it and keeps its own" : "")};
     };
     if (wish.up) { return with(wish.up, "given"); }
-    if (const auto up = upOfCameras(own.cameras)) { return with(up, "the mean of all cameras'"); }
-    // Those of a drone that look straight down have theirs in every direction.
-    glm::dvec3 sum(0.0);
-    for (const FileCamera& each : own.cameras) { sum += each.eye.world_from_camera.position; }
-    if (const auto up = upBeneath(scene, sum / static_cast<double>(own.cameras.size()))) {
-        return with(up, "of the floor beneath the cameras, as they look every way");
-    }
+    if (const auto found = upOfCameras(own.cameras, scene)) { return with(found->up, found->why); }
     return with({}, "this camera's, as they look every way");
+}
+
+glm::dvec3 along(const FileCamera& camera, const glm::dvec3& axis) { return camera.eye.world_from_camera.orientation * axis; }
+
+// True for cameras that all look one way, and are as far apart along their own up as befits a drone that looks straight down, or one before
+// a facade: nobody who walks is.
+bool mayLookDown(const std::vector<FileCamera>& cameras, const glm::dvec3& ahead, const glm::dvec3& up, const Scene& scene) {
+    constexpr double kAllOneWay = 0.97, kLeastApart = 0.5;  // of their distance from the scene
+    if (!(glm::length(ahead) > kAllOneWay)) { return false; }
+    std::vector<double> heights, distances;
+    for (const FileCamera& camera : cameras) {
+        heights.push_back(glm::dot(camera.eye.world_from_camera.position, up));
+        distances.push_back(glm::dot(camera.eye.world_from_camera.position, ahead));
+    }
+    std::vector<double> depths;
+    for (const SplatSample& sample : sampleSplats(scene, kMostForCameras)) { depths.push_back(glm::dot(sample.centre, ahead)); }
+    if (depths.empty()) { return false; }
+    const auto [low, high] = std::ranges::minmax(heights);
+    const double distance = findQuantile(depths, 0.5) - findQuantile(distances, 0.5);
+    return distance > 0.0 && high - low >= kLeastApart * distance;
 }
 
 }  // namespace
 
-SceneCameras readSceneCameras(const std::filesystem::path& scene) {
+SceneCameras readSceneCameras(const std::filesystem::path& scene, const glm::dvec3& origin) {
     SceneCameras own;
     own.file = findCameraFile(scene);
     if (own.file.empty()) { return own; }
     try {
-        own.cameras = readCameraFile(own.file);
+        own.cameras = readCameraFile(own.file, origin);
     } catch (const Error& error) { own.trouble = error.what(); }  // the scene can be shown without it
     return own;
 }
 
-std::optional<glm::dvec3> upOfCameras(const std::vector<FileCamera>& cameras) {
-    glm::dvec3 sum(0.0);
-    for (const FileCamera& camera : cameras) { sum += camera.eye.world_from_camera.orientation * glm::dvec3(0.0, -1.0, 0.0); }
-    if (!(glm::length(sum) > 0.5 * static_cast<double>(cameras.size()))) { return std::nullopt; }
-    return glm::normalize(sum);
+std::optional<CamerasUp> upOfCameras(const std::vector<FileCamera>& cameras, const Scene& scene) {
+    if (cameras.empty()) { return std::nullopt; }
+    glm::dvec3 up(0.0), ahead(0.0), place(0.0);
+    for (const FileCamera& camera : cameras) {
+        up += along(camera, {0.0, -1.0, 0.0}) / static_cast<double>(cameras.size());
+        ahead += along(camera, {0.0, 0.0, 1.0}) / static_cast<double>(cameras.size());
+        place += camera.eye.world_from_camera.position / static_cast<double>(cameras.size());
+    }
+    // Those of a drone that look straight down have theirs in every direction, or all along one course.
+    if (!(glm::length(up) > 0.5)) {
+        const auto floor = upBeneath(scene, place);
+        return floor ? std::optional(CamerasUp{*floor, "of the floor beneath the cameras, as they look every way"}) : std::nullopt;
+    }
+    up = glm::normalize(up);
+    if (mayLookDown(cameras, ahead, up, scene)) {
+        const auto floor = upBeneath(scene, place, up);
+        if (floor && glm::dot(*floor, ahead) < -kAbout) {
+            return CamerasUp{*floor, "of the floor beneath the cameras, as they all look straight down"};
+        }
+    }
+    return CamerasUp{up, "the mean of all cameras'"};
 }
 
 View viewFrom(const Pose& world_from_camera, const std::optional<glm::dvec3>& up, const Scene& scene, double fov_x_deg) {
@@ -85,7 +118,7 @@ StartView startView(const Scene& scene, const StandpointWish& wish) {
     if (const std::optional<View> view = isBuiltin(scene.name) ? builtinView(scene.name) : std::nullopt) {
         return {*view, "at the built-in scene's own view", "the built-in scene's own"};
     }
-    const SceneCameras own = scene.name.empty() ? SceneCameras{} : readSceneCameras(scene.name);
+    const SceneCameras own = scene.name.empty() ? SceneCameras{} : readSceneCameras(scene.name, scene.origin);
     if (const auto at_camera = viewAtCamera(scene, own, wish)) { return *at_camera; }
     const Standpoint judged = judgeStandpoint(scene, wish);
     std::string why = judged.why;
@@ -100,16 +133,20 @@ StartView startView(const Scene& scene, const StandpointWish& wish) {
 View startView(const Scene& scene, const CameraOptions& camera, double metres_per_unit) {
     const double fov_x_deg = camera.fov_x_deg.value_or(kUsualFovXDegrees);
     if (!camera.cameras_file.empty()) {
-        const FileCamera given = *readCameraFiles(camera).camera;
-        return viewFrom(given.eye.world_from_camera, upOfCameras(readCameraFile(camera.cameras_file)), scene, fov_x_deg);
+        const std::vector<FileCamera> given = readCameraFile(camera.cameras_file, scene.origin);
+        requireView(camera, given);
+        const auto up = upOfCameras(given, scene);
+        return viewFrom(given[camera.view].eye.world_from_camera, up ? std::optional(up->up) : std::nullopt, scene, fov_x_deg);
     }
+    const auto inScene = [&](const std::optional<glm::dvec3>& place) { return place ? std::optional(*place - scene.origin) : place; };
+    const std::optional<glm::dvec3> eye = inScene(camera.eye), look = inScene(camera.look);
     View view;
-    if (camera.eye && camera.look && !isBuiltin(scene.name)) {
-        view = {*camera.eye, *camera.look, hintsOf(scene).usual, fov_x_deg};
+    if (eye && look && !isBuiltin(scene.name)) {
+        view = {*eye, *look, hintsOf(scene).usual, fov_x_deg};
     } else {
         view = startView(scene, {fov_x_deg, metres_per_unit, camera.up}).view;
     }
-    return {camera.eye.value_or(view.eye), camera.look.value_or(view.look), camera.up.value_or(view.up), view.fov_x_deg};
+    return {eye.value_or(view.eye), look.value_or(view.look), camera.up.value_or(view.up), view.fov_x_deg};
 }
 
 }  // namespace binosplat

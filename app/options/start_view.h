@@ -19,10 +19,16 @@ struct SceneCameras {
     std::vector<FileCamera> cameras;
     std::string trouble;  // why it cannot be read
 };
-SceneCameras readSceneCameras(const std::filesystem::path& scene);
+// Positions count from `origin`, that of the scene.
+SceneCameras readSceneCameras(const std::filesystem::path& scene, const glm::dvec3& origin);
 
-// The mean up of cameras, unless they look every way.
-std::optional<glm::dvec3> upOfCameras(const std::vector<FileCamera>& cameras);
+// Up as cameras have it, and the reason in a line.
+struct CamerasUp {
+    glm::dvec3 up;
+    std::string why;
+};
+// The mean up of cameras, or that of the floor beneath them if they look every way or may all look straight down. None: neither is known.
+std::optional<CamerasUp> upOfCameras(const std::vector<FileCamera>& cameras, const Scene& scene);
 
 // The camera's view, upright along `up`: `look` is at the median depth of the scene.
 View viewFrom(const Pose& world_from_camera, const std::optional<glm::dvec3>& up, const Scene& scene, double fov_x_deg);

@@ -16,10 +16,11 @@ using Json = nlohmann::ordered_json;
 
 Json vectorJson(const glm::dvec3& vector) { return Json::array({vector.x, vector.y, vector.z}); }
 
-Json eyeJson(const Eye& eye) {
+// In the file's coordinates.
+Json eyeJson(const Eye& eye, const glm::dvec3& origin) {
     const glm::dquat& q = eye.world_from_camera.orientation;
     const Intrinsics& k = eye.intrinsics;
-    return {{"position", vectorJson(eye.world_from_camera.position)},
+    return {{"position", vectorJson(eye.world_from_camera.position + origin)},
             {"orientation_wxyz", Json::array({q.w, q.x, q.y, q.z})},
             {"fx", k.fx},
             {"fy", k.fy},
@@ -62,8 +63,8 @@ Json optionsJson(const RenderOptions& options, const Cameras& cameras) {
 }
 
 Json eyesJson(const Cameras& cameras, bool mono) {
-    if (mono) { return {{"mono", eyeJson(cameras.middle)}}; }
-    return {{"left", eyeJson(cameras.eyes[kLeft])}, {"right", eyeJson(cameras.eyes[kRight])}};
+    if (mono) { return {{"mono", eyeJson(cameras.middle, cameras.origin)}}; }
+    return {{"left", eyeJson(cameras.eyes[kLeft], cameras.origin)}, {"right", eyeJson(cameras.eyes[kRight], cameras.origin)}};
 }
 
 // `json`, with a frame's costs added.

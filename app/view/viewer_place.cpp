@@ -67,11 +67,12 @@ void Viewer::goToViewpoint(int step) {
 
 void Viewer::keepViewpointHere() {
     LoadedScene& scene = *scenes_.get();
-    const View view = viewOf(state_.sceneFromRoom(), room_from_head_);
+    View view = viewOf(state_.sceneFromRoom(), room_from_head_);
     std::size_t number = 1;
     for (const Viewpoint& viewpoint : scene.viewpoints) { number += viewpoint.name.starts_with("your own "); }
     scene.viewpoints.push_back(ownViewpoint(number, view));
     viewpoint_ = scene.viewpoints.size() - 1;
+    view.eye += scene.origin, view.look += scene.origin;
     files_.write("keeping a viewpoint", [this, source = scene.name, view]() -> FileWorker::Done {
         std::string outcome = "this viewpoint is kept";
         try {

@@ -52,6 +52,14 @@ void listLeftOut(const LoadNotes* notes, SceneSummary& summary) {
 
 }  // namespace
 
+std::string describePlace(const glm::dvec3& place, double size) {
+    const auto digitsOf = [&](double value) {
+        const double more = size > 0.0 && value != 0.0 ? std::ceil(std::log10(std::abs(value) / size)) : 0.0;
+        return static_cast<int>(std::clamp(4.0 + more, 4.0, 17.0));
+    };
+    return fmt::format("{:.{}g},{:.{}g},{:.{}g}", place.x, digitsOf(place.x), place.y, digitsOf(place.y), place.z, digitsOf(place.z));
+}
+
 std::uint64_t sceneMemoryBytes(const Scene& scene) {
     return scene.positions.size() * sizeof(glm::vec3) + scene.rotations.size() * sizeof(glm::quat) +
            scene.scales.size() * sizeof(glm::vec2) + (scene.thicknesses.size() + scene.opacities.size() + scene.sh.size()) * sizeof(float);

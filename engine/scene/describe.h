@@ -27,6 +27,9 @@ inline constexpr std::array<double, 5> kSummaryQuantiles{0.0, 0.05, 0.5, 0.95, 1
 // `notes` adds what loading already left out.
 SceneSummary describeScene(const Scene& scene, const LoadNotes* notes = nullptr);
 
+// "1.5,20,-3": with four digits, or as many as tell thousandths of `size`.
+std::string describePlace(const glm::dvec3& place, double size);
+
 // Bytes of the scene's arrays on the host.
 std::uint64_t sceneMemoryBytes(const Scene& scene);
 

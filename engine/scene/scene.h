@@ -28,8 +28,10 @@ struct Scene {
     std::vector<float> opacities;      // o = sigmoid(stored), 0 to 1
     std::vector<float> sh;             // sh[(splat * shCoefficientCount(sh_degree) + k) * 3 + channel]
     int sh_degree = 0;                 // 0 to 3: the highest band with a non-zero coefficient; higher bands are not kept
-    glm::dvec3 origin{0.0};            // where `positions` count from, in the file: far from 0 float32 would lose their detail
-    bool antialiased = false;          // 3D Gaussians: trained with opacities that the low-pass dims (Yu et al. 2024, section 5.2)
+    // Where `positions` count from, in the file: far from 0 float32 would lose their detail. Whatever people give or read is in the file's
+    // coordinates: this is taken off as it meets the scene, and added before it is shown.
+    glm::dvec3 origin{0.0};
+    bool antialiased = false;  // 3D Gaussians: trained with opacities that the low-pass dims (Yu et al. 2024, section 5.2)
 
     bool by_distance = false;  // asks to be blended by distance, not by depth
     bool y_up = false;         // up is +y, and the front is seen from +z, as in glTF; otherwise, as in trainings, -y and from -z

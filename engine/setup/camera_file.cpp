@@ -87,7 +87,7 @@ FileCamera readCamera(const Place& place, const Json& camera) {
 
 }  // namespace
 
-std::vector<FileCamera> readCameraFile(const std::filesystem::path& path) {
+std::vector<FileCamera> readCameraFile(const std::filesystem::path& path, const glm::dvec3& origin) {
     const std::string file = path.string();
     const std::string text = readTextFile(path, "a cameras.json", kMostRecordingBytes);
     Json root;
@@ -102,7 +102,10 @@ std::vector<FileCamera> readCameraFile(const std::filesystem::path& path) {
     } catch (const Json::exception& error) { fail("{}: {}, must be an array of cameras", file, error.what()); }
     check(root.is_array() && !root.empty(), "{}: holds no cameras, must be a JSON array of at least one camera", file);
     std::vector<FileCamera> cameras;
-    for (std::size_t i = 0; i < root.size(); ++i) { cameras.push_back(readCamera({file, i}, root[i])); }
+    for (std::size_t i = 0; i < root.size(); ++i) {
+        cameras.push_back(readCamera({file, i}, root[i]));
+        cameras.back().eye.world_from_camera.position -= origin;
+    }
     return cameras;
 }
 

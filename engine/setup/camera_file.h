@@ -16,7 +16,8 @@ struct FileCamera {
 
 // An array of objects: position (camera centre), rotation (3x3, rows, world-from-camera, OpenCV axes), width, height, fx, fy in
 // pixels; optional cx, cy (the middle otherwise) and img_name. Throws Error naming file, camera and key.
-std::vector<FileCamera> readCameraFile(const std::filesystem::path& path);
+// Positions count from `origin`, that of the scene (Scene::origin).
+std::vector<FileCamera> readCameraFile(const std::filesystem::path& path, const glm::dvec3& origin);
 
 // The same view with another number of pixels; fx, fy, cx, cy are scaled with it.
 Eye resize(const Eye& eye, glm::uvec2 size_px);

@@ -1,4 +1,8 @@
 // What the program says of a scene, and how it takes one of several levels.
+#include "engine/picture/image_io.h"
+#include "engine/picture/metrics.h"
+#include "engine/scene/ply.h"
+#include "engine/scene/procedural.h"
 #include "tests/engine/scene/ply_files.h"
 #include "tests/run_program.h"
 #ifdef BINOSPLAT_SOG
@@ -35,10 +39,12 @@ TEST_CASE("info says what a scene is made of, and what would take less memory") 
     CHECK_FALSE(contains(info, "--sh-degree"));
     CHECK(contains(info, "\nup                 0,-1,0: by convention, as no floor was found\n"));
     // What is proposed can be done, far from the origin, too, and where all is small.
-    for (const auto& [scale, away] : {std::pair(1.0, 0.0), {1.0, 40000.0}, {1e-4, 0.5}}) {
+    for (const auto& [scale, away, type] :
+         {std::tuple(1.0, 0.0, "float"), {1.0, 40000.0, "float"}, {1.0, 4e6, "double"}, {1e-4, 0.5, "float"}}) {
         CAPTURE(away);
         PlyText moved = ply;
         for (const char* name : {"x", "y", "z"}) {
+            moved[name].type = type;
             for (double& value : moved[name].values) { value = scale * value + away; }
         }
         work.write("moved.ply", moved.bytes());
@@ -55,11 +61,40 @@ TEST_CASE("info says what a scene is made of, and what would take less memory") 
     for (double& x : far["x"].values) { x += 4e5; }
     far["x"].type = "double";
     work.write("far.ply", far.bytes());
-    CHECK(contains(work.go("info far.ply").output, "origin             400001,0,0 in the file"));
+    CHECK(contains(work.go("info far.ply").output, "origin             400001,0,0: in memory"));
     CHECK(contains(work.go("convert far.ply far.spz").output, "; that its positions count from 400001,0,0"));
     CHECK(contains(work.go("convert far.ply again.ply").output, "loses: nothing"));
     CHECK(contains(work.bytesOf("again.ply"), "property double x"));
     CHECK(contains(work.go("info builtin:one-splat").output, "colour space       display-encoded (sRGB)\n"));
+}
+
+TEST_CASE("a scene and its cameras that are moved together give the same picture, and reports are in the file's coordinates") {
+    const Workplace work;
+    const auto rendered = [&](const std::string& name, const glm::dvec3& moved, const std::string& words) {
+        fs::create_directory(work.path / name);
+        Scene scene = makeBuiltin("builtin:fence");
+        scene.origin = moved;
+        writePly(scene, (work.path / name / "scene.ply").string());
+        work.write(name + "/cameras.json",
+                   fmt::format(R"([{{"position": [{}, {}, {}], "rotation": [[1, 0, 0], [0, 1, 0], [0, 0, 1]], "width": 64, "height": 48,)"
+                               R"("fx": 60, "fy": 60}}])",
+                               moved.x, moved.y, moved.z - 1.0));
+        (void)work.go(fmt::format("render {0}/scene.ply --mode mono --size 64x48 --out {0}/out {1}", name, words));
+        const auto report = nlohmann::json::parse(work.bytesOf(name + "/out/report.json"));
+        const auto& eye = report["eyes"]["mono"]["position"];
+        const glm::dvec3 at(eye[0].get<double>(), eye[1].get<double>(), eye[2].get<double>());
+        CHECK(glm::distance(at, moved + glm::dvec3(0.0, 0.0, -1.0)) < 1e-5);
+        if (!report["options"]["eye"].is_null()) { CHECK(report["options"]["eye"] == eye); }
+        return readPicture(work.path / name / "out" / "mono" BINOSPLAT_FLOAT_EXTENSION);
+    };
+    const glm::dvec3 away(500'000.0, 0.0, -500'000.0);
+    const Image home = rendered("home", glm::dvec3(0.0), "--view 0"), far = rendered("far", away, "--view 0");
+    CHECK(std::ranges::max(home.values) > 0.3f);
+    CHECK(psnrOf(compare(home, far).mean_square) > 60.0);
+    // By its own cameras, and from a place that is given: with other angles, but alike.
+    const Image at_home = rendered("home-eye", glm::dvec3(0.0), "--eye 0,0,-1 --look 0,0,5"),
+                there = rendered("far-eye", away, "--eye 500000,0,-500001 --look 500000,0,-499995");
+    CHECK(psnrOf(compare(at_home, there).mean_square) > 60.0);
 }
 
 #ifdef BINOSPLAT_SOG

@@ -167,7 +167,7 @@ TEST_CASE("settings, headsets, cameras, head motion and pictures are files of a 
     using Reader = void (*)(const fs::path&);
     for (const auto& [read, most] : {std::pair<Reader, int>([](const fs::path& path) { (void)readSettingsFile(path); }, 4),
                                      {[](const fs::path& path) { (void)readHeadset(path); }, 4},
-                                     {[](const fs::path& path) { (void)readCameraFile(path); }, 16},
+                                     {[](const fs::path& path) { (void)readCameraFile(path, glm::dvec3(0.0)); }, 16},
                                      {[](const fs::path& path) { (void)readHeadMotion(path, MotionAxes::kOpenXr); }, 16}}) {
         for (const auto& [name, reason] : {std::pair<const char*, std::string>("pipe", "not a regular file"),
                                            {"folder", "is a directory"},

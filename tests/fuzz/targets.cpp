@@ -126,7 +126,7 @@ void readLodMeta(Bytes input) {
 }
 void readSettings(Bytes input) { (void)readSettingsFile(MemoryFile(input).path()); }
 void readHeadsetText(Bytes input) { (void)readHeadset(MemoryFile(input).path()); }
-void readCameras(Bytes input) { (void)readCameraFile(MemoryFile(input).path()); }
+void readCameras(Bytes input) { (void)readCameraFile(MemoryFile(input).path(), glm::dvec3(0.0)); }
 void readMotion(Bytes input) { (void)parseHeadMotion(textOf(input), "motion.csv", MotionAxes::kUnity); }
 
 #ifdef BINOSPLAT_OPENXR

@@ -109,15 +109,17 @@ void SceneLoader::load(const Context& context, const RunOptions& options, bool s
         }
         loaded_->name = scene_;
         loaded_->place = placeOf(scene_);
+        loaded_->origin = scene.origin;
         try {
             loaded_->remembered = rememberedPlacement(scene_);
+            if (loaded_->remembered) { loaded_->remembered->position -= scene.origin; }
         } catch (const Error& error) { loaded_->remembering_trouble = error.what(); }
         const bool is_asked_for = options.camera.eye || options.camera.look || !options.camera.cameras_file.empty();
         const double growth = is_asked_for ? 1.0 : growthToSee(start, options.metres_per_unit);
         loaded_->start = startPlacement(start, growth * options.metres_per_unit);
         loaded_->up = up;
         loaded_->floor = floor;
-        loaded_->viewpoints = findViewpoints(scene_, options.camera.cameras_file);
+        loaded_->viewpoints = findViewpoints(scene, scene_, options.camera.cameras_file);
         loaded_->facts = std::move(facts);
         loaded_->notes = std::move(notes);
         makeKernels(context, options);

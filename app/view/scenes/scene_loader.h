@@ -40,6 +40,7 @@ struct LoadedScene {
     const GpuScene& gpu_scene;             // of either
     SceneClock clock;                      // of one that moves
     std::unique_ptr<StereoFrame> kernels;  // for frames that show it, see makeKernelsAhead; null: none were made
+    glm::dvec3 origin{0.0};                // see Scene
     Similarity start;                      // see startPlacement
     glm::dvec3 up{0.0, -1.0, 0.0};         // see upOfScene
     std::optional<double> floor;           // see floorHeight, along `up`

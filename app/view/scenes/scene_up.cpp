@@ -47,7 +47,7 @@ glm::dvec3 upOfFloor(const Scene& scene, const glm::dvec3& usual) {
 
 glm::dvec3 upOfScene(const Scene& scene, const std::filesystem::path& source, const glm::dvec3& usual) {
     if (isBuiltin(scene.name)) { return glm::normalize(usual); }
-    if (const auto up = upOfCameras(readSceneCameras(source).cameras)) { return *up; }
+    if (const auto found = upOfCameras(readSceneCameras(source, scene.origin).cameras, scene)) { return found->up; }
     return upOfFloor(scene, usual);
 }
 

@@ -143,6 +143,7 @@ std::string ShownScene::goOnWithout(const std::string& why) {
 }
 
 std::string ShownScene::place(ViewState& state) {
+    state.countFrom(scene_->origin);
     if (const auto left = left_.find(scene_->place); left != left_.end()) {
         state.place(left->second);
         return {};

@@ -45,22 +45,25 @@ std::vector<View> keptViews(const std::string& source) {
 
 Viewpoint ownViewpoint(std::size_t number, const View& view) { return {fmt::format("your own {}", number), view}; }
 
-std::vector<Viewpoint> findViewpoints(const std::string& source, const fs::path& camera_file) {
+std::vector<Viewpoint> findViewpoints(const Scene& scene, const std::string& source, const fs::path& camera_file) {
     std::vector<FileCamera> cameras;
     try {
-        cameras = camera_file.empty() ? readSceneCameras(source).cameras : readCameraFile(camera_file);
+        cameras = camera_file.empty() ? readSceneCameras(source, scene.origin).cameras : readCameraFile(camera_file, scene.origin);
     } catch (const Error&) {}  // the file was read before, but is gone
-    const std::optional<glm::dvec3> up = upOfCameras(cameras);
+    const std::optional<CamerasUp> found = upOfCameras(cameras, scene);
     std::vector<Viewpoint> viewpoints;
     for (const FileCamera& camera : cameras) {
         const Pose& pose = camera.eye.world_from_camera;
         const glm::dvec3 ahead = pose.orientation * glm::dvec3(0.0, 0.0, 1.0), own_up = pose.orientation * glm::dvec3(0.0, -1.0, 0.0);
-        View view{pose.position, pose.position + ahead, up.value_or(own_up), 60.0};
+        View view{pose.position, pose.position + ahead, found ? found->up : own_up, 60.0};
         if (!isView(view)) { view.up = own_up; }
         viewpoints.push_back({camera.name, view});
     }
     std::size_t number = 0;
-    for (const View& view : keptViews(source)) { viewpoints.push_back(ownViewpoint(++number, view)); }
+    for (View view : keptViews(source)) {
+        view.eye -= scene.origin, view.look -= scene.origin;
+        viewpoints.push_back(ownViewpoint(++number, view));
+    }
     return viewpoints;
 }
 

@@ -16,10 +16,11 @@ struct Viewpoint {
     View view;  // of the eyes; its angle means nothing
 };
 
-// Cameras of the scene's cameras.json or of `camera_file`, upright, and then kept viewpoints. What cannot be read is left out.
-std::vector<Viewpoint> findViewpoints(const std::string& source, const std::filesystem::path& camera_file);
+// Cameras of the scene's cameras.json or of `camera_file`, upright, and then kept viewpoints, all among the scene's positions. What cannot
+// be read is left out. `source`: where `scene` is from.
+std::vector<Viewpoint> findViewpoints(const Scene& scene, const std::string& source, const std::filesystem::path& camera_file);
 
-// Saves it beside the scene's settings. Throws Error if that fails.
+// Saves it, in the file's coordinates, beside the scene's settings. Throws Error if that fails.
 void keepViewpoint(const std::string& source, const View& view);
 Viewpoint ownViewpoint(std::size_t number, const View& view);
 std::vector<View> keptViews(const std::string& source);

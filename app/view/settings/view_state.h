@@ -20,15 +20,18 @@ public:
     [[nodiscard]] ViewSettings withPlacement() const {
         ViewSettings saved = settings_;
         saved.scene_from_room = scene_from_room_;
+        saved.scene_from_room->position += origin_;
         return saved;
     }
 
+    // Of the scene that is shown, see Scene: placements among settings are in its file's coordinates.
+    void countFrom(const glm::dvec3& origin) { origin_ = origin; }
     void place(const Similarity& scene_from_room) { scene_from_room_ = scene_from_room; }
     // A placement that was asked for before there was a scene; once.
-    [[nodiscard]] std::optional<Similarity> takeAsked() { return std::exchange(asked_, {}); }
+    [[nodiscard]] std::optional<Similarity> takeAsked() { return inScene(std::exchange(asked_, {})); }
     // Also sets the placement, if there is one among them.
     void set(ViewSettings settings) {
-        scene_from_room_ = std::exchange(settings.scene_from_room, {}).value_or(scene_from_room_);
+        scene_from_room_ = inScene(std::exchange(settings.scene_from_room, {})).value_or(scene_from_room_);
         settings_ = std::move(settings);
     }
     void togglePanel() { settings_.panel = !settings_.panel; }
@@ -44,9 +47,15 @@ public:
     [[nodiscard]] std::string takeChange() { return describeChange(std::exchange(said_, settings_), settings_); }
 
 private:
+    [[nodiscard]] std::optional<Similarity> inScene(std::optional<Similarity> placement) const {
+        if (placement) { placement->position -= origin_; }
+        return placement;
+    }
+
     std::optional<Similarity> asked_;
     ViewSettings settings_, said_;
     Similarity scene_from_room_;
+    glm::dvec3 origin_{0.0};
     std::optional<ViewSettings> fitting_;  // of the last frame that fitted in memory
 };
 

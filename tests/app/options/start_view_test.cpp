@@ -1,6 +1,7 @@
 // Facts about the eyes of a picture: where one stands at first, at a camera that lies with the scene or where the options say.
 #include "app/options/start_view.h"
 #include "app/options/camera_options.h"
+#include "engine/scene/ply.h"
 #include "engine/scene/scene_folder.h"
 #include "engine/setup/output_files.h"
 #include "tests/app/options/parsed.h"
@@ -175,7 +176,111 @@ TEST_CASE("one stands at the first camera that sees the scene, upright along the
     const StartView above = startView(ground);
     CAPTURE(above.up_why);
     CHECK(above.up_why.starts_with("of the floor beneath the cameras"));
+    CHECK(above.up_why.ends_with("; this one looks along it and keeps its own"));
     CHECK(above.view.eye == glm::dvec3(0, 2, 8));
+}
+
+TEST_CASE("the up of cameras that all look straight down on one course is the ground's, and of those that look at a wall it is theirs") {
+    // A field of 40 by 40 with boxes on it, whose up is `up`.
+    const auto field = [](const glm::dvec3& up, const glm::dvec3& u) {
+        Scene scene;
+        const glm::dvec3 v = glm::cross(up, u);
+        const auto add = [&](double x, double y, double h) { scene.positions.emplace_back(x * u + y * v + h * up); };
+        for (int x = -20; x < 20; ++x) {
+            for (int y = -20; y < 20; ++y) {
+                for (const double part : {0.1, 0.4, 0.7}) { add(x + part, y + part, 0.02 * ((x * 7 + y * 5) % 5)); }
+                if (x % 8 != 0 || y % 8 != 0) { continue; }
+                for (int i = 0; i < 48; ++i) { add(x + 0.2 * (i % 4), y + 0.2 * (i / 4 % 4), i / 16); }
+            }
+        }
+        const glm::quat turn(glm::quat_cast(glm::dmat3(u, v, up)));
+        scene.rotations.assign(scene.size(), turn);
+        scene.scales.assign(scene.size(), glm::vec2(0.3f));
+        scene.opacities.assign(scene.size(), 0.9f);
+        return scene;
+    };
+    // A grid of cameras above the field, `apart` from one another, that look down with the pictures' upper edge along u.
+    const auto grid = [](const glm::dvec3& up, const glm::dvec3& u, double apart) {
+        std::vector<FileCamera> cameras;
+        for (int i = 0; i < 16; ++i) {
+            const glm::dvec3 at = apart * ((i % 4 - 1.5) * u + (i / 4 - 1.5) * glm::cross(up, u)) + 20.0 * up;
+            cameras.push_back({"", Eye{lookAt(at, at - up, u), {}, {100, 80}}});
+        }
+        return cameras;
+    };
+    const glm::dvec3 y_down(0.0, -1.0, 0.0), z_up(0.0, 0.0, 1.0), x(1.0, 0.0, 0.0);
+    for (const glm::dvec3& up : {y_down, z_up}) {
+        const auto found = upOfCameras(grid(up, x, 8.0), field(up, x));
+        REQUIRE(found);
+        CAPTURE(found->why);
+        CHECK(glm::dot(found->up, up) > 0.999);
+        CHECK(found->why.find("straight down") != std::string::npos);
+        // Close together, as by hand before a wall, they are believed.
+        const auto close = upOfCameras(grid(up, x, 1.0), field(up, x));
+        REQUIRE(close);
+        CHECK(glm::dot(close->up, x) > 0.999);
+        CHECK(close->why == "the mean of all cameras'");
+    }
+    // So are those before a wall that has a street at its foot, however far apart.
+    Scene wall = field(-z_up, x);
+    for (double u = -20.0; u < 20.0; u += 0.5) {
+        for (double w = 0.0; w < 16.0; w += 0.5) {
+            wall.positions.emplace_back(20.0, u, -w);
+            wall.rotations.emplace_back(glm::quat_cast(glm::dmat3(glm::cross(z_up, x), z_up, x)));
+        }
+    }
+    wall.scales.assign(wall.size(), glm::vec2(0.3f));
+    wall.opacities.assign(wall.size(), 0.9f);
+    const auto before_wall = upOfCameras(grid(-z_up, -x, 8.0), wall);
+    REQUIRE(before_wall);
+    CHECK(glm::dot(before_wall->up, -x) > 0.999);
+    CHECK_FALSE(upOfCameras({}, wall));
+}
+
+TEST_CASE("a scene in the coordinates of a country is seen as the same one at 0: from its own cameras, from given ones and from --eye") {
+    const Workplace work;
+    // The splats and a camera so far on, in a folder of their own.
+    const auto place = [&](const std::string& name, const glm::dvec3& moved) {
+        fs::create_directory(work.path / name);
+        Scene scene = makeBuiltin("builtin:fence");
+        scene.origin = moved;
+        writePly(scene, (work.path / name / "scene.ply").string());
+        const glm::dvec3 at = moved + glm::dvec3(0.25, -0.5, -1.0);
+        writeText(work.path / name / "cameras.json",
+                  fmt::format(R"([{{"img_name": "a", "position": [{:.3f}, {:.3f}, {:.3f}], "rotation": [[1, 0, 0], [0, 1, 0], [0, 0, 1]],)"
+                              R"("width": 100, "height": 80, "fx": 80, "fy": 80}}])",
+                              at.x, at.y, at.z));
+        return loadScene((work.path / name / "scene.ply").string());
+    };
+    const glm::dvec3 away(500'000.0, -4'200'000.0, 0.0);
+    const Scene home = place("home", glm::dvec3(0.0)), far = place("far", away);
+    REQUIRE(home.origin == glm::dvec3(0.0));
+    REQUIRE(glm::distance(far.origin, away) < 10.0);
+    const auto camerasOf = [](const Scene& scene, const std::string& words) {
+        const RunOptions options = renderOptions(words);
+        return makeCameras(options, readCameraFiles(options.camera), scene);
+    };
+    const auto fromSplat = [](const Scene& scene, const Cameras& cameras) {
+        return cameras.middle.world_from_camera.position - glm::dvec3(scene.positions.front());
+    };
+    const auto given = [&](const std::string& name) { return "--view 0 --cameras " + (work.path / name / "cameras.json").string(); };
+    for (const auto& [at_home, there] : {std::pair(std::string(), std::string()),
+                                         {given("home"), given("far")},
+                                         {std::string("--eye 1,2,-3 --look 0,0,1"), "--eye 500001,-4199998,-3 --look 500000,-4200000,1"}}) {
+        CAPTURE(there);
+        const Cameras usual = camerasOf(home, at_home), moved = camerasOf(far, there);
+        CHECK(glm::distance(fromSplat(far, moved), fromSplat(home, usual)) < 1e-5);
+        const glm::dquat turn = glm::conjugate(usual.middle.world_from_camera.orientation) * moved.middle.world_from_camera.orientation;
+        CHECK(std::abs(turn.w) > 1.0 - 1e-9);
+        CHECK(moved.origin == far.origin);
+        REQUIRE(moved.view.has_value() == usual.view.has_value());
+        if (usual.view) { CHECK(glm::distance(moved.view->eye - away, usual.view->eye) < 1e-5); }
+    }
+    // So is a wearer at a given camera.
+    const View usual = startView(home, renderOptions(given("home")).camera, 1.0),
+               moved = startView(far, renderOptions(given("far")).camera, 1.0);
+    CHECK(glm::distance(usual.eye, glm::dvec3(0.25, -0.5, -1.0)) < 1e-9);
+    CHECK(glm::distance(moved.eye + far.origin - away, usual.eye) < 1e-5);
 }
 
 }  // SUITE(start_view)

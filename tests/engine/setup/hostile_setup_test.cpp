@@ -66,7 +66,7 @@ void readEverything(const std::string& path) {
 }
 
 void readCameras(const std::string& path) {
-    for (const FileCamera& camera : readCameraFile(path)) { CHECK(camera.eye.size_px.x >= 1); }
+    for (const FileCamera& camera : readCameraFile(path, glm::dvec3(0.0))) { CHECK(camera.eye.size_px.x >= 1); }
 }
 
 // `changes` times each kind of harm.

@@ -24,7 +24,8 @@ TEST_CASE("a camera file is world-from-camera, its rows as they are written, and
         {"id": 0, "img_name": "a", "width": 640, "height": 480, "fx": 500, "fy": 510,
          "position": [1, 2, 3], "rotation": [[0, 0, 1], [0, 1, 0], [-1, 0, 0]]},
         {"id": 1, "width": 640, "height": 480, "fx": 500, "fy": 510, "cx": 300, "cy": 200,
-         "position": [0, 0, 0], "rotation": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]}])"));
+         "position": [0, 0, 0], "rotation": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]}])"),
+                                        glm::dvec3(0.0));
     REQUIRE(cameras.size() == 2);
     const Eye& eye = cameras[0].eye;
     CHECK(cameras[0].name == "a");
@@ -47,7 +48,7 @@ TEST_CASE("a Git LFS pointer is named as what it is") {
     const fs::path file = writeFile(work.path / "pointer", "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n");
     const doctest::Contains said(": is a Git LFS pointer");
     CHECK_THROWS_WITH_AS((void)readSettingsFile(file), said, Error);
-    CHECK_THROWS_WITH_AS((void)readCameraFile(file), said, Error);
+    CHECK_THROWS_WITH_AS((void)readCameraFile(file, glm::dvec3(0.0)), said, Error);
     CHECK_THROWS_WITH_AS((void)readHeadset(file), said, Error);
     CHECK_THROWS_WITH_AS((void)readHeadMotion(file, MotionAxes::kOpenXr), said, Error);
 }

@@ -10,6 +10,8 @@
 #include "app/view/scenes/view_scenes.h"
 #include "app/view/scenes/viewpoints.h"
 #include "app/view/settings/view_files.h"
+#include "app/view/settings/view_state.h"
+#include "engine/scene/scene_folder.h"
 #include "tests/run_program.h"
 
 #include <sys/stat.h>
@@ -243,6 +245,27 @@ TEST_CASE("a folder of many numbered scenes is one that moves; of a few it is on
     for (const char* name : {"a.gz", "a.txt.gz", "a.txt", "ply"}) { CHECK_FALSE(looksLikeScene(work.path / name)); }
 }
 
+TEST_CASE("a folder with one scene in it is that scene, as it is on the command line, unless there is something else to look into") {
+    const Home work;
+    fs::create_directories(work.path / "garden" / ".cache");
+    for (const char* name : {"garden/garden.ply", "garden/readme.txt", "garden/.old.ply"}) { work.add(name); }
+    const SceneList list = listFolder(work.path.string());
+    CHECK(namesOf(list) == std::vector<std::string>{"garden"});
+    CHECK(entryOf(list, "garden").place == work.at("garden"));
+    CHECK(sceneBeside(work.at("garden"), 1) == work.at("garden"));
+    fs::create_directory(work.path / "garden" / "more");
+    CHECK_FALSE(looksLikeScene(work.path / "garden"));
+    fs::remove(work.path / "garden" / "more");
+    // The command line opens no more files than these to find it.
+    for (int i = 0; i < kMostFilesOpened - 2; ++i) { work.add(fmt::format("garden/{}.txt", i)); }
+    CHECK(looksLikeScene(work.path / "garden"));
+    work.add("garden/one-more.txt");
+    CHECK_FALSE(looksLikeScene(work.path / "garden"));
+    fs::remove(work.path / "garden" / "one-more.txt");
+    work.add("garden/second.spz");
+    CHECK_FALSE(looksLikeScene(work.path / "garden"));
+}
+
 TEST_CASE("at a viewpoint the eyes are there, look that way and stand upright, wherever the head is in the room, at the same scale") {
     const View view{{1, 2, 3}, {1, 2.5, 5}, {0, -1, 0.1}, 60.0};
     const Pose head{glm::angleAxis(0.7, glm::dvec3(0, 1, 0)), {0.3, -0.2, 0.5}};
@@ -259,23 +282,45 @@ TEST_CASE("at a viewpoint the eyes are there, look that way and stand upright, w
     CHECK(glm::distance(again.position, placed.position) < 1e-9);
 }
 
+TEST_CASE("a place is saved and asked for in the coordinates of the scene's file") {
+    ViewSettings settings;
+    settings.scene_from_room = Similarity{{1, 0, 0, 0}, {7, 8, 9}, 2.0};
+    ViewState state(settings);
+    state.countFrom({1.0, 2.0, 3.0});
+    CHECK(state.takeAsked()->position == glm::dvec3(6, 6, 6));
+    state.place({{1, 0, 0, 0}, {0, 0, 1}, 1.0});
+    CHECK(state.withPlacement().scene_from_room->position == glm::dvec3(1, 2, 4));
+    state.set(settings);
+    CHECK(state.sceneFromRoom().position == glm::dvec3(6, 6, 6));
+    CHECK(state.sceneFromRoom().scale == 2.0);
+}
+
 TEST_CASE("viewpoints are the cameras beside the scene, and then those that were kept") {
     const Home work;
     const std::string scene = work.at("a.ply");
     work.add("a.ply");
-    CHECK(findViewpoints(scene, {}).empty());
+    CHECK(findViewpoints({}, scene, {}).empty());
     keepViewpoint(scene, {{0, 0, 1}, {0, 0, 2}, {0, -1, 0}, 60.0});
     keepViewpoint(scene, {{0, 0, 3}, {1, 0, 3}, {0, -1, 0}, 60.0});
     work.write("cameras.json", R"([{"img_name": "door", "width": 8, "height": 8, "fx": 8, "fy": 8, "position": [5, 0, 0],
                                     "rotation": [[1,0,0],[0,1,0],[0,0,1]]}])");
     // Lines that are no view: one that looks along its up, and one that is broken off.
     std::ofstream(viewFileStem(scene).string() + ".viewpoints.txt", std::ios::app) << "0 0 1 0 0 2 0 0 1\n0 0 1 0\n";
-    const std::vector<Viewpoint> found = findViewpoints(scene, {});
+    const std::vector<Viewpoint> found = findViewpoints({}, scene, {});
     REQUIRE(found.size() == 3);
     CHECK(found[0].name == "door");
     CHECK(found[0].view.eye == glm::dvec3(5, 0, 0));
     CHECK(found[1].view.eye == glm::dvec3(0, 0, 1));
     CHECK(found[2].name == "your own 2");
+    // They are in the coordinates of the scene's file, wherever its positions count from.
+    Scene far;
+    far.origin = {4.0, 0.0, -2.0};
+    const std::vector<Viewpoint> there = findViewpoints(far, scene, {});
+    REQUIRE(there.size() == 3);
+    CHECK(there[0].view.eye == glm::dvec3(1, 0, 2));
+    CHECK(there[2].view.eye == glm::dvec3(-4, 0, 5));
+    CHECK(there[2].view.look == glm::dvec3(-3, 0, 5));
+    CHECK(findViewpoints(far, scene, work.path / "cameras.json")[0].view.eye == glm::dvec3(1, 0, 2));
 }
 
 TEST_CASE("a scene that was shown has a small picture and a line, and favourites come first") {
