@@ -50,9 +50,9 @@ bool askUser(const std::string& question);
 // With rights over the whole machine, so that it may not go by what its user's environment says.
 bool runsAsAdministrator();
 
-// Has `end` called with SIGINT or SIGTERM where the system tells the program in other ways than by these signals to end: a console that is
-// closed, a user who logs off. The system then waits for the program, for some seconds.
-void watchForEnd(void (*end)(int signal));
+// Has SIGTERM raised where the system tells the program in other ways than by signals to end: a console that is closed, a user who logs
+// off. The system then waits for the program, for some seconds.
+void watchForEnd();
 
 // Advice for machines where Vulkan finds no device.
 extern const char* const kVulkanHint;

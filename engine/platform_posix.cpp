@@ -83,7 +83,7 @@ const char* const kVulkanHint = "install a Vulkan driver, e.g. mesa-vulkan-drive
 
 bool runsAsAdministrator() { return ::geteuid() == 0; }
 
-void watchForEnd(void (*)(int)) {}
+void watchForEnd() {}
 
 bool hasDisplay() { return !environment("DISPLAY").empty() || !environment("WAYLAND_DISPLAY").empty(); }
 

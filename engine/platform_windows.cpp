@@ -134,14 +134,11 @@ const char* const kVulkanHint = "install the newest driver of the graphics card 
 
 bool runsAsAdministrator() { return ::IsUserAnAdmin() != 0; }
 
-static void (*g_end)(int) = nullptr;  // the system calls back without anything of ours
-
-void watchForEnd(void (*end)(int)) {
-    g_end = end;
+void watchForEnd() {
     ::SetConsoleCtrlHandler(
         [](DWORD event) -> BOOL {
             if (event == CTRL_C_EVENT || event == CTRL_BREAK_EVENT) { return FALSE; }  // a signal
-            g_end(SIGTERM);
+            (void)std::raise(SIGTERM);
             ::Sleep(INFINITE);  // the process ends as soon as this returns
             return TRUE;
         },

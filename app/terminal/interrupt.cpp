@@ -10,7 +10,6 @@ namespace binosplat {
 namespace {
 
 volatile std::sig_atomic_t g_signal = 0;  // the signal received, or 0
-int g_living = 0;
 
 void mark(int signal) {
     g_signal = signal;
@@ -20,20 +19,18 @@ void mark(int signal) {
 }  // namespace
 
 Interrupt::Interrupt() {
-    if (g_living++ > 0) { return; }
     g_signal = 0;
     std::signal(SIGINT, mark);
     std::signal(SIGTERM, mark);
-    watchForEnd(mark);
+    watchForEnd();
 }
 
 Interrupt::~Interrupt() {
-    if (--g_living > 0) { return; }
     std::signal(SIGINT, SIG_DFL);
     std::signal(SIGTERM, SIG_DFL);
 }
 
-bool Interrupt::came() const { return g_signal != 0; }
+bool isInterrupted() { return g_signal != 0; }
 
 void stopIfInterrupted() {
     if (g_signal != 0) { throw Interrupted{g_signal}; }

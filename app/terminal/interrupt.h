@@ -3,15 +3,13 @@
 
 namespace binosplat {
 
-// While one exists, SIGINT and SIGTERM only set a flag; a second signal ends the program as usual. A nested one does nothing.
+// While one exists, SIGINT and SIGTERM only set a flag; a second signal ends the program as usual. The program has one.
 class Interrupt {
 public:
     Interrupt();
     Interrupt(const Interrupt&) = delete;
     Interrupt& operator=(const Interrupt&) = delete;
     ~Interrupt();
-
-    [[nodiscard]] bool came() const;
 };
 
 // Not an Error, so that nobody handles it as one; runProgram catches it.
@@ -19,7 +17,9 @@ struct Interrupted {
     int signal;  // SIGINT or SIGTERM
 };
 
-// Throws Interrupted if the flag is set. For the main thread, between steps of work that has no output yet.
+// True if the flag is set.
+bool isInterrupted();
+// Throws Interrupted if it is. For the main thread, between steps of work that has no output yet.
 void stopIfInterrupted();
 
 }  // namespace binosplat

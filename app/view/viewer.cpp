@@ -35,19 +35,18 @@ Viewer::Viewer(const ViewOptions& options, const ViewSettings& settings, xr::Ins
 }
 
 void Viewer::run() {
-    const Interrupt interrupt;
     try {
         try {
             renderer_.fitImages(headset(), state_.settings());
         } catch (const xr::Lost& lost) { loseHeadset(lost.what()); }
         while (options_.load_first && !scenes_.get() && !leaving_) {
-            if (interrupt.came()) { leave(); }
+            if (isInterrupted()) { leave(); }
             if (scenes_.isNextReady()) { takeScene(); }
             drawWindowAlone("Loading the scene");
             std::this_thread::sleep_for(kIdle);
         }
         for (bool goes_on = true; goes_on;) {
-            if (!leaving_ && (interrupt.came() || (options_.frames != 0 && log_.frame >= options_.frames))) { leave(); }
+            if (!leaving_ && (isInterrupted() || (options_.frames != 0 && log_.frame >= options_.frames))) { leave(); }
             try {
                 goes_on = connection_.headset() != nullptr ? step() : comeBack();
             } catch (const xr::Lost& lost) {
