@@ -3,6 +3,7 @@
 
 #include "engine/error.h"
 #include "engine/scene/gzip.h"
+#include "engine/scene/scene_files.h"
 #include "engine/scene/zip_archive.h"
 
 #include <algorithm>
@@ -141,6 +142,11 @@ std::unique_ptr<InputFile> unpackScene(std::unique_ptr<InputFile> file, const Pr
         done += static_cast<double>(got);
         return got;
     });
+}
+
+std::unique_ptr<InputFile> openUnpacked(const std::string& path) {
+    auto file = std::make_unique<InputFile>(path);
+    return isPacked(*file) ? unpackScene(std::move(file), {}) : std::move(file);
 }
 
 }  // namespace binosplat

@@ -18,5 +18,7 @@ bool isPacked(InputFile& file);
 // The scene in a packed file, as a file of its own. Throws Error for an archive that is broken or encrypted, or that holds no scene or
 // several, and for a scene that is more than 256 times as long as what it is packed in.
 std::unique_ptr<InputFile> unpackScene(std::unique_ptr<InputFile> file, const Progress& progress);
+// A scene's file, unpacked if it is packed.
+std::unique_ptr<InputFile> openUnpacked(const std::string& path);
 
 }  // namespace binosplat

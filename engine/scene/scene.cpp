@@ -129,7 +129,9 @@ Scene loadFrom(Source& source, LoadNotes& notes, const Progress& progress) {
     }
     if (const SceneFormat* format = findFormat(source)) {
         if (!format->has_levels) { requireNoLevel(source.path, format->name, source.level); }
-        return readWhole(*format, source, notes, progress);
+        Scene scene = readWhole(*format, source, notes, progress);
+        notes.format = format->name;  // now that the reader has written its own
+        return scene;
     }
     if (source.file == nullptr) {
         const auto loadOne = [&](const std::string& path, const std::string& of) {
@@ -163,8 +165,7 @@ Scene loadFrom(Source& source, LoadNotes& notes, const Progress& progress) {
 
 std::string formatOfFile(const std::string& path) {
     const LevelChoice no_level;
-    Source source{path, std::make_unique<InputFile>(path), no_level};
-    if (isPacked(*source.file)) { source.file = unpackScene(std::move(source.file), {}); }
+    Source source{path, openUnpacked(path), no_level};
     const SceneFormat* const format = findFormat(source);
     return format == nullptr ? "" : format->name;
 }

@@ -44,6 +44,7 @@ struct Scene {
 
 // Findings of loading, for `info`, the report and the user.
 struct LoadNotes {
+    std::string format;  // of the file; empty: of a built-in scene
     std::uint64_t splats_in_file = 0;
     std::uint64_t skipped_not_finite = 0;     // a NaN or infinity in position, scale, rotation, opacity or colour
     std::uint64_t skipped_zero_rotation = 0;  // a quaternion of length zero

@@ -5,6 +5,7 @@
 #include "engine/scene/address.h"
 #include "engine/scene/compressed_ply.h"
 #include "engine/scene/gltf.h"
+#include "engine/scene/packed_scene.h"
 #include "engine/scene/ply.h"
 #include "engine/scene/procedural.h"
 #include "engine/scene/scene_folder.h"
@@ -39,9 +40,9 @@ std::vector<std::vector<NumberedFile>> findSceneGroups(const std::string& folder
 
 glm::dvec3 originOf(const std::string& path) {
     try {
-        InputFile file(path);
-        if (isPly(file) && !isCompressedPly(file)) { return originOfPly(file); }
-        return isGltf(file) ? originOfGltf(file) : glm::dvec3(0.0);
+        const std::unique_ptr<InputFile> file = openUnpacked(path);
+        if (isPly(*file) && !isCompressedPly(*file)) { return originOfPly(*file); }
+        return isGltf(*file) ? originOfGltf(*file) : glm::dvec3(0.0);
     } catch (const Error&) { return glm::dvec3(0.0); }  // whoever reads it says why
 }
 
@@ -113,9 +114,8 @@ Scene SceneSeries::load(std::size_t scene, LoadNotes& notes, const Progress& pro
         notes.splats_in_file = made.size();
         return made;
     }
-    const std::string format = formatOfFile(scenes_[scene]);
-    check(format == format_ || format.empty(), "{}: {}, the moving scene's first file is {}", scenes_[scene], format, format_);
     Scene loaded = loadScene(scenes_[scene], 0, &notes, progress);
+    check(notes.format == format_, "{}: {}, the moving scene's first file is {}", scenes_[scene], notes.format, format_);
     countFrom(loaded, origin_);
     return loaded;
 }

@@ -317,17 +317,20 @@ TEST_CASE("the frames of a moving scene count from one place") {
     const Garden garden;
     PlyText ply = makePly();
     ply["x"].type = "double";
-    for (const double moved : {0.0, 2.75}) {
-        ply["x"].values = {100'000.25 + moved, 100'000.25 + moved, 100'000.25 + moved};
-        (void)garden.write(moved == 0.0 ? "f1.ply" : "f2.ply", ply.bytes());
+    for (const bool packed : {false, true}) {
+        CAPTURE(packed);
+        for (const double moved : {0.0, 2.75}) {
+            ply["x"].values = {100'000.25 + moved, 100'000.25 + moved, 100'000.25 + moved};
+            (void)garden.write(moved == 0.0 ? "f1.ply" : "f2.ply", packed ? gzip(ply.bytes()) : ply.bytes());
+        }
+        const SceneSeries series(garden.path());
+        LoadNotes notes;
+        const Scene second = series.load(1, notes), first = series.load(0, notes);
+        CHECK(first.origin == glm::dvec3(100'000.0, 0.0, 0.0));
+        CHECK(second.origin == first.origin);
+        CHECK(first.positions[0].x == 0.25f);
+        CHECK(second.positions[0].x == 3.0f);
     }
-    const SceneSeries series(garden.path());
-    LoadNotes notes;
-    const Scene second = series.load(1, notes), first = series.load(0, notes);
-    CHECK(first.origin == glm::dvec3(100'000.0, 0.0, 0.0));
-    CHECK(second.origin == first.origin);
-    CHECK(first.positions[0].x == 0.25f);
-    CHECK(second.positions[0].x == 3.0f);
 }
 
 TEST_CASE("two moving scenes in one folder, and formats that differ, are refused") {
