@@ -14,7 +14,7 @@ void runScene(const SceneOptions& options) {
     const std::filesystem::path folder = options.out.has_parent_path() ? options.out.parent_path() : ".";
     check(std::filesystem::is_directory(folder), "{}: cannot be written, {} must be a directory", options.out.string(), folder.string());
     const std::string source = isBuiltin(options.name) ? options.name : "builtin:" + options.name;
-    const Scene scene = makeBuiltin(source, options.splats, ProgressLine("making " + source).progress(), options.frame);
+    const Scene scene = makeBuiltin(source, options.splats, ProgressLine("making " + source).progress());
     writePly(scene, options.out.string(), ProgressLine("writing " + options.out.string()).progress());
 }
 

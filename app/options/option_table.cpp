@@ -233,7 +233,6 @@ std::span<const OptionRow<SceneOptions>> sceneRows() {
     static const std::vector<OptionRow<SceneOptions>> rows{
         {{"splats", "", kScene, "N", "how many splats", "the scene's own number"},
          noneIfZero(field::count<&SceneOptions::splats>(1, kMaxSplats))},
-        {{"frame", "", kScene, "N", "frame of a scene that moves"}, field::count<&SceneOptions::frame>(0, kMaxFrames)},
         {{"out", "", kScene, "FILE.ply", "file to write", "", /*required*/ true}, field::file<&SceneOptions::out>()},
     };
     return rows;

@@ -115,7 +115,6 @@ struct InfoOptions {
 struct SceneOptions {
     std::string name;
     std::uint64_t splats = 0;  // 0: the scene's own default
-    std::uint64_t frame = 0;   // of a moving scene
     std::filesystem::path out;
 };
 

@@ -16,18 +16,12 @@ struct Entry {
     const char* name;
     const char* what;
     std::uint64_t default_splats, min_splats, max_splats;
-    Scene (*make)(std::uint64_t splats, const Progress& progress, std::uint64_t frame);
+    Scene (*make)(std::uint64_t splats, const Progress& progress);
     View (*view)();
-    std::uint64_t frames = 1;
 };
 
-template <Scene (*kMake)(std::uint64_t, const Progress&)>
-Scene makeStill(std::uint64_t splats, const Progress& progress, std::uint64_t) {
-    return kMake(splats, progress);
-}
-
 template <Scene (*kMake)()>
-Scene makeFixed(std::uint64_t, const Progress& progress, std::uint64_t) {
+Scene makeFixed(std::uint64_t, const Progress& progress) {
     Scene scene = kMake();
     if (progress) { progress(1.0); }
     return scene;
@@ -36,11 +30,8 @@ Scene makeFixed(std::uint64_t, const Progress& progress, std::uint64_t) {
 View viewFromOrigin() { return {{0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}, {0.0, -1.0, 0.0}, 60.0}; }
 
 constexpr std::uint64_t kWallSplats = 121 * 121;
-constexpr std::array<Entry, 7> kEntries{{
-    {"atelier", "a furnished room with a window onto hills", 200'000, 1'000, 10'000'000, makeStill<builtin::makeAtelier>,
-     builtin::atelierView},
-    {"clockwork", "things that turn, swing and appear", 20'000, 2'000, 1'000'000, builtin::makeClockwork, builtin::clockworkView,
-     kClockworkFrames},
+constexpr std::array<Entry, 6> kEntries{{
+    {"atelier", "a furnished room with a window onto hills", 200'000, 1'000, 10'000'000, builtin::makeAtelier, builtin::atelierView},
     {"one-splat", "one disc", 1, 1, 1, makeFixed<builtin::makeOneSplat>, viewFromOrigin},
     {"slanted-wall", "a wall at 45 degrees", 41 * 41, 41 * 41, 41 * 41, makeFixed<builtin::makeSlantedWall>, viewFromOrigin},
     {"two-layers", "a translucent disc before another", 2, 2, 2, makeFixed<builtin::makeTwoLayers>, viewFromOrigin},
@@ -75,12 +66,7 @@ std::optional<View> builtinView(const std::string& name) {
     return entry != nullptr ? std::optional(entry->view()) : std::nullopt;
 }
 
-std::uint64_t builtinFrameCount(const std::string& source) {
-    const Entry* entry = findEntry(source);
-    return entry != nullptr ? entry->frames : 1;
-}
-
-Scene makeBuiltin(const std::string& source, std::uint64_t splats, const Progress& progress, std::uint64_t frame) {
+Scene makeBuiltin(const std::string& source, std::uint64_t splats, const Progress& progress) {
     const Entry* entry = findEntry(source);
     if (entry == nullptr) {
         std::string names;
@@ -91,16 +77,9 @@ Scene makeBuiltin(const std::string& source, std::uint64_t splats, const Progres
     check(splats >= entry->min_splats && splats <= entry->max_splats, "{}: {} splats asked for, expected {}", source, splats,
           entry->min_splats == entry->max_splats ? fmt::format("{}", entry->min_splats)
                                                  : fmt::format("{} to {}", entry->min_splats, entry->max_splats));
-    check(frame == 0 || entry->frames > 1, "{}: frame {} asked for, expected 0: this scene does not move", source, frame);
-    Scene scene = entry->make(splats, progress, frame % entry->frames);
+    Scene scene = entry->make(splats, progress);
     scene.name = std::string(kPrefix) + entry->name;
     return scene;
-}
-
-std::shared_ptr<const void> keepBuiltin(const std::string& source, std::uint64_t splats) {
-    const Entry* entry = findEntry(source);
-    if (entry == nullptr || entry->frames == 1) { return nullptr; }
-    return builtin::keepClockwork(splats == 0 ? entry->default_splats : splats);
 }
 
 }  // namespace binosplat

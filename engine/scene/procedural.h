@@ -1,29 +1,9 @@
-// Built-in scenes: two to look at, and small analytic ones whose pictures can be derived by hand.
+// Built-in scenes: one to look at, and small analytic ones whose pictures can be derived by hand.
 // World axes as in trained scenes: x right, y down, z forward; metres.
 //
 // builtin:atelier       a furnished room with a window onto hills, 1,000 to 10,000,000 splats of the same look (default 200,000).
 //                       The floor is y = 0, the ceiling y = -2.8; x from -3 to 3, z from 0 to 5. Only its glazed vase has SH beyond
 //                       degree 0 (degree 3).
-//
-// builtin:clockwork     things that turn, swing and appear, 2,000 to 1,000,000 splats of the same look (default 20,000), sh_degree 0.
-//                       Periodic after kClockworkFrames = 120 frames, 30 in a second. Splat i is the same piece of the same thing in all
-//                       frames, of constant scales and colour; its quaternion turns without a change of sign, from the last frame to
-//                       the first, too. Opacity 0.95, but for the lamp. Angles are from x towards y: positive ones are clockwise as seen.
-//                       At frame f, with s = f / 120, t = (f - a) / (b - a) kept to [0, 1] and e(a, b) = 3 t^2 - 2 t^3, in this order:
-//   what stays          three fifths of the splats, the same to the last bit in all frames: a wall z = 2.8 and a table top y = 0.8, both
-//                       with x from -2.2 to 2.2, posts, the clock's case and dial, the lamp's foot.
-//   three wheels        of n teeth, middle plane z = 1.6, 0.08 thick, pitch radius R = 0.025 n, teeth from R - 0.05 to R + 0.04. Each turns
-//                       about z through its middle by 2 pi k s; its white tooth points to angle a at f = 0, where a0 = -atan(4/3):
-//                         n = 18, middle (-0.39, 0.24), k = 2, a = a0
-//                         n = 9, middle (0.015, -0.30), k = -4, a = a0 + 200 degrees
-//                         n = 6, middle (-0.285, -0.525), k = 6, a = a0 + 105 degrees
-//   hand                0.31 long, turns about z through (0.62, -0.46, 2.44) by 4 pi s; upright at f = 0.
-//   pendulum            turns about z through (0.62, -0.10, 2.48) by 20 degrees sin(4 pi s). Its bob, of radius 0.14, hangs 0.62 below.
-//   cuckoo              a box of 0.16 x 0.16 x 0.14 with a beak, middle (0.62, -0.985, 2.705), comes 0.35 (e(32, 44) - e(64, 76)) along
-//                       -z.
-//   door                of 0.25 x 0.26, middle of its left edge (0.495, -0.985, 2.545), turns about y through there, its right edge
-//                       towards the eye, by 115 degrees (e(20, 32) - e(76, 88)).
-//   lamp                a globe, middle (0.94, 0.38, 2.0), radius 0.15, of opacity 0.95 (1 - e(40, 52) + e(88, 100)).
 //
 // The analytic scenes have sh_degree 0 and one size each (--splats is refused if it differs). "Grey g" is a colour of (g, g, g).
 // builtin:one-splat     one disc: centre (0, 0, 2), t_u = x, t_v = y, t_w = z, scales (0.2, 0.1), opacity 0.8, colour (0.9, 0.6, 0.3).
@@ -71,16 +51,8 @@ bool isBuiltin(const std::string& source);
 // The recommended view; `name` with or without the prefix. Empty for names that are not there.
 std::optional<View> builtinView(const std::string& name);
 
-inline constexpr std::uint64_t kClockworkFrames = 120;
-
-// The frames until a scene repeats; 1 for those that do not move. `source` with or without the prefix.
-std::uint64_t builtinFrameCount(const std::string& source);
-
-// Makes builtin:NAME with exactly `splats` splats (0: its default) as it is at `frame`; splat i is the same piece of the same thing in all
-// frames. The same on every run, whatever the number of threads. Throws Error for a name or a count it does not have, and for a frame other
-// than 0 of a scene that does not move.
-Scene makeBuiltin(const std::string& source, std::uint64_t splats = 0, const Progress& progress = {}, std::uint64_t frame = 0);
-// For making many frames of a scene that moves: while this is held, what they share is made only once. Null for one that does not move.
-std::shared_ptr<const void> keepBuiltin(const std::string& source, std::uint64_t splats = 0);
+// Makes builtin:NAME with exactly `splats` splats (0: its default). The same on every run, whatever the number of threads. Throws Error for
+// a name or a count it does not have.
+Scene makeBuiltin(const std::string& source, std::uint64_t splats = 0, const Progress& progress = {});
 
 }  // namespace binosplat

@@ -7,7 +7,6 @@
 #include "engine/scene/gltf.h"
 #include "engine/scene/packed_scene.h"
 #include "engine/scene/ply.h"
-#include "engine/scene/procedural.h"
 #include "engine/scene/scene_folder.h"
 #include "engine/scene/sog.h"
 #include "engine/scene/streamed_sog.h"
@@ -49,28 +48,15 @@ glm::dvec3 originOf(const std::string& path) {
 }  // namespace
 
 bool isMovingScene(const std::string& source) {
-    if (isAddress(source)) { return false; }
-    if (isBuiltin(source)) { return builtinFrameCount(source) > 1; }
     std::error_code error;
-    if (!fs::is_directory(source, error) || isStreamedSogFolder(source) || isSogFolder(source) || findTrainingOutput(source)) {
+    if (isAddress(source) || !fs::is_directory(source, error) || isStreamedSogFolder(source) || isSogFolder(source) ||
+        findTrainingOutput(source)) {
         return false;
     }
     return !findSceneGroups(source).empty();
 }
 
 SceneSeries::SceneSeries(const std::string& source) : name_(source) {
-    if (!isBuiltin(source)) {
-        findFiles();
-        return;
-    }
-    kept_ = keepBuiltin(source);
-    for (std::uint64_t frame = 0; frame < builtinFrameCount(source); ++frame) {
-        frames_.push_back(scenes_.size());
-        scenes_.push_back(fmt::format("{}, frame {}", source, frame));
-    }
-}
-
-void SceneSeries::findFiles() {
     const std::vector<std::vector<NumberedFile>> groups = findSceneGroups(name_);
     check(!groups.empty(), "{}: has no numbered files of one format, expected a moving scene", name_);
     check(groups.size() < 2 || groups[1].size() < groups[0].size(),
@@ -109,11 +95,6 @@ void SceneSeries::findFiles() {
 }
 
 Scene SceneSeries::load(std::size_t scene, LoadNotes& notes, const Progress& progress) const {
-    if (isBuiltin(name_)) {
-        Scene made = makeBuiltin(name_, 0, progress, scene);
-        notes.splats_in_file = made.size();
-        return made;
-    }
     Scene loaded = loadScene(scenes_[scene], 0, &notes, progress);
     check(notes.format == format_, "{}: {}, the moving scene's first file is {}", scenes_[scene], notes.format, format_);
     countFrom(loaded, origin_);

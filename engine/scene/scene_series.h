@@ -1,4 +1,4 @@
-// The frames of a moving scene: numbered files of one format in a folder, or a built-in scene that moves.
+// The frames of a moving scene: numbered files of one format in a folder.
 #pragma once
 
 #include "engine/scene/scene.h"
@@ -10,7 +10,7 @@
 
 namespace binosplat {
 
-// True if `source` is such a scene; false for a folder that is recognized as something else first: SOG, streamed or not, or a
+// True if `source` is such a folder; false for a folder that is recognized as something else first: SOG, streamed or not, or a
 // training's output.
 bool isMovingScene(const std::string& source);
 
@@ -22,7 +22,7 @@ public:
     [[nodiscard]] const std::string& name() const { return name_; }
     // Frames. A number missing from an otherwise even sequence counts as a frame, too, which shows the same as the one before it.
     [[nodiscard]] std::size_t size() const { return frames_.size(); }
-    // Files, or different frames.
+    // Files.
     [[nodiscard]] std::size_t sceneCount() const { return scenes_.size(); }
     // Which scene a frame shows.
     [[nodiscard]] std::size_t sceneOf(std::size_t frame) const { return frames_[frame]; }
@@ -36,15 +36,12 @@ public:
     [[nodiscard]] Scene load(std::size_t scene, LoadNotes& notes, const Progress& progress = {}) const;
 
 private:
-    void findFiles();
-
     std::string name_, format_;
     glm::dvec3 origin_{0.0};           // of the first file, and so of all: otherwise the scene would jump
-    std::vector<std::string> scenes_;  // files, or names for messages
+    std::vector<std::string> scenes_;  // files
     std::vector<std::size_t> frames_;
     double growth_ = 1.0;
     std::vector<std::string> lines_;
-    std::shared_ptr<const void> kept_;  // see keepBuiltin
 };
 
 }  // namespace binosplat

@@ -2,7 +2,6 @@
 #include "engine/stream/moving_scene.h"
 
 #include "engine/error.h"
-#include "engine/scene/procedural.h"
 
 #include <fmt/format.h>
 
@@ -75,10 +74,7 @@ MovingScene::Moment MovingScene::momentAt(double time_s) const {
 }
 
 // A loop of files need not end as it begins.
-std::size_t MovingScene::sceneAfter(std::size_t frame) const {
-    if (frame + 1 < series_.size()) { return series_.sceneOf(frame + 1); }
-    return series_.sceneOf(isBuiltin(series_.name()) ? 0 : frame);
-}
+std::size_t MovingScene::sceneAfter(std::size_t frame) const { return series_.sceneOf(std::min(frame + 1, series_.size() - 1)); }
 
 bool MovingScene::isBetween(Moment moment) const {
     return moment.share > 0.0f && sceneAfter(moment.frame) != series_.sceneOf(moment.frame);

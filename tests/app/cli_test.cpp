@@ -47,7 +47,6 @@ TEST_CASE("errors end the program with one line and the code of their kind, and 
     work.checkRefused("bench builtin:one-splat --out file", 1, "file: cannot be used as output directory", kNoDriver);
     work.checkRefused("scene one-splat --out nowhere/a.ply", 1, "nowhere");
     work.checkRefused("scene one-splat --out a.txt", 1, ".ply");
-    work.checkRefused("scene fence --frame 1 --out fence.ply", 1, "builtin:fence: frame 1 asked for, expected 0: this scene does not move");
     CHECK(work.bytesOf("file") == "keep me");
     CHECK(work.files() == std::set<std::string>{"cut.ply", "file", "text.ply"});
 }
@@ -71,7 +70,7 @@ TEST_CASE("pipes, folders and endless files are refused at once") {
     CHECK_FALSE(work.holds("out"));
 }
 
-TEST_CASE("a scene can be written and described, and a frame of one that moves") {
+TEST_CASE("a scene can be written and described") {
     const Workplace work;
     work.go("scene one-splat --out one.ply");
     const Outcome info = work.go("info one.ply");
@@ -79,13 +78,6 @@ TEST_CASE("a scene can be written and described, and a frame of one that moves")
     CHECK(info.output.find("splats             1\n") != std::string::npos);
     CHECK(info.output.find("\nstart              0,0,0.8 looking at 0,0,2, outside: 1.2 units from the middle") != std::string::npos);
     CHECK(work.run("info one.ply >/dev/full").exit_code == 1);
-    work.go("scene clockwork --splats 2000 --out first.ply");
-    work.go("scene clockwork --splats 2000 --frame 70 --out later.ply");
-    work.go("scene clockwork --splats 2000 --frame 120 --out again.ply");
-    CHECK(work.bytesOf("first.ply") != work.bytesOf("later.ply"));
-    CHECK(work.bytesOf("first.ply") == work.bytesOf("again.ply"));
-    // Splats of opacity 0 are written and read like others.
-    CHECK(work.go("info later.ply").output.find("splats             2000\n") != std::string::npos);
 }
 
 TEST_CASE("what two hints say of a file is said once in its notes, and goes from file to file") {

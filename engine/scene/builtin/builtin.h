@@ -16,8 +16,5 @@ Scene makeStepEdge();
 Scene makeFence();
 Scene makeAtelier(std::uint64_t splats, const Progress& progress);
 View atelierView();
-Scene makeClockwork(std::uint64_t splats, const Progress& progress, std::uint64_t frame);
-std::shared_ptr<const void> keepClockwork(std::uint64_t splats);
-View clockworkView();
 
 }  // namespace binosplat::builtin

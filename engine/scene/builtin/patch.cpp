@@ -235,18 +235,12 @@ Patch& Draft::add(Patch patch) {
     return patches_.back();
 }
 
-double Draft::weight(const Room& room) const {
-    double sum = 0.0;
-    for (const Patch& patch : patches_) { sum += weightOf(patch, room); }
-    return sum;
-}
-
 Scene Draft::make(std::uint64_t count, const Room& room, const Progress& progress) const {
     // Patch i gets the splats between two rounded points of the running sum: exactly `count` in all, and small patches get their
     // share on average even where it is under one.
     std::vector<std::uint64_t> starts{0};
-    const double total = weight(room);
-    double running = 0.0;
+    double total = 0.0, running = 0.0;
+    for (const Patch& patch : patches_) { total += weightOf(patch, room); }
     for (const Patch& patch : patches_) {
         running += weightOf(patch, room);
         starts.push_back(static_cast<std::uint64_t>(std::llround(running / total * static_cast<double>(count))));

@@ -35,9 +35,6 @@ public:
     Patch& add(Patch patch);
     std::vector<Occluder>& occluders() { return occluders_; }
 
-    // The area to be covered, times detail.
-    [[nodiscard]] double weight(const Room& room) const;
-
     // Exactly `count` splats, spread over the patches by area times detail.
     [[nodiscard]] Scene make(std::uint64_t count, const Room& room, const Progress& progress) const;
 

@@ -4,6 +4,8 @@
 #include "engine/reference/periphery.h"
 #include "engine/stream/moving_scene.h"
 #include "tests/engine/frame/frame_runs.h"
+#include "tests/engine/scene/ply_files.h"
+#include "tests/engine/stream/moving_frames.h"
 
 SUITE(golden) {
 
@@ -57,16 +59,9 @@ Image besideEachOther(const std::array<Image, 2>& pair) {
     return both;
 }
 
-// Of builtin:clockwork, from where what moves is a part of the picture; it goes on with every second frame.
-Scene clockworkAt(int frame) { return makeBuiltin("builtin:clockwork", 0, {}, static_cast<std::uint64_t>(frame / 2)); }
-constexpr double kClockworkRate = 45.0, kDisplayRate = 90.0;
-
-Eye clockworkEye() {
-    Eye eye = test::eyeOf(*builtinView("clockwork"), {112, 80});
-    eye.world_from_camera.position += eye.world_from_camera.orientation * glm::dvec3(-0.6, 0.0, -1.5);
-    eye.world_from_camera.orientation = eye.world_from_camera.orientation * glm::angleAxis(0.5, glm::dvec3(0, 1, 0));
-    return eye;
-}
+// What slides goes on by 8 cm with every second frame.
+Scene sceneAt(int frame) { return test::slidingAtelier(4.0 * (frame / 2)); }
+constexpr double kSceneRate = 45.0, kDisplayRate = 90.0;
 
 TEST_CASE_FIXTURE(Gpu, "the golden pictures are what twin and device render, in full and where an eye that looks aside sees less") {
     const Gaze aside{{-3.0, 1.0, -2.0}, 0.0};
@@ -95,28 +90,33 @@ TEST_CASE_FIXTURE(Gpu, "the golden pictures are what twin and device render, in 
 
 // What each pass makes is held against its twin in past_passes_test.cpp and others; the file is as all of their twins together came to it.
 TEST_CASE_FIXTURE(Gpu, "the last pair of a walk past a scene that moves is what it was") {
-    MovingScene moving(context(), SceneSeries("builtin:clockwork"), {.rate_hz = kClockworkRate, .memory_bytes = 1});
+    const test::Folder folder;
+    test::writeFilm(folder.file("film"), kFrames / 2 + 1, [](int frame) { return sceneAt(2 * frame); });
+    MovingScene moving(context(), SceneSeries(folder.file("film")), {.rate_hz = kSceneRate, .memory_bytes = 1});
     test::KeptFrame frame(context(), moving.scene());
     FrameSettings settings;
     settings.mode = Mode::kTemporal;
     settings.keep_past = true;
+    View view = *builtinView("atelier");
+    view.fov_x_deg = 40.0;  // what slides is a large part of the picture
+    const Eye start = test::eyeOf(view, {112, 80});
     for (int i = 0; i <= kFrames; ++i) {
         moving.setTime(i / kDisplayRate);
         moving.settle({});
         settings.stereo.budget = budgetOf(i);
-        frame.render(eyesAt(clockworkEye(), i), settings);
+        frame.render(eyesAt(start, i), settings);
     }
     const Image device = besideEachOther(test::picturesOf(frame));
-    checkGolden("walk-clockwork", readGolden("walk-clockwork", device), device, "device", kLeastWalkDb);
+    checkGolden("walk", readGolden("walk", device), device, "device", kLeastWalkDb);
     // What moved is where it is now, not where it was.
-    const auto eyes = eyesAt(clockworkEye(), kFrames);
+    const auto eyes = eyesAt(start, kFrames);
     const auto fullOf = [&](const Scene& scene) {
         return besideEachOther(
             {test::toImage(reference::render(scene, eyes[kLeft], {})), test::toImage(reference::render(scene, eyes[kRight], {}))});
     };
-    const double now_db = compare(fullOf(clockworkAt(kFrames)), device).psnrDb();
+    const double now_db = compare(fullOf(sceneAt(kFrames)), device).psnrDb();
     CHECK(now_db > 35.0);
-    CHECK(compare(fullOf(clockworkAt(kFrames - 2)), device).psnrDb() < now_db - 5.0);
+    CHECK(compare(fullOf(sceneAt(kFrames - 2)), device).psnrDb() < now_db - 5.0);
 }
 
 #endif

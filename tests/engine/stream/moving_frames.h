@@ -1,4 +1,4 @@
-// A scene with a part that slides, by scene frame, as files and as it should be.
+// Films: numbered files in a folder, and the scenes in them.
 #pragma once
 
 #include "engine/scene/ply.h"
@@ -24,12 +24,27 @@ inline Scene slidingAtelier(double frame, std::uint64_t splats = 8'000) {
     return scene;
 }
 
-// Frames 1 to `count` as FOLDER/frame_0001.ply and so on.
-inline void writeSliding(const std::string& folder, int count, std::uint64_t splats = 8'000) {
+// The atelier, of which a small part slides, and from frame `first` on all goes up and down in turn.
+inline Scene shakenAtelier(int frame, int first) {
+    Scene scene = slidingAtelier(0);
+    const bool is_up = frame >= first && (frame - first) % 2 == 0;
+    for (glm::vec3& p : scene.positions) {
+        if (glm::distance(p, {0.0f, -0.8f, 2.5f}) < 0.4f) { p.x += 0.02f * static_cast<float>(frame); }
+        p.y -= is_up ? 0.01f : 0.0f;
+    }
+    return scene;
+}
+
+// Frames 0 to `count` - 1 as FOLDER/frame_0001.ply and so on.
+inline void writeFilm(const std::string& folder, int count, const std::function<Scene(int frame)>& frameAt) {
     std::filesystem::create_directories(folder);
     for (int frame = 0; frame < count; ++frame) {
-        writePly(slidingAtelier(frame, splats), (std::filesystem::path(folder) / fmt::format("frame_{:04}.ply", frame + 1)).string());
+        writePly(frameAt(frame), (std::filesystem::path(folder) / fmt::format("frame_{:04}.ply", frame + 1)).string());
     }
+}
+
+inline void writeSliding(const std::string& folder, int count, std::uint64_t splats = 8'000) {
+    writeFilm(folder, count, [&](int frame) { return slidingAtelier(frame, splats); });
 }
 
 }  // namespace binosplat::test
