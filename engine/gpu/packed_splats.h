@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace binosplat {
@@ -68,9 +69,9 @@ public:
     // Splats [first, first + count) of `scene`. Throws Error if these are discs and the traits' 3D Gaussians, or the other way round.
     PackedPages(const Scene& scene, std::size_t first, std::size_t count, const SceneTraits& traits);
     PackedPages(const Scene& scene, const SceneTraits& traits) : PackedPages(scene, 0, scene.size(), traits) {}
-    // One page that was packed before, unchanged.
-    PackedPages(std::uint32_t splats, const gpu::ScenePage& page, std::span<const std::uint8_t> bytes)
-        : splat_count_(splats), pages_{page}, bytes_(bytes.begin(), bytes.end()) {}
+    // One page, as it was packed.
+    PackedPages(std::uint32_t splats, const gpu::ScenePage& page, std::vector<std::uint8_t> bytes)
+        : splat_count_(splats), pages_{page}, bytes_(std::move(bytes)) {}
     PackedPages() = default;
 
     [[nodiscard]] std::uint32_t splatCount() const { return splat_count_; }

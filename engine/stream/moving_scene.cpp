@@ -40,8 +40,8 @@ MovingScene::MovingScene(const Context& context, SceneSeries series, MovingSetti
             return drawn(series_.load(scene, ignored), ignored);
         },
         series_.sceneCount(), traits_, reading);
-    shown_ = std::make_shared<const SceneFrame>(makeSceneFrame(first_, traits_));
-    const auto pages = static_cast<double>(shown_->size());
+    shown_ = makeSceneFrame(first_, traits_);
+    const auto pages = static_cast<double>(shown_.size());
     ResidentScene::Options options;
     options.capacity_pages = static_cast<std::uint32_t>(
                                  std::min(pages * series_.growth() * kSpareRoom, double{gpu::kMaxItems / gpu::kPageSplats} - kSparePages)) +
@@ -49,7 +49,7 @@ MovingScene::MovingScene(const Context& context, SceneSeries series, MovingSetti
     // A scene frame is shown as a whole or not yet.
     options.most_bytes_a_frame = options.capacity_pages * ChunkLayout(gpu::kPageSplats, traits_).bytes;
     resident_ = std::make_unique<ResidentScene>(context_, traits_, options);
-    for (const auto& page : *shown_) { parts_.push_back(resident_->add(PackedPages(page->splats, page->bounds, page->bytes)).value()); }
+    for (const PackedPages& page : shown_) { parts_.push_back(resident_->add(PackedPages(page)).value()); }
     wantFrom(0);
     thread_ = std::thread([this] { run(); });
 }
@@ -92,7 +92,7 @@ void MovingScene::wantFrom(std::size_t frame) {
 }
 
 std::optional<MovingScene::Question> MovingScene::questionFor(Moment moment) const {
-    Question question{shown_, loader_->tryGet(series_.sceneOf(moment.frame)), nullptr, moment, time_set_};
+    Question question{moment, loader_->tryGet(series_.sceneOf(moment.frame)), nullptr};
     if (!question.first) { return std::nullopt; }
     if (!isBetween(moment)) { return question; }
     question.second = loader_->tryGet(sceneAfter(moment.frame));
@@ -101,9 +101,9 @@ std::optional<MovingScene::Question> MovingScene::questionFor(Moment moment) con
     return question;
 }
 
-MovingScene::Frame MovingScene::frameOf(const Question& question) const {
-    if (!question.second || !correspond(*question.first, *question.second, traits_)) { return question.first; }
-    return std::make_shared<const SceneFrame>(between(*question.first, *question.second, question.moment.share, traits_));
+MovingScene::Step MovingScene::stepTo(const Question& question) const {
+    const SceneFrame* const next = question.second ? &question.second->splats : nullptr;
+    return {question.moment, stepBetween(shown_, question.first->splats, traits_, next, question.moment.share)};
 }
 
 void MovingScene::run() {
@@ -113,10 +113,10 @@ void MovingScene::run() {
         if (stops_) { return; }
         const Question question = *std::exchange(question_, std::nullopt);
         lock.unlock();
-        Step step{question.from, frameOf(question), question.moment, {}, question.time_set};
-        step.difference = differenceOf(*step.from, *step.to, traits_);
+        Step step = stepTo(question);
         lock.lock();
         answer_ = std::move(step);
+        answered_.notify_all();
     }
 }
 
@@ -135,26 +135,39 @@ std::optional<MovingScene::Step> MovingScene::tryTakeStep() {
     return lock ? std::exchange(answer_, std::nullopt) : std::nullopt;
 }
 
+void MovingScene::dropSteps() {
+    std::unique_lock lock(mutex_);
+    answered_.wait(lock, [&] { return !is_asked_ || answer_; });
+    answer_.reset();
+    next_.reset();
+    is_asked_ = is_stale_ = false;
+}
+
+std::string MovingScene::noRoomFor(const Step& step) const {
+    const std::uint64_t room = std::uint64_t{resident_->capacityPages()} * gpu::kPageSplats;
+    if (step.frame.splats <= room) { return {}; }
+    return fmt::format("{}: has {} splats, there is room for {}, as the sizes of files let expect",
+                       series_.nameOf(series_.sceneOf(step.moment.frame)), step.frame.splats, room);
+}
+
 void MovingScene::take(Step&& step) {
     moment_ = step.moment;
-    if (step.to->size() > resident_->capacityPages()) {
-        lines_.push_back(fmt::format("{}: has {} splats, there is room for {}, as the sizes of files let expect; it is left out",
-                                     series_.nameOf(series_.sceneOf(step.moment.frame)), splatsIn(*step.to),
-                                     std::uint64_t{resident_->capacityPages()} * gpu::kPageSplats));
+    if (const std::string trouble = noRoomFor(step); !trouble.empty()) {
+        lines_.push_back(trouble + "; it is left out");
         return;
     }
-    for (const std::uint32_t page : step.difference.pages) {
+    for (const std::uint32_t page : step.frame.pages) {
         if (page < parts_.size()) { resident_->remove(parts_[page], ResidentScene::Note::kNone); }
     }
-    parts_.resize(step.to->size());
+    shown_.resize((step.frame.splats + gpu::kPageSplats - 1) / gpu::kPageSplats);
+    parts_.resize(shown_.size());
     // The lowest places that are free are those of these pages: splats stay in their order.
-    for (const std::uint32_t page : step.difference.pages) {
-        if (page >= parts_.size()) { continue; }
-        const SplatPage& now = *(*step.to)[page];
-        parts_[page] = resident_->add(PackedPages(now.splats, now.bounds, now.bytes), 1.0f, ResidentScene::Note::kNone).value();
+    for (std::size_t i = 0; i < step.frame.now.size(); ++i) {
+        const std::uint32_t page = step.frame.pages[i];
+        shown_[page] = std::move(step.frame.now[i]);
+        parts_[page] = resident_->add(PackedPages(shown_[page]), 1.0f, ResidentScene::Note::kNone).value();
     }
-    for (const SceneChange& change : step.difference.changes) { resident_->note(change); }
-    shown_ = std::move(step.to);
+    for (const SceneChange& change : step.frame.changes) { resident_->note(change); }
 }
 
 void MovingScene::update(std::span<const Eye> /*eyes*/, double /*step_seconds*/) {
@@ -164,12 +177,12 @@ void MovingScene::update(std::span<const Eye> /*eyes*/, double /*step_seconds*/)
     const Moment now = momentAt(time_s_);
     wantFrom(now.frame);
     if (!goes_on) {
-        ++time_set_;
+        is_stale_ = is_asked_;
         next_.reset();
     }
     if (std::optional<Step> step = tryTakeStep()) {
         is_asked_ = false;
-        if (step->time_set == time_set_ && step->from == shown_) { next_ = std::move(step); }
+        if (!std::exchange(is_stale_, false)) { next_ = std::move(step); }
     }
 
     const auto frames = static_cast<double>(series_.size());
@@ -199,16 +212,15 @@ void MovingScene::update(std::span<const Eye> /*eyes*/, double /*step_seconds*/)
 void MovingScene::settle(std::span<const Eye> /*eyes*/, const Progress& progress) {
     const Moment moment = momentAt(time_s_);
     told_s_ = time_s_;
-    next_.reset();
+    dropSteps();
     if (moment == moment_) { return; }
     if (progress) { progress(0.0); }
     wantFrom(moment.frame);
-    Question question{shown_, loader_->get(series_.sceneOf(moment.frame)), nullptr, moment, ++time_set_};
+    Question question{moment, loader_->get(series_.sceneOf(moment.frame)), nullptr};
     if (isBetween(moment)) { question.second = loader_->get(sceneAfter(moment.frame)); }
-    Step step{shown_, frameOf(question), moment, {}, time_set_};
-    check(step.to->size() <= resident_->capacityPages(), "{}: has {} splats, there is room for {}, as the sizes of files let expect",
-          series_.nameOf(series_.sceneOf(moment.frame)), splatsIn(*step.to), std::uint64_t{resident_->capacityPages()} * gpu::kPageSplats);
-    step.difference = differenceOf(*step.from, *step.to, traits_);
+    Step step = stepTo(question);
+    const std::string trouble = noRoomFor(step);
+    check(trouble.empty(), "{}", trouble);
     take(std::move(step));
 }
 

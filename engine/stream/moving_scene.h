@@ -59,7 +59,6 @@ public:
     [[nodiscard]] std::vector<std::string> tryTakeLines() override;
 
 private:
-    using Frame = SeriesLoader::Frame;
     // A scene frame, and how far it is on to the next.
     struct Moment {
         std::size_t frame = 0;
@@ -68,26 +67,27 @@ private:
     };
     // A step from what is shown to another moment.
     struct Step {
-        Frame from, to;
         Moment moment;
-        FrameDifference difference;
-        std::uint64_t time_set = 0;
+        FrameStep frame;
     };
     struct Question {
-        Frame from, first, second;  // `second` is null if nothing lies between
         Moment moment;
-        std::uint64_t time_set = 0;  // how often it was set before this was asked
+        SeriesLoader::Held first, second;  // `second` is null if nothing lies between
     };
 
     [[nodiscard]] Moment momentAt(double time_s) const;
     [[nodiscard]] std::size_t sceneAfter(std::size_t frame) const;
     [[nodiscard]] bool isBetween(Moment moment) const;
-    [[nodiscard]] Frame frameOf(const Question& question) const;
+    [[nodiscard]] Step stepTo(const Question& question) const;
     // Once everything that the moment needs is read.
     [[nodiscard]] std::optional<Question> questionFor(Moment moment) const;
     void wantFrom(std::size_t frame);
     void ask(Moment moment);
     [[nodiscard]] std::optional<Step> tryTakeStep();
+    // Waits for a step that is being made, and drops it.
+    void dropSteps();
+    // Empty if there is.
+    [[nodiscard]] std::string noRoomFor(const Step& step) const;
     void take(Step&& step);
     void run();
 
@@ -101,17 +101,17 @@ private:
     std::unique_ptr<ResidentScene> resident_;
     std::vector<ResidentScene::Part> parts_;  // by page
     std::vector<std::string> lines_;          // for takeLines
-    Frame shown_;
-    Moment moment_;  // of what is shown
+    SceneFrame shown_;                        // not touched while is_asked_: the thread reads it
+    Moment moment_;                           // of what is shown
     double time_s_ = 0.0, told_s_ = 0.0;
     std::optional<std::size_t> late_, wanted_from_;
     std::uint64_t late_count_ = 0;
-    std::uint64_t time_set_ = 0;  // how often the time did not go on by a step
-    bool is_asked_ = false;       // and not answered yet
-    std::optional<Step> next_;
+    bool is_asked_ = false;     // and not answered yet
+    bool is_stale_ = false;     // and the time was set since
+    std::optional<Step> next_;  // none while is_asked_
 
     std::mutex mutex_;  // of what follows
-    std::condition_variable asked_changed_;
+    std::condition_variable asked_changed_, answered_;
     bool stops_ = false;
     std::optional<Question> question_;
     std::optional<Step> answer_;

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <limits>
 #include <optional>
+#include <span>
 #include <utility>
 
 namespace binosplat {
@@ -16,11 +17,11 @@ namespace {
 
 constexpr std::size_t kSplatsAPage = gpu::kPageSplats;
 
-// Splats of a page, one by one.
+// Splats of a page of the same traits, one by one.
 class PageReader {
 public:
-    PageReader(const SplatPage& page, const ChunkLayout& layout, const SceneTraits& traits)
-        : bytes_(page.bytes.data()), layout_(layout), has_thicknesses_(traits.isGaussian3d()) {}
+    PageReader(std::span<const std::uint8_t> page, const ChunkLayout& layout, const SceneTraits& traits)
+        : bytes_(page.data()), layout_(layout), has_thicknesses_(traits.isGaussian3d()) {}
 
     [[nodiscard]] glm::vec3 centre(std::size_t i) const { return read<glm::vec3>(layout_.positions, i); }
     [[nodiscard]] glm::quat rotation(std::size_t i) const {
@@ -55,43 +56,48 @@ private:
     bool has_thicknesses_;
 };
 
-bool isSamePage(const SplatPage& a, const SplatPage& b) { return a.splats == b.splats && a.bytes == b.bytes; }
+bool isSame(const PackedPages& a, const PackedPages& b) {
+    return a.splatCount() == b.splatCount() && std::memcmp(a.bytes().data(), b.bytes().data(), a.bytes().size()) == 0;
+}
 
 template <typename T>
-T at(const std::vector<std::uint8_t>& bytes, std::uint64_t offset) {
+T at(std::span<const std::uint8_t> bytes, std::uint64_t offset) {
     T value;
     std::memcpy(&value, bytes.data() + offset, sizeof(T));
     return value;
 }
 
-SplatPage pageBetween(const SplatPage& from, const SplatPage& to, float share, const ChunkLayout& layout, const SceneTraits& traits) {
-    SplatPage page{from.splats, {}, from.bytes};
-    const auto put = [&]<typename T>(std::uint64_t offset, const T& value) { std::memcpy(page.bytes.data() + offset, &value, sizeof(T)); };
+PackedPages pageBetween(const PackedPages& one, const PackedPages& other, float share, const ChunkLayout& layout,
+                        const SceneTraits& traits) {
+    const std::span<const std::uint8_t> from = one.bytes(), to = other.bytes();
+    std::vector<std::uint8_t> bytes(from.begin(), from.end());
+    const auto put = [&]<typename T>(std::uint64_t offset, const T& value) { std::memcpy(bytes.data() + offset, &value, sizeof(T)); };
     // Equal values stay as they are, to the bit.
     const auto mixFloats = [&](std::uint64_t begin, std::uint64_t end) {
         for (std::uint64_t offset = begin; offset < end; offset += sizeof(float)) {
-            const auto a = at<float>(from.bytes, offset), b = at<float>(to.bytes, offset);
+            const auto a = at<float>(from, offset), b = at<float>(to, offset);
             if (a != b) { put(offset, glm::mix(a, b, share)); }
         }
     };
     mixFloats(layout.positions, layout.rotations);
     mixFloats(layout.scales, layout.base_colours);
     for (std::uint64_t offset = layout.rotations; offset < layout.scales; offset += sizeof(glm::vec4)) {
-        const auto a = at<glm::vec4>(from.bytes, offset), b = at<glm::vec4>(to.bytes, offset);
+        const auto a = at<glm::vec4>(from, offset), b = at<glm::vec4>(to, offset);
         if (a == b) { continue; }
         const glm::vec4 mixed = glm::mix(a, glm::dot(a, b) < 0.0f ? -b : b, share);
         const float length = glm::length(mixed);
         put(offset, length > 0.0f ? mixed / length : a);
     }
     for (std::uint64_t offset = layout.base_colours; offset < layout.bytes; offset += sizeof(std::uint32_t)) {
-        const auto a = at<std::uint32_t>(from.bytes, offset), b = at<std::uint32_t>(to.bytes, offset);
+        const auto a = at<std::uint32_t>(from, offset), b = at<std::uint32_t>(to, offset);
         if (a != b) { put(offset, glm::packHalf2x16(glm::mix(glm::unpackHalf2x16(a), glm::unpackHalf2x16(b), share))); }
     }
     PageBounds bounds;
-    const PageReader reader(page, layout, traits);
-    for (std::size_t i = 0; i < page.splats; ++i) { bounds.add(reader.centre(i), reader.rotation(i), reader.scales(i), reader.opacity(i)); }
-    page.bounds = bounds.page();
-    return page;
+    const PageReader reader(bytes, layout, traits);
+    for (std::size_t i = 0; i < one.splatCount(); ++i) {
+        bounds.add(reader.centre(i), reader.rotation(i), reader.scales(i), reader.opacity(i));
+    }
+    return {one.splatCount(), bounds.page(), std::move(bytes)};
 }
 
 // Boxes around what changed, by where the splats' centres lie.
@@ -136,33 +142,19 @@ private:
 
 }  // namespace
 
-SceneFrame makeSceneFrame(const Scene& scene, const SceneTraits& traits, const SceneFrame& like) {
-    const PackedPages packed(scene, traits);
-    const std::size_t page_bytes = ChunkLayout(kSplatsAPage, traits).bytes;
+SceneFrame makeSceneFrame(const Scene& scene, const SceneTraits& traits) {
     SceneFrame frame;
-    for (std::size_t p = 0; p < packed.pageCount(); ++p) {
-        const auto splats = static_cast<std::uint32_t>(std::min<std::size_t>(kSplatsAPage, packed.splatCount() - p * kSplatsAPage));
-        const auto bytes = packed.bytes().subspan(p * page_bytes, page_bytes);
-        const bool is_there = p < like.size() && like[p]->splats == splats && std::ranges::equal(like[p]->bytes, bytes);
-        frame.push_back(is_there ? like[p]
-                                 : std::make_shared<const SplatPage>(SplatPage{splats, packed.pages()[p], {bytes.begin(), bytes.end()}}));
+    for (std::size_t first = 0; first < scene.size(); first += kSplatsAPage) {
+        frame.emplace_back(scene, first, std::min(kSplatsAPage, scene.size() - first), traits);
     }
     return frame;
 }
 
 std::uint64_t splatsIn(const SceneFrame& frame) {
-    std::uint64_t splats = 0;
-    for (const auto& page : frame) { splats += page->splats; }
-    return splats;
+    return frame.empty() ? 0 : (frame.size() - 1) * kSplatsAPage + frame.back().splatCount();
 }
 
-std::uint64_t bytesIn(const SceneFrame& frame, const SceneFrame& without) {
-    std::uint64_t bytes = 0;
-    for (std::size_t p = 0; p < frame.size(); ++p) {
-        if (p >= without.size() || without[p] != frame[p]) { bytes += frame[p]->bytes.size(); }
-    }
-    return bytes;
-}
+std::uint64_t bytesIn(const SceneFrame& frame) { return frame.empty() ? 0 : frame.size() * frame.front().bytes().size(); }
 
 bool correspond(const SceneFrame& from, const SceneFrame& to, const SceneTraits& traits) {
     const std::uint64_t splats = splatsIn(from);
@@ -170,7 +162,7 @@ bool correspond(const SceneFrame& from, const SceneFrame& to, const SceneTraits&
     constexpr std::uint64_t kSamples = 1009;
     const ChunkLayout layout(kSplatsAPage, traits);
     const auto centreOf = [&](const SceneFrame& frame, std::uint64_t splat) {
-        return PageReader(*frame[splat / kSplatsAPage], layout, traits).centre(splat % kSplatsAPage);
+        return PageReader(frame[splat / kSplatsAPage].bytes(), layout, traits).centre(splat % kSplatsAPage);
     };
     std::vector<float> moved, apart;
     for (std::uint64_t sample = 0; sample < kSamples; ++sample) {
@@ -187,34 +179,35 @@ bool correspond(const SceneFrame& from, const SceneFrame& to, const SceneTraits&
     return at(moved, 0.9) <= kNearbyShare * at(apart, 0.5);
 }
 
-SceneFrame between(const SceneFrame& from, const SceneFrame& to, float share, const SceneTraits& traits) {
+FrameStep stepBetween(const SceneFrame& from, const SceneFrame& to, const SceneTraits& traits, const SceneFrame* next, float share) {
     const ChunkLayout layout(kSplatsAPage, traits);
-    SceneFrame frame = from;
-    for (std::size_t p = 0; p < frame.size(); ++p) {
-        if (from[p] == to[p] || isSamePage(*from[p], *to[p])) { continue; }
-        frame[p] = std::make_shared<const SplatPage>(pageBetween(*from[p], *to[p], share, layout, traits));
-    }
-    return frame;
-}
-
-FrameDifference differenceOf(const SceneFrame& from, const SceneFrame& to, const SceneTraits& traits) {
-    const ChunkLayout layout(kSplatsAPage, traits);
-    FrameDifference difference;
+    const bool is_between = next != nullptr && correspond(to, *next, traits);
+    FrameStep step{splatsIn(to), {}, {}, {}};
     BoxGrid boxes;
     for (std::size_t p = 0; p < std::max(from.size(), to.size()); ++p) {
-        const SplatPage* const old = p < from.size() ? from[p].get() : nullptr;
-        const SplatPage* const now = p < to.size() ? to[p].get() : nullptr;
-        if (old == now || (old != nullptr && now != nullptr && isSamePage(*old, *now))) { continue; }
-        difference.pages.push_back(static_cast<std::uint32_t>(p));
-        for (std::size_t i = 0; i < kSplatsAPage; ++i) {
-            const bool was = old != nullptr && i < old->splats, is = now != nullptr && i < now->splats;
-            if (was && is && PageReader(*old, layout, traits).isSame(PageReader(*now, layout, traits), i)) { continue; }
-            if (was) { boxes.add(PageReader(*old, layout, traits), i); }
-            if (is) { boxes.add(PageReader(*now, layout, traits), i); }
+        const PackedPages* const old = p < from.size() ? &from[p] : nullptr;
+        const PackedPages* now = p < to.size() ? &to[p] : nullptr;
+        PackedPages mixed;
+        if (now != nullptr && is_between && !isSame(*now, (*next)[p])) {
+            mixed = pageBetween(*now, (*next)[p], share, layout, traits);
+            now = &mixed;
         }
+        if (old != nullptr && now != nullptr && isSame(*old, *now)) { continue; }
+        step.pages.push_back(static_cast<std::uint32_t>(p));
+        const auto readerOf = [&](const PackedPages* page) {
+            return PageReader(page == nullptr ? std::span<const std::uint8_t>() : page->bytes(), layout, traits);
+        };
+        const PageReader was_there = readerOf(old), is_there = readerOf(now);
+        for (std::size_t i = 0; i < kSplatsAPage; ++i) {
+            const bool was = old != nullptr && i < old->splatCount(), is = now != nullptr && i < now->splatCount();
+            if (was && is && was_there.isSame(is_there, i)) { continue; }
+            if (was) { boxes.add(was_there, i); }
+            if (is) { boxes.add(is_there, i); }
+        }
+        if (now != nullptr) { step.now.push_back(now == &mixed ? std::move(mixed) : *now); }
     }
-    difference.changes = boxes.gathered();
-    return difference;
+    step.changes = boxes.gathered();
+    return step;
 }
 
 }  // namespace binosplat

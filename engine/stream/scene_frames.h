@@ -1,4 +1,4 @@
-// The splats of a moving scene at one time, and how they differ from those before.
+// The splats of a moving scene at one time, and how to come from them to those of another.
 #pragma once
 
 #include "engine/gpu/gpu_scene.h"
@@ -6,42 +6,35 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 namespace binosplat {
 
-// Up to kPageSplats splats as the device holds them.
-struct SplatPage {
-    std::uint32_t splats = 0;
-    gpu::ScenePage bounds;
-    std::vector<std::uint8_t> bytes;  // laid out as a ChunkLayout of kPageSplats
-};
+// All splats of one scene frame, in the order of their file; each entry is one page, and only the last has fewer than kPageSplats.
+using SceneFrame = std::vector<PackedPages>;
 
-// All splats of one scene frame, in the order of their file. Frames may share a page that is the same in both.
-using SceneFrame = std::vector<std::shared_ptr<const SplatPage>>;
-
-// Throws Error if the scene's splats are of another kind than the traits'. Pages that are the same in `like` are shared with it.
-SceneFrame makeSceneFrame(const Scene& scene, const SceneTraits& traits, const SceneFrame& like = {});
-// Splats, and bytes of the pages that are not in `without`.
+// Throws Error if the scene's splats are of another kind than the traits'.
+SceneFrame makeSceneFrame(const Scene& scene, const SceneTraits& traits);
 std::uint64_t splatsIn(const SceneFrame& frame);
-std::uint64_t bytesIn(const SceneFrame& frame, const SceneFrame& without = {});
+std::uint64_t bytesIn(const SceneFrame& frame);
 
 // True if splat i of one is splat i of the other, a little further on: there are as many, and most are nearer to each other than
 // kNearbyShare of the distance between two of one frame.
 inline constexpr double kNearbyShare = 0.1;
 bool correspond(const SceneFrame& from, const SceneFrame& to, const SceneTraits& traits);
-// Between two frames that correspond, `share` of the way: every value linearly, and rotations along the shorter of two ways, of unit
-// length.
-SceneFrame between(const SceneFrame& from, const SceneFrame& to, float share, const SceneTraits& traits);
 
-struct FrameDifference {
-    std::vector<std::uint32_t> pages;  // that differ, or that only one of the two has
+struct FrameStep {
+    std::uint64_t splats = 0;          // of the frame that it leads to
+    std::vector<std::uint32_t> pages;  // that differ, or that only one of the two has, in ascending order
+    SceneFrame now;                    // these pages, as many of them as the frame has that it leads to
     // Where the differing splats of these pages were and are: boxes that share no splat, kMostBoxes at most.
     std::vector<SceneChange> changes;
 };
 inline constexpr int kBoxesAside = 12;
 inline constexpr std::size_t kMostBoxes = std::size_t{kBoxesAside} * kBoxesAside * kBoxesAside;
-FrameDifference differenceOf(const SceneFrame& from, const SceneFrame& to, const SceneTraits& traits);
+// To a frame or, if `next` corresponds to it, to what lies `share` of the way from it to that one: every value linearly, and rotations
+// along the shorter of two ways, of unit length.
+FrameStep stepBetween(const SceneFrame& from, const SceneFrame& to, const SceneTraits& traits, const SceneFrame* next = nullptr,
+                      float share = 0.0f);
 
 }  // namespace binosplat

@@ -32,11 +32,16 @@ bool SeriesLoader::tryWant(const std::vector<std::size_t>& scenes) {
     return true;
 }
 
-SeriesLoader::Frame SeriesLoader::tryGet(std::size_t scene) const {
-    const std::unique_lock lock(mutex_, std::try_to_lock);
-    if (!lock) { return nullptr; }
+SeriesLoader::Held SeriesLoader::hold(std::size_t scene) const {
     const auto found = kept_.find(scene);
-    return found == kept_.end() ? nullptr : found->second.frame;
+    if (found == kept_.end()) { return nullptr; }
+    ++found->second.holders;
+    return Held(&found->second);
+}
+
+SeriesLoader::Held SeriesLoader::tryGet(std::size_t scene) const {
+    const std::unique_lock lock(mutex_, std::try_to_lock);
+    return lock ? hold(scene) : nullptr;
 }
 
 bool SeriesLoader::isSurelyBroken(std::size_t scene) const {
@@ -44,15 +49,15 @@ bool SeriesLoader::isSurelyBroken(std::size_t scene) const {
     return lock && troubles_.contains(scene);
 }
 
-SeriesLoader::Frame SeriesLoader::get(std::size_t scene) {
+SeriesLoader::Held SeriesLoader::get(std::size_t scene) {
     std::unique_lock lock(mutex_);
     for (;;) {
-        if (const auto found = kept_.find(scene); found != kept_.end()) { return found->second.frame; }
+        if (Held held = hold(scene)) { return held; }
         if (const auto trouble = troubles_.find(scene); trouble != troubles_.end()) {
             trouble->second.said = true;
             fail("{}", trouble->second.what);
         }
-        if (orderOf(scene) != 0) {
+        if (wanted_.empty() || wanted_.front() != scene) {
             std::erase(wanted_, scene);
             wanted_.insert(wanted_.begin(), scene);
             wanted_changed_.notify_all();
@@ -96,9 +101,10 @@ std::optional<std::size_t> SeriesLoader::next() {
     // Scenes that are being read have no bytes yet.
     const auto under_way = static_cast<std::uint64_t>(std::ranges::count(reading_, true));
     while (bytes_ + (under_way + 1) * largest_ > settings_.most_bytes) {
-        const auto last = std::ranges::max_element(kept_, {}, [&](const auto& kept) { return orderOf(kept.first); });
-        if (last != kept_.end() && orderOf(last->first) > order && orderOf(last->first) >= kLeastKept) {
-            bytes_ -= last->second.bytes;
+        const auto orderToGo = [&](const auto& kept) { return kept.second.holders > 0 ? 0 : orderOf(kept.first); };
+        const auto last = std::ranges::max_element(kept_, {}, orderToGo);
+        if (last != kept_.end() && orderToGo(*last) > order && orderToGo(*last) >= kLeastKept) {
+            bytes_ -= bytesIn(last->second.splats);
             kept_.erase(last);
         } else if (order < kLeastKept) {
             break;
@@ -116,26 +122,20 @@ void SeriesLoader::run() {
         wanted_changed_.wait(lock, [&] { return stops_ || (scene = next()); });
         if (stops_) { return; }
         reading_[*scene] = true;
-        // Much of a scene stays as it was.
-        const auto before = kept_.find(*scene == 0 ? reading_.size() - 1 : *scene - 1);
-        const Frame like = before == kept_.end() ? nullptr : before->second.frame;
         lock.unlock();
-        Kept kept;
+        std::optional<SceneFrame> splats;
         std::string trouble;
         try {
-            const SceneFrame none;
-            SceneFrame frame = makeSceneFrame(load_(*scene), traits_, like ? *like : none);
-            kept.bytes = bytesIn(frame, like ? *like : none);
-            kept.frame = std::make_shared<const SceneFrame>(std::move(frame));
+            splats = makeSceneFrame(load_(*scene), traits_);
         } catch (const Error& error) { trouble = error.what(); } catch (const std::bad_alloc&) {
             trouble = "a frame of the moving scene does not fit into memory";
         }
         lock.lock();
         reading_[*scene] = false;
-        if (kept.frame) {
-            bytes_ += kept.bytes;
-            largest_ = std::max(largest_, kept.bytes);
-            kept_.emplace(*scene, std::move(kept));
+        if (splats) {
+            bytes_ += bytesIn(*splats);
+            largest_ = std::max(largest_, bytesIn(*splats));
+            kept_[*scene].splats = *std::move(splats);
         } else {
             troubles_.emplace(*scene, Trouble{trouble, false});
         }

@@ -3,6 +3,7 @@
 
 #include "engine/stream/scene_frames.h"
 
+#include <atomic>
 #include <condition_variable>
 #include <cstdint>
 #include <functional>
@@ -18,7 +19,15 @@ namespace binosplat {
 
 class SeriesLoader {
 public:
-    using Frame = std::shared_ptr<const SceneFrame>;
+    // A scene's frame. It stays where it is while it is held, on any thread; the loader outlives that.
+    struct Frame {
+        SceneFrame splats;
+        mutable std::atomic<int> holders = 0;  // more of them only with the mutex held, fewer at any time
+    };
+    struct LetGo {
+        void operator()(const Frame* frame) const { --frame->holders; }
+    };
+    using Held = std::unique_ptr<const Frame, LetGo>;
     struct Settings {
         std::uint64_t most_bytes = std::uint64_t{1} << 30;  // for frames that are kept, but at least kLeastKept of them
         int threads = 1;
@@ -33,25 +42,21 @@ public:
     // Waits for what is being read.
     ~SeriesLoader();
 
-    // The scenes that will be needed, the next one first; of those read before, the one needed last makes room. Never waits: false if the
-    // loader is just looking through its lists, ask again.
+    // The scenes that will be needed, the next one first; of those read before that nobody holds, the one needed last makes room. Never
+    // waits: false if the loader is just looking through its lists, ask again.
     [[nodiscard]] bool tryWant(const std::vector<std::size_t>& scenes);
     // Null if it is not there now. Never waits.
-    [[nodiscard]] Frame tryGet(std::size_t scene) const;
+    [[nodiscard]] Held tryGet(std::size_t scene) const;
     // True if it cannot be had. Never waits; perhaps later.
     [[nodiscard]] bool isSurelyBroken(std::size_t scene) const;
     // Waits until it is there. Throws Error if it cannot be had.
-    [[nodiscard]] Frame get(std::size_t scene);
+    [[nodiscard]] Held get(std::size_t scene);
     // One sentence for each scene that cannot be had, once.
     [[nodiscard]] std::vector<std::string> takeLines();
     [[nodiscard]] std::vector<std::string> tryTakeLines();
     [[nodiscard]] std::uint64_t bytesKept() const;
 
 private:
-    struct Kept {
-        Frame frame;
-        std::uint64_t bytes = 0;  // besides those that the one before it has, too
-    };
     struct Trouble {
         std::string what;
         bool said = false;
@@ -61,6 +66,7 @@ private:
     // With the mutex held. What to read next, once there is room.
     [[nodiscard]] std::optional<std::size_t> next();
     [[nodiscard]] std::size_t orderOf(std::size_t scene) const;
+    [[nodiscard]] Held hold(std::size_t scene) const;
     [[nodiscard]] std::vector<std::string> linesOf();
 
     Load load_;
@@ -72,7 +78,7 @@ private:
     bool stops_ = false;
     std::vector<std::size_t> wanted_;
     std::vector<bool> reading_;
-    std::map<std::size_t, Kept> kept_;
+    std::map<std::size_t, Frame> kept_;
     std::map<std::size_t, Trouble> troubles_;
     std::uint64_t bytes_ = 0, largest_ = 0;
     std::vector<std::thread> threads_;  // last

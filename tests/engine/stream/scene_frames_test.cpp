@@ -11,12 +11,12 @@ SUITE(scene_frames) {
 Scene unpacked(const SceneFrame& frame, const SceneTraits& traits) {
     const ChunkLayout layout(gpu::kPageSplats, traits);
     Scene scene;
-    for (const auto& page : frame) {
+    for (const PackedPages& page : frame) {
         const auto read = [&]<typename T>(std::uint64_t array, std::size_t i, T value) {
-            std::memcpy(&value, page->bytes.data() + array + i * sizeof(T), sizeof(T));
+            std::memcpy(&value, page.bytes().data() + array + i * sizeof(T), sizeof(T));
             return value;
         };
-        for (std::size_t i = 0; i < page->splats; ++i) {
+        for (std::size_t i = 0; i < page.splatCount(); ++i) {
             scene.positions.push_back(read(layout.positions, i, glm::vec3()));
             const glm::vec4 q = read(layout.rotations, i, glm::vec4());
             scene.rotations.emplace_back(q.w, q.x, q.y, q.z);
@@ -48,7 +48,7 @@ Scene withoutSh(Scene scene) {
     return scene;
 }
 
-TEST_CASE("what stayed as it was is one page in both frames, and differs nowhere") {
+TEST_CASE("what stayed as it was differs nowhere, and a step has the pages that do") {
     const Scene scene = withoutSh(slidingAtelier(0));
     const SceneTraits traits = traitsOf(scene);
     const SceneFrame first = makeSceneFrame(scene, traits);
@@ -56,36 +56,38 @@ TEST_CASE("what stayed as it was is one page in both frames, and differs nowhere
     Scene moved = scene;
     moved.positions[5000].x += 0.25f;
     moved.opacities[5001] = 0.0f;
-    const SceneFrame second = makeSceneFrame(moved, traits, first);
+    const SceneFrame second = makeSceneFrame(moved, traits);
     const std::size_t page = 5000 / gpu::kPageSplats;
-    for (std::size_t p = 0; p < first.size(); ++p) { CHECK((first[p] == second[p]) == (p != page)); }
-    CHECK(bytesIn(second, first) == first[page]->bytes.size());
-    CHECK(bytesIn(second) == first.size() * first[page]->bytes.size());
-    const FrameDifference difference = differenceOf(first, second, traits);
-    CHECK(difference.pages == std::vector<std::uint32_t>{static_cast<std::uint32_t>(page)});
+    for (std::size_t p = 0; p < first.size(); ++p) { CHECK(std::ranges::equal(first[p].bytes(), second[p].bytes()) == (p != page)); }
+    CHECK(bytesIn(second) == first.size() * first[page].bytes().size());
+    const FrameStep step = stepBetween(first, second, traits);
+    CHECK(step.splats == scene.size());
+    CHECK(step.pages == std::vector<std::uint32_t>{static_cast<std::uint32_t>(page)});
+    REQUIRE(step.now.size() == 1);
+    CHECK(std::ranges::equal(step.now[0].bytes(), second[page].bytes()));
     // Where both were, and where the one is now.
-    CHECK(oneHolds(difference.changes, scene, 5000));
-    CHECK(oneHolds(difference.changes, moved, 5000));
-    CHECK(oneHolds(difference.changes, scene, 5001));
-    CHECK(differenceOf(first, makeSceneFrame(scene, traits), traits).pages.empty());  // equal, if not one
-    CHECK(differenceOf(first, first, traits).changes.empty());
+    CHECK(oneHolds(step.changes, scene, 5000));
+    CHECK(oneHolds(step.changes, moved, 5000));
+    CHECK(oneHolds(step.changes, scene, 5001));
+    CHECK(stepBetween(first, makeSceneFrame(scene, traits), traits).pages.empty());
+    CHECK(stepBetween(first, first, traits).changes.empty());
 }
 
 TEST_CASE("all that moved lies in boxes, no more than there may be, and what came or went at the end does, too") {
     const Scene from = slidingAtelier(0), to = slidingAtelier(3);
     const SceneTraits traits = traitsOf(from);
     const SceneFrame whole = makeSceneFrame(from, traits);
-    const FrameDifference difference = differenceOf(whole, makeSceneFrame(to, traits), traits);
-    CHECK(difference.changes.size() <= kMostBoxes);
-    CHECK(difference.changes.size() > 4);
+    const std::vector<SceneChange> changes = stepBetween(whole, makeSceneFrame(to, traits), traits).changes;
+    CHECK(changes.size() <= kMostBoxes);
+    CHECK(changes.size() > 4);
     std::size_t moved = 0, in_none = 0, in_boxes = 0;
     for (std::size_t i = 0; i < from.size(); ++i) {
         for (const Scene* scene : {&from, &to}) {
             if (from.positions[i] == to.positions[i] || scene->opacities[i] < gpu::kMinAlpha) { continue; }
             ++moved;
-            in_none += !oneHolds(difference.changes, *scene, i);
+            in_none += !oneHolds(changes, *scene, i);
         }
-        in_boxes += std::ranges::any_of(difference.changes, [&p = from.positions[i]](const SceneChange& box) {
+        in_boxes += std::ranges::any_of(changes, [&p = from.positions[i]](const SceneChange& box) {
             return glm::all(glm::lessThanEqual(box.low, p)) && glm::all(glm::greaterThanEqual(box.high, p));
         });
     }
@@ -96,8 +98,8 @@ TEST_CASE("all that moved lies in boxes, no more than there may be, and what cam
     keepWithin(shorter, glm::dvec3(from.positions[0]), 2.5);
     REQUIRE(shorter.size() < from.size());
     const SceneFrame part = makeSceneFrame(shorter, traits);
-    CHECK(differenceOf(whole, part, traits).pages.back() == whole.size() - 1);
-    CHECK(differenceOf(part, whole, traits).pages.back() == whole.size() - 1);
+    CHECK(stepBetween(whole, part, traits).pages.back() == whole.size() - 1);
+    CHECK(stepBetween(part, whole, traits).pages.back() == whole.size() - 1);
 }
 
 TEST_CASE("between two frames each value lies on a straight line, and rotations on the shorter way") {
@@ -109,11 +111,13 @@ TEST_CASE("between two frames each value lies on a straight line, and rotations 
     to.sh[3 * 7] = 1.5f;
     to.scales[7] *= 3.0f;
     const SceneTraits traits = traitsOf(from);
-    const SceneFrame a = makeSceneFrame(from, traits), b = makeSceneFrame(to, traits, a);
+    const SceneFrame a = makeSceneFrame(from, traits), b = makeSceneFrame(to, traits);
     const Scene first = unpacked(a, traits);
     REQUIRE(correspond(a, b, traits));
     for (const float share : {0.25f, 0.5f, 0.9f}) {
-        const SceneFrame mixed = between(a, b, share, traits);
+        const FrameStep step = stepBetween(a, a, traits, &b, share);
+        SceneFrame mixed = a;
+        for (std::size_t i = 0; i < step.now.size(); ++i) { mixed[step.pages[i]] = step.now[i]; }
         const Scene got = unpacked(mixed, traits);
         REQUIRE(got.size() == from.size());
         float worst = 0.0f;
@@ -135,9 +139,7 @@ TEST_CASE("between two frames each value lies on a straight line, and rotations 
             }
             // What the device culls by holds all of it.
             const std::size_t p = i / gpu::kPageSplats;
-            if (mixed[p] != a[p] && got.opacities[i] >= gpu::kMinAlpha) {
-                not_held += !holds(mixed[p]->bounds.low, mixed[p]->bounds.high, got, i);
-            }
+            if (got.opacities[i] >= gpu::kMinAlpha) { not_held += !holds(mixed[p].pages()[0].low, mixed[p].pages()[0].high, got, i); }
         }
         CHECK(worst < 2e-4f);
         CHECK(changed == 0);

@@ -42,7 +42,7 @@ TEST_CASE("with room for all every frame is read once, in order, and stays") {
     want(loader, from(4));
     for (std::size_t scene = 0; scene < kScenes; ++scene) {
         waitUntil([&] { return loader.tryGet(scene) != nullptr; });
-        CHECK(loader.get(scene)->front()->bytes == makeSceneFrame(shifted(scene), traits).front()->bytes);
+        CHECK(std::ranges::equal(loader.get(scene)->splats.front().bytes(), makeSceneFrame(shifted(scene), traits).front().bytes()));
     }
     want(loader, from(7));
     CHECK(loader.get(6) == loader.tryGet(6));
@@ -77,6 +77,36 @@ TEST_CASE("within a limit the next ones are there, and what is needed last makes
         waitUntil([&] { return small.tryGet(scene) != nullptr; });
         CHECK(small.bytesKept() <= SeriesLoader::kLeastKept * bytes);
     }
+}
+
+TEST_CASE("a frame that is held stays where it is, whatever else is needed, and makes room once nobody holds it") {
+    const SceneTraits traits = traitsOf(shifted(0));
+    const std::uint64_t bytes = bytesIn(makeSceneFrame(shifted(0), traits));
+    std::atomic<int> reads_of_first = 0;
+    SeriesLoader loader(
+        [&](std::size_t scene) {
+            reads_of_first += scene == 0;
+            return shifted(scene);
+        },
+        kScenes, traits, {.most_bytes = 1, .threads = 1});
+    const auto readFrom = [&](std::size_t first) {
+        want(loader, from(first));
+        for (std::size_t i = 0; i < SeriesLoader::kLeastKept; ++i) {
+            waitUntil([&] { return loader.tryGet((first + i) % kScenes) != nullptr; });
+        }
+    };
+    SeriesLoader::Held held = loader.get(0);
+    readFrom(4);
+    readFrom(8);
+    CHECK(loader.get(0) == held);
+    CHECK(std::ranges::equal(held->splats.front().bytes(), makeSceneFrame(shifted(0), traits).front().bytes()));
+    CHECK(reads_of_first == 1);
+    held.reset();
+    readFrom(4);
+    readFrom(8);
+    CHECK(loader.bytesKept() <= SeriesLoader::kLeastKept * bytes);
+    CHECK(loader.get(0) != nullptr);
+    CHECK(reads_of_first == 2);
 }
 
 }  // SUITE(series_loader)
