@@ -306,8 +306,6 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
                            .gaze = settings.gazes[static_cast<std::size_t>(second)]};
         target.choice = may_move ? target.warp->settings.choice : TileChoice::kAll;
         target.keeps_classes = settings.keep_classes && !is_new;
-        // The frames after a past have no picture to lend.
-        if (!is_new) { source.feeds = second; }
         keepForWarp(source.kept, *target.warp);
         plan.steps.push_back({Step::Kind::kWarp, second});
     }

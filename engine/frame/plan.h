@@ -55,7 +55,6 @@ struct TargetPlan {
     std::optional<Past> past = {};  // what it is made from instead: its eye's last picture, or the other eye's of this frame
     std::optional<Gaze> gaze = {};  // for the choice among what the past has left
     int picture = 0;                // the room's picture that it becomes
-    std::optional<int> feeds = {};  // the target that is made from this one, and whose picture lends its memory until then
     bool keeps_classes = false;
     bool from_past_later = false;  // frames after this one make it from a past: what that takes is kept
     std::optional<int> half = {};  // kSharp: the target of half the size that the other tiles are filled from
@@ -97,6 +96,8 @@ struct FramePlan {
     [[nodiscard]] int firstTarget() const;
     // How many pictures are rendered at the same time.
     [[nodiscard]] int shares() const;
+    // True if nothing is in the target's picture until its pairs are sorted. The frames after a past need their lists in one piece.
+    [[nodiscard]] bool isSortedInPicture(const TargetPlan& target) const { return target.choice == TileChoice::kAll && !keeps_past; }
     // The first target that is made from another.
     [[nodiscard]] std::optional<int> warpedTarget() const;
 };

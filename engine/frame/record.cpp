@@ -256,7 +256,9 @@ Target FrameRecorder::targetOf(const FramePlan& plan, int index) const {
                   .list = planned.list,
                   .size_px = planned.eye.size_px,
                   .size_tiles = tilesOf(planned.eye.size_px),
-                  .pairs = pairs.arrays(),
+                  .pairs = plan.isSortedInPicture(planned)
+                               ? pairs.arraysBeside(room.picture(planned.picture).colours, tileBits(tilesOf(planned.eye.size_px)))
+                               : pairs.arrays(),
                   .picture = &room.picture(planned.picture),
                   .background = glm::vec3(plan.background),
                   .kept = planned.kept,
@@ -273,7 +275,6 @@ Target FrameRecorder::targetOf(const FramePlan& plan, int index) const {
     target.low_pass = viewOf(planned.eye, plan.near).low_pass;
     const std::optional<int> warped = plan.warpedTarget();
     if (!warped || plan.targets[static_cast<std::size_t>(*warped)].warp->source != index) { return target; }
-    const Picture& fed = room.picture(plan.targets[static_cast<std::size_t>(*warped)].picture);
     if (planned.kept.moving || planned.kept.past) {
         const MovingWords words = wordsOf(plan, *warped);
         target.moving = words.moving;
@@ -281,8 +282,6 @@ Target FrameRecorder::targetOf(const FramePlan& plan, int index) const {
         if (!movesRows(relation.rectified, room.warp(*warped))) { target.arrivals = words.arrivals; }
         target.row_words = words.row_words;
     }
-    // Until this target is blended, the other one's picture is empty.
-    if (pairs.lentCapacity() > pairs.capacity()) { target.pairs = pairs.arraysWith(fed.colours, tileBits(target.size_tiles)); }
     return target;
 }
 

@@ -151,30 +151,9 @@ void FrameRoom::fitPictures(const FramePlan& plan, const std::array<std::span<co
     }
 }
 
-std::uint32_t FrameRoom::mostLentPairs(const FramePlan& plan) const {
-    const std::optional<int> lender = plan.targets[plan.firstTarget()].feeds;
-    if (!lender) { return 0; }
-    return static_cast<std::uint32_t>(std::min<std::uint64_t>(picture(*lender).colours.bytes() / sizeof(gpu::uint), UINT32_MAX));
-}
-
-FrameCapacity FrameRoom::lendWhatFits(const FramePlan& plan, FrameCapacity capacity) const {
-    const std::uint32_t most = mostLentPairs(plan);
-    capacity.lent_pairs = std::min(capacity.lent_pairs, most);
-    capacity.lent_words = capacity.lent_pairs == 0 ? 0 : std::min(most / capacity.lent_pairs, PairBuffers::kMostLentWords);
-    return capacity;
-}
-
-void FrameRoom::fitLists(const FramePlan& plan) {
-    FrameCapacity capacity = lists_.capacity();
-    if (capacity == FrameCapacity{}) {
-        capacity = {std::min(first_capacity_.visible, std::max(scene_->splatCount(), 1u)), first_capacity_.pairs, 0, 0};
-        if (plan.targets[static_cast<std::size_t>(plan.firstTarget())].feeds) {
-            // Patches have far fewer pairs.
-            capacity.lent_pairs = capacity.pairs;
-            capacity.pairs = (capacity.pairs + 3) / 4;
-        }
-    }
-    growLists(lendWhatFits(plan, capacity));
+void FrameRoom::fitLists() {
+    const FrameCapacity first{std::min(first_capacity_.visible, std::max(scene_->splatCount(), 1u)), first_capacity_.pairs};
+    if (lists_.capacity() == FrameCapacity{}) { growLists(first); }
 }
 
 bool FrameRoom::isCutShort(const FrameState& state) {
@@ -193,6 +172,10 @@ bool FrameRoom::isSourceVoid(const FramePlan& plan, const FrameState& state) {
 double FrameRoom::spareFor(double ahead) const {
     // Just enough the first time, since a single picture needs no more; with room to spare once the view moves.
     return ahead > 1.0 ? kRoomMade : first_frame_ ? 1.0 : 1.25;
+}
+
+std::uint32_t FrameRoom::roomForPairs(const FramePlan& plan, const TargetPlan& target, std::uint32_t pairs) const {
+    return plan.isSortedInPicture(target) ? PairBuffers::capacityBeside(picture(target.picture).colours, pairs) : pairs;
 }
 
 FrameCapacity FrameRoom::roomFor(const FramePlan& plan, const FrameState& state, double ahead, double spare) const {
@@ -218,13 +201,9 @@ FrameCapacity FrameRoom::roomFor(const FramePlan& plan, const FrameState& state,
         check(pairs != UINT32_MAX, "an eye sees more than {} pairs of tile and splat, fewer splats or pixels are needed", gpu::kMaxItems);
         // Without the source's pairs every tile seems cheap to render: how many the target needs turns out in the next try.
         if (plan.targets[t].warp && isSourceVoid(plan, state)) { continue; }
-        if (!plan.targets[t].feeds || pairs > mostLentPairs(plan)) {
-            wanted.pairs = std::max(wanted.pairs, enough(ofAll(pairs, plan.shares()), now.pairs));
-        } else if (pairs > now.pairs) {
-            wanted.lent_pairs = enough(pairs, now.lent_pairs);
-        }
+        wanted.pairs = std::max(wanted.pairs, enough(roomForPairs(plan, plan.targets[t], ofAll(pairs, plan.shares())), now.pairs));
     }
-    return lendWhatFits(plan, wanted);
+    return wanted;
 }
 
 bool FrameRoom::hasRoom(const FramePlan& plan, const FrameState& state, double ahead) const {
@@ -263,12 +242,11 @@ bool FrameRoom::growIfItFits(const FramePlan& plan, const FrameState& state) {
 
 void FrameRoom::makeRoomForChosen(const FramePlan& plan, const FrameState& state) {
     // Of the target's work: all of it, or the share that is cheap to render and the budget.
-    const bool moves = plan.targets[static_cast<std::size_t>(plan.warpedTarget().value())].warp->may_move;
-    const double share = moves ? 0.5 : 1.0;
-    const std::uint32_t pairs = state.targets[static_cast<std::size_t>(plan.firstTarget())].pairs.needed;
+    const TargetPlan& target = plan.targets[static_cast<std::size_t>(plan.warpedTarget().value())];
+    const std::uint32_t all = std::min(state.targets[static_cast<std::size_t>(plan.firstTarget())].pairs.needed, gpu::kMaxItems);
     FrameCapacity wanted = lists_.capacity();
-    wanted.pairs = std::max(wanted.pairs, static_cast<std::uint32_t>(share * std::min(pairs, gpu::kMaxItems)));
-    if (wanted != lists_.capacity()) { tryToGrow(lendWhatFits(plan, wanted)); }
+    wanted.pairs = std::max(wanted.pairs, roomForPairs(plan, target, target.warp->may_move ? all / 2 : all));
+    if (wanted != lists_.capacity()) { tryToGrow(wanted); }
 }
 
 void FrameRoom::makeRoomAhead(const FramePlan& plan, const FrameState& state) {

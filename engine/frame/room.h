@@ -30,8 +30,8 @@ public:
     // Pictures as the plan wants them. `hidden_tiles`: see FrameSettings. Throws Error if the device lacks the memory: then no picture is
     // left.
     void fitPictures(const FramePlan& plan, const std::array<std::span<const std::uint8_t>, 2>& hidden_tiles);
-    // Lists, as far as it is known what the plan needs.
-    void fitLists(const FramePlan& plan);
+    // Lists, if there are none.
+    void fitLists();
 
     // The following are about what a frame drawn by `plan` reported.
 
@@ -73,9 +73,8 @@ private:
     void growLists(const FrameCapacity& capacity);
     void fitPicture(Picture& picture, glm::uvec2 size_px, const Kept& kept);
     void fitWarps(const FramePlan& plan);
-    // Pairs that the source's sort finds room for in the picture that is made from it, while that is still empty.
-    [[nodiscard]] std::uint32_t mostLentPairs(const FramePlan& plan) const;
-    [[nodiscard]] FrameCapacity lendWhatFits(const FramePlan& plan, FrameCapacity capacity) const;
+    // The room in PairBuffers for so many pairs of a target.
+    [[nodiscard]] std::uint32_t roomForPairs(const FramePlan& plan, const TargetPlan& target, std::uint32_t pairs) const;
     // False, with the lists as they were, if the device lacks the memory.
     bool tryToGrow(const FrameCapacity& wanted);
     // Room for `spare` times what was needed, in the lists that must grow.

@@ -65,7 +65,7 @@ struct FrameResult {
 
 // Initial values of a frame; the defaults suit every device.
 struct FrameOptions {
-    FrameCapacity first_capacity{65536, 262144};
+    FrameCapacity first_capacity{65536, 65536};
     std::uint32_t threads_per_cell = 0;  // see Passes
 };
 

@@ -280,7 +280,7 @@ void StereoFrame::prepare(std::span<const Eye> eyes, const FrameSettings& settin
         plan_.budget = std::min(std::max(plan_.budget, kMoreWhereChanged * changed + kBudgetBesideChanges * plan_.budget), 1.0);
     }
     room_.fitPictures(plan_, settings.hidden_tiles);
-    room_.fitLists(plan_);
+    room_.fitLists();
     moving_pays_.ask(asked, may_move);
     shape_ = shapeOf(eyes, settings);
     eyes_.assign(eyes.begin(), eyes.end());

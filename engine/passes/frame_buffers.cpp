@@ -3,20 +3,21 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
+#include <tuple>
+#include <utility>
 
 namespace binosplat {
 
 VisibleBuffers::VisibleBuffers(const Context& context, std::uint32_t capacity)
     : capacity_(capacity), buffer_(context, "visible splats", kBytesPerSplat * capacity) {}
 
-PairBuffers::PairBuffers(const Context& context, const FrameCapacity& capacity)
-    : capacity_(capacity.pairs),
-      lent_capacity_(capacity.lent_pairs),
-      lent_words_(capacity.lent_words),
-      buffer_(context, "tile pairs",
-              std::max(kBytesPerPair * capacity_, (kBytesPerPair - lent_words_ * sizeof(gpu::uint)) * lent_capacity_)) {
-    assert(lent_words_ <= kMostLentWords);
+PairBuffers::PairBuffers(const Context& context, std::uint32_t capacity)
+    : capacity_(capacity), buffer_(context, "tile pairs", kBytesPerPair * capacity) {}
+
+std::uint32_t PairBuffers::capacityBeside(const Buffer& colours, std::uint32_t pairs) {
+    const std::uint64_t there = colours.bytes() / sizeof(gpu::uint);
+    const std::uint64_t words_here = 4 - std::min<std::uint64_t>(there / std::max(pairs, 1u), kMostWordsBeside);
+    return static_cast<std::uint32_t>((words_here * pairs + 3) / 4);
 }
 
 PairArrays PairBuffers::arrays(int share, int shares) const {
@@ -26,16 +27,20 @@ PairArrays PairBuffers::arrays(int share, int shares) const {
     return {{array(0), array(1)}, {array(2), array(3)}, capacity};
 }
 
-PairArrays PairBuffers::arraysWith(const Buffer& idle, unsigned key_bits) const {
-    const std::uint64_t array_bytes = sizeof(gpu::uint) * lent_capacity_;
-    assert(idle.bytes() >= lent_words_ * array_bytes);
-    PairArrays arrays{{}, {}, lent_capacity_};
+PairArrays PairBuffers::arraysBeside(const Buffer& colours, unsigned key_bits) const {
+    const std::uint64_t here = 4 * std::uint64_t{capacity_}, there = colours.bytes() / sizeof(gpu::uint);
+    std::uint64_t most = capacity_, words_here = 4;
+    for (std::uint64_t beside = 1; beside <= kMostWordsBeside; ++beside) {
+        const std::uint64_t fit = std::min(here / (4 - beside), there / beside);
+        if (fit > most) { std::tie(most, words_here) = std::pair(fit, 4 - beside); }
+    }
+    PairArrays arrays{{}, {}, static_cast<std::uint32_t>(std::min<std::uint64_t>(most, gpu::kMaxItems))};
     KeyValues &last = Sort::endsInSpare(key_bits) ? arrays.spare : arrays.pairs,
               &other = Sort::endsInSpare(key_bits) ? arrays.pairs : arrays.spare;
     const std::array kept_first{&last.values, &last.keys, &other.values, &other.keys};
-    const std::size_t kept = kept_first.size() - lent_words_;
-    for (std::size_t i = 0; i < kept_first.size(); ++i) {
-        *kept_first[i] = i < kept ? buffer_.address<gpu::uint>(i * array_bytes) : idle.address<gpu::uint>((i - kept) * array_bytes);
+    for (std::uint64_t i = 0; i < kept_first.size(); ++i) {
+        const Buffer& buffer = i < words_here ? buffer_ : colours;
+        *kept_first.at(i) = buffer.address<gpu::uint>((i < words_here ? i : i - words_here) * most * sizeof(gpu::uint));
     }
     return arrays;
 }
@@ -60,14 +65,14 @@ void growFrameBuffers(const Context& context, FrameBuffers& buffers, FrameCapaci
         buffers.visible = {};
         buffers.visible = VisibleBuffers(context, capacity.visible);
     }
-    if (buffers.pairs.capacity() != capacity.pairs || buffers.pairs.lentCapacity() != capacity.lent_pairs ||
-        buffers.pairs.lentWords() != capacity.lent_words) {
+    if (buffers.pairs.capacity() != capacity.pairs) {
         buffers.pairs = {};
-        buffers.pairs = PairBuffers(context, capacity);
+        buffers.pairs = PairBuffers(context, capacity.pairs);
     }
     const std::uint64_t scratch_bytes =
-        kMostAtOnce * std::max({VisibleBuffers::groupSumBytes(capacity.visible), Sort::histogramBytes(capacity.visible),
-                                Sort::histogramBytes(std::max(capacity.pairs, capacity.lent_pairs))});
+        std::max(kMostAtOnce * std::max({VisibleBuffers::groupSumBytes(capacity.visible), Sort::histogramBytes(capacity.visible),
+                                         Sort::histogramBytes(capacity.pairs)}),
+                 Sort::histogramBytes(4 * std::uint64_t{capacity.pairs}));
     if (buffers.scratch.bytes() != scratch_bytes) {
         buffers.scratch = {};
         buffers.scratch = Buffer(context, "sums and sort scratch", scratch_bytes);

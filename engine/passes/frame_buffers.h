@@ -1,4 +1,4 @@
-// The device memory of a frame: what grows with the visible splats (60 bytes each), with the pairs (16), with the pixels.
+// The device memory of a frame: what grows with the visible splats (60 bytes each), with the pairs (4 to 16), with the pixels.
 #pragma once
 
 #include "engine/gpu/buffer.h"
@@ -43,9 +43,7 @@ glm::uvec2 tilesOf(glm::uvec2 size_px);
 
 struct FrameCapacity {
     std::uint32_t visible = 0;
-    std::uint32_t pairs = 0;
-    std::uint32_t lent_pairs = 0;  // of an eye that sorts with borrowed memory, see PairBuffers
-    std::uint32_t lent_words = 0;  // per pair of these
+    std::uint32_t pairs = 0;  // see PairBuffers
     bool operator==(const FrameCapacity&) const = default;
 };
 
@@ -96,27 +94,28 @@ struct PairArrays {
     std::uint32_t capacity = 0;
 };
 
-// Four words a pair. Only one of them outlives the sort, the splats by tile; up to three are borrowed where memory is idle meanwhile.
+// Four words a pair. Only one of them outlives the sort, the splats by tile. Of an eye that is rendered whole the others lie in its
+// picture, which is empty until then, as far as they fit.
 class PairBuffers {
 public:
     static constexpr std::uint64_t kBytesPerPair = 4 * sizeof(gpu::uint);
-    static constexpr std::uint32_t kMostLentWords = 3;
 
     PairBuffers() = default;
-    PairBuffers(const Context& context, const FrameCapacity& capacity);
+    PairBuffers(const Context& context, std::uint32_t capacity);
 
+    // Of pairs of four words.
     [[nodiscard]] std::uint32_t capacity() const { return capacity_; }
-    [[nodiscard]] std::uint32_t lentCapacity() const { return lent_capacity_; }
-    [[nodiscard]] std::uint32_t lentWords() const { return lent_words_; }
+    // The same that an eye with so many pairs needs if the rest lies in `colours`.
+    static std::uint32_t capacityBeside(const Buffer& colours, std::uint32_t pairs);
     // The `share`th of `shares` equal parts.
     [[nodiscard]] PairArrays arrays(int share = 0, int shares = 1) const;
-    // With lentWords() words of each pair in `idle`; the word that remains after a sort by `key_bits` is not among these.
-    [[nodiscard]] PairArrays arraysWith(const Buffer& idle, unsigned key_bits) const;
+    // For as many pairs as there is room for here and in `colours`, where nothing remains after a sort by `key_bits`.
+    [[nodiscard]] PairArrays arraysBeside(const Buffer& colours, unsigned key_bits) const;
     [[nodiscard]] std::uint64_t bytes() const { return buffer_.bytes(); }
-    [[nodiscard]] const Buffer& buffer() const { return buffer_; }
 
 private:
-    std::uint32_t capacity_ = 0, lent_capacity_ = 0, lent_words_ = 0;
+    static constexpr std::uint32_t kMostWordsBeside = 3;
+    std::uint32_t capacity_ = 0;
     Buffer buffer_;
 };
 
@@ -131,7 +130,7 @@ struct FrameBuffers {
     Buffer scratch;      // sums of workgroups or histograms of the list at hand
     Buffer tile_ranges;  // uvec2 a tile
 
-    [[nodiscard]] FrameCapacity capacity() const { return {visible.capacity(), pairs.capacity(), pairs.lentCapacity(), pairs.lentWords()}; }
+    [[nodiscard]] FrameCapacity capacity() const { return {visible.capacity(), pairs.capacity()}; }
     [[nodiscard]] gpu::DeviceAddress<gpu::EyeView> eyes() const { return state.address<gpu::EyeView>(offsetof(FrameState, views)); }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> visibleBits() const { return visibility.address<gpu::uint>(); }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> groupCounts() const {

@@ -173,7 +173,7 @@ TEST_CASE("a resolution that the device has no memory for is refused on the pane
     CHECK(run.width(36) == 256);
     CHECK(compare(run.eye(36, kLeft), run.eye(12, kLeft), 3).psnrDb() > 60.0);
     // At the slider's middle (some 896 pixels) the eyes' pictures fit, and what is to bring them to the headset does not.
-    CHECK(choose("brought", "size 853 853\nframes none\n", kOneSplat + " --hide-panel --mode shared --memory-limit 24")
+    CHECK(choose("brought", "size 853 853\nframes none\n", kOneSplat + " --hide-panel --mode shared --memory-limit 21")
               .says("presented pixels needs "));
 }
 

@@ -209,32 +209,4 @@ TEST_CASE_FIXTURE(Gpu, "a predicted frame of parallel eyes keeps to 36 commands 
     }
 }
 
-// The most memory that a program holds which renders such a frame.
-std::uint64_t peakBytes(FrameSettings settings, const FrameCapacity& first) {
-    const ViewedScene view = viewAtelier({384, 384});
-    const Context context;
-    const GpuScene scene(context, view.scene);
-    StereoFrame frame(context, scene, {.first_capacity = first, .threads_per_cell = 0});
-    settings.keep_depth = false;
-    return frame.render(stereoPair(view.eye, 0.063), settings).peak_gpu_bytes;
-}
-
-// Most of the dominant eye's pairs lie where the other eye's picture will be.
-void checkSavesMemory(const std::vector<FrameSettings>& all, const FrameCapacity& first) {
-    const std::uint64_t two_pass_bytes = peakBytes(makeSettings(Mode::kTwoPass), first);
-    for (const FrameSettings& settings : all) {
-        CAPTURE(static_cast<int>(settings.mode));
-        CAPTURE(settings.per_eye);
-        CHECK(peakBytes(settings, first) < two_pass_bytes);
-    }
-}
-
-TEST_CASE("making one eye from the other takes less memory than rendering both") {
-    checkSavesMemory({makeSettings(Mode::kPredicted)}, FrameOptions{}.first_capacity);
-}
-
-TEST_CASE("making one eye from the other takes less memory in every mode, whatever room lists begin with" * test::nightly()) {
-    for (const FrameCapacity& first : {FrameCapacity{1, 1}, FrameOptions{}.first_capacity}) { checkSavesMemory(makeReprojecting(), first); }
-}
-
 }  // SUITE(affiliated)

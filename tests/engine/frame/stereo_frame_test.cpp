@@ -234,10 +234,10 @@ TEST_CASE_FIXTURE(Gpu, "memory keeps to its bounds a splat, a visible splat, a p
         CHECK(static_cast<double>(counters.at("scene_bytes")) <= most_bytes * splats);
         // Lists grow in steps of 1024.
         CHECK(counters.at("visible_bytes") <= 64 * (counters.at("splats_visible") + 1024));
-        CHECK(counters.at("pair_bytes") <= 16 * (counters.at("tile_pairs") + 1024));
+        CHECK(counters.at("pair_bytes") <= 4 * counters.at("tile_pairs") + 16 * 1024);  // three words of a pair lie in the picture
         // Sorting's histograms, half a byte a pair, fit into what a visible splat leaves of its 64 bytes.
         CHECK(counters.at("visible_bytes") + counters.at("pair_bytes") + counters.at("scratch_bytes") <=
-              64 * counters.at("splats_visible") + 16 * counters.at("tile_pairs") + 64 * 1024 + 16 * 1024);
+              64 * counters.at("splats_visible") + 4 * counters.at("tile_pairs") + 64 * 1024 + 16 * 1024);
         CHECK(counters.at("pixel_bytes") <= 32 * counters.at("pixels"));
     }
     CHECK(viewAtelier().scene.sh_degree == 3);
