@@ -43,7 +43,6 @@ void Commands::begin() {
     passes_.clear();
     timestamp_count_ = 0;
     count_ = 0;
-    contents_.forget();
     command_buffer_.reset();
     command_buffer_.begin(vk::CommandBufferBeginInfo(vk::CommandBufferUsageFlagBits::eOneTimeSubmit));
     if (*timestamps_) { command_buffer_.resetQueryPool(*timestamps_, 0, kMaxTimestamps); }

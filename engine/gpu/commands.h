@@ -2,7 +2,6 @@
 #pragma once
 
 #include "engine/gpu/buffer.h"
-#include "engine/gpu/contents.h"
 #include "engine/gpu/kernel.h"
 #include "shaders/shared/types.h"
 
@@ -114,25 +113,6 @@ public:
     }
     [[nodiscard]] bool isUnderWay() const { return under_way_; }
 
-    // Content that the next recorded kernel leaves in aliased memory, or expects there. Both return the address; in builds with asserts,
-    // one fails if something else was put there in between.
-    template <typename T>
-    gpu::DeviceAddress<T> fills(gpu::DeviceAddress<T> array, std::uint64_t count, Content content) {
-#ifndef NDEBUG
-        if (array.value != 0) { contents_.fill(array.value, count * sizeof(T), content); }
-#endif
-        static_cast<void>(count);
-        static_cast<void>(content);
-        return array;
-    }
-    template <typename T>
-    gpu::DeviceAddress<T> reads(gpu::DeviceAddress<T> array, std::uint64_t count, Content content) const {
-        assert(array.value == 0 || contents_.hold(array.value, count * sizeof(T), content));
-        static_cast<void>(count);
-        static_cast<void>(content);
-        return array;
-    }
-
     // For anything that is not a pass: pictures that leave for a headset or a window. Between begin and submit.
     [[nodiscard]] const vk::raii::CommandBuffer& buffer() const { return command_buffer_; }
 
@@ -155,7 +135,6 @@ private:
     vk::raii::Fence fence_{nullptr};
     vk::raii::QueryPool timestamps_{nullptr};
     Buffer staging_;
-    Contents contents_;
     std::vector<PassLabel> passes_;
     std::uint32_t timestamp_count_ = 0;
     std::uint32_t count_ = 0;

@@ -150,8 +150,8 @@ void Passes::recordOrder(Commands& commands, const GpuScene& scene, const FrameB
                                 .visible_bits = buffers.visibleBits(),
                                 .group_offsets = buffers.groupCounts(),
                                 .visible = buffers.state.address<gpu::ListState>(FrameBuffers::visibleList(eyes.list)),
-                                .keys = commands.fills(order.keys, buffers.visible.capacity(), Content::kDepthKeys),
-                                .splats = commands.fills(order.values, buffers.visible.capacity(), Content::kOrder),
+                                .keys = order.keys,
+                                .splats = order.values,
                                 .splat_count = scene.splatCount(),
                                 .chunk_bits = scene.chunkBits(),
                                 .order_eye = static_cast<gpu::uint>(eyes.order_eye),
@@ -160,11 +160,7 @@ void Passes::recordOrder(Commands& commands, const GpuScene& scene, const FrameB
     dispatchOverBlocks(commands, kernels_.get(kernel), pass, scene, buffers, eyes.list);
     commands.beginPass({role, FrameStage::kSort, "sort_depth"});
     // Four rounds: the result is where the input was.
-    commands.fills(spare.keys, buffers.visible.capacity(), Content::kSorting);
-    commands.fills(spare.values, buffers.visible.capacity(), Content::kSorting);
-    const auto histograms = buffers.scratch.address<gpu::uint>();
-    commands.fills(histograms, buffers.scratch.bytes() / sizeof(gpu::uint), Content::kHistograms);
-    sort().record(commands, order, spare, histograms, buffers.state, FrameBuffers::visibleList(eyes.list), 32);
+    sort().record(commands, order, spare, buffers.scratch.address<gpu::uint>(), buffers.state, FrameBuffers::visibleList(eyes.list), 32);
 }
 
 // One eye's part of a recording: project to rasterize.
@@ -201,12 +197,10 @@ struct Passes::EyePart {
     [[nodiscard]] auto ranges() const {
         return buffers.tile_ranges.address<gpu::uvec2>().at(tileCount() * static_cast<std::uint64_t>(target.share));
     }
-    [[nodiscard]] std::uint64_t scratchWords() const { return buffers.scratch.bytes() / sizeof(gpu::uint) / kMostAtOnce; }
     [[nodiscard]] auto scratch() const {
-        return buffers.scratch.address<gpu::uint>().at(scratchWords() * static_cast<std::uint64_t>(target.share));
+        const std::uint64_t words = buffers.scratch.bytes() / sizeof(gpu::uint) / kMostAtOnce;
+        return buffers.scratch.address<gpu::uint>().at(words * static_cast<std::uint64_t>(target.share));
     }
-    // The words of the target's colours, or of the rows that are warped.
-    void fillPicture() const;
 };
 
 void Passes::recordEye(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const Target& target, Role role) {
@@ -253,21 +247,9 @@ void Passes::record(std::span<const EyePart> parts) {
     commands.beginPass({role, FrameStage::kSplat, "sort_tiles"});
     std::vector<Sort::Job> jobs;
     for (const EyePart& part : parts) {
-        const PairArrays& arrays = part.target.pairs;
-        commands.reads(arrays.pairs.keys, arrays.capacity, Content::kPairs);
-        commands.reads(arrays.pairs.values, arrays.capacity, Content::kPairs);
-        for (const auto& array : {arrays.pairs.keys, arrays.spare.keys, arrays.spare.values, arrays.pairs.values}) {
-            commands.fills(array, arrays.capacity, Content::kSorting);
-        }
-        commands.fills(part.scratch(), part.scratchWords(), Content::kHistograms);
-        jobs.push_back({arrays.pairs, arrays.spare, part.scratch(), part.pairList()});
+        jobs.push_back({part.target.pairs.pairs, part.target.pairs.spare, part.scratch(), part.pairList()});
     }
     sort().record(commands, jobs, parts.front().buffers.state, tileBits(parts.front().target.size_tiles));
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-        for (const auto& array : {jobs[i].in.keys, jobs[i].in.values}) {
-            commands.fills(array, parts[i].target.pairs.capacity, Content::kSortedPairs);
-        }
-    }
     forEach([&](std::size_t i) { recordTileRanges(parts[i], jobs[i].in); });
     commands.beginPass({role, FrameStage::kSplat, "rasterize"});
     forEach([&](std::size_t i) { recordRasterized(parts[i], jobs[i].in); });
@@ -276,12 +258,12 @@ void Passes::record(std::span<const EyePart> parts) {
 void Passes::recordProjected(const EyePart& part) {
     const gpu::ProjectPass project{.chunks = part.scene.chunks(),
                                    .eyes = part.buffers.eyes(),
-                                   .order = part.commands.reads(part.buffers.visible.order().values, part.splatCapacity(), Content::kOrder),
+                                   .order = part.buffers.visible.order().values,
                                    .visible = part.visible(),
                                    .splats = part.splats(),
-                                   .tile_sets = part.commands.fills(part.tileSets(), part.splatCapacity(), Content::kTileSets),
-                                   .tile_counts = part.commands.fills(part.tileCounts(), part.splatCapacity(), Content::kTileCounts),
-                                   .group_sums = part.commands.fills(part.scratch(), part.scratchWords(), Content::kGroupSums),
+                                   .tile_sets = part.tileSets(),
+                                   .tile_counts = part.tileCounts(),
+                                   .group_sums = part.scratch(),
                                    .pairs = part.pairs(),
                                    .counters = part.counters(),
                                    .tile_mask = part.tiles.mask,
@@ -298,27 +280,19 @@ void Passes::recordProjected(const EyePart& part) {
 // For bin and bin_large.
 gpu::BinPass Passes::EyePart::binPass() const {
     return {.splats = splats(),
-            .tile_sets = commands.reads(tileSets(), splatCapacity(), Content::kTileSets),
-            .tile_counts = commands.reads(tileCounts(), splatCapacity(), Content::kTileCounts),
-            .group_sums = commands.reads(scratch(), scratchWords(), Content::kGroupSums),
+            .tile_sets = tileSets(),
+            .tile_counts = tileCounts(),
+            .group_sums = scratch(),
             .visible = visible(),
             .pairs = pairs(),
-            .tiles = commands.fills(target.pairs.pairs.keys, target.pairs.capacity, Content::kPairs),
-            .ranks = commands.fills(target.pairs.pairs.values, target.pairs.capacity, Content::kPairs),
-            .large_splats = commands.fills(target.pairs.spare.keys, target.pairs.capacity, Content::kLargeSplats),
-            .large_begins = commands.fills(target.pairs.spare.values, target.pairs.capacity, Content::kLargeSplats),
+            .tiles = target.pairs.pairs.keys,
+            .ranks = target.pairs.pairs.values,
+            .large_splats = target.pairs.spare.keys,
+            .large_begins = target.pairs.spare.values,
             .counters = counters(),
             .tile_mask = tiles.mask,
             .size_tiles = target.size_tiles,
             .low_pass = target.low_pass};
-}
-
-void Passes::EyePart::fillPicture() const {
-    const auto colours = target.picture->colours.address<gpu::uint>();
-    commands.fills(colours, target.picture->colours.bytes() / sizeof(gpu::uint), Content::kPicture);
-    const std::uint64_t last_row = std::uint64_t{target.size_px.y - 1} * target.row_words;
-    commands.fills(target.moving, last_row + target.size_px.x, Content::kMovingPixels);
-    commands.fills(target.arrivals, last_row + target.size_px.x, Content::kMovingPixels);
 }
 
 void Passes::recordBinned(const EyePart& part) {
@@ -333,12 +307,12 @@ void Passes::recordLargeBinned(const EyePart& part) {
 
 void Passes::recordTileRanges(const EyePart& part, const KeyValues& sorted) {
     const Target& target = part.target;
-    const gpu::TileRangesPass ranges{.tiles = part.commands.reads(sorted.keys, target.pairs.capacity, Content::kSortedPairs),
+    const gpu::TileRangesPass ranges{.tiles = sorted.keys,
                                      .pairs = part.pairs(),
                                      .ranges = part.ranges(),
                                      .tile_list = part.tiles.list,
                                      .masked_tiles = part.buffers.state.address<gpu::ListState>(part.chosenTiles()),
-                                     .full_tiles = part.commands.fills(part.tiles.full, part.tileCount(), Content::kTilesWithPairs),
+                                     .full_tiles = part.tiles.full,
                                      .counters = part.counters(),
                                      .colours = target.picture->colours.address<gpu::vec4>(),
                                      .half_colours = target.picture->colours.address<gpu::uvec2>(),
@@ -361,10 +335,9 @@ void Passes::recordTileRanges(const EyePart& part, const KeyValues& sorted) {
 void Passes::recordRasterized(const EyePart& part, const KeyValues& sorted) {
     const Target& target = part.target;
     const bool is_light = part.scene.isLight();
-    part.fillPicture();
     const gpu::RasterizePass rasterize{.eyes = part.buffers.eyes(),
                                        .splats = part.splats(),
-                                       .ranks = part.commands.reads(sorted.values, target.pairs.capacity, Content::kSortedPairs),
+                                       .ranks = sorted.values,
                                        .ranges = part.ranges(),
                                        .colours = target.picture->colours.address<gpu::vec4>(),
                                        .half_colours = target.picture->colours.address<gpu::uvec2>(),
@@ -372,7 +345,7 @@ void Passes::recordRasterized(const EyePart& part, const KeyValues& sorted) {
                                        .moments = target.moments,
                                        .moving = target.moving,
                                        .arrivals = target.arrivals,
-                                       .full_tiles = part.commands.reads(part.tiles.full, part.tileCount(), Content::kTilesWithPairs),
+                                       .full_tiles = part.tiles.full,
                                        .counters = part.counters(),
                                        .background = is_light ? glm::vec3(lightOf(glm::dvec3(target.background))) : target.background,
                                        .eye = part.eye(),

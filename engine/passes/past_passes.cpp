@@ -47,8 +47,6 @@ KernelTable pastKernels(bool by_address) {
 void PastPasses::recordWarp(Commands& commands, const PastInputs& in) {
     commands.beginPass({in.role, WarpPastKernel::kStage, WarpPastKernel::kShader});
     const std::uint64_t blocks = FrameBuffers::targetField(in.index, offsetof(TargetState, past_blocks));
-    commands.reads(in.source.colours.address<gpu::uint>(), in.source.colours.bytes() / sizeof(gpu::uint), Content::kPicture);
-    commands.fills(in.target.colours.address<gpu::uint>(), in.target.colours.bytes() / sizeof(gpu::uint), Content::kPicture);
     const gpu::WarpPastPass pass{
         .view = in.buffers.state.address<gpu::PastView>(FrameBuffers::targetField(in.index, offsetof(TargetState, past))),
         .source = in.source.colours.address<gpu::vec4>(),
@@ -59,7 +57,7 @@ void PastPasses::recordWarp(Commands& commands, const PastInputs& in) {
         .tiles = in.target.tiles.address<gpu::PastTile>(),
         .tile_kinds = in.warp.tileKinds(),
         .tile_mask = in.warp.tileMask(),
-        .price_bins = commands.fills(in.warp.bins(), gpu::kPriceBins, Content::kPriceBins),
+        .price_bins = in.warp.bins(),
         .shown_mask = in.shown,
         .tile_list = in.some_tiles,
         .listed_tiles = listAt(in, offsetof(TargetState, wanted_tiles)),
@@ -102,8 +100,8 @@ void PastPasses::recordChoice(Commands& commands, std::span<const PastInputs> ey
                                   .tile_kinds = in.warp.tileKinds(),
                                   .tile_costs = in.warp.tileCosts(),
                                   .tile_errors = in.warp.tileErrors(),
-                                  .tile_prices = commands.fills(in.warp.tilePrices(), in.warp.tileCount(), Content::kTilePrices),
-                                  .price_bins = commands.reads(first.warp.bins(), gpu::kPriceBins, Content::kPriceBins),
+                                  .tile_prices = in.warp.tilePrices(),
+                                  .price_bins = first.warp.bins(),
                                   .masked_tiles = listAt(in, offsetof(TargetState, chosen_tiles)),
                                   .counters = countersOf(in),
                                   .budget = countersOf(first),
@@ -119,7 +117,7 @@ void PastPasses::recordChoice(Commands& commands, std::span<const PastInputs> ey
         commands.beginPass({in.role, SelectKernel::kStage, SelectKernel::kShader});
         const gpu::SelectPass pass{.warp = viewOf(in),
                                    .tile_kinds = in.warp.tileKinds(),
-                                   .tile_prices = commands.reads(in.warp.tilePrices(), in.warp.tileCount(), Content::kTilePrices),
+                                   .tile_prices = in.warp.tilePrices(),
                                    .tile_list = in.warp.tileList(),
                                    .tile_mask = in.warp.tileMask(),
                                    .tile_costs = in.warp.tileCosts(),

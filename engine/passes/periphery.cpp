@@ -89,7 +89,6 @@ void PeripheryPasses::recordChoice(Commands& commands, const PeripheryInputs& in
 
 void PeripheryPasses::recordFill(Commands& commands, const PeripheryInputs& in) {
     commands.beginPass({in.role, FillPeripheryKernel::kStage, FillPeripheryKernel::kShader});
-    commands.reads(in.half.colours.address<gpu::uint>(), in.half.colours.bytes() / sizeof(gpu::uint), Content::kPicture);
     const gpu::FillPeripheryPass pass{.source = in.half.colours.address<gpu::vec4>(),
                                       .half_source = in.half.colours.address<gpu::uvec2>(),
                                       .source_depths = in.half.depths.address<float>(),

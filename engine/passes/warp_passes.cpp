@@ -119,14 +119,6 @@ private:
     }
     [[nodiscard]] auto listAt(std::uint64_t offset) const { return in_.buffers.state.address<gpu::ListState>(offset); }
     [[nodiscard]] auto visible() const { return listAt(FrameBuffers::visibleList(in_.list)); }
-    [[nodiscard]] std::uint64_t wordCount() const {
-        return std::uint64_t{in_.warp.sizePx().y - 1} * in_.words.row_words + in_.warp.sizePx().x;
-    }
-    [[nodiscard]] auto moving() const { return commands_.reads(in_.words.moving, wordCount(), Content::kMovingPixels); }
-    [[nodiscard]] auto arrivals() const { return commands_.reads(in_.words.arrivals, wordCount(), Content::kMovingPixels); }
-    void fillTarget() const {
-        commands_.fills(in_.target.colours.address<gpu::uint>(), in_.target.colours.bytes() / sizeof(gpu::uint), Content::kPicture);
-    }
     [[nodiscard]] bool hidesSource() const { return in_.source_shown.hideAny(); }
     [[nodiscard]] bool halfFloats() const { return in_.source.half_floats; }
     // True if resample moves the source's pixels itself.
@@ -144,13 +136,13 @@ void WarpRecorder::weigh() {
     in_.target_shown.recordKinds(commands_, in_.warp.tiles(), WarpBuffers::tileKindsOffset());
     const gpu::WeighPass pass{.warp = view(),
                               .ranges = in_.buffers.tile_ranges.address<gpu::uvec2>(),
-                              .moving = in_.may_move ? moving() : gpu::DeviceAddress<gpu::uint>{},  // else the source came without
+                              .moving = in_.may_move ? in_.words.moving : gpu::DeviceAddress<gpu::uint>{},  // else the source came without
                               .tile_kinds = in_.warp.tileKinds(),
                               .tile_costs = in_.warp.tileCosts(),
                               .tile_errors = in_.warp.tileErrors(),
-                              .tile_depths = commands_.fills(in_.warp.tileDepths(), in_.warp.tileCount(), Content::kTileDepths),
+                              .tile_depths = in_.warp.tileDepths(),
                               .tile_mask = in_.warp.tileMask(),
-                              .price_bins = commands_.fills(in_.warp.bins(), gpu::kPriceBins, Content::kPriceBins),
+                              .price_bins = in_.warp.bins(),
                               .shown_mask = in_.source_shown.mask(),
                               .visible = visible(),
                               .masked_tiles = listAt(field(offsetof(TargetState, chosen_tiles))),
@@ -171,7 +163,6 @@ void WarpRecorder::clearTiles() {
         begin<ReprojectKernel>();
     }
     commands_.fillZero(in_.warp.tiles());
-    commands_.fills(in_.warp.bins(), gpu::kDepthBins, Content::kDepthBins);
     in_.target_shown.recordKinds(commands_, in_.warp.tiles(), WarpBuffers::tileKindsOffset());
 }
 
@@ -179,8 +170,8 @@ void WarpRecorder::findDepthBounds() {
     const gpu::DepthBoundsPass bounds{.warp = view(),
                                       .colours = in_.source.colours.address<gpu::vec4>(),
                                       .half_colours = in_.source.colours.address<gpu::uvec2>(),
-                                      .moving = moving(),
-                                      .bins = commands_.reads(in_.warp.bins(), gpu::kDepthBins, Content::kDepthBins)};
+                                      .moving = in_.words.moving,
+                                      .bins = in_.warp.bins()};
     const glm::uvec2 tiles = in_.warp.sizeTiles();
     dispatch(DepthBoundsKernel{.half_colours = halfFloats()}, bounds, (tiles.x + gpu::kBoundsTiles - 1) / gpu::kBoundsTiles, tiles.y);
 }
@@ -188,7 +179,7 @@ void WarpRecorder::findDepthBounds() {
 void WarpRecorder::findEdgeRois() {
     begin<EdgeRoisKernel>();
     const gpu::EdgeRoisPass edges{.warp = view(),
-                                  .bins = commands_.reads(in_.warp.bins(), gpu::kDepthBins, Content::kDepthBins),
+                                  .bins = in_.warp.bins(),
                                   .tile_kinds = in_.warp.tileKinds(),
                                   .shown_mask = in_.source_shown.mask(),
                                   .counters = counters()};
@@ -198,10 +189,8 @@ void WarpRecorder::findEdgeRois() {
 void WarpRecorder::reproject() {
     if (movesRows()) { return; }
     begin<ReprojectKernel>();
-    const gpu::ReprojectPass pass{.warp = view(),
-                                  .moving = moving(),
-                                  .arrivals = commands_.fills(in_.words.arrivals, wordCount(), Content::kMovingPixels),
-                                  .shown_mask = in_.source_shown.mask()};
+    const gpu::ReprojectPass pass{
+        .warp = view(), .moving = in_.words.moving, .arrivals = in_.words.arrivals, .shown_mask = in_.source_shown.mask()};
     dispatchByCounter(ReprojectKernel{.rectified = in_.rectified, .hidden_tiles = hidesSource(), .forward = copiesColours()}, pass,
                       offsetof(gpu::WarpCounters, per_pixel_block));
 }
@@ -209,13 +198,9 @@ void WarpRecorder::reproject() {
 void WarpRecorder::resample() {
     const bool whole = predicts() && !in_.source_shown.hideAny() && !keepsClasses();
     resampleFrom(0, !movesRows() ? gpu::kArrivalsGiven : whole ? gpu::kWholeRowMoved : gpu::kRowMoved, predicts());
-    if (!predicts()) { fillTarget(); }
 }
 
-void WarpRecorder::resampleOdd() {
-    resampleFrom(1, in_.rectified ? gpu::kPlacesGiven : gpu::kArrivalsGiven, false);
-    fillTarget();
-}
+void WarpRecorder::resampleOdd() { resampleFrom(1, in_.rectified ? gpu::kPlacesGiven : gpu::kArrivalsGiven, false); }
 
 void WarpRecorder::resampleFrom(gpu::uint first_row, gpu::uint row_source, bool predict_errors) {
     begin<ResampleKernel>();
@@ -223,7 +208,7 @@ void WarpRecorder::resampleFrom(gpu::uint first_row, gpu::uint row_source, bool 
     const gpu::ResamplePass pass{.warp = view(),
                                  .source = in_.source.colours.address<gpu::vec4>(),
                                  .half_source = in_.source.colours.address<gpu::uvec2>(),
-                                 .moving = movesRows() ? moving() : arrivals(),
+                                 .moving = movesRows() ? in_.words.moving : in_.words.arrivals,
                                  .target = in_.target.colours.address<gpu::vec4>(),
                                  .half_target = in_.target.colours.address<gpu::uvec2>(),
                                  .depths = in_.target.depths.address<float>(),
@@ -250,19 +235,18 @@ void WarpRecorder::resampleFrom(gpu::uint first_row, gpu::uint row_source, bool 
 
 void WarpRecorder::findNewcomers() {
     begin<NewcomersKernel>();
-    const gpu::NewcomersPass pass{
-        .chunks = in_.scene.chunks(),
-        .eyes = in_.buffers.eyes(),
-        .warp = view(),
-        .tile_depths = commands_.reads(in_.warp.tileDepths(), in_.warp.tileCount(), Content::kTileDepths),
-        .order = commands_.reads(in_.buffers.visible.order().values, in_.buffers.visible.capacity(), Content::kOrder),
-        .visible = visible(),
-        .source_counts = commands_.reads(in_.buffers.visible.tileCounts(), in_.buffers.visible.capacity(), Content::kTileCounts),
-        .tile_kinds = in_.warp.tileKinds(),
-        .tile_errors = in_.warp.tileErrors(),
-        .counters = counters(),
-        .chunk_bits = in_.scene.chunkBits(),
-        .eye = static_cast<gpu::uint>(in_.index)};
+    const gpu::NewcomersPass pass{.chunks = in_.scene.chunks(),
+                                  .eyes = in_.buffers.eyes(),
+                                  .warp = view(),
+                                  .tile_depths = in_.warp.tileDepths(),
+                                  .order = in_.buffers.visible.order().values,
+                                  .visible = visible(),
+                                  .source_counts = in_.buffers.visible.tileCounts(),
+                                  .tile_kinds = in_.warp.tileKinds(),
+                                  .tile_errors = in_.warp.tileErrors(),
+                                  .counters = counters(),
+                                  .chunk_bits = in_.scene.chunkBits(),
+                                  .eye = static_cast<gpu::uint>(in_.index)};
     dispatchByCounter(NewcomersKernel{.splat_kind = in_.scene.splatKind()}, pass, offsetof(gpu::WarpCounters, per_visible));
 }
 
@@ -289,8 +273,8 @@ void WarpRecorder::price() {
         .tile_kinds = in_.warp.tileKinds(),
         .tile_costs = in_.warp.tileCosts(),
         .tile_errors = in_.warp.tileErrors(),
-        .tile_prices = commands_.fills(in_.warp.tilePrices(), in_.warp.tileCount(), Content::kTilePrices),
-        .price_bins = commands_.reads(in_.warp.bins(), gpu::kPriceBins, Content::kPriceBins),
+        .tile_prices = in_.warp.tilePrices(),
+        .price_bins = in_.warp.bins(),
         .masked_tiles = listAt(field(offsetof(TargetState, chosen_tiles))),
         .counters = counters(),
         .budget = counters(),
@@ -306,7 +290,7 @@ void WarpRecorder::select() {
     begin<SelectKernel>();
     const gpu::SelectPass pass{.warp = view(),
                                .tile_kinds = in_.warp.tileKinds(),
-                               .tile_prices = commands_.reads(in_.warp.tilePrices(), in_.warp.tileCount(), Content::kTilePrices),
+                               .tile_prices = in_.warp.tilePrices(),
                                .tile_list = in_.warp.tileList(),
                                .tile_mask = in_.warp.tileMask(),
                                .tile_costs = in_.warp.tileCosts(),
