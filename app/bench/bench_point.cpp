@@ -59,6 +59,23 @@ BenchResult summarize(const Runner& runner, const BenchPoint& point) {
     return result;
 }
 
+reference::Settings twinSettings(const BenchPoint& point) {
+    reference::Settings settings;
+    settings.near = point.cameras.near;
+    settings.background = point.run.camera.background;
+    return settings;
+}
+
+// How many pairs of tile and splat the customary square bound would make of what one eye sees.
+std::uint64_t countSquareBoxPairs(const BenchPoint& point) {
+    const reference::Settings settings = twinSettings(point);
+    const Eye& eye = point.cameras.middle;
+    const auto visible = reference::compact(point.scene, reference::cull(point.scene, {&eye, 1}, settings), eye, settings);
+    std::uint64_t pairs = 0;
+    for (const auto& splat : reference::project(point.scene, visible.splats, eye, settings)) { pairs += splat.square_box_tiles; }
+    return pairs;
+}
+
 // The float64 twin of `mono` on the CPU, as a frame of its own; wall-clock time.
 FrameResult renderTwin(const BenchPoint& point) {
     const std::array<PassLabel, reference::kPassCount> labels{{{Role::kNone, FrameStage::kSort, "cull"},
@@ -69,9 +86,7 @@ FrameResult renderTwin(const BenchPoint& point) {
                                                                {Role::kNone, FrameStage::kSplat, "sort_tiles"},
                                                                {Role::kNone, FrameStage::kSplat, "rasterize"}}};
     std::array<double, reference::kPassCount> seconds{};
-    reference::Settings settings;
-    settings.near = point.cameras.near;
-    settings.background = point.run.camera.background;
+    reference::Settings settings = twinSettings(point);
     settings.seconds = seconds.data();
     const auto start = std::chrono::steady_clock::now();
     const reference::Picture picture = reference::render(point.scene, point.cameras.middle, settings);
@@ -160,7 +175,7 @@ MethodFrames::Rendered MethodFrames::render(const Cameras& full_cameras, const C
     FrameSettings settings = frameSettings(camera, stereo, scene_.usualOrder());
     settings.near = cameras.near;
     settings.gazes = gazesOf(cameras, stereo);
-    settings.keep_classes = settings.square_boxes = compared;
+    settings.keep_classes = compared;
     settings.keep_past = keep_past;
     settings.half_floats = !compared;  // as in the viewer
     settings.keep_depth = false;       // nobody reads it here, so a mode pays for it only if it needs it itself
@@ -211,6 +226,7 @@ std::vector<BenchResult> benchPoint(const Context& context, const BenchPoint& po
     }
     std::vector<BenchResult> results;
     for (const Runner& runner : runners) { results.push_back(summarize(runner, point)); }
+    if (!results.back().mode) { results.back().counters = {{"square_box_tile_pairs", countSquareBoxPairs(point)}}; }
     return results;
 }
 

@@ -107,7 +107,6 @@ FrameSettings SceneRenderer::settingsOfFrame(ConnectedHeadset& headset, const Vi
     frame.keep_depth = frame.keep_both_depths = headset.images->takesDepth();
     frame.half_floats = true;
     frame.keep_classes = settings.tint;
-    frame.square_boxes = false;
     frame.gazes = views.gazes;
     frame.mark = governed_count_;
     frame.keep_past = true;

@@ -13,7 +13,6 @@ std::map<std::string, std::uint64_t> FrameCounters::named() const {
         const std::string eye = targets.size() == 1 ? "" : t == 0 ? "_left" : "_right";
         names["splats_visible" + eye] = target.splats_visible;
         names["tile_pairs" + eye] = target.tile_pairs;
-        if (target.square_box_tile_pairs) { names["square_box_tile_pairs" + eye] = *target.square_box_tile_pairs; }
         names["tiles" + eye] = target.tiles;
         if (target.tiles_hidden > 0) { names["tiles_hidden" + eye] = target.tiles_hidden; }
         names["pixels" + eye] = target.pixels;

@@ -13,8 +13,7 @@ namespace binosplat {
 struct TargetCounters {
     std::uint64_t splats_visible = 0;  // in its list
     std::uint64_t tile_pairs = 0;
-    std::optional<std::uint64_t> square_box_tile_pairs;  // pairs that the usual square bound would make
-    std::uint64_t tiles = 0, tiles_hidden = 0;           // tiles_hidden: those that nobody sees
+    std::uint64_t tiles = 0, tiles_hidden = 0;  // tiles_hidden: those that nobody sees
     std::uint64_t pixels = 0, pixel_bytes = 0;
 };
 

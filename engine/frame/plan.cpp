@@ -50,7 +50,6 @@ bool isInTwo(const FrameSettings& settings, std::size_t eyes) {
 
 // Each eye has a second target of half the size.
 void splitTargets(FramePlan& plan, const FrameSettings& settings) {
-    plan.square_boxes = false;
     plan.targets.reserve(2 * plan.eyes);
     for (std::size_t e = 0; e < plan.eyes; ++e) {
         const int half = static_cast<int>(plan.targets.size());
@@ -225,7 +224,7 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
     // True if each eye is culled and ordered by itself.
     const bool apart = one_eye || mode == Mode::kTwoPass || mode == Mode::kAlternate || (mode == Mode::kPaper && settings.per_eye);
 
-    FramePlan plan{.near = settings.near, .background = settings.background, .square_boxes = settings.square_boxes};
+    FramePlan plan{.near = settings.near, .background = settings.background};
     plan.dominant = first;
     plan.eyes = eyes.size();
     for (int e = 0; e < static_cast<int>(eyes.size()); ++e) {

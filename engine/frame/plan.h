@@ -84,7 +84,6 @@ struct FramePlan {
     bool shares_order = false;  // one order of the splats serves all eyes
     double near = 0.2;
     glm::dvec3 background{0.0};
-    bool square_boxes = true;
     double budget = 0.0;                    // of the choice among what pasts have left: a share of the work of the targets that have one
     double error_bound_db = 0.0;            // of that choice: StereoSettings
     int dominant = 0;                       // of the targets

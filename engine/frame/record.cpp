@@ -263,7 +263,6 @@ Target FrameRecorder::targetOf(const FramePlan& plan, int index) const {
                   .background = glm::vec3(plan.background),
                   .kept = planned.kept,
                   .is_made = planned.past.has_value(),
-                  .square_boxes = plan.square_boxes,
                   .moments = planned.kept.moments ? room.moments().address<gpu::vec2>() : gpu::DeviceAddress<gpu::vec2>{},
                   .shown = room.shown(index).mask()};
     if (planned.kept.past) {

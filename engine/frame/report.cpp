@@ -181,9 +181,6 @@ FrameResult reportFrame(const FrameFacts& frame, std::uint64_t mark) {
         TargetCounters& its = counters.targets.emplace_back();
         its.splats_visible = frame.state.visible[static_cast<std::size_t>(target.list)].count;
         its.tile_pairs = state.pairs.count;
-        if (frame.plan.square_boxes) {
-            its.square_box_tile_pairs = (std::uint64_t{state.counters.square_box_pairs_high} << 32) | state.counters.square_box_pairs_low;
-        }
         its.tiles = std::uint64_t{tiles.x} * tiles.y;
         its.tiles_hidden = frame.room.shown(static_cast<int>(t)).hiddenCount();
         its.pixels = std::uint64_t{size_px.x} * size_px.y;

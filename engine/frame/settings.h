@@ -33,7 +33,6 @@ struct FrameSettings {
     bool keep_both_depths = false;  // D of the affiliated eye, too; where it is not rendered, alpha over its inverse depth
     bool keep_moments = false;      // I and J of the dominant eye, for readInverseDepthMoments
     bool keep_classes = false;      // how each pixel of the affiliated eye came about, for readPixelClasses and the report's counters
-    bool square_boxes = true;       // the report says how many pairs the usual square bound would make
     // By eye, tiles that nobody will see: a byte a tile, row-major, 1 if it is hidden; empty: none is. They become background, cost no
     // pairs and are left out of the budget, which is a share of the others.
     std::array<std::span<const std::uint8_t>, 2> hidden_tiles = {};

@@ -76,7 +76,6 @@ FrameSettings frameSettingsOf(const Settings& settings, Order order, double usua
     frame.keep_past = hasPast(frame.mode);
     // Of reports: nobody asks here.
     frame.keep_depth = false;
-    frame.square_boxes = false;
     frame.half_floats = settings.half_floats;
     frame.stereo.budget = settings.budget;
     frame.stereo.move_cost = kDefaultMoveCost;

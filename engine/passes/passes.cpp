@@ -52,7 +52,7 @@ KernelTable passKernels(const Context& context, std::uint32_t wanted_threads_per
     append(table, everyVariant<CullKernel>());
     append(table, everyVariant<CompactKernel>());
     append(table, sortKernels(context));
-    append(table, everyVariant<ProjectKernel>([](const ProjectKernel& k) { return k.masked == 0 || k.square_boxes == 0; }));
+    append(table, everyVariant<ProjectKernel>());
     append(table, everyVariant<BinKernel>());
     append(table, everyVariant<BinLargeKernel>());
     append(table,
@@ -270,11 +270,10 @@ void Passes::recordProjected(const EyePart& part) {
                                    .chunk_bits = part.scene.chunkBits(),
                                    .eye = part.eye(),
                                    .capacity = part.target.pairs.capacity};
-    part.commands.dispatchIndirect(kernels_.get(ProjectKernel{.sh_degree = static_cast<std::uint32_t>(part.scene.shDegree()),
-                                                              .masked = part.masked(),
-                                                              .splat_kind = part.scene.splatKind(),
-                                                              .square_boxes = !part.masked() && part.target.square_boxes}),
-                                   project, part.buffers.state, part.visibleList() + offsetof(gpu::ListState, per_block));
+    part.commands.dispatchIndirect(
+        kernels_.get(ProjectKernel{
+            .sh_degree = static_cast<std::uint32_t>(part.scene.shDegree()), .masked = part.masked(), .splat_kind = part.scene.splatKind()}),
+        project, part.buffers.state, part.visibleList() + offsetof(gpu::ListState, per_block));
 }
 
 // For bin and bin_large.

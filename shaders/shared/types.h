@@ -238,8 +238,6 @@ BINOSPLAT_ARRAY_OF(PixelBox, PixelBoxes);
 
 // Counters that belong to no list: for the report, and for dispatches.
 struct EyeCounters {
-    uint square_box_pairs_low;  // pairs that square boxes of 3 sigma would have made, 64 bits
-    uint square_box_pairs_high;
     uint large_splats;  // splats that bin left to bin_large
     uint full_tiles;    // under a mask: tiles with pairs
     DispatchSize per_full_tile;

@@ -13,7 +13,6 @@ layout(local_size_x = kGroupSize) in;
 layout(push_constant, scalar) uniform Push { ProjectPass pass; };
 layout(constant_id = 1) const bool kMasked = false;  // only tiles of the mask count; splats that meet none cost little
 layout(constant_id = 2) const uint kSplatKind = kDiscs;
-layout(constant_id = 3) const bool kSquareBoxes = false;  // pairs of the usual bound are counted; not under a mask
 
 #include "lib/splat.glsl"
 #include "lib/gaussian.glsl"
@@ -26,35 +25,6 @@ layout(constant_id = 3) const bool kSquareBoxes = false;  // pairs of the usual 
 #include "lib/sh.glsl"
 
 shared uint group_tiles;
-
-// How many tiles the usual bound meets: a square of three standard deviations of the larger extent on the screen, around
-// the middle of its box, whatever the opacity (as the rasterizers of Huang et al. 2024 and Kerbl et al. 2023 bin). For the report alone.
-uint squareTiles(vec2 middle_px, float radius_px, EyeView eye) {
-    const vec2 tiles = vec2(eye.size_tiles);
-    if (any(isnan(middle_px)) || isnan(radius_px) || isinf(radius_px)) { return eye.size_tiles.x * eye.size_tiles.y; }
-    const vec2 first = clamp(floor((middle_px - radius_px) / float(kTileSize)), vec2(0), tiles);
-    const vec2 end = clamp(floor((middle_px + radius_px + float(kTileSize - 1)) / float(kTileSize)), vec2(0), tiles);
-    const vec2 size = max(end - first, vec2(0));
-    return uint(size.x * size.y);
-}
-
-uint squareBoxTiles(CameraSplat splat, EyeView eye) {
-    if (splat.centre.z <= eye.near) { return 0; }
-    if (kSplatKind != kDiscs) {
-        const ScreenGaussian g = screenGaussian(splat, eye);
-        const float middle = 0.5 * (g.xx + g.yy), away = length(vec2(0.5 * (g.xx - g.yy), g.xy));
-        return squareTiles(eye.focal_px * splat.centre.xy / splat.centre.z + eye.principal_px, ceil(3 * sqrt(middle + away)), eye);
-    }
-    const vec3 a = splat.scale.x * splat.t_u, b = splat.scale.y * splat.t_v, c = splat.centre;
-    const vec3 f = vec3(9, 9, -1) / dot(vec3(9, 9, -1), vec3(a.z * a.z, b.z * b.z, c.z * c.z));
-    const vec3 w = vec3(a.z, b.z, c.z);
-    const vec3 x = vec3(a.x, b.x, c.x), y = vec3(a.y, b.y, c.y);
-    const vec2 middle = vec2(dot(f, x * w), dot(f, y * w));
-    const vec2 extent = sqrt(max(middle * middle - vec2(dot(f, x * x), dot(f, y * y)), vec2(0)));
-    const vec2 middle_px = eye.focal_px * middle + eye.principal_px;
-    const vec2 extent_px = eye.focal_px * extent;
-    return squareTiles(middle_px, ceil(max(max(extent_px.x, extent_px.y), 3 * 0.70710678)), eye);
-}
 
 // How many tiles (of the mask, if there is one) the splat meets; `small` has a bit for each if the box is small enough.
 uint countTiles(Outline outline, ivec4 box, uvec2 size_tiles, out uint small) {
@@ -87,8 +57,8 @@ uint countTiles(Outline outline, ivec4 box, uvec2 size_tiles, out uint small) {
     return fits ? bitCount(small) : tiles;
 }
 
-// Projects a visible splat for this eye; returns how many tiles it meets and, for the report, how many the usual bound does.
-uint project(uint rank, EyeView eye, out uint square_tiles) {
+// Projects a visible splat for this eye; returns how many tiles it meets.
+uint project(uint rank, EyeView eye) {
     const SplatPlace at = placeOfSplat(pass.order.at[rank], pass.chunk_bits);
     const uvec2 size_tiles = eye.size_tiles;
 
@@ -99,7 +69,6 @@ uint project(uint rank, EyeView eye, out uint square_tiles) {
     if (has_reference) { placeExactly(p, in_world.centre, eye); }
     const Outline outline = outlineOfProjected(p, eye.low_pass);
     const ivec4 box = tileBox(splat, eye, outline);
-    square_tiles = kSquareBoxes ? squareBoxTiles(splat, eye) : 0;
     uint small;
     const uint tiles = countTiles(outline, box, size_tiles, small);
     if (tiles > 0) {
@@ -111,33 +80,22 @@ uint project(uint rank, EyeView eye, out uint square_tiles) {
     return tiles;
 }
 
-void addSquareTiles(uint square_tiles) {
-    const uint of_subgroup = subgroupAdd(square_tiles);
-    if (subgroupElect() && of_subgroup > 0) {
-        const uint low = atomicAdd(pass.counters.at[0].square_box_pairs_low, of_subgroup);
-        if (low + of_subgroup < low) { atomicAdd(pass.counters.at[0].square_box_pairs_high, 1); }
-    }
-}
-
 void main() [[subgroup_uniform_control_flow]] {
     const uint count = pass.visible.at[0].count;
     const uint group = groupIndex();
     if (gl_LocalInvocationIndex == 0) { group_tiles = 0; }
     const EyeView eye = shareEye(pass.eyes, pass.eye);
-    uint own_tiles = 0, own_square_tiles = 0;
+    uint own_tiles = 0;
     uint rank = group * kListBlock + gl_LocalInvocationIndex;
     const uint end = min((group + 1) * kListBlock, count);
     [[dont_unroll]] do {
         if (rank < end) {
-            uint square_tiles;
-            const uint tiles = project(rank, eye, square_tiles);
+            const uint tiles = project(rank, eye);
             pass.tile_counts.at[rank] = tiles;
             own_tiles += tiles;
-            own_square_tiles += square_tiles;
         }
         rank += kGroupSize;
     } while (rank < end);
-    if (kSquareBoxes) { addSquareTiles(own_square_tiles); }
     const uint subgroup_tiles = subgroupAdd(own_tiles);
     if (subgroupElect()) { atomicAdd(group_tiles, subgroup_tiles); }
     barrier();

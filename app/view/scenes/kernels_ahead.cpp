@@ -68,7 +68,6 @@ void makeKernelsAt(std::uint32_t width_px, StereoFrame& small, const CameraOptio
         settings.keep_past = true;
         settings.keep_depth = settings.keep_both_depths = ahead.with_depth;
         settings.keep_classes = ahead.tint;
-        settings.square_boxes = false;
         // If both eyes share a picture, it is seen through either lens.
         if (hides && settings.mode != Mode::kMono) { settings.hidden_tiles = {hidden, hidden}; }
         makeKernelsOf(small, settings, eyes);

@@ -89,7 +89,6 @@ private:
         when([&] { s.keep_both_depths = dice_.falls(0.3); });
         when([&] { s.keep_moments = dice_.falls(0.1); });
         when([&] { s.keep_classes = dice_.falls(0.3); });
-        when([&] { s.square_boxes = dice_.falls(0.5); });
         when([&] { s.half_periphery = dice_.falls(0.5); });
         when([&] { s.keep_past = dice_.falls(0.9); });
         when([&] {

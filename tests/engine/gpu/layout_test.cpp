@@ -50,7 +50,7 @@ std::vector<Layout> hostLayouts() {
                waiting_tiles, borders_px, per_pixel_block, per_row, per_visible, component_groups),
         LAYOUT(EyeGaze, direction, clear_rad, pixel_cycle, focal_px, principal_px),
         LAYOUT(PixelBox, x0, y0, x1, y1),
-        LAYOUT(EyeCounters, square_box_pairs_low, square_box_pairs_high, large_splats, full_tiles, per_full_tile),
+        LAYOUT(EyeCounters, large_splats, full_tiles, per_full_tile),
         LAYOUT(CullPagesPass, pages, eyes, page_bits, word_offsets, page_list, visible_pages, page_count, first_eye, eye_count),
         LAYOUT(CullPass, chunks, eyes, page_list, visible_pages, visible_bits, group_counts, visible, splat_count, chunk_bits, first_eye,
                eye_count, capacity, first_tile_mask, last_tile_mask),

@@ -265,7 +265,6 @@ TEST_CASE_FIXTURE(Shown, "another method is drawn once its kernels are there, ma
         FrameSettings frame = frameSettings(options.run.camera, settings.stereo, kWearersOrder);
         frame.half_floats = true;
         frame.keep_depth = frame.keep_both_depths = false;
-        frame.square_boxes = false;
         const std::size_t before = scenes.frame().kernelCount();
         scenes.frame().renderAhead(stereoPair(middle, 0.063), frame);
         scenes.frame().finish();
