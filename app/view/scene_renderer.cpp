@@ -24,7 +24,7 @@ SceneRenderer::SceneRenderer(const xr::Instance& instance, const Context& contex
                              vk::Format format)
     : instance_(instance), options_(options), log_(log), format_(format), presenter_(context, format), has_gpu_(!context.isSoftware()) {
     if (const std::optional<xr::InsetSizes> inset = xr::findInset(instance)) { context_px_ = inset->context_px; }
-    presenter_.makeKernels(instance.takesDepth(), instance.canSeeThrough());
+    presenter_.makeKernels(instance.canSeeThrough());
 }
 
 glm::uvec2 SceneRenderer::sizePx(double scale) const {

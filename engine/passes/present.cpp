@@ -23,22 +23,12 @@ Presenter::Presenter(const Context& context, vk::Format format)
     check(takes(format), "pictures leave as 8-bit RGBA or BGRA, not as {}", vk::to_string(format));
 }
 
-const Kernel& Presenter::kernel(bool tinted, std::uint32_t depth_from, bool half_floats, bool see_through) {
-    return kernels_.get(PresentKernel{.blue_first = blue_first_,
-                                      .linear = linear_,
-                                      .tint = tinted,
-                                      .depth = depth_from,
-                                      .half_colours = half_floats,
-                                      .see_through = see_through});
+const Kernel& Presenter::kernel(bool half_floats, bool see_through) {
+    return kernels_.get(PresentKernel{.half_colours = half_floats, .light = linear_ || see_through});
 }
 
-void Presenter::makeKernels(bool with_depth, bool can_see_through) {
-    for (const bool tinted : {false, true}) {
-        for (const std::uint32_t depth_from : {1u, 2u}) {
-            kernel(tinted, with_depth ? depth_from : 0, true, false);
-            if (can_see_through) { kernel(tinted, with_depth ? depth_from : 0, true, true); }
-        }
-    }
+void Presenter::makeKernels(bool can_see_through) {
+    for (const bool see_through : {false, can_see_through}) { kernel(true, see_through); }
 }
 
 void Presenter::makeRoom(glm::uvec2 size_px, bool with_depth) {
@@ -51,8 +41,7 @@ void Presenter::makeRoom(glm::uvec2 size_px, bool with_depth) {
 }
 
 void Presenter::record(Commands& commands, const PresentedEye& eye, double near) {
-    const std::uint32_t depth_from = !eye.depth ? 0u : eye.picture->words.bytes() > 0 ? 2u : eye.picture->depths.bytes() > 0 ? 1u : 0u;
-    const bool with_depth = depth_from != 0, tinted = eye.tinted_by != nullptr;
+    const bool with_depth = eye.depth && (eye.picture->words.bytes() > 0 || eye.picture->depths.bytes() > 0);
     // Only ever grown before anything of this submission uses them: both eyes have one size.
     makeRoom(eye.size_px, with_depth);
     gpu::PresentPass pass{};
@@ -60,17 +49,19 @@ void Presenter::record(Commands& commands, const PresentedEye& eye, double near)
     pass.half_colours = eye.picture->colours.address<gpu::uvec2>();
     pass.depths = eye.picture->depths.address<float>();
     pass.words = eye.picture->words.address<gpu::uint>();
-    if (tinted) {
+    if (eye.tinted_by != nullptr) {
         pass.tile_kinds = eye.tinted_by->tileKinds();
         pass.pixel_classes = eye.tinted_by->pixelClasses();
     }
     pass.pixels = pixels_.address<gpu::uint>();
-    pass.device_depths = depths_.address<float>();
+    if (with_depth) { pass.device_depths = depths_.address<float>(); }
     pass.size_px = eye.size_px;
     pass.near = static_cast<float>(near);
+    pass.blue_first = blue_first_ ? 1 : 0;
+    pass.linear = linear_ ? 1 : 0;
+    pass.see_through = eye.see_through ? 1 : 0;
     commands.beginPass({Role::kNone, PresentKernel::kStage, PresentKernel::kShader});
-    commands.dispatch(kernel(tinted, depth_from, eye.picture->half_floats, eye.see_through), pass, (eye.size_px.x + 15) / 16,
-                      (eye.size_px.y + 7) / 8);
+    commands.dispatch(kernel(eye.picture->half_floats, eye.see_through), pass, (eye.size_px.x + 15) / 16, (eye.size_px.y + 7) / 8);
     commands.copyToImage(pixels_, eye.colour, eye.size_px, vk::ImageAspectFlagBits::eColor);
     if (with_depth) { commands.copyToImage(depths_, eye.depth, eye.size_px, vk::ImageAspectFlagBits::eDepth); }
 }

@@ -4,13 +4,8 @@
 #extension GL_GOOGLE_include_directive : require
 #include "passes.h"
 
-layout(constant_id = 0) const bool kBlueFirst = false;  // BGRA in place of RGBA
-layout(constant_id = 1) const bool kLinear = false;     // the image is not an sRGB one: its bytes count as light
-layout(constant_id = 2) const bool kTint = false;       // tint by what made each pixel
-layout(constant_id = 3) const uint kDepth = 0;  // where its depth comes from
-const uint kFromDepths = 1, kFromWords = 2;
-layout(constant_id = 4) const bool kHalfColours = false;
-layout(constant_id = 5) const bool kSeeThrough = false;  // output alpha, for what the headset shows behind it
+layout(constant_id = 0) const bool kHalfColours = false;
+layout(constant_id = 1) const bool kLight = true;  // the image's bytes count as light, or its alpha does
 layout(local_size_x = 16, local_size_y = 8) in;
 
 #include "lib/picture.glsl"
@@ -22,12 +17,13 @@ layout(push_constant, scalar) uniform Push { PresentPass pass; };
 // NaN becomes 0, like everything that is not above 0.
 vec3 clampToDisplay(vec3 colour) { return mix(vec3(0), min(colour, vec3(1)), greaterThan(colour, vec3(0))); }
 
+bool isThere(uvec2 address) { return any(notEqual(address, uvec2(0))); }
+
 // The share is kTintShare of engine/picture/roi_picture.h and the colours are those of its tintOf.
 vec3 tint(vec3 colour, uvec2 at, uint row_tiles) {
     const uint kind = pass.tile_kinds.at[(at.y / kTileSize) * row_tiles + at.x / kTileSize];
     if (kind == kTileHidden) { return colour; }  // nothing says what made its pixels
-    const bool has_classes = any(notEqual(uvec2(pass.pixel_classes), uvec2(0)));
-    const uint pixel_class = has_classes ? (pass.pixel_classes.at[at.y * row_tiles + at.x / kTileSize] >> (2 * (at.x % kTileSize))) & 3u : kCovered;
+    const uint pixel_class = isThere(uvec2(pass.pixel_classes)) ? (pass.pixel_classes.at[at.y * row_tiles + at.x / kTileSize] >> (2 * (at.x % kTileSize))) & 3u : kCovered;
     vec3 shade;
     if (kind == kTileEdge) {
         shade = vec3(0, 0.35, 1);
@@ -54,17 +50,19 @@ void main() {
     const vec4 pixel = colourAt(pass.colours, pass.half_colours, i);
     vec3 colour = clampToDisplay(pixel.rgb);
     // Colours were multiplied by alpha as display-encoded values, but headsets blend light: alpha is divided out and multiplied back in.
-    const float alpha = kSeeThrough ? (pixel.a > 0 ? min(pixel.a, 1) : 0) : 1;
-    if (kSeeThrough) { colour = alpha > 0 ? clampToDisplay(pixel.rgb / alpha) : vec3(0); }
-    if (kTint) { colour = tint(colour, at, (pass.size_px.x + kTileSize - 1) / kTileSize); }
-    if (kLinear || kSeeThrough) { colour = alpha * decode(colour); }
-    if (kSeeThrough && !kLinear) { colour = encode(colour); }
+    const bool see_through = kLight && pass.see_through != 0, linear = kLight && pass.linear != 0;
+    const float alpha = see_through ? (pixel.a > 0 ? min(pixel.a, 1) : 0) : 1;
+    if (see_through) { colour = alpha > 0 ? clampToDisplay(pixel.rgb / alpha) : vec3(0); }
+    if (isThere(uvec2(pass.tile_kinds))) { colour = tint(colour, at, (pass.size_px.x + kTileSize - 1) / kTileSize); }
+    if (linear || see_through) { colour = alpha * decode(colour); }
+    if (see_through && !linear) { colour = encode(colour); }
     const uvec3 bytes = uvec3(colour * 255 + 0.5);
-    pass.pixels.at[i] = (kBlueFirst ? bytes.b | bytes.g << 8 | bytes.r << 16 : bytes.r | bytes.g << 8 | bytes.b << 16) | uint(alpha * 255 + 0.5) << 24;
-    if (kDepth != 0) {
+    pass.pixels.at[i] = (pass.blue_first != 0 ? bytes.b | bytes.g << 8 | bytes.r << 16 : bytes.r | bytes.g << 8 | bytes.b << 16) | uint(alpha * 255 + 0.5) << 24;
+    if (isThere(uvec2(pass.device_depths))) {
         // near over the depth D/A: 1 at the near plane, 0 where there is nothing.
-        const uint word = kDepth == kFromWords ? pass.words.at[i] : 0;
-        const float share = kDepth == kFromDepths ? pass.near * pixel.a / pass.depths.at[i] : word == 0 ? 0 : pass.near * inverseDepthOf(word);
+        const bool from_words = isThere(uvec2(pass.words));
+        const uint word = from_words ? pass.words.at[i] : 0;
+        const float share = !from_words ? pass.near * pixel.a / pass.depths.at[i] : word == 0 ? 0 : pass.near * inverseDepthOf(word);
         pass.device_depths.at[i] = share > 0 && pixel.a >= kMinAlpha ? min(share, 1) : 0;
     }
 }

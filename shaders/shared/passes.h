@@ -346,13 +346,16 @@ struct PresentPass {
     FloatColours colours;
     HalfColours half_colours;
     Floats depths;         // D, if its depth is wanted
-    Uints words;           // instead of D, for a picture that later ones are made from: lib/moving_pixel.glsl
-    Uints tile_kinds;      // for a tint by what made each pixel
-    Uints pixel_classes;   // for the tint
+    Uints words;           // instead of D, for a picture that later ones are made from: lib/moving_pixel.glsl; otherwise null
+    Uints tile_kinds;      // for a tint by what made each pixel; otherwise null
+    Uints pixel_classes;   // for the tint, or null
     Uints pixels;          // out: 8 bits a channel
-    Floats device_depths;  // out where wanted: near / depth
+    Floats device_depths;  // out where wanted, otherwise null: near / depth
     uvec2 size_px;
     float near;
+    uint blue_first;   // 1: BGRA in place of RGBA
+    uint linear;       // 1: the image is not an sRGB one: its bytes count as light
+    uint see_through;  // 1: output alpha, for what the headset shows behind it
 };
 
 BINOSPLAT_END_SHARED

@@ -344,6 +344,7 @@ TEST_CASE("a bench writes a table, JSON, CSV and a plot, and compares methods by
     CHECK(results[3]["affiliated_against_full"]["all"]["psnr_db"] > 20.0);
     CHECK(results[4].contains("ratio_to_twin"));
     CHECK(results[5]["mode"] == "twin");
+    CHECK(results[5]["counters"]["square_box_tile_pairs"] > results[4]["counters"]["tile_pairs"]);
     const nlohmann::json& quality = results[2]["affiliated_against_full"];
     CHECK(quality["all"]["pixels"] == 96 * 96);
     CHECK(quality["all"]["psnr_db"] > 25.0);

@@ -87,7 +87,8 @@ std::vector<Layout> hostLayouts() {
                words, source_tiles, tiles, tile_losses, background, size_px),
         LAYOUT(SortCountPass, keys, histograms, run_sums, digit_begins, list, shift, digits),
         LAYOUT(SortScatterPass, keys_in, values_in, keys_out, values_out, histograms, run_sums, digit_begins, list, shift, digits),
-        LAYOUT(PresentPass, colours, half_colours, depths, words, tile_kinds, pixel_classes, pixels, device_depths, size_px, near),
+        LAYOUT(PresentPass, colours, half_colours, depths, words, tile_kinds, pixel_classes, pixels, device_depths, size_px, near,
+               blue_first, linear, see_through),
     };
 }
 

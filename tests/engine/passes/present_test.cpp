@@ -29,26 +29,24 @@ Presented runPresent(Gpu& gpu, const Shown& shown, const reference::Presentation
                  kinds = gpu.upload("kinds", shown.tile_kinds), classes = gpu.upload("classes", shown.pixel_classes);
     const std::size_t count = shown.colours.size();
     const Buffer pixels = gpu.allocate<std::uint32_t>("pixels", count), depths = gpu.allocate<float>("depths", count);
-    const std::uint32_t depth_from = !shown.words.empty() ? 2 : !shown.depth_sums.empty() ? 1 : 0;
+    const bool with_depth = !shown.words.empty() || !shown.depth_sums.empty();
     gpu::PresentPass pass{};
     pass.colours = colours.address<gpu::vec4>();
     pass.half_colours = colours.address<gpu::uvec2>();
     pass.depths = sums.address<float>();
-    pass.words = words.address<gpu::uint>();
-    pass.tile_kinds = kinds.address<gpu::uint>();
-    pass.pixel_classes = classes.address<gpu::uint>();
+    if (!shown.words.empty()) { pass.words = words.address<gpu::uint>(); }
+    if (!shown.tile_kinds.empty()) { pass.tile_kinds = kinds.address<gpu::uint>(); }
+    if (!shown.pixel_classes.empty()) { pass.pixel_classes = classes.address<gpu::uint>(); }
     pass.pixels = pixels.address<gpu::uint>();
-    pass.device_depths = depths.address<float>();
+    if (with_depth) { pass.device_depths = depths.address<float>(); }
     pass.size_px = shown.size_px;
     pass.near = static_cast<float>(how.near);
-    const Kernel& kernel = gpu.kernel(PresentKernel{.blue_first = how.blue_first,
-                                                    .linear = how.linear,
-                                                    .tint = !shown.tile_kinds.empty(),
-                                                    .depth = depth_from,
-                                                    .half_colours = shown.halves,
-                                                    .see_through = how.see_through});
+    pass.blue_first = how.blue_first ? 1 : 0;
+    pass.linear = how.linear ? 1 : 0;
+    pass.see_through = how.see_through ? 1 : 0;
+    const Kernel& kernel = gpu.kernel(PresentKernel{.half_colours = shown.halves, .light = how.linear || how.see_through});
     gpu.run([&](Commands& commands) { commands.dispatch(kernel, pass, (shown.size_px.x + 15) / 16, (shown.size_px.y + 7) / 8); });
-    return {gpu.readBack<std::uint32_t>(pixels, count), gpu.readBack<float>(depths, depth_from != 0 ? count : 0)};
+    return {gpu.readBack<std::uint32_t>(pixels, count), gpu.readBack<float>(depths, with_depth ? count : 0)};
 }
 
 // Every pixel another colour, from well below 0 to well above 1, that half floats hold.
