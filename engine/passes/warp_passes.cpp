@@ -55,16 +55,12 @@ KernelTable warpKernels(const Context& context) {
     append(table, everyVariant<EdgeRoisKernel>());
     append(table, everyVariant<ReprojectKernel>());
     append(table, everyVariant<ResampleKernel>([most_steps = mostRowSteps(context)](const ResampleKernel& k) {
-               // Only the paper's holes are grouped, and by their classes. Errors are those of sampling. Whole rows are moved if they
-               // can be, and odd rows of predicted are warped like even ones.
-               if (k.row_steps > most_steps || (k.components && (k.predict_errors || !k.classes)) || (k.predict_errors && k.forward)) {
-                   return false;
-               }
+               // Rows are moved if they can be, and odd rows of predicted are warped like even ones.
                if (k.row_source == gpu::kPlacesGiven) {
-                   return k.rectified && !k.predict_errors && !k.components && k.row_steps == 0 && !k.forward;
+                   return k.rectified && k.row_steps == 0 && (k.way == gpu::kSamples || k.way == gpu::kDoesAny);
                }
-               if (k.row_source == gpu::kWholeRowMoved && (!k.predict_errors || k.classes)) { return false; }
-               return (k.row_source != gpu::kArrivalsGiven) == (k.rectified && k.row_steps > 0);
+               return k.row_steps <= most_steps && (k.row_source != gpu::kArrivalsGiven) == (k.rectified && k.row_steps > 0) &&
+                      (k.row_source != gpu::kWholeRowMoved || k.way == gpu::kPredicts);
            }));
     append(table, everyVariant<NewcomersKernel>());
     append(table, everyVariant<ComponentsKernel>());
@@ -83,7 +79,6 @@ public:
     [[nodiscard]] bool predicts() const { return in_.settings.choice == TileChoice::kPredicted; }
     [[nodiscard]] bool followsPaper() const { return in_.settings.choice == TileChoice::kPaper; }
     [[nodiscard]] bool groupsHoles() const { return followsPaper() && in_.settings.center_rois; }
-    [[nodiscard]] bool keepsClasses() const { return in_.warp.needs().classes || groupsHoles(); }
 
     void weigh();
     void clearTiles();
@@ -196,7 +191,7 @@ void WarpRecorder::reproject() {
 }
 
 void WarpRecorder::resample() {
-    const bool whole = predicts() && !in_.source_shown.hideAny() && !keepsClasses();
+    const bool whole = predicts() && !hidesSource() && !in_.warp.needs().classes;
     resampleFrom(0, !movesRows() ? gpu::kArrivalsGiven : whole ? gpu::kWholeRowMoved : gpu::kRowMoved, predicts());
 }
 
@@ -204,7 +199,7 @@ void WarpRecorder::resampleOdd() { resampleFrom(1, in_.rectified ? gpu::kPlacesG
 
 void WarpRecorder::resampleFrom(gpu::uint first_row, gpu::uint row_source, bool predict_errors) {
     begin<ResampleKernel>();
-    const bool knows_errors = predict_errors || in_.target_gaze;
+    const bool knows_errors = predict_errors || (first_row == 1 && in_.target_gaze);
     const gpu::ResamplePass pass{.warp = view(),
                                  .source = in_.source.colours.address<gpu::vec4>(),
                                  .half_source = in_.source.colours.address<gpu::uvec2>(),
@@ -215,21 +210,21 @@ void WarpRecorder::resampleFrom(gpu::uint first_row, gpu::uint row_source, bool 
                                  .tile_kinds = in_.warp.tileKinds(),
                                  .tile_errors = knows_errors ? in_.warp.tileErrors() : gpu::DeviceAddress<gpu::uint>{},
                                  .pixel_classes = in_.warp.pixelClasses(),
-                                 .component_pixels = in_.target.colours.address<gpu::ComponentPixel>(),
                                  .counters = counters(),
                                  .shown_mask = in_.source_shown.mask(),
                                  .words = in_.leaves_past ? in_.target.words.address<gpu::uint>() : gpu::DeviceAddress<gpu::uint>{},
                                  .background = in_.background,
-                                 .first_row = first_row};
+                                 .first_row = first_row,
+                                 .copies_colours = copiesColours() ? 1u : 0u,
+                                 .groups_holes = groupsHoles() ? 1u : 0u};
     const ResampleKernel resample_kernel{.rectified = in_.rectified,
-                                         .predict_errors = predict_errors,
-                                         .depth = in_.target.depths.bytes() > 0,
-                                         .classes = keepsClasses(),
-                                         .components = groupsHoles(),
                                          .row_steps = row_source == gpu::kPlacesGiven ? 0 : in_.warp.rowSteps(),
                                          .half_colours = halfFloats(),
-                                         .forward = copiesColours(),
-                                         .row_source = row_source};
+                                         .row_source = row_source,
+                                         .way = in_.warp.needs().classes ? gpu::kDoesAny
+                                                : predict_errors         ? gpu::kPredicts
+                                                : copiesColours()        ? gpu::kCopies
+                                                                         : gpu::kSamples};
     dispatchByCounter(resample_kernel, pass, offsetof(gpu::WarpCounters, per_row));
 }
 

@@ -23,7 +23,7 @@ void keepPlace(WarpView warp, uvec2 at, Resolved resolved, float place_px) {
     const uint word = placeAt(warp, at + uvec2(0, 1));
     const uint steps = uint(clamp(place_px, 0.0, float(warp.size_px.x) - 0.5) * kPlaceSteps + 0.5);
     placeWords().at[word] = steps << 3 | (resolved.column != at.x ? kRepeats : 0) | resolved.pixel_class;
-    if (kDepth) { placeWords().at[word + 1] = floatBitsToUint(resolved.inverse_depth); }
+    if (keepsDepths()) { placeWords().at[word + 1] = floatBitsToUint(resolved.inverse_depth); }
 }
 
 // Writes a pixel of an odd row. A neighbour is repeated as the row above shows it, by whose depths it was found.
@@ -32,7 +32,7 @@ float sampleBelow(WarpView warp, uvec2 at, out uint pixel_class) {
     pixel_class = place & 3;
     const uint source_row = (place & kRepeats) != 0 ? at.y - 1 : at.y;
     const Sample found = sampleInRow(float(place >> 3) / kPlaceSteps, source_row * warp.size_px.x, int(warp.size_px.x));
-    putPixel(warp, at, pixel_class, found.colour, kDepth ? uintBitsToFloat(placeWords().at[word + 1]) : 0);
+    putPixel(warp, at, pixel_class, found.colour, keepsDepths() ? uintBitsToFloat(placeWords().at[word + 1]) : 0);
     repeatWord(at.y * warp.size_px.x + at.x, warp.size_px.x);
     return 0;
 }
@@ -40,7 +40,7 @@ float sampleBelow(WarpView warp, uvec2 at, out uint pixel_class) {
 // True if the row may be the mean of those above and below: both are there, in the same tiles, and tile_errors says in which.
 bool mayBeMean(WarpView warp, uint y) {
     const bool between = (y & 1) == 1 && (y + 1) % kTileSize != 0 && y + 1 < warp.size_px.y;
-    return !kPredictErrors && between && any(notEqual(uvec2(pass.tile_errors), uvec2(0)));
+    return !predictsErrors() && between && isThere(uvec2(pass.tile_errors));
 }
 
 // The rows above and below this one are even ones, which were there before any odd one was begun.
@@ -53,7 +53,7 @@ void putMeans(uint y, uint width, uint tiles) {
         const vec4 above = colourAt(pass.target, pass.half_target, i - width);
         const vec4 below = colourAt(pass.target, pass.half_target, i + width);
         putColour(pass.target, pass.half_target, i, 0.5 * (above + below));
-        if (kDepth) { pass.depths.at[i] = 0.5 * (pass.depths.at[i - width] + pass.depths.at[i + width]); }
+        if (keepsDepths()) { pass.depths.at[i] = 0.5 * (pass.depths.at[i - width] + pass.depths.at[i + width]); }
         repeatWord(i, width);
     }
 }

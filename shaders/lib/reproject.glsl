@@ -1,8 +1,9 @@
 // A pixel of the source on its way to where the target sees it: reproject, and resample where it moves pixels itself. For shaders that know
-// pass.moving, pass.shown_mask and kForward, include lib/warp.glsl, lib/moving_pixel.glsl and lib/unseen.glsl, and say
-// whether parts of the source were not rendered, and where pixels arrive.
+// pass.moving and pass.shown_mask, include lib/warp.glsl, lib/moving_pixel.glsl and lib/unseen.glsl, and say whether parts
+// of the source were not rendered, whether colours are copied, and where pixels arrive.
 
 bool hidesTiles();
+bool copiesColours();
 void put(WarpView warp, ivec2 at, uint arrival);
 
 struct Moved {
@@ -25,7 +26,7 @@ Moved moveSource(WarpView warp, uvec2 pixel) {
     const float inverse_depth = moving == 0 ? 0 : inverseDepthOf(moving);
     const vec3 moved = movePixel(warp.target_from_source, vec2(pixel) + 0.5, inverse_depth);
     const bool seen = !hidesTiles() || !isNearHidden(warp, pixel);
-    const uint spread = kForward ? parityOf(pixel) : moving & kSpreadBits;
+    const uint spread = copiesColours() ? parityOf(pixel) : moving & kSpreadBits;
     return Moved(moved.xy, inverse_depth / moved.z, spread, seen && moving != 0 && moved.z > 0);
 }
 

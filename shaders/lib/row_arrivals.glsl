@@ -2,7 +2,7 @@
 
 uint arrivalAt(uint row, uint x) { return kSharedRow == 0 ? pass.moving.at[row + x] : row_arrivals[x]; }
 
-bool hidesTiles() { return kRowSource != kWholeRowMoved && any(notEqual(uvec2(pass.shown_mask), uvec2(0))); }
+bool hidesTiles() { return kRowSource != kWholeRowMoved && isThere(uvec2(pass.shown_mask)); }
 
 void put(WarpView warp, ivec2 at, uint arrival) {
     if (at.x >= 0 && at.x < int(warp.size_px.x)) { atomicMax(row_arrivals[at.x], arrival); }
@@ -22,7 +22,7 @@ void moveRow(WarpView warp, uint y, uint width) {
             right.valid = right.valid && x + 1 < width;
             if (here.valid && !isOut(warp, here)) {
                 putLanded(warp, here);
-                if (!kForward && warp.gap_px > 0) { putBetween(warp, here, right, int(y)); }
+                if (!copiesColours() && warp.gap_px > 0) { putBetween(warp, here, right, int(y)); }
             }
             here = right;
             ++x;

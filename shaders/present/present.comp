@@ -17,8 +17,6 @@ layout(push_constant, scalar) uniform Push { PresentPass pass; };
 // NaN becomes 0, like everything that is not above 0.
 vec3 clampToDisplay(vec3 colour) { return mix(vec3(0), min(colour, vec3(1)), greaterThan(colour, vec3(0))); }
 
-bool isThere(uvec2 address) { return any(notEqual(address, uvec2(0))); }
-
 // The share is kTintShare of engine/picture/roi_picture.h and the colours are those of its tintOf.
 vec3 tint(vec3 colour, uvec2 at, uint row_tiles) {
     const uint kind = pass.tile_kinds.at[(at.y / kTileSize) * row_tiles + at.x / kTileSize];

@@ -170,6 +170,12 @@ BINOSPLAT_CONSTANT uint kArrivalsGiven = 0;
 BINOSPLAT_CONSTANT uint kRowMoved = 1;
 BINOSPLAT_CONSTANT uint kWholeRowMoved = 2;
 BINOSPLAT_CONSTANT uint kPlacesGiven = 3;
+// And what it does: it samples colours; it also predicts errors; it copies colours; or any of these, and keeps the classes of pixels, for
+// reports and tints and where holes are grouped.
+BINOSPLAT_CONSTANT uint kSamples = 0;
+BINOSPLAT_CONSTANT uint kPredicts = 1;
+BINOSPLAT_CONSTANT uint kCopies = 2;
+BINOSPLAT_CONSTANT uint kDoesAny = 3;
 // Invocations of a workgroup in the passes of warp and choose: as many as every device allows.
 BINOSPLAT_CONSTANT uint kWarpGroup = 128;
 

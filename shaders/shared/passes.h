@@ -183,16 +183,17 @@ struct ResamplePass {
     Uints moving;         // the source's pixels or, if reproject ran, the arrivals that it left
     FloatColours target;  // out; `moving` may lie in the same row
     HalfColours half_target;
-    Floats depths;  // out where asked for: D, alpha over the inverse depth with which the place was found
+    Floats depths;  // out where asked for, otherwise null: D, alpha over the inverse depth with which the place was found
     Uints tile_kinds;
-    Uints tile_errors;                 // out if errors are predicted; for the odd rows null, or in: kSeenCoarsely by price
-    Uints pixel_classes;               // out where asked for: 2 bits a pixel, kCovered, kGap or kHole
-    ComponentPixels component_pixels;  // out if holes are grouped: the same memory as `target`
+    Uints tile_errors;    // out if errors are predicted, otherwise null; for the odd rows null, or in: kSeenCoarsely by price
+    Uints pixel_classes;  // out where asked for: 2 bits a pixel, kCovered, kGap or kHole
     WarpCounterss counters;
-    Uints shown_mask;  // if the source has hidden tiles: the shown ones; otherwise null
-    Uints words;       // out if later pictures are made from the target, otherwise null; arrivals may lie in the same row
-    vec3 background;   // of hidden tiles
-    uint first_row;    // 1: the odd rows, if rows are two apart
+    Uints shown_mask;     // if the source has hidden tiles: the shown ones; otherwise null
+    Uints words;          // out if later pictures are made from the target, otherwise null; arrivals may lie in the same row
+    vec3 background;      // of hidden tiles
+    uint first_row;       // 1: the odd rows, if rows are two apart
+    uint copies_colours;  // 1: they are copied, not sampled
+    uint groups_holes;    // 1: holes are going to be grouped: of their pixels `target` gets ComponentPixel
 };
 
 // warp_past and warp_pixels: an eye's picture warped from the one that it showed before, and each tile's error so far. With half-float

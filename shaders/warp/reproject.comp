@@ -22,6 +22,7 @@ layout(constant_id = 2) const bool kForward = false;      // colours are going t
 #include "lib/reproject.glsl"
 
 bool hidesTiles() { return kHiddenTiles; }
+bool copiesColours() { return kForward; }
 
 void put(WarpView warp, ivec2 at, uint arrival) {
     if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, ivec2(warp.size_px)))) { return; }

@@ -9,7 +9,7 @@
 // rendered only half of the pixels are then sampled in vain. Where pixels stay in their rows, an odd row is sampled at the places of the
 // even one above it, so that only half of the rows are moved. Its colours are its own, except where it repeats a neighbour. Where an eye
 // does not resolve two rows (price), an odd row is the mean of those above and below.
-// Where colours are copied (kForward), this follows the paper to the letter instead, see copyArrived.
+// Where colours are copied, this follows the paper to the letter instead, see copyArrived.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_buffer_reference_uvec2 : require
@@ -23,27 +23,23 @@
 
 layout(local_size_x = kWarpGroup) in;
 layout(push_constant, scalar) uniform Push { ResamplePass pass; };
-layout(constant_id = 1) const bool kPredictErrors = false;
-layout(constant_id = 2) const bool kDepth = false;
-layout(constant_id = 3) const bool kClasses = false;     // the class of each pixel is asked for
-layout(constant_id = 4) const bool kComponents = false;  // holes are going to be grouped
 // A whole row of arrivals is kept in shared memory, so that colours may overwrite it in device memory. 0: rows are too long, and arrivals
 // lie elsewhere.
-layout(constant_id = 5) const uint kRowSteps = 1;
-layout(constant_id = 6) const bool kHalfColours = false;
-layout(constant_id = 7) const bool kForward = false;  // colours are copied; not where errors are predicted
-layout(constant_id = 8) const uint kRowSource = kArrivalsGiven;
+layout(constant_id = 1) const uint kRowSteps = 1;
+layout(constant_id = 2) const bool kHalfColours = false;
+layout(constant_id = 3) const uint kRowSource = kArrivalsGiven;
+layout(constant_id = 4) const uint kWay = kDoesAny;
 
 #include "lib/picture.glsl"
 
 const uint kMaxWidth = 16384;
 const uint kLongestRow = kRowSteps == 0 ? kMaxWidth : kRowSteps * kArrivalsStep;
 const uint kSharedRow = kRowSource == kPlacesGiven ? 0 : kRowSteps * kArrivalsStep;
-const bool kMovesRow = kRowSource == kRowMoved || kRowSource == kWholeRowMoved;
-const bool kFindsOpen = kRowSource != kPlacesGiven && !kForward;
+const bool kPlaced = kRowSource == kPlacesGiven, kMovesRow = kRowSource == kRowMoved || kRowSource == kWholeRowMoved;
+const bool kClasses = kWay == kDoesAny;
 
 shared uint row_arrivals[kSharedRow + 1];
-shared uint arrived_bits[kRowSource == kPlacesGiven ? 1 : kLongestRow / 32];
+shared uint arrived_bits[kPlaced ? 1 : kLongestRow / 32];
 shared uint tile_classes[kClasses ? kLongestRow / 16 : 1];
 const uint kMostTiles = kLongestRow / 16;
 
@@ -51,9 +47,16 @@ shared uint moved_tiles[kMostTiles];  // tiles of this row, in no order; from th
 shared uint moved_count;
 shared uint mean_count;
 shared uint hidden_count;
-shared uint open_tiles[kFindsOpen ? kMostTiles : 1];  // slots of moved_tiles whose tiles have pixels that nothing reached
-shared uint open_bits[kFindsOpen ? (kMostTiles + 31) / 32 : 1];
+shared uint open_tiles[kPlaced ? 1 : kMostTiles];  // slots of moved_tiles whose tiles have pixels that nothing reached
+shared uint open_bits[kPlaced ? 1 : (kMostTiles + 31) / 32];
 shared uint open_count;
+
+bool copiesColours() { return !kPlaced && (kWay == kCopies || (kClasses && pass.copies_colours != 0)); }
+bool predictsErrors() { return !kPlaced && (kWay == kPredicts || (kClasses && pass.first_row == 0 && isThere(uvec2(pass.tile_errors)))); }
+bool keepsDepths() { return isThere(uvec2(pass.depths)); }
+bool groupsHoles() { return kClasses && pass.groups_holes != 0; }
+// True if later pictures are made from this one.
+bool keepsWords() { return isThere(uvec2(pass.words)); }
 
 #include "lib/row_arrivals.glsl"
 vec4 sourceAt(uint i) { return colourAt(pass.source, pass.half_source, i); }
@@ -61,17 +64,14 @@ vec4 sourceAt(uint i) { return colourAt(pass.source, pass.half_source, i); }
 #include "lib/moved_error.glsl"
 #include "lib/copy_arrived.glsl"
 
-// True if later pictures are made from this one.
-bool keepsWords() { return !kForward && any(notEqual(uvec2(pass.words), uvec2(0))); }
-
 void putPixel(WarpView warp, uvec2 at, uint pixel_class, vec4 colour, float inverse_depth) {
     const uint i = at.y * warp.size_px.x + at.x;
-    if (kComponents && pixel_class == kHole) {
-        pass.component_pixels.at[kHalfColours ? i : 2 * i].parent = i;
+    if (groupsHoles() && pixel_class == kHole) {
+        ComponentPixels(uvec2(pass.target)).at[kHalfColours ? i : 2 * i].parent = i;
     } else {
         putColour(pass.target, pass.half_target, i, colour);
     }
-    if (kDepth) { pass.depths.at[i] = inverse_depth > 0 ? colour.a / inverse_depth : 0; }
+    if (keepsDepths()) { pass.depths.at[i] = inverse_depth > 0 ? colour.a / inverse_depth : 0; }
 }
 
 #include "lib/odd_rows.glsl"
@@ -108,7 +108,7 @@ float putResolved(WarpView warp, uint row, uvec2 at, Resolved resolved, bool ope
     if (keepsWords()) {
         pass.words.at[at.y * warp.size_px.x + at.x] = movingPixel(resolved.inverse_depth, kLanded, spreadCode(resolved.variance_share));
     }
-    if (!kPredictErrors || (at.y & 1) != 0) { return 0; }
+    if (!predictsErrors() || (at.y & 1) != 0) { return 0; }
     if (open && resolved.pixel_class == kHole) { return 2 * holeError(warp, source_px, int(resolved.column) - int(at.x)); }
     const float variance_px2 = min(uncertaintyOf(row, at.x, warp.size_px.x, resolved) * disparity_px * disparity_px, kMaxSpread * kMaxSpread);
     return 2 * (variance_px2 * dot(found.gradient, found.gradient) + found.lost) / 3;
@@ -116,13 +116,13 @@ float putResolved(WarpView warp, uint row, uvec2 at, Resolved resolved, bool ope
 
 // Writes a pixel that something reached, or any pixel if open ones are not told apart; returns its expected squared error, and its class.
 float putReached(WarpView warp, uint row, uvec2 at, uint arrival, out uint pixel_class) {
-    if (kForward) {
+    if (copiesColours()) {
         const Copied copied = copyArrived(warp, row, at);
         pixel_class = copied.pixel_class;
         putPixel(warp, at, pixel_class, copied.colour, copied.inverse_depth);
         return 0;
     }
-    if (kRowSource == kPlacesGiven) { return sampleBelow(warp, at, pixel_class); }
+    if (kPlaced) { return sampleBelow(warp, at, pixel_class); }
     const Resolved resolved = resolveArrived(at, arrival);
     pixel_class = resolved.pixel_class;
     return putResolved(warp, row, at, resolved, false);
@@ -158,7 +158,7 @@ void hideTiles(uint y, uint first_tile, uint width) {
         if (pass.tile_kinds.at[first_tile + x / kTileSize] != kTileHidden) { continue; }
         const uint i = y * width + x;
         putColour(pass.target, pass.half_target, i, vec4(pass.background, 0));
-        if (kDepth) { pass.depths.at[i] = 0; }
+        if (keepsDepths()) { pass.depths.at[i] = 0; }
         if (keepsWords()) { pass.words.at[i] = 0; }
     }
 }
@@ -177,15 +177,13 @@ void main() [[subgroup_uniform_control_flow]] {
         hidden_count = 0;
         open_count = 0;
     }
-    if (kRowSource != kPlacesGiven) {
+    if (!kPlaced) {
+        if (gl_LocalInvocationIndex < (tiles + 31) / 32) { open_bits[gl_LocalInvocationIndex] = 0; }
         uint word = gl_LocalInvocationIndex;
         [[dont_unroll]] do {
             if (word < (width + 31) / 32) { arrived_bits[word] = 0; }
             word += kWarpGroup;
         } while (word < (width + 31) / 32);
-    }
-    if (kFindsOpen) {
-        if (gl_LocalInvocationIndex < (tiles + 31) / 32) { open_bits[gl_LocalInvocationIndex] = 0; }
     }
     if (kClasses) {
         for (uint tile = gl_LocalInvocationIndex; tile < tiles; tile += kWarpGroup) { tile_classes[tile] = 0; }
@@ -206,12 +204,13 @@ void main() [[subgroup_uniform_control_flow]] {
         if (items > 0) { moveRow(warp, y, width); }
         barrier();
     }
-    if (kRowSource != kPlacesGiven) {
+    if (!kPlaced) {
         if (items > 0) { loadRow(row, width); }
         memoryBarrierBuffer();  // colours may overwrite what was read
         barrier();
     }
 
+    const bool predicts = predictsErrors(), finds_open = !kPlaced && !copiesColours();
     uvec3 classes = uvec3(0);
     uint begin = 0;
     [[dont_unroll]] do {
@@ -219,8 +218,8 @@ void main() [[subgroup_uniform_control_flow]] {
         const uint tile = item < items ? moved_tiles[slot] : tiles, x = tile * kTileSize + item % kTileSize;
         uint steps = 0, arrival = 0;
         if (x < width) {
-            if (kFindsOpen) { arrival = arrivalAt(row, x); }
-            if (kFindsOpen && arrival == 0) {
+            if (!kPlaced) { arrival = arrivalAt(row, x); }
+            if (finds_open && arrival == 0) {
                 listOpen(slot);
             } else {
                 uint pixel_class;
@@ -228,10 +227,10 @@ void main() [[subgroup_uniform_control_flow]] {
                 countClass(x, pixel_class, classes);
             }
         }
-        if (kPredictErrors) { addErrors(first_tile + tile, steps, lanes); }
+        if (predicts) { addErrors(first_tile + tile, steps, lanes); }
         begin += kWarpGroup;
     } while (begin < items);
-    if (kFindsOpen) {
+    if (finds_open) {
         barrier();
         const uint open_items = open_count * kTileSize;
         begin = 0;
@@ -244,7 +243,7 @@ void main() [[subgroup_uniform_control_flow]] {
                 steps = errorSteps(putResolved(warp, row, uvec2(x, y), resolved, true));
                 countClass(x, resolved.pixel_class, classes);
             }
-            if (kPredictErrors) { addErrors(first_tile + tile, steps, lanes); }
+            if (predicts) { addErrors(first_tile + tile, steps, lanes); }
             begin += kWarpGroup;
         } while (begin < open_items);
     }
@@ -260,7 +259,7 @@ void main() [[subgroup_uniform_control_flow]] {
         if (covered > 0) { atomicAdd(pass.counters.at[0].covered_pixels, covered); }
         if (gaps > 0) { atomicAdd(pass.counters.at[0].gap_pixels, gaps); }
         if (holes > 0) { atomicAdd(pass.counters.at[0].hole_pixels, holes); }
-        if (kComponents && holes > 0) {
+        if (groupsHoles() && holes > 0) {
             atomicOr(pass.counters.at[0].component_groups.x, warp.size_tiles.x);
             atomicOr(pass.counters.at[0].component_groups.y, 2 * warp.size_tiles.y);
             atomicOr(pass.counters.at[0].component_groups.z, 1);

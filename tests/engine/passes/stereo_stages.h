@@ -139,30 +139,30 @@ public:
         const bool shares = row_source != gpu::kPlacesGiven && width <= longestSharedRow(gpu_.context());
         const std::uint32_t row_steps = shares ? (width + gpu::kArrivalsStep - 1) / gpu::kArrivalsStep : 0;
         dispatch(ResampleKernel{.rectified = rectified(),
-                                .predict_errors = parts.errors,
-                                .depth = parts.depths,
-                                .classes = parts.classes,
-                                .components = parts.components,
                                 .row_steps = row_steps,
                                 .half_colours = areHalves(rows_),
-                                .forward = parts.forward,
-                                .row_source = row_source},
+                                .row_source = row_source,
+                                .way = parts.classes   ? gpu::kDoesAny
+                                       : parts.errors  ? gpu::kPredicts
+                                       : parts.forward ? gpu::kCopies
+                                                       : gpu::kSamples},
                  gpu::ResamplePass{.warp = view(),
                                    .source = colours_.address<gpu::vec4>(),
                                    .half_source = colours_.address<gpu::uvec2>(),
                                    .moving = parts.moves_row ? moving() : arrivals(),
                                    .target = affiliated_.address<gpu::vec4>(),
                                    .half_target = affiliated_.address<gpu::uvec2>(),
-                                   .depths = depths_.address<float>(),
+                                   .depths = parts.depths ? depths_.address<float>() : gpu::DeviceAddress<float>{},
                                    .tile_kinds = words(tile_kinds_),
-                                   .tile_errors = words(tile_errors_),
+                                   .tile_errors = parts.errors || parts.odd ? words(tile_errors_) : gpu::DeviceAddress<gpu::uint>{},
                                    .pixel_classes = words(classes_),
-                                   .component_pixels = affiliated_.address<gpu::ComponentPixel>(),
                                    .counters = counters(),
                                    .shown_mask = parts.hidden_tiles ? words(shown_mask_) : gpu::DeviceAddress<gpu::uint>{},
                                    .words = {},
                                    .background = parts.background,
-                                   .first_row = parts.odd ? 1u : 0u},
+                                   .first_row = parts.odd ? 1u : 0u,
+                                   .copies_colours = parts.forward ? 1u : 0u,
+                                   .groups_holes = parts.components ? 1u : 0u},
                  {(view_.size_px.y + view_.rows_apart - 1) / view_.rows_apart, 1});
     }
     // All steps of the pass, whatever the counters say of holes.
