@@ -15,7 +15,6 @@ void keepForWarp(Kept& source, const Warp& warp) {
     if (!warp.may_move || source.past) { return; }  // a past is warped as it is
     const bool predicts = warp.settings.choice == TileChoice::kPredicted;
     source.moving = true;
-    source.spread = predicts;
     source.depth_choice = warp.settings.depth_choice;
     // Odd rows will be warped like even ones, unless somebody asks for their moments.
     source.even_rows = predicts && warp.relation.rectified && !source.moments && source.depth_choice == gpu::kDepthInverse;

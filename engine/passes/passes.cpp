@@ -20,17 +20,15 @@ std::uint32_t threadsPerCell(const Context& context, std::uint32_t wanted) {
 }
 
 RasterizeKernel rasterizeKernel(std::uint32_t threads_per_cell, const Kept& kept, std::uint32_t splat_shape, bool masked) {
+    const bool moves_by_depth = kept.moving && kept.depth_choice != gpu::kDepthInverse;
     return {.threads_per_cell = threads_per_cell,
-            .depth = kept.depth && !kept.past,  // a past has it from its words
-            .moments = kept.moments,
-            .moving = kept.moving || kept.past,
-            .spread = kept.spread || kept.past,
-            .masked = masked,
-            .depth_choice = kept.depth_choice,
+            .depth = (kept.depth || moves_by_depth) && !kept.past,  // a past has it from its words
+            .moments = kept.moments || kept.moving || kept.past,
             .half_colours = kept.half_floats,
             .splat_kind = splat_shape,
             .local_size_x = gpu::kCellsPerTile * threads_per_cell,
             .even_rows = kept.even_rows,
+            .masked = masked,
             .past = kept.past};
 }
 
@@ -58,27 +56,19 @@ KernelTable passKernels(const Context& context, std::uint32_t wanted_threads_per
     append(table,
            everyVariant<TileRangesKernel>([](const TileRangesKernel& k) { return k.masked == 1 || (k.half_colours == 0 && k.past == 0); }));
     const std::uint32_t threads = threadsPerCell(context, wanted_threads_per_cell);
-    const auto rasterize = [&](const Kept& kept, bool masked) {
-        for (std::uint32_t choices = 0; choices < 8; ++choices) {
-            Kept own = kept;
-            own.depth = (choices & 1) != 0;
-            own.half_floats = (choices & 2) != 0;
-            // Moments are for files and tests, and a past's depths follow from its words.
-            if ((own.moments && own.half_floats) || (own.past && own.depth)) { continue; }
-            table.push_back(variantOf(rasterizeKernel(threads, own, choices >> 2, masked)));
-        }
-    };
-    rasterize({}, true);
-    for (const bool moments : {false, true}) {
-        rasterize({.moments = moments}, false);
-        for (const gpu::uint choice : {gpu::kDepthSum, gpu::kDepthMean, gpu::kDepthInverse}) {
-            rasterize({.moments = moments, .moving = true, .depth_choice = choice}, false);
-            rasterize({.moments = moments, .moving = true, .spread = true, .depth_choice = choice}, false);
-        }
+    for (std::uint32_t choices = 0; choices < 8; ++choices) {
+        const Kept plain{.depth = (choices & 1) != 0, .half_floats = (choices & 2) != 0};
+        Kept moving = plain, even_rows = plain, past = plain;
+        moving.moving = even_rows.moving = even_rows.even_rows = past.past = true;
+        const auto add = [&](const Kept& kept, bool masked) {
+            table.push_back(variantOf(rasterizeKernel(threads, kept, choices >> 2, masked)));
+        };
+        for (const Kept& kept : {plain, moving, even_rows}) { add(kept, false); }
+        add(plain, true);
+        if (plain.depth) { continue; }  // a past's depths follow from its words
+        add(past, false);
+        add(past, true);
     }
-    rasterize({.moving = true, .spread = true, .even_rows = true}, false);
-    rasterize({.past = true}, false);
-    rasterize({.past = true}, true);
     return table;
 }
 
@@ -339,7 +329,6 @@ void Passes::recordRasterized(const EyePart& part, const KeyValues& sorted) {
                                        .ranks = sorted.values,
                                        .ranges = part.ranges(),
                                        .colours = target.picture->colours.address<gpu::vec4>(),
-                                       .half_colours = target.picture->colours.address<gpu::uvec2>(),
                                        .depths = target.kept.depth ? target.picture->depths.address<float>() : gpu::DeviceAddress<float>{},
                                        .moments = target.moments,
                                        .moving = target.moving,
@@ -349,6 +338,7 @@ void Passes::recordRasterized(const EyePart& part, const KeyValues& sorted) {
                                        .background = is_light ? glm::vec3(lightOf(glm::dvec3(target.background))) : target.background,
                                        .eye = part.eye(),
                                        .row_words = target.row_words,
+                                       .depth_choice = target.kept.depth_choice,
                                        .is_light = is_light,
                                        .past_tiles = target.picture->tiles.address<gpu::PastTile>()};
     const Kernel& kernel = kernels_.get(rasterizeKernel(threads_per_cell_, target.kept, part.scene.splatShape(), part.lists_tiles));

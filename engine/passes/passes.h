@@ -24,11 +24,10 @@ struct Kept {
     bool depth = false;                           // D, to Picture::depths
     bool moments = false;                         // I and J
     bool moving = false;                          // the picture is going to be warped into the other eye
-    bool spread = false;                          // and needs to know how far its pixels' depths spread
     bool even_rows = false;                       // only its even rows are warped; needs kDepthInverse, and no moments kept
-    gpu::uint depth_choice = gpu::kDepthInverse;  // of a warped pixel
+    gpu::uint depth_choice = gpu::kDepthInverse;  // of a warped pixel; that of a past is always this
     bool half_floats = false;                     // colours are stored as half floats
-    bool past = false;  // later pictures are going to be made from this one: its words and tiles are kept; it is warped with its spread
+    bool past = false;                            // later pictures are going to be made from this one: its words and tiles are kept
 };
 
 // The tiles to render (shaders/lib/tile_mask.glsl). `list` is there only if the device alone knows how many they are; `full` is

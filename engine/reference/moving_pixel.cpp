@@ -43,8 +43,7 @@ double spreadOf(std::uint32_t code) { return code == 0 ? 0.0 : std::exp2((code -
 std::optional<MovingPixel> movingPixel(const Picture& dominant, std::size_t pixel, const StereoSettings& settings) {
     const double inverse_depth = chooseInverseDepth(dominant, pixel, settings.depth_choice);
     if (!(inverse_depth >= 0.0 && inverse_depth < kNearest)) { return std::nullopt; }
-    const bool spreads = settings.choice == TileChoice::kPredicted && inverse_depth > 0.0;
-    return MovingPixel{inverse_depth, spreads ? spreadCode(deviation(dominant, pixel) / inverse_depth) : 0};
+    return MovingPixel{inverse_depth, inverse_depth > 0.0 ? spreadCode(deviation(dominant, pixel) / inverse_depth) : 0};
 }
 
 double roundedDepth(double inverse_depth) {

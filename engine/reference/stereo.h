@@ -52,7 +52,7 @@ double spreadOf(std::uint32_t code);
 // Also rasterize: a pixel as it is warped; nothing if its depth is not one.
 struct MovingPixel {
     double inverse_depth;
-    std::uint32_t spread;  // a code; 0 where errors are not predicted
+    std::uint32_t spread;  // a code
 };
 std::optional<MovingPixel> movingPixel(const Picture& dominant, std::size_t pixel, const StereoSettings& settings);
 

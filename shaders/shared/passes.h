@@ -117,17 +117,17 @@ struct RasterizePass {
     ProjectedSplats splats;
     Uints ranks;
     UVec2s ranges;
-    FloatColours colours;  // out: one of the two
-    HalfColours half_colours;
-    Floats depths;          // out where asked for: D = sum w z
-    Vec2s moments;          // out where asked for: I = sum w/z and J = sum w/z^2
-    Uints moving;           // out if the picture is going to be warped: lib/moving_pixel.glsl
+    FloatColours colours;   // out; of half floats this is their address, too
+    Floats depths;          // out where asked for, otherwise null: D = sum w z
+    Vec2s moments;          // out where asked for, otherwise null: I = sum w/z and J = sum w/z^2
+    Uints moving;           // out if the picture is going to be warped, otherwise null: lib/moving_pixel.glsl
     Uints arrivals;         // out then, unless null: 0, since nothing has arrived in the other eye yet
     Uints full_tiles;       // under a mask: the tiles to render
     EyeCounterss counters;  // under a mask: how many
     vec3 background;
     uint eye;
     uint row_words;        // of `moving` and `arrivals`
+    uint depth_choice;     // the depth that a pixel is warped by: kDepthInverse, or one of those that D tells
     uint is_light;         // 1: colours and background are light, to be encoded once they are blended
     PastTiles past_tiles;  // out if the picture is going to be a past; under a mask in, too
 };

@@ -12,17 +12,14 @@
 #include "lib/moving_pixel.glsl"
 
 layout(constant_id = 0) const uint kThreadsPerCell = 32;  // 8, 16, 32 or 64
-layout(constant_id = 1) const bool kDepth = true;
-layout(constant_id = 2) const bool kMoments = false;  // of the inverse depth
-layout(constant_id = 3) const bool kMoving = false;   // the picture is going to be warped
-layout(constant_id = 4) const bool kSpread = false;   // and needs to know how far its pixels' depths spread
-layout(constant_id = 5) const bool kMasked = false;   // only the tiles of pass.full_tiles
-layout(constant_id = 6) const uint kDepthChoice = kDepthInverse;  // the depth that a pixel is warped by
-layout(constant_id = 7) const bool kHalfColours = false;
-layout(constant_id = 8) const uint kSplatKind = kDiscs;  // dimmed or not makes no difference here
-layout(local_size_x_id = 9) in;  // kCellsPerTile * kThreadsPerCell
-layout(constant_id = 10) const bool kEvenRows = false;  // an odd row is going to be warped like the even one above it
-layout(constant_id = 11) const bool kPast = false;      // the picture is going to be a past; under a mask it is made from one
+layout(constant_id = 1) const bool kDepth = true;     // D is summed
+layout(constant_id = 2) const bool kMoments = false;  // I and J are, as for a picture that is going to be warped
+layout(constant_id = 3) const bool kHalfColours = false;
+layout(constant_id = 4) const uint kSplatKind = kDiscs;  // dimmed or not makes no difference here
+layout(local_size_x_id = 5) in;  // kCellsPerTile * kThreadsPerCell
+layout(constant_id = 6) const bool kEvenRows = false;  // an odd row is going to be warped like the even one above it
+layout(constant_id = 7) const bool kMasked = false;    // only the tiles of pass.full_tiles
+layout(constant_id = 8) const bool kPast = false;      // the picture is going to be a past; under a mask it is made from one
 
 #include "lib/splat.glsl"
 #include "lib/outline.glsl"
@@ -30,10 +27,6 @@ layout(constant_id = 11) const bool kPast = false;      // the picture is going 
 #include "lib/srgb.glsl"
 
 layout(push_constant, scalar) uniform Push { RasterizePass pass; };
-
-// The sums that the loop needs so that a pixel can be warped.
-const bool kMovesByDepth = kMoving && kDepthChoice != kDepthInverse;
-const bool kMovesByInverseDepth = kSpread || (kMoving && kDepthChoice == kDepthInverse);
 
 const uint kThreads = kCellsPerTile * kThreadsPerCell;
 const uint kPixels = kCellSize * kCellSize / kThreadsPerCell;  // of a thread: a column
@@ -145,13 +138,12 @@ void blend(uint slot, vec2 first_px, uint max_inverse_depth_bits) {
         transmittance[p] = closes ? -transmittance[p] : after;
         most_open = max(most_open, transmittance[p]);
         colour[p] += weight * splat_colour;
-        const bool moves = !kEvenRows || (p & 1) == 0;
-        if (kDepth || (kMovesByDepth && moves)) { depth[p] += weight * (kSplatKind != kDiscs || on_disc ? z : centre_z); }
-        if (kMoments || (kMovesByInverseDepth && moves)) {
+        if (kDepth) { depth[p] += weight * (kSplatKind != kDiscs || on_disc ? z : centre_z); }
+        if (kMoments && (!kEvenRows || (p & 1) == 0)) {
             const float inverse_z = kSplatKind != kDiscs || on_disc ? q_p : depth_form.x;
             const float weighted = weight * inverse_z;
             moments[p].x += weighted;
-            if (kMoments || kSpread) { moments[p].y += weighted * inverse_z; }
+            moments[p].y += weighted * inverse_z;
         }
     }
     any_open = most_open > 0;
@@ -176,13 +168,13 @@ void blendBatch(uint splats, uint cell, vec2 first_px, uint max_inverse_depth_bi
 // The pixel as it is going to be warped: at the depth that stands for it, infinitely far where nothing was blended.
 uint toMove(float alpha, float depth_sum, vec2 inverse_depth_sums) {
     const float mean = inverse_depth_sums.x / alpha;
-    const float inverse_depth = !isPositive(alpha)             ? 0
-                                : kDepthChoice == kDepthInverse ? mean
-                                : kDepthChoice == kDepthMean    ? alpha / depth_sum
-                                                                : 1 / depth_sum;
+    const float inverse_depth = !isPositive(alpha)                                    ? 0
+                                : !kDepth || pass.depth_choice == kDepthInverse ? mean
+                                : pass.depth_choice == kDepthMean               ? alpha / depth_sum
+                                                                                : 1 / depth_sum;
     if (floatBitsToUint(inverse_depth) >= floatBitsToUint(1e30)) { return 0; }  // neither are negative ones and NaN less
     const float variance = max(inverse_depth_sums.y / alpha - mean * mean, 0);
-    return movingPixel(inverse_depth, kLanded, kSpread ? spreadCode(variance / (inverse_depth * inverse_depth)) : 0);
+    return movingPixel(inverse_depth, kLanded, spreadCode(variance / (inverse_depth * inverse_depth)));
 }
 
 // Writes what a picture that is made from this one must know of the tile. Every thread must call it; `error` is what its pixels turned out
@@ -253,7 +245,9 @@ void main() [[subgroup_uniform_control_flow]] {
         begin += kBatchSize;
     } while (begin < range.y);
 
-    const bool clears_arrivals = any(notEqual(uvec2(pass.arrivals), uvec2(0)));
+    const bool clears_arrivals = isThere(uvec2(pass.arrivals)), keeps_moments = kMoments && !kEvenRows && !kPast && isThere(uvec2(pass.moments)),
+               moves = kEvenRows || kPast || (kMoments && isThere(uvec2(pass.moving)));
+    HalfColours half_colours = HalfColours(uvec2(pass.colours));
     float error = 0;
     [[unroll]] for (uint p = 0; p < kPixels; ++p) {
         const uvec2 pixel = first_pixel + uvec2(0, p);
@@ -263,13 +257,13 @@ void main() [[subgroup_uniform_control_flow]] {
             const vec3 blended = colour[p] + left * pass.background;
             const vec3 shown = pass.is_light != 0 ? encode(blended) : blended;
             if (kPast && kMasked) {
-                const vec3 off = shown - colourAt(pass.colours, pass.half_colours, at).rgb;
+                const vec3 off = shown - colourAt(pass.colours, half_colours, at).rgb;
                 error += min(dot(off, off), kMaxPixelError);
             }
-            putColour(pass.colours, pass.half_colours, at, vec4(shown, 1 - left));
-            if (kDepth) { pass.depths.at[at] = depth[p]; }
-            if (kMoments) { pass.moments.at[at] = moments[p]; }
-            if (kMoving && (!kEvenRows || (pixel.y & 1) == 0)) {
+            putColour(pass.colours, half_colours, at, vec4(shown, 1 - left));
+            if (kDepth && isThere(uvec2(pass.depths))) { pass.depths.at[at] = depth[p]; }
+            if (keeps_moments) { pass.moments.at[at] = moments[p]; }
+            if (moves && (!kEvenRows || (pixel.y & 1) == 0)) {
                 pass.moving.at[pixel.y * pass.row_words + pixel.x] = toMove(1 - left, depth[p], moments[p]);
                 if (clears_arrivals) { pass.arrivals.at[pixel.y * pass.row_words + pixel.x] = 0; }
             }

@@ -83,7 +83,7 @@ struct Raster {
         pass.ranks = ranks_.address<gpu::uint>();
         pass.ranges = ranges_.address<gpu::uvec2>();
         pass.colours = colours.address<glm::vec4>();
-        pass.half_colours = colours.address<gpu::uvec2>();
+        pass.depth_choice = gpu::kDepthInverse;
         pass.background = kBackground;
     }
 
@@ -181,9 +181,9 @@ TEST_CASE_FIXTURE(Gpu, "rasterize rounds colours to half floats where these are 
     for (const test::StagedScene& staged : test::stagedScenes()) {
         CAPTURE(staged.view.name);
         Raster raster(*this, staged);
-        raster.run({.depth_choice = gpu::kDepthInverse});
+        raster.run({});
         const auto rounded = test::packHalves(readBack<glm::vec4>(raster.colours, raster.pixels));
-        raster.run({.depth_choice = gpu::kDepthInverse, .half_colours = 1});
+        raster.run({.half_colours = 1});
         const auto halves = readBack<gpu::uvec2>(raster.colours, raster.pixels);
         // Which of the two nearest is up to the device.
         std::size_t other = 0;
@@ -206,37 +206,33 @@ TEST_CASE_FIXTURE(Gpu, "rasterize leaves the word that each pixel moves by, and 
         const reference::Picture truth = raster.makeTwin();
         const std::size_t width = truth.size_px.x;
         for (const DepthChoice choice : {DepthChoice::kSum, DepthChoice::kMean, DepthChoice::kInverse}) {
-            for (const bool spreads : {false, true}) {
-                INFO("choice ", static_cast<int>(choice), ", spreads ", spreads);
-                RasterizeKernel kernel{.moving = 1, .spread = spreads, .depth_choice = test::depthChoiceOf(choice)};
-                const auto words = wordsOnDevice(*this, raster, kernel);
-                if (spreads) {
-                    auto of_even = words;
-                    for (std::size_t i = 0; i < of_even.size(); ++i) { of_even[i] = i / (4 * width) % 2 == 0 ? words[i] : kUnwritten; }
-                    kernel.even_rows = 1;
-                    CHECK(wordsOnDevice(*this, raster, kernel) == of_even);
+            CAPTURE(static_cast<int>(choice));
+            raster.pass.depth_choice = test::depthChoiceOf(choice);
+            RasterizeKernel kernel{.depth = choice != DepthChoice::kInverse, .moments = 1};
+            const auto words = wordsOnDevice(*this, raster, kernel);
+            auto of_even = words;
+            for (std::size_t i = 0; i < of_even.size(); ++i) { of_even[i] = i / (4 * width) % 2 == 0 ? words[i] : kUnwritten; }
+            kernel.even_rows = 1;
+            CHECK(wordsOnDevice(*this, raster, kernel) == of_even);
+            // Where D does not choose, its sum changes nothing.
+            if (choice == DepthChoice::kInverse) { CHECK(wordsOnDevice(*this, raster, {.depth = 1, .moments = 1}) == words); }
+            std::size_t touched = 0;
+            for (std::size_t i = 0; i < raster.pixels; ++i) {
+                const std::size_t row = 4 * width * (i / width), x = i % width;
+                touched += words[row + x] == 0 && words[row + 2 * width + x] == kUnwritten ? 0 : 1;
+                const reference::Arrival got = test::unpackArrival(words[row + width + x]);
+                const auto expected = reference::movingPixel(truth, i, {.depth_choice = choice});
+                CHECK(got.way != reference::Arrival::kBetween);
+                if ((got.way == reference::Arrival::kLanded) != expected.has_value()) {
+                    ++other;
+                } else if (expected) {
+                    other += test::isNear(got.inverse_depth, expected->inverse_depth, 1e-5, 1e-12) ? 0 : 1;
+                    // Spreads of less than 2^-10 are the rounding of single precision's sums; rounding also decides between two codes.
+                    other_spread += got.spread == expected->spread || std::max(got.spread, expected->spread) <= 7 ? 0 : 1;
                 }
-                const reference::StereoSettings stereo{.choice = spreads ? TileChoice::kPredicted : TileChoice::kPaper,
-                                                       .depth_choice = choice};
-                std::size_t touched = 0;
-                for (std::size_t i = 0; i < raster.pixels; ++i) {
-                    const std::size_t row = 4 * width * (i / width), x = i % width;
-                    touched += words[row + x] == 0 && words[row + 2 * width + x] == kUnwritten ? 0 : 1;
-                    const reference::Arrival got = test::unpackArrival(words[row + width + x]);
-                    const auto expected = reference::movingPixel(truth, i, stereo);
-                    CHECK(got.way != reference::Arrival::kBetween);
-                    if ((got.way == reference::Arrival::kLanded) != expected.has_value()) {
-                        ++other;
-                    } else if (expected) {
-                        other += test::isNear(got.inverse_depth, expected->inverse_depth, 1e-5, 1e-12) ? 0 : 1;
-                        // Spreads of less than 2^-10 are the rounding of single precision's sums; rounding also decides between two codes.
-                        other_spread += got.spread == expected->spread || std::max(got.spread, expected->spread) <= 7 ? 0 : 1;
-                        if (!spreads) { CHECK(got.spread == 0); }
-                    }
-                }
-                CHECK(touched == 0);
-                pixels += raster.pixels;
             }
+            CHECK(touched == 0);
+            pixels += raster.pixels;
         }
     }
     MESSAGE(other << " depths and " << other_spread << " spreads of " << pixels << " pixels differ");

@@ -88,7 +88,6 @@ TEST_CASE("a pixel is moved if its depth is one; its spread is told where errors
     CHECK(at(1, DepthChoice::kMean)->inverse_depth == doctest::Approx(1.0 / 1.5));
     CHECK(at(1, DepthChoice::kMean)->spread == spreadCode(0.25 * 1.5));
     CHECK(at(1, DepthChoice::kSum)->inverse_depth == doctest::Approx(1.0 / 0.75));
-    CHECK(movingPixel(picture, 1, {.choice = TileChoice::kPaper})->spread == 0);
     // Nothing there is infinitely far; what is behind the eye or on it is nowhere.
     CHECK(at(2, DepthChoice::kMean)->inverse_depth == 0.0);
     CHECK(at(2, DepthChoice::kMean)->spread == 0);
