@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 namespace binosplat {
@@ -175,14 +176,17 @@ double FrameRoom::spareFor(double ahead) const {
 }
 
 std::uint32_t FrameRoom::roomForPairs(const FramePlan& plan, const TargetPlan& target, std::uint32_t pairs) const {
-    return plan.isSortedInPicture(target) ? PairBuffers::capacityBeside(picture(target.picture).colours, pairs) : pairs;
+    // Once moving pays again, patches are sorted in the lists alone.
+    return plan.isSortedInPicture(target) && !target.warp ? PairBuffers::capacityBeside(picture(target.picture).colours, pairs) : pairs;
 }
 
 FrameCapacity FrameRoom::roomFor(const FramePlan& plan, const FrameState& state, double ahead, double spare) const {
-    const auto enough = [&](std::uint32_t needed, std::uint32_t capacity) {
-        if (ahead * needed <= capacity) { return capacity; }
-        const double roomy = std::min(std::ceil(needed * spare / 1024.0) * 1024.0, 2147482624.0);
-        return std::max(needed, static_cast<std::uint32_t>(roomy));
+    // `roomOf`: of so many; it need not be in proportion.
+    const auto enough = [&](std::uint32_t needed, std::uint32_t capacity, const auto& roomOf) {
+        const auto times = [&](double factor, double step) {
+            return static_cast<std::uint32_t>(std::min(std::ceil(needed * factor / step) * step, 2147482624.0));
+        };
+        return roomOf(std::max(needed, times(ahead, 1.0))) <= capacity ? capacity : roomOf(std::max(needed, times(spare, 1024.0)));
     };
     const FrameCapacity now = lists_.capacity();
     FrameCapacity wanted = now;
@@ -194,14 +198,15 @@ FrameCapacity FrameRoom::roomFor(const FramePlan& plan, const FrameState& state,
     const int lists = std::max(plan.shares(), plan.shares_ahead);
     for (const gpu::ListState& visible : state.visible) {
         const std::uint32_t most = std::max(ofAll(scene_->splatCount(), lists), 1u);
-        wanted.visible = std::max(wanted.visible, std::min(enough(ofAll(visible.needed, lists), now.visible), most));
+        wanted.visible = std::max(wanted.visible, std::min(enough(ofAll(visible.needed, lists), now.visible, std::identity{}), most));
     }
     for (std::size_t t = 0; t < plan.targets.size(); ++t) {
         const std::uint32_t pairs = state.targets[t].pairs.needed;
         check(pairs != UINT32_MAX, "an eye sees more than {} pairs of tile and splat, fewer splats or pixels are needed", gpu::kMaxItems);
         // Without the source's pairs every tile seems cheap to render: how many the target needs turns out in the next try.
         if (plan.targets[t].warp && isSourceVoid(plan, state)) { continue; }
-        wanted.pairs = std::max(wanted.pairs, enough(roomForPairs(plan, plan.targets[t], ofAll(pairs, plan.shares())), now.pairs));
+        const auto roomOf = [&](std::uint32_t of) { return roomForPairs(plan, plan.targets[t], of); };
+        wanted.pairs = std::max(wanted.pairs, enough(ofAll(pairs, plan.shares()), now.pairs, roomOf));
     }
     return wanted;
 }

@@ -40,11 +40,13 @@ bool holdsLogarithms(const GltfDocument& document) {
 // Of what nodes move there, in float64: positions that are themselves far from 0 have lost their detail already.
 glm::dvec3 findOrigin(const GltfDocument& document) {
     constexpr std::size_t kMostSamples = 4096;
-    const std::size_t most = std::max<std::size_t>(kMostSamples / document.parts.size(), 1);
+    double all = 0.0;
+    for (const GltfSplats& part : document.parts) { all += static_cast<double>(part.count()); }
     std::array<std::vector<double>, 3> places, moves;
     std::vector<float> values;
     for (const GltfSplats& part : document.parts) {
-        const auto rows = static_cast<std::size_t>(std::min<std::uint64_t>(part.count(), most));
+        const double share = static_cast<double>(part.count()) / std::max(all, 1.0);  // so that small parts far away move nobody
+        const auto rows = std::min(static_cast<std::size_t>(part.count()), static_cast<std::size_t>(std::ceil(share * kMostSamples)));
         part.position.read(0, rows, values);
         for (std::size_t row = 0; row < rows; ++row) {
             const glm::dvec4 place = part.world_from_node * glm::dvec4(values[3 * row], values[3 * row + 1], values[3 * row + 2], 1.0);

@@ -101,6 +101,38 @@ TEST_CASE_FIXTURE(Gpu, "lists have room ahead of what eyes need, so that a view 
     CHECK(countOf(*frame.finish(), "frames_cut_short") == 0);
 }
 
+TEST_CASE_FIXTURE(Gpu, "lists have room ahead however many pairs a pixel has, and so however many of them are sorted in the picture") {
+    const ViewedScene view = viewAtelier();
+    const GpuScene scene(context(), view.scene);
+    StereoFrame counting(context(), scene);
+    const auto pairsOf = [&](const std::array<Eye, 2>& eyes) {
+        const FrameResult result = counting.render(eyes, seeing());
+        return std::max(countOf(result, "tile_pairs_left"), countOf(result, "tile_pairs_right"));
+    };
+    std::size_t tried = 0;
+    for (unsigned side = 24; side <= 120; side += 4) {
+        CAPTURE(side);
+        const auto narrow = stereoPair(ofSize(view.eye, {side, side}), 0.063);
+        const auto pairs = static_cast<double>(pairsOf(narrow));
+        // A wider view, with a tenth more.
+        std::array<Eye, 2> wide = narrow;
+        double more = 1.0;
+        while (more < 1.06) {
+            for (Eye& eye : wide) { eye.intrinsics.fx *= 0.99, eye.intrinsics.fy *= 0.99; }
+            more = static_cast<double>(pairsOf(wide)) / pairs;
+        }
+        if (more > StereoFrame::kRoomAhead) { continue; }
+        ++tried;
+        KeptFrame frame(context(), scene, kNoRoom);
+        frame.renderAhead(narrow, seeing());
+        auto last = frame.renderAhead(wide, seeing());
+        if (!last) { last = frame.finish(); }
+        CHECK(countOf(*last, "frames_done_again") == 1);  // the first
+        CHECK(countOf(*last, "frames_cut_short") == 0);
+    }
+    CHECK(tried > 15);
+}
+
 TEST_CASE_FIXTURE(
     Gpu, "walking is no jump, however near the near plane and however large the scene; a step of the wearer and a turn by a step are") {
     const ViewedScene view = viewAtelier();
