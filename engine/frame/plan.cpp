@@ -12,7 +12,7 @@ namespace {
 
 // The sums and words that `source` keeps for the target that is made from it.
 void keepForWarp(Kept& source, const Warp& warp) {
-    if (!warp.may_move || source.past) { return; }  // a past is warped as it is
+    if (!warp.may_move) { return; }
     const bool predicts = warp.settings.choice == TileChoice::kPredicted;
     source.moving = true;
     source.depth_choice = warp.settings.depth_choice;
@@ -210,10 +210,11 @@ Pasts pastsAfter(const FramePlan& plan, const Pasts& before) {
 FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bool may_move, const Pasts& pasts) {
     const bool keeps_past = hasPast(settings.mode) && settings.keep_past;
     const bool has_past = keeps_past && pasts.of_eyes[0] && pasts.of_eyes[1];
-    // Without a past, or if none is kept, they fall back to these modes.
-    const Mode mode = settings.mode == Mode::kTemporal && !keeps_past  ? Mode::kPredicted
-                      : settings.mode == Mode::kAlternate && !has_past ? Mode::kShared
-                                                                       : settings.mode;
+    // If none is kept `temporal` falls back to `predicted`; without one, as after a jump, both eyes are exact, since later pictures are
+    // made from them.
+    const Mode mode = settings.mode == Mode::kTemporal && !keeps_past ? Mode::kPredicted
+                      : hasPast(settings.mode) && !has_past           ? Mode::kShared
+                                                                      : settings.mode;
     const bool one_eye = mode == Mode::kMono;
     assert(eyes.size() == (one_eye ? 1u : 2u));
     check(!reprojects(mode) || eyes[0].size_px == eyes[1].size_px,
@@ -238,7 +239,7 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
                                          .half_floats = settings.half_floats,
                                          .past = keeps_past},
                                 .picture = e,
-                                .from_past_later = keeps_past && mode == Mode::kTemporal});
+                                .from_past_later = keeps_past && settings.mode == Mode::kTemporal});
     }
     plan.keeps_past = keeps_past;
     if (keeps_past && !has_past) { plan.spare_picture = static_cast<int>(eyes.size()); }
@@ -263,8 +264,10 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
     }
     const EyeRelation relation = relate(eyes[first], eyes[one_eye ? first : second]);
     plan.shares_order = !one_eye && (middle || relation.same_depths);
-    if (keeps_past && plan.shares_order && eyes[0].size_px == eyes[1].size_px) { plan.shares_ahead = mode == Mode::kTemporal ? 2 : 1; }
-    if (mode == Mode::kTemporal && has_past) {
+    if (keeps_past && plan.shares_order && eyes[0].size_px == eyes[1].size_px) {
+        plan.shares_ahead = settings.mode == Mode::kTemporal ? 2 : 1;
+    }
+    if (mode == Mode::kTemporal) {
         planTemporal(plan, settings, eyes, pasts, both);
         return plan;
     }
@@ -289,21 +292,14 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
 
     TargetPlan &source = plan.targets[first], &target = plan.targets[second];
     if (apart) { listOf(second); }
-    const bool is_new = mode == Mode::kTemporal;  // the only picture to warp is the other eye's
-    if (is_new && source.eye.size_px != target.eye.size_px) {
-        makeFromPast(target, Past{source.eye, source.picture}, settings, static_cast<std::size_t>(second));
-        plan.budget = settings.stereo.budget;
-        plan.error_bound_db = settings.stereo.error_bound_db;
-        plan.steps.push_back({Step::Kind::kPast, second});
-        plan.steps.push_back({Step::Kind::kChoose, 0});
-    } else if (is_new || reprojects(mode)) {
+    if (reprojects(mode)) {
         target.warp = Warp{.source = first,
                            .relation = relation,
                            .settings = stereoSettingsOf(settings),
                            .may_move = may_move,
                            .gaze = settings.gazes[static_cast<std::size_t>(second)]};
         target.choice = may_move ? target.warp->settings.choice : TileChoice::kAll;
-        target.keeps_classes = settings.keep_classes && !is_new;
+        target.keeps_classes = settings.keep_classes;
         keepForWarp(source.kept, *target.warp);
         plan.steps.push_back({Step::Kind::kWarp, second});
     }

@@ -116,7 +116,6 @@ void FrameRecorder::recordWarp(Commands& commands, const FramePlan& plan, int in
                                   .source_shown = room.shown(warp.source),
                                   .target_shown = room.shown(index),
                                   .words = wordsOf(plan, index),
-                                  .leaves_past = target.kept.past,
                                   .background = glm::vec3(plan.background),
                                   .target_lens = target.eye.intrinsics,
                                   .target_gaze = warp.gaze});
@@ -124,11 +123,6 @@ void FrameRecorder::recordWarp(Commands& commands, const FramePlan& plan, int in
 
 MovingWords FrameRecorder::wordsOf(const FramePlan& plan, int warped) const {
     const TargetPlan& target = plan.targets[static_cast<std::size_t>(warped)];
-    const TargetPlan& source = plan.targets[static_cast<std::size_t>(target.warp->source)];
-    if (source.kept.past) {  // they stay, and nothing is in the spare picture yet
-        return {room.picture(source.picture).words.address<gpu::uint>(), room.picture(*plan.spare_picture).words.address<gpu::uint>(),
-                source.eye.size_px.x};
-    }
     const WarpBuffers& warp = room.warp(warped);
     const Picture& picture = room.picture(target.picture);
     return {warp.moving(picture), warp.arrivals(picture), warp.rowWords()};

@@ -41,7 +41,6 @@ void countWarp(const FrameFacts& frame, std::size_t index, FrameResult& result) 
                                                  .sums_even_rows = source.kept.even_rows,
                                                  .half_floats = target.kept.half_floats,
                                                  .target_depth = target.kept.depth && !target.kept.past,
-                                                 .leaves_past = target.kept.past,
                                                  .classes = has_classes,
                                                  .size_px = target.eye.size_px,
                                                  .counters = warp,

@@ -20,11 +20,7 @@ constexpr double kRoomMade = 1.5;
 
 WarpBufferNeeds needsOf(const TargetPlan& target) {
     if (target.past || target.from_past_later) {
-        return {.size_px = target.eye.size_px,
-                .classes = target.warp && target.keeps_classes,
-                .half_floats = target.kept.half_floats,
-                .past = true,
-                .boxes = 0};
+        return {.size_px = target.eye.size_px, .classes = false, .half_floats = target.kept.half_floats, .past = true, .boxes = 0};
     }
     if (!target.warp) { return {}; }
     const bool components = target.warp->settings.choice == TileChoice::kPaper && target.warp->settings.center_rois;

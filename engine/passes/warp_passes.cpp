@@ -212,7 +212,6 @@ void WarpRecorder::resampleFrom(gpu::uint first_row, gpu::uint row_source, bool 
                                  .pixel_classes = in_.warp.pixelClasses(),
                                  .counters = counters(),
                                  .shown_mask = in_.source_shown.mask(),
-                                 .words = in_.leaves_past ? in_.target.words.address<gpu::uint>() : gpu::DeviceAddress<gpu::uint>{},
                                  .background = in_.background,
                                  .first_row = first_row,
                                  .copies_colours = copiesColours() ? 1u : 0u,
@@ -263,21 +262,20 @@ void WarpRecorder::groupHoles() {
 
 void WarpRecorder::price() {
     begin<PriceKernel>();
-    const gpu::PricePass pass{
-        .warp = view(),
-        .tile_kinds = in_.warp.tileKinds(),
-        .tile_costs = in_.warp.tileCosts(),
-        .tile_errors = in_.warp.tileErrors(),
-        .tile_prices = in_.warp.tilePrices(),
-        .price_bins = in_.warp.bins(),
-        .masked_tiles = listAt(field(offsetof(TargetState, chosen_tiles))),
-        .counters = counters(),
-        .budget = counters(),
-        .past_tiles = in_.leaves_past ? in_.target.tiles.address<gpu::PastTile>() : gpu::DeviceAddress<gpu::PastTile>{},
-        .is_last = 1,
-        .area = 1.0f,
-        .most_cost = 0,
-        .gaze = in_.target_gaze ? eyeGazeOf(*in_.target_gaze, in_.target_lens) : gpu::EyeGaze{}};
+    const gpu::PricePass pass{.warp = view(),
+                              .tile_kinds = in_.warp.tileKinds(),
+                              .tile_costs = in_.warp.tileCosts(),
+                              .tile_errors = in_.warp.tileErrors(),
+                              .tile_prices = in_.warp.tilePrices(),
+                              .price_bins = in_.warp.bins(),
+                              .masked_tiles = listAt(field(offsetof(TargetState, chosen_tiles))),
+                              .counters = counters(),
+                              .budget = counters(),
+                              .past_tiles = {},
+                              .is_last = 1,
+                              .area = 1.0f,
+                              .most_cost = 0,
+                              .gaze = in_.target_gaze ? eyeGazeOf(*in_.target_gaze, in_.target_lens) : gpu::EyeGaze{}};
     dispatch(PriceKernel{.foveated = in_.target_gaze.has_value()}, pass, tileGroups());
 }
 

@@ -56,7 +56,6 @@ struct WarpInputs {
     const ShownTiles& source_shown;
     const ShownTiles& target_shown;
     MovingWords words;
-    bool leaves_past;  // later pictures are made from the target
     glm::vec3 background;
     const Intrinsics& target_lens;
     std::optional<Gaze> target_gaze;  // empty: all tiles count alike

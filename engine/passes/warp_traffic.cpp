@@ -39,15 +39,14 @@ Traffic warpTraffic(const WarpFacts& facts) {
     // Places that even rows leave for odd ones are written and read.
     const double place = facts.even_rows ? kWord + (depth > 0.0 ? kWord : 0.0) : 0.0;
     traffic.emplace_back("resample", any_moved * (arrival + of_rows + (facts.classes || components ? pixel_class : 0.0)) +
-                                         moved * (2 * colour + depth + place + (facts.leaves_past ? kWord : 0.0)));
+                                         moved * (2 * colour + depth + place));
     if (predict) {
         // counts of tiles; the rest of what newcomers reads is negligible
         traffic.emplace_back("newcomers", any_moved * kWord * facts.visible / pixels);
     }
     if (components) { traffic.emplace_back("components", 3 * pixel_class); }
     if (predict) {
-        traffic.emplace_back(
-            "price", perTile(4) + (facts.leaves_past ? sizeof(gpu::PastTile) / kPixelsOfTile : 0.0));  // kinds, costs, errors; prices
+        traffic.emplace_back("price", perTile(4));  // kinds, costs, errors; prices
     }
     if (paper || predict) {
         // kinds (in and out), prices, costs; the list and the mask. And a workgroup sums up the prices of half of the tiles, at most.

@@ -22,7 +22,6 @@ struct WarpFacts {
     bool sums_even_rows = false;   // and so the source writes nothing for odd rows
     bool half_floats = false;      // what pictures consist of
     bool target_depth = false;     // its D is kept
-    bool leaves_past = false;      // and its words and tiles
     bool classes = false;          // of pixels are kept
     glm::uvec2 size_px{0, 0};      // of an eye
     gpu::WarpCounters counters{};  // at the end of the frame

@@ -33,9 +33,6 @@ struct Past {
 // rasterize: a picture that was rendered whole, from its moments of inverse depth. `costs`: pairs of each tile.
 Past pastOf(const Eye& eye, const Picture& full, std::span<const std::uint64_t> costs);
 
-// resample and price: a picture that was made from the other eye's, from `moved`; what is rendered of it comes over it (renderTiles).
-Past pastOf(const Eye& eye, const StereoPictures& moved);
-
 // Weights of the samples at -2 ... 3 for a place `t` (0 to 1) after sample 0: Lagrange's polynomial through all six. They sum to 1, and no
 // frequency comes out stronger than it went in, at any t, so that a picture may be resampled again and again.
 std::array<double, 6> lagrangeWeights(double t);

@@ -87,23 +87,4 @@ Past pastOf(const Eye& eye, const Picture& full, std::span<const std::uint64_t> 
     return past;
 }
 
-Past pastOf(const Eye& eye, const StereoPictures& moved) {
-    Past past{eye, moved.affiliated, {}, {}};
-    const std::size_t width = eye.size_px.x, columns = tileGrid(eye.size_px).x;
-    for (std::size_t t = 0; t < moved.tile_kinds.size(); ++t) {
-        if (moved.tile_kinds[t] == TileKind::kHidden) {
-            past.tiles.emplace_back();
-            continue;
-        }
-        const double amplitude = std::sqrt(std::max(moved.tile_errors[t] / kTilePixels, kLeastGrowth / kChannels));
-        past.tiles.push_back({moved.tile_costs[t] - kPairsOfTile, 0, 0.0, {amplitude, amplitude, amplitude, amplitude}, {}});
-    }
-    for (std::size_t i = 0; i < moved.resolved.size(); ++i) {
-        const bool hidden = moved.tile_kinds[i / width / kTileSize * columns + i % width / kTileSize] == TileKind::kHidden;
-        const Resolved& found = moved.resolved[i];
-        past.pixels.push_back(hidden ? std::nullopt : std::optional(MovingPixel{found.inverse_depth, found.spread}));
-    }
-    return past;
-}
-
 }  // namespace binosplat::reference

@@ -46,19 +46,6 @@ uint binUnderBound(uint bin, PastTile tile, float share) {
     return min((is_over ? kOverBin : 0) + bin / 2, kNewBin - 1);
 }
 
-// True if later pictures are made from this one, which has no past itself: no row of it is a mean of others, since nothing would say so.
-bool leavesTiles() { return !kPast && any(notEqual(uvec2(pass.past_tiles), uvec2(0))); }
-
-// Writes what later pictures must know of a tile that was made from the other eye; rasterize does so for those that are rendered.
-void leaveTile(uint tile) {
-    PastTile its = PastTile(0, 0, 0, vec4(0), uvec4(0));
-    if (pass.tile_kinds.at[tile] != kTileHidden) {
-        its.cost = pass.tile_costs.at[tile] - kTilePairs;
-        its.errors = vec4(sqrt(max(float(pass.tile_errors.at[tile]) / (kErrorSteps * kTileSize * kTileSize), kLeastGrowth / 3)));
-    }
-    pass.past_tiles.at[tile] = its;
-}
-
 // A tile's price word: the bin of its error, and its cost. Adds the cost to the price list.
 uint priceOf(uint tile, uvec2 size_tiles) {
     PastTile its;
@@ -70,14 +57,12 @@ uint priceOf(uint tile, uvec2 size_tiles) {
         const uint cost = hidden ? 0 : min(its.cost, kMaxTileCost - kTilePairs) + kTilePairs;
         pass.tile_costs.at[tile] = cost;
         atomicAdd(pass.budget.at[0].picture_cost, cost);
-    } else if (leavesTiles()) {
-        leaveTile(tile);
     }
     // Sums saturate there (newcomers); resample adds far less than that.
     const uint error = min(pass.tile_errors.at[tile], 0x7fffffffu);
     const float worth = pass.area * float(error);
     const float share = kFoveated ? seenShare(pass.gaze, uvec2(tile % size_tiles.x, tile / size_tiles.x)) : 1;
-    if (kFoveated && share <= kCoarseShare && !leavesTiles()) { pass.tile_errors.at[tile] = kSeenCoarsely; }
+    if (kFoveated && share <= kCoarseShare) { pass.tile_errors.at[tile] = kSeenCoarsely; }
     if (pass.tile_kinds.at[tile] != 0 || error == 0) { return 0; }
     const uint cost = pass.tile_costs.at[tile];
     const float seen = share * float(error);

@@ -13,11 +13,6 @@ const uint kRepeats = 4;
 Uints placeWords() { return Uints(uvec2(pass.half_target)); }
 uint placeAt(WarpView warp, uvec2 at) { return (at.y * warp.size_px.x + at.x) * (kHalfColours ? 2 : 4); }
 
-// What later pictures must know of a pixel of an odd row: its depth is that of the one above.
-void repeatWord(uint i, uint width) {
-    if (keepsWords()) { pass.words.at[i] = pass.words.at[i - width]; }
-}
-
 void keepPlace(WarpView warp, uvec2 at, Resolved resolved, float place_px) {
     if (at.y + 1 >= warp.size_px.y) { return; }
     const uint word = placeAt(warp, at + uvec2(0, 1));
@@ -33,7 +28,6 @@ float sampleBelow(WarpView warp, uvec2 at, out uint pixel_class) {
     const uint source_row = (place & kRepeats) != 0 ? at.y - 1 : at.y;
     const Sample found = sampleInRow(float(place >> 3) / kPlaceSteps, source_row * warp.size_px.x, int(warp.size_px.x));
     putPixel(warp, at, pixel_class, found.colour, keepsDepths() ? uintBitsToFloat(placeWords().at[word + 1]) : 0);
-    repeatWord(at.y * warp.size_px.x + at.x, warp.size_px.x);
     return 0;
 }
 
@@ -54,6 +48,5 @@ void putMeans(uint y, uint width, uint tiles) {
         const vec4 below = colourAt(pass.target, pass.half_target, i + width);
         putColour(pass.target, pass.half_target, i, 0.5 * (above + below));
         if (keepsDepths()) { pass.depths.at[i] = 0.5 * (pass.depths.at[i - width] + pass.depths.at[i + width]); }
-        repeatWord(i, width);
     }
 }

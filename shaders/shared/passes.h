@@ -189,7 +189,6 @@ struct ResamplePass {
     Uints pixel_classes;  // out where asked for: 2 bits a pixel, kCovered, kGap or kHole
     WarpCounterss counters;
     Uints shown_mask;     // if the source has hidden tiles: the shown ones; otherwise null
-    Uints words;          // out if later pictures are made from the target, otherwise null; arrivals may lie in the same row
     vec3 background;      // of hidden tiles
     uint first_row;       // 1: the odd rows, if rows are two apart
     uint copies_colours;  // 1: they are copied, not sampled
@@ -262,8 +261,7 @@ struct PricePass {
     ListStates masked_tiles;   // counts finished workgroups
     WarpCounterss counters;
     WarpCounterss budget;  // the counters of the budget: its own, or one for both eyes
-    // With a past: in, and tile_errors and tile_costs are written from it. If later pictures are made from this one: out, written from
-    // those. Otherwise null.
+    // With a past: in, and tile_errors and tile_costs are written from it. Otherwise null.
     PastTiles past_tiles;
     uint is_last;    // 1: no other picture shares the budget after this one
     float area;      // of a pixel, in pixels of the eye's own picture: the weight of an error in it

@@ -55,8 +55,6 @@ bool copiesColours() { return !kPlaced && (kWay == kCopies || (kClasses && pass.
 bool predictsErrors() { return !kPlaced && (kWay == kPredicts || (kClasses && pass.first_row == 0 && isThere(uvec2(pass.tile_errors)))); }
 bool keepsDepths() { return isThere(uvec2(pass.depths)); }
 bool groupsHoles() { return kClasses && pass.groups_holes != 0; }
-// True if later pictures are made from this one.
-bool keepsWords() { return isThere(uvec2(pass.words)); }
 
 #include "lib/row_arrivals.glsl"
 vec4 sourceAt(uint i) { return colourAt(pass.source, pass.half_source, i); }
@@ -105,9 +103,6 @@ float putResolved(WarpView warp, uint row, uvec2 at, Resolved resolved, bool ope
     const Sample found = kRectified ? sampleInRow(source_px.x, at.y * warp.size_px.x, size.x)
                                     : sampleAround(source_px, size, disparity_px > 0 ? disparity / disparity_px : vec2(0));
     putPixel(warp, at, resolved.pixel_class, found.colour, resolved.inverse_depth);
-    if (keepsWords()) {
-        pass.words.at[at.y * warp.size_px.x + at.x] = movingPixel(resolved.inverse_depth, kLanded, spreadCode(resolved.variance_share));
-    }
     if (!predictsErrors() || (at.y & 1) != 0) { return 0; }
     if (open && resolved.pixel_class == kHole) { return 2 * holeError(warp, source_px, int(resolved.column) - int(at.x)); }
     const float variance_px2 = min(uncertaintyOf(row, at.x, warp.size_px.x, resolved) * disparity_px * disparity_px, kMaxSpread * kMaxSpread);
@@ -159,7 +154,6 @@ void hideTiles(uint y, uint first_tile, uint width) {
         const uint i = y * width + x;
         putColour(pass.target, pass.half_target, i, vec4(pass.background, 0));
         if (keepsDepths()) { pass.depths.at[i] = 0; }
-        if (keepsWords()) { pass.words.at[i] = 0; }
     }
 }
 

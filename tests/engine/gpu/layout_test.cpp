@@ -74,7 +74,7 @@ std::vector<Layout> hostLayouts() {
         LAYOUT(NewcomersPass, chunks, eyes, warp, tile_depths, order, visible, source_counts, tile_kinds, tile_errors, counters, chunk_bits,
                eye),
         LAYOUT(ResamplePass, warp, source, half_source, moving, target, half_target, depths, tile_kinds, tile_errors, pixel_classes,
-               counters, shown_mask, words, background, first_row, copies_colours, groups_holes),
+               counters, shown_mask, background, first_row, copies_colours, groups_holes),
         LAYOUT(ComponentsPass, warp, pixels, pixel_classes, boxes, tile_kinds, counters, box_capacity),
         LAYOUT(MarkChangedPass, tiles, rects, size_tiles, count),
         LAYOUT(PricePass, warp, tile_kinds, tile_costs, tile_errors, tile_prices, price_bins, masked_tiles, counters, budget, past_tiles,

@@ -64,7 +64,7 @@ public:
     PastWalk(Gpu& gpu, const ViewedScene& view, WalkSettings settings = {})
         : gpu_(gpu), view_(view), settings_(std::move(settings)), scene_(gpu.context(), view.scene), frame_(gpu.context(), scene_) {}
 
-    void go(double step, double budget) {
+    FrameResult go(double step, double budget) {
         Eye eye = view_.eye;
         eye.world_from_camera.position += step * glm::dvec3(0.003, 0.001, 0.001);
         eye.world_from_camera.orientation =
@@ -72,12 +72,12 @@ public:
         eyes_ = stereoPair(eye, 0.063);
         glm::dquat& right = eyes_[kRight].world_from_camera.orientation;
         right = right * glm::angleAxis(settings_.cant, glm::dvec3(0, 1, 0));
-        frame_.render(eyes_, settingsOf(Mode::kTemporal, budget));
+        return frame_.render(eyes_, settingsOf(Mode::kTemporal, budget));
     }
-    // What `predicted` makes of the last frame's eyes.
-    std::array<Image, 2> predicted(double budget) {
+    // The last frame's eyes in full.
+    std::array<Image, 2> full() {
         KeptFrame frame(gpu_.context(), scene_);
-        frame.render(eyes_, settingsOf(Mode::kPredicted, budget));
+        frame.render(eyes_, settingsOf(Mode::kShared, 0.0));
         return picturesOf(frame);
     }
     EyeOnDevice read(int eye) { return readEye(gpu_, frame_, eye, eyes_[static_cast<std::size_t>(eye)]); }

@@ -158,7 +158,6 @@ public:
                                    .pixel_classes = words(classes_),
                                    .counters = counters(),
                                    .shown_mask = parts.hidden_tiles ? words(shown_mask_) : gpu::DeviceAddress<gpu::uint>{},
-                                   .words = {},
                                    .background = parts.background,
                                    .first_row = parts.odd ? 1u : 0u,
                                    .copies_colours = parts.forward ? 1u : 0u,
