@@ -37,6 +37,8 @@ OutputFiles::OutputFiles(const fs::path& folder) : folder_(folder) {
     makeStaging();
     const fs::path probe = staging_ / kLongName;
     const bool fits = createFile(probe) != nullptr && entriesOf(staging_) == std::vector<fs::path>{probe};
+    std::error_code ignored;
+    fs::remove(probe, ignored);  // by its name, since looking through the folder may not find it
     removeFolder(staging_);
     staging_.clear();
     if (fits) { return; }
