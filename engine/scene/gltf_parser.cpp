@@ -41,8 +41,10 @@ std::string textOf(const JsonNode& node, const char* key) {
 }
 
 BufferView viewOf(const JsonNode& node, std::size_t buffers) {
+    const std::uint64_t stride = countOr(node, "byteStride", 0);
+    check(stride <= 252, "{}: byteStride is {}, expected 4 to 252", node.place(), stride);
     return {indexOf(node.at("buffer"), buffers, node.place(), "buffer"), countOr(node, "byteOffset", 0), node.at("byteLength").count(),
-            countOr(node, "byteStride", 0)};
+            stride};
 }
 
 Accessor accessorOf(const JsonNode& node, std::size_t views) {

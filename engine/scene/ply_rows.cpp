@@ -202,6 +202,7 @@ public:
         block.rows = 0;
         for (std::size_t end = 0; block.rows < most && (end = ahead.find('\n')) != std::string_view::npos; ahead.remove_prefix(end + 1)) {
             std::string_view text = ahead.substr(0, ahead[std::max<std::size_t>(end, 1) - 1] == '\r' ? end - 1 : end);
+            if (text.find_first_not_of(" \t") == std::string_view::npos) { continue; }
             for (const int attribute : attribute_of_) {
                 double value = 0.0;
                 if (!takeNumber(text, value)) { return; }  // as reading it will say

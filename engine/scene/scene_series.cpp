@@ -30,9 +30,14 @@ std::string shortName(const std::string& path) { return fs::path(path).filename(
 // Groups of files that are scenes of one format, by the first and the last of each; the largest first.
 std::vector<std::vector<NumberedFile>> findSceneGroups(const std::string& folder) {
     std::vector<std::vector<NumberedFile>> groups = findNumberedFiles(folder);
-    std::erase_if(groups, [](const std::vector<NumberedFile>& group) {
-        const std::string format = formatOfFile(group.front().path);
-        return format.empty() || format != formatOfFile(group.back().path);
+    const auto formatIn = [](const std::string& path) {
+        try {
+            return formatOfFile(path);
+        } catch (const Error&) { return std::string(); }  // an archive without a scene, as weights of networks are
+    };
+    std::erase_if(groups, [&](const std::vector<NumberedFile>& group) {
+        const std::string format = formatIn(group.front().path);
+        return format.empty() || format != formatIn(group.back().path);
     });
     return groups;
 }

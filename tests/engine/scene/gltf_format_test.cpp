@@ -342,6 +342,7 @@ TEST_CASE("a glTF that does not fit is named with its place") {
         {extension + "{", extension + R"({"extensions":{"KHR_gaussian_splatting_compression_spz_2":{"bufferView":0}},)",
          "compressed by KHR_gaussian_splatting_compression_spz_2"},
         {R"("byteOffset":0)", R"("byteOffset":-4)", "bufferViews[0].byteOffset: is -4, expected a whole number"},
+        {R"("byteOffset":0)", R"("byteOffset":0,"byteStride":256)", "bufferViews[0]: byteStride is 256, expected 4 to 252"},
         {R"("byteOffset":36)", R"("byteOffset":99999)", "ends beyond its buffer"},
         {R"("count":3)", R"("count":4)", "do not fit"},
         {R"("count":3)", R"("count":18446744073709551615)", "do not fit"},

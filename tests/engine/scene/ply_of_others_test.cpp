@@ -145,6 +145,11 @@ TEST_CASE("positions of float64 far from 0 keep their detail, and are written ba
             CHECK(glm::distance(glm::dvec3(scene.positions[i]), expected) < 1e-7);
             CHECK(glm::distance(glm::dvec3(again.positions[i]), expected) < 1e-7);
         }
+        if (encoding == Encoding::kAscii) {  // a blank line is none
+            std::string text = ply.bytes();
+            text.insert(text.find("end_header\n") + 11, "\n");
+            CHECK(loadScene(folder.write("blank.ply", text)).positions == scene.positions);
+        }
         // What is float32 in the file has lost its detail already, and stays where it is.
         for (const char* name : {"x", "y", "z"}) { ply[name].type = "float"; }
         const Scene near = loadScene(folder.write("float.ply", ply.bytes()));

@@ -183,6 +183,10 @@ TEST_CASE("a folder is streamed SOG, SOG, a training's output, a moving scene or
     garden.place({{"frame_9.txt", 0}, {"frame_10.txt", 0}, {".hidden.ply", 1}});
     CHECK(loadError(root) == four);
     garden.place({{"alone_1.ply", 4}});
+    for (const char* weights : {"/ckpt_6999_rank0.pt", "/ckpt_29999_rank0.pt"}) {  // of a network: zip archives
+        std::ofstream(root + weights, std::ios::binary)
+            << makeZip(std::vector<std::pair<std::string, std::string>>{{"archive/data.pkl", "x"}, {"archive/data/0", "y"}});
+    }
     LoadNotes of_one;
     CHECK(loadScene(root, 0, &of_one).size() == 4);
     REQUIRE(of_one.lines.size() == 1);
