@@ -43,7 +43,7 @@ enum class TileChoice {
     kPast,       // those of the greatest expected error for their cost and for each frame that they have waited, of both eyes together
 };
 
-// Of a frame that has no past.
+// Of a frame that keeps no past.
 constexpr TileChoice choiceOf(Mode mode) {
     return mode == Mode::kReproject                              ? TileChoice::kNone
            : mode == Mode::kPaper                                ? TileChoice::kPaper

@@ -13,7 +13,7 @@ namespace {
 constexpr double kJumpMetres = 0.2;
 constexpr double kJumpDegrees = 6.0;
 constexpr double kJumpZoom = 0.1;
-// From farther away a past is worse than the other eye, which is 6 cm away and has just been rendered: docs/tried.md, *Reuse over time*.
+// From farther away a past is worse than the other eye would be, which is 6 cm away: docs/tried.md, *Reuse over time*.
 // The share is of the way between the eyes, however large the scene is.
 constexpr double kFarthestPastMetres = 0.05, kFarthestPastShare = 0.8;
 // Beyond this a past is too coarse, or much finer than needed.

@@ -52,7 +52,7 @@ struct TargetPlan {
     Kept kept;
     TileChoice choice = TileChoice::kAll;  // of the tiles that are rendered
     std::optional<Warp> warp = {};
-    std::optional<Past> past = {};  // what it is made from instead: its eye's last picture, or the other eye's of this frame
+    std::optional<Past> past = {};  // what it is made from instead: its eye's last picture
     std::optional<Gaze> gaze = {};  // for the choice among what the past has left
     int picture = 0;                // the room's picture that it becomes
     bool keeps_classes = false;

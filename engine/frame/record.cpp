@@ -162,9 +162,7 @@ void FrameRecorder::recordChoice(Commands& commands, const FramePlan& plan) cons
 }
 
 void FrameRecorder::recordChanged(Commands& commands, const FramePlan& plan, std::span<const PastInputs> pictures) const {
-    // The picture of an eye that is rendered in full has seen them, and so has what is made from it.
-    const bool sees_all = std::ranges::any_of(plan.targets, [](const TargetPlan& target) { return target.choice == TileChoice::kAll; });
-    if (!changes_known || sees_all) { return; }
+    if (!changes_known) { return; }
     const std::optional<std::span<const SceneChange>> changes = scene.changesSince(*changes_known);
     if (!changes || changes->empty()) { return; }
     std::vector<gpu::ChangedRect> rects;
@@ -268,7 +266,7 @@ Target FrameRecorder::targetOf(const FramePlan& plan, int index) const {
     target.low_pass = viewOf(planned.eye, plan.near).low_pass;
     const std::optional<int> warped = plan.warpedTarget();
     if (!warped || plan.targets[static_cast<std::size_t>(*warped)].warp->source != index) { return target; }
-    if (planned.kept.moving || planned.kept.past) {
+    if (planned.kept.moving) {
         const MovingWords words = wordsOf(plan, *warped);
         target.moving = words.moving;
         const EyeRelation& relation = plan.targets[static_cast<std::size_t>(*warped)].warp->relation;

@@ -40,7 +40,7 @@ void countWarp(const FrameFacts& frame, std::size_t index, FrameResult& result) 
                                                  .even_rows = settings.choice == TileChoice::kPredicted && rectified,
                                                  .sums_even_rows = source.kept.even_rows,
                                                  .half_floats = target.kept.half_floats,
-                                                 .target_depth = target.kept.depth && !target.kept.past,
+                                                 .target_depth = target.kept.depth,
                                                  .classes = has_classes,
                                                  .size_px = target.eye.size_px,
                                                  .counters = warp,
@@ -127,8 +127,9 @@ void explainLeftOut(const FrameFacts& frame, FrameResult& result) {
     };
     const FramePlan& plan = frame.plan;
     const bool moments = std::ranges::any_of(plan.targets, [](const TargetPlan& target) {
-        return target.kept.moments || (target.warp && (target.warp->settings.choice == TileChoice::kPredicted ||
-                                                       target.warp->settings.depth_choice == gpu::kDepthInverse));
+        return target.kept.moments || target.kept.past ||
+               (target.warp &&
+                (target.warp->settings.choice == TileChoice::kPredicted || target.warp->settings.depth_choice == gpu::kDepthInverse));
     });
     const bool two = plan.eyes == 2, both_at_once = two && plan.targets[kLeft].list == plan.targets[kRight].list;
     leaveOut(frame.scene.shDegree() < kMaxShDegree, fmt::format("SH bands above {}: the scene has none", frame.scene.shDegree()));

@@ -171,9 +171,11 @@ double FrameRoom::spareFor(double ahead) const {
     return ahead > 1.0 ? kRoomMade : first_frame_ ? 1.0 : 1.25;
 }
 
-std::uint32_t FrameRoom::roomForPairs(const FramePlan& plan, const TargetPlan& target, std::uint32_t pairs) const {
+std::uint32_t FrameRoom::roomForPairs(const FramePlan& plan, const TargetPlan& target, std::uint32_t pairs, bool is_ahead) const {
     // Once moving pays again, patches are sorted in the lists alone.
-    return plan.isSortedInPicture(target) && !target.warp ? PairBuffers::capacityBeside(picture(target.picture).colours, pairs) : pairs;
+    return plan.isSortedInPicture(target) && !(is_ahead && target.warp)
+               ? PairBuffers::capacityBeside(picture(target.picture).colours, pairs)
+               : pairs;
 }
 
 FrameCapacity FrameRoom::roomFor(const FramePlan& plan, const FrameState& state, double ahead, double spare) const {
@@ -201,7 +203,7 @@ FrameCapacity FrameRoom::roomFor(const FramePlan& plan, const FrameState& state,
         check(pairs != UINT32_MAX, "an eye sees more than {} pairs of tile and splat, fewer splats or pixels are needed", gpu::kMaxItems);
         // Without the source's pairs every tile seems cheap to render: how many the target needs turns out in the next try.
         if (plan.targets[t].warp && isSourceVoid(plan, state)) { continue; }
-        const auto roomOf = [&](std::uint32_t of) { return roomForPairs(plan, plan.targets[t], of); };
+        const auto roomOf = [&](std::uint32_t of) { return roomForPairs(plan, plan.targets[t], of, ahead > 1.0); };
         wanted.pairs = std::max(wanted.pairs, enough(ofAll(pairs, plan.shares()), now.pairs, roomOf));
     }
     return wanted;
@@ -246,7 +248,7 @@ void FrameRoom::makeRoomForChosen(const FramePlan& plan, const FrameState& state
     const TargetPlan& target = plan.targets[static_cast<std::size_t>(plan.warpedTarget().value())];
     const std::uint32_t all = std::min(state.targets[static_cast<std::size_t>(plan.firstTarget())].pairs.needed, gpu::kMaxItems);
     FrameCapacity wanted = lists_.capacity();
-    wanted.pairs = std::max(wanted.pairs, roomForPairs(plan, target, target.warp->may_move ? all / 2 : all));
+    wanted.pairs = std::max(wanted.pairs, roomForPairs(plan, target, target.warp->may_move ? all / 2 : all, false));
     if (wanted != lists_.capacity()) { tryToGrow(wanted); }
 }
 

@@ -74,7 +74,7 @@ private:
     void fitPicture(Picture& picture, glm::uvec2 size_px, const Kept& kept);
     void fitWarps(const FramePlan& plan);
     // The room in PairBuffers for so many pairs of a target.
-    [[nodiscard]] std::uint32_t roomForPairs(const FramePlan& plan, const TargetPlan& target, std::uint32_t pairs) const;
+    [[nodiscard]] std::uint32_t roomForPairs(const FramePlan& plan, const TargetPlan& target, std::uint32_t pairs, bool is_ahead) const;
     // False, with the lists as they were, if the device lacks the memory.
     bool tryToGrow(const FrameCapacity& wanted);
     // Room for `spare` times what was needed, in the lists that must grow.

@@ -11,8 +11,9 @@ namespace binosplat {
 namespace {
 
 // Where the scene changed, tiles are rendered on top of the budget, of which this share is left to the others: as many in these parts of
-// the picture as in the rest, and a few more. If more than the last figure changed, a past would cost more than the other eye does.
-constexpr double kBudgetBesideChanges = 0.5, kMoreWhereChanged = 1.2, kMostChanged = 0.6;
+// the picture as in the rest, and a few more. If more than the last figure changed, lists that were made for whole pictures may be too
+// short for the patches of both.
+constexpr double kBudgetBesideChanges = 0.5, kMoreWhereChanged = 1.2, kMostChanged = 0.4;
 
 // The traits that a past must share with a frame.
 FrameShape askedApartFromSizes(const FrameSettings& settings) { return shapeOf({}, settings); }

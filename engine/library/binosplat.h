@@ -28,7 +28,7 @@ enum class Method {
     kShared,     // both eyes in full, culled and sorted together: the same pictures in less time
     kPaper,      // the right eye warped from the left one, its borders rendered again (Zhu and Zhou)
     kPredicted,  // and the tiles with the greatest expected error, up to the budget
-    kTemporal,   // both eyes warped from the pair before, and such tiles of both; the first pair is kPredicted's
+    kTemporal,   // both eyes warped from the pair before, and such tiles of both; the first pair is kShared's
 };
 
 // An eye: where it is and what it sees.
