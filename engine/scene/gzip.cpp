@@ -78,8 +78,11 @@ bool GzipReader::fill() {
 }
 
 bool GzipReader::next() {
-    if (!fill()) { return false; }
-    inflateReset(&state_->stream);
+    // Zeros behind a stream are padding, as gzip takes them.
+    z_stream& stream = state_->stream;
+    while (fill() && *stream.next_in == 0) { ++stream.next_in, --stream.avail_in; }
+    if (stream.avail_in == 0) { return false; }
+    inflateReset(&stream);
     state_->ended = false;
     return true;
 }

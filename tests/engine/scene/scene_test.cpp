@@ -357,7 +357,8 @@ TEST_CASE("a scene within gzip is the scene itself, in one stream or several") {
     const Folder folder;
     const std::string ply = makePly(9).bytes();
     const Scene plain = loadScene(folder.write("plain.ply", ply));
-    for (const std::string& packed : {gzip(ply), gzip(ply.substr(0, 100)) + gzip(ply.substr(100)), gzip(ply) + gzip("")}) {
+    for (const std::string& packed :
+         {gzip(ply), gzip(ply.substr(0, 100)) + gzip(ply.substr(100)), gzip(ply) + gzip(""), gzip(ply) + std::string(100'000, '\0')}) {
         LoadNotes notes;
         const Scene scene = loadScene(folder.write("a.ply.gz", packed), 0, &notes);
         checkSameScene(plain, scene);
