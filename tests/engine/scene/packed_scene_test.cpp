@@ -1,0 +1,74 @@
+// Scenes that come packed: within gzip, or alone in a zip archive.
+#include "engine/scene/scene.h"
+#include "tests/engine/scene/ply_files.h"
+#include "tests/engine/scene/spz_files.h"
+#ifdef BINOSPLAT_SOG
+#include "tests/engine/scene/sog_scenes.h"
+#include "tests/suite.h"
+#endif
+
+SUITE(packed_scene) {
+
+TEST_CASE("a scene within gzip is the scene itself, in one stream or several") {
+    const Folder folder;
+    const std::string ply = makePly(9).bytes();
+    const Scene plain = loadScene(folder.write("plain.ply", ply));
+    for (const std::string& packed :
+         {gzip(ply), gzip(ply.substr(0, 100)) + gzip(ply.substr(100)), gzip(ply) + gzip(""), gzip(ply) + std::string(100'000, '\0')}) {
+        LoadNotes notes;
+        const Scene scene = loadScene(folder.write("a.ply.gz", packed), 0, &notes);
+        checkSameScene(plain, scene);
+        CHECK(scene.name == folder.file("a.ply.gz"));
+        CHECK(notes.lines.empty());
+        CHECK(formatOfFile(folder.file("a.ply.gz")) == formatOfFile(folder.file("plain.ply")));
+        checkProgress(3, [&](const Progress& progress) { (void)loadScene(folder.file("a.ply.gz"), 0, nullptr, progress); });
+    }
+    const auto errorOf = [&](const std::string& bytes) { return loadError(folder.write("b.gz", bytes)); };
+    CHECK(contains(errorOf(gzip(ply).substr(0, 300)), "b.gz: ends within its gzip stream"));
+    CHECK(contains(errorOf(gzip(ply) + "more"), "b.gz: broken gzip stream"));
+    CHECK(contains(errorOf(gzip(gzip(ply))), "b.gz: is packed twice"));
+    CHECK(contains(errorOf(gzip(std::string(5'000'000, ' '))), "expected at most 256 times as many as packed"));
+    CHECK(contains(errorOf(gzip("no scene")), "b.gz: not a scene file of a known format"));
+}
+
+#ifdef BINOSPLAT_SOG
+TEST_CASE("a zip archive with one scene in it is that scene; one with several, none or a password is told in a line") {
+    const Folder folder;
+    using Entries = std::vector<std::pair<std::string, std::string>>;
+    const auto zip = [](const Entries& entries, bool deflated = false) { return makeZip(entries, deflated); };
+    const std::string ply = makePly(9).bytes(), sog = makeZip(makeSog()), spz = gzip(makeSpz(3).bytes());
+    const Scene plain = loadScene(folder.write("plain.ply", ply));
+    for (const bool deflated : {false, true}) {
+        for (const Entries& entries :
+             {Entries{{"garden.ply", ply}}, Entries{{"a/", ""}, {"a/Garden.PLY", ply}, {"a/cameras.json", "[]"}},
+              Entries{{"without an extension", ply}}, Entries{{"__MACOSX/._a.ply", "x"}, {".b.ply", ""}, {"a.ply", ply}}}) {
+            const Scene scene = loadScene(folder.write("a.zip", zip(entries, deflated)));
+            checkSameScene(plain, scene);
+            CHECK(scene.name.starts_with(folder.file("a.zip") + ": "));
+        }
+    }
+    for (const auto& [name, bytes] : Entries{{"a.sog", sog}, {"a.spz", spz}}) {
+        checkSameScene(loadScene(folder.write(name, bytes)), loadScene(folder.write("a.zip", zip({{"in/" + name, bytes}}))));
+    }
+    std::string secret = zip({{"a.ply", ply}});
+    for (const auto& [header, flags] : {std::pair("PK\x03\x04", 6u), std::pair("PK\x01\x02", 8u)}) {
+        secret[secret.find(header) + flags] = 1;
+    }
+    std::string broken = zip({{"a.ply", ply}});
+    broken[broken.find("ply\n") + 300] ^= 1;
+    const std::pair<std::string, std::string> faults[]{
+        {zip({{"a.ply", ply}, {"b.spz", spz}}), "b.zip: a zip archive with 2 scenes (a.ply, b.spz), expected one: unpack it and choose"},
+        {zip({{"1.ply", ply}, {"2.ply", ply}, {"3.ply", ply}, {"4.ply", ply}}), "with 4 scenes (1.ply, 2.ply, 3.ply, ...)"},
+        {zip({{"a.txt", "x"}, {"b.txt", "y"}}), "b.zip: a zip archive of 2 files without a scene or the meta.json of one"},
+        {zip({}), "b.zip: a zip archive of 0 files without a scene"},
+        {zip({{"a/meta.json", "{}"}, {"lod-meta.json", "{}"}}), "b.zip: a streamed SOG scene in a zip archive, expected it unpacked"},
+        {secret, "b.zip: a.ply: is encrypted and asks for a password, expected an archive without one"},
+        {broken, "b.zip: a.ply: cannot be read"},
+        {zip({{"a.ply", ply}}).substr(0, 500), "b.zip: not a whole zip archive"},
+        {zip({{"a.ply.gz", gzip(ply)}}), "b.zip: is packed twice"},
+        {zip({{"a.ply", std::string(5'000'000, ' ')}}, true), "expected at most 256 times as many as packed"}};
+    for (const auto& [bytes, message] : faults) { CHECK(contains(loadError(folder.write("b.zip", bytes)), message)); }
+}
+#endif
+
+}  // SUITE(packed_scene)
