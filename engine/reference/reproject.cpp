@@ -60,6 +60,20 @@ void putWithin(Arrivals& arrivals, const Moved& here, const Moved& right, const 
     }
 }
 
+// A pixel of this spread or more blends what stands in front with what lies behind.
+constexpr std::uint32_t kMixedCode = 21;
+
+// The greatest inverse depth of a pixel and its two neighbours in the row.
+double frontBeside(const Picture& dominant, int x, int y, const StereoSettings& settings) {
+    double nearest = 0.0;
+    const int width = static_cast<int>(dominant.size_px.x);
+    for (int beside = std::max(x - 1, 0); beside <= std::min(x + 1, width - 1); ++beside) {
+        const auto pixel = movingPixel(dominant, static_cast<std::size_t>(y * width + beside), settings);
+        if (pixel) { nearest = std::max(nearest, pixel->inverse_depth); }
+    }
+    return nearest;
+}
+
 // Around a pixel that is sampled: the cubic kernel reads two pixels to each side, and its place is up to one off.
 constexpr int kHiddenMarginPx = 3;
 
@@ -87,7 +101,9 @@ std::vector<Arrival> reproject(const Picture& dominant, const EyePair& eyes, con
         if (x >= size.x || y >= size.y || !isWellInside(settings.source_hidden, {x, y}, size)) { return std::nullopt; }
         const auto pixel = movingPixel(dominant, static_cast<std::size_t>(y * size.x + x), settings);
         if (!pixel) { return std::nullopt; }
-        const EyeChange::Moved there = change.move({x + 0.5, y + 0.5}, pixel->inverse_depth);
+        const bool mixed = !settings.forward && pixel->spread >= kMixedCode;
+        const EyeChange::Moved there =
+            change.move({x + 0.5, y + 0.5}, mixed ? frontBeside(dominant, x, y, settings) : pixel->inverse_depth);
         return there.in_front ? std::optional(Moved{there, pixel->spread}) : std::nullopt;
     };
     for (int y = 0; y < size.y; ++y) {

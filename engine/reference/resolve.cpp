@@ -19,9 +19,10 @@ Resolved resolveUncovered(std::span<const Arrival> row, int x, int left, int rig
         const double share = static_cast<double>(x - left) / (right - left);
         return {pixel_class, static_cast<std::uint32_t>(x), (1.0 - share) * depthAt(left) + share * depthAt(right), 0};
     }
-    // Disoccluded content lies behind: the farther neighbour is repeated, the left one of equals.
+    // Disoccluded content lies behind: the farther neighbour is repeated, the left one of equals, as the two sides of a wall are.
     if (left < 0 && right < 0) { return {pixel_class, static_cast<std::uint32_t>(x), 0.0, 0}; }
-    const int farther = left < 0 ? right : right < 0 ? left : depthAt(left) <= depthAt(right) ? left : right;
+    const bool is_left = right < 0 || (left >= 0 && roundedDepth(depthAt(left)) <= roundedDepth(depthAt(right)));
+    const int farther = is_left ? left : right;
     return {pixel_class, static_cast<std::uint32_t>(farther), depthAt(farther), 0};
 }
 

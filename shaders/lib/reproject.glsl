@@ -8,6 +8,7 @@ void put(WarpView warp, ivec2 at, uint arrival);
 
 struct Moved {
     vec2 place_px;
+    vec2 move_px;  // from where it was; what differs by little is had from this with all its digits
     float inverse_depth;
     uint spread;
     bool valid;
@@ -20,14 +21,21 @@ bool isNearHidden(WarpView warp, uvec2 pixel) {
            isHiddenAt(warp, pass.shown_mask, vec2(low.x, high.y)) || isHiddenAt(warp, pass.shown_mask, vec2(high.x, low.y));
 }
 
-// A pixel of the source as the target sees it.
+// A pixel of the source as the target sees it. One that blends two depths goes with what stands in front: with the nearest of itself and its
+// neighbours in the row. The rows above and below may not be there, or be colours of the target already.
 Moved moveSource(WarpView warp, uvec2 pixel) {
-    const uint moving = pass.moving.at[pixel.y * warp.row_words + pixel.x];
-    const float inverse_depth = moving == 0 ? 0 : inverseDepthOf(moving);
+    const uint at = pixel.y * warp.row_words + pixel.x, moving = pass.moving.at[at];
+    uint front = moving;
+    if (!copiesColours() && (moving & kSpreadBits) >= kMixedCode) {
+        if (pixel.x > 0) { front = max(front, pass.moving.at[at - 1]); }
+        if (pixel.x + 1 < warp.size_px.x) { front = max(front, pass.moving.at[at + 1]); }
+    }
+    const float inverse_depth = front == 0 ? 0 : inverseDepthOf(front);
     const vec3 moved = movePixel(warp.target_from_source, vec2(pixel) + 0.5, inverse_depth);
+    const vec2 move_px = kRectified ? vec2(0) : moveOfPixel(warp.target_from_source, vec2(pixel) + 0.5, inverse_depth).xy;
     const bool seen = !hidesTiles() || !isNearHidden(warp, pixel);
     const uint spread = copiesColours() ? parityOf(pixel) : moving & kSpreadBits;
-    return Moved(moved.xy, inverse_depth / moved.z, spread, seen && moving != 0 && moved.z > 0);
+    return Moved(moved.xy, move_px, inverse_depth / moved.z, spread, seen && moving != 0 && moved.z > 0);
 }
 
 // Too far out to reach the picture even where the surface is stretched.

@@ -196,7 +196,7 @@ BINOSPLAT_CONSTANT float kPastSameDepth = 0.25f;
 BINOSPLAT_CONSTANT float kPastAgrees = 0.51f;
 BINOSPLAT_CONSTANT uint kPastSteps = 3;
 // A pixel whose inverse depth spreads by an eighth of it blends what stands in front with what lies behind: it moves with the nearest
-// content of the words this far around.
+// content of the words this far around; from eye to eye, with that of itself and its two neighbours in the row.
 BINOSPLAT_CONSTANT uint kMixedCode = 21;
 BINOSPLAT_CONSTANT int kFrontReach = 2;
 // The squared error, in three channels, of a pixel that the past did not see.

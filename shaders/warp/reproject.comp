@@ -30,8 +30,8 @@ void put(WarpView warp, ivec2 at, uint arrival) {
 }
 
 // In any direction: the pixels whose centres lie in the parallelogram between `here`, its right and its lower neighbour.
-void putWithin(WarpView warp, Moved here, Moved right, Moved below) {
-    const vec2 u = right.place_px - here.place_px, v = below.place_px - here.place_px;
+void putWithin(WarpView warp, uvec2 pixel, Moved here, Moved right, Moved below) {
+    const vec2 u = vec2(1, 0) + (right.move_px - here.move_px), v = vec2(0, 1) + (below.move_px - here.move_px);
     const float area = u.x * v.y - u.y * v.x;
     const vec2 low = min(vec2(0), u) + min(vec2(0), v), high = max(vec2(0), u) + max(vec2(0), v);
     if (!(right.valid && below.valid && area > 0 && all(lessThanEqual(high - low, vec2(warp.gap_px + 2))))) { return; }
@@ -42,7 +42,7 @@ void putWithin(WarpView warp, Moved here, Moved right, Moved below) {
         for (int x = first.x; x <= last.x; ++x) {
             const ivec2 at = ivec2(x, y);
             if (at == own || at == own_right || at == own_below) { continue; }
-            const vec2 d = vec2(at) + 0.5 - here.place_px;
+            const vec2 d = vec2(at - ivec2(pixel)) - here.move_px;
             const float s = (d.x * v.y - d.y * v.x) / area, t = (u.x * d.y - u.y * d.x) / area;
             if (s < 0 || t < 0 || s > 1 || t > 1) { continue; }
             const float inverse_depth = here.inverse_depth + s * (right.inverse_depth - here.inverse_depth) + t * (below.inverse_depth - here.inverse_depth);
@@ -63,6 +63,6 @@ void main() {
     if (kRectified) {
         putBetween(warp, here, right, int(pixel.y));
     } else if (pixel.y + 1 < warp.size_px.y) {
-        putWithin(warp, here, right, moveSource(warp, pixel + uvec2(0, 1)));
+        putWithin(warp, pixel, here, right, moveSource(warp, pixel + uvec2(0, 1)));
     }
 }

@@ -102,7 +102,7 @@ TEST_CASE("the nearest arrives, with its own spread; depths that round to the sa
         picture.inverse_depth[x] = inverse_depth;
         spread(picture, x, code);
     };
-    put(5, 0.5, 25);
+    put(5, 0.5, 19);
     put(6, 0.6, 20);
     put(10, 1.0, 3);
     std::vector<Arrival> arrivals = reproject(picture, parallelEyes(size_px), {.gap_px = 0});
@@ -123,22 +123,39 @@ TEST_CASE("what lies between two pixels has the greater spread of them; a gap th
     const glm::uvec2 size_px(40, 1);
     Picture picture = makePicture(size_px, 0.12);
     for (std::size_t x = 0; x <= 20; ++x) { picture.inverse_depth[x] = 0.32; }
-    for (std::size_t x = 0; x < 40; ++x) { spread(picture, x, x == 20 ? 24 : 22); }
+    for (std::size_t x = 0; x < 40; ++x) { spread(picture, x, x == 20 ? 20 : 18); }
     const EyePair eyes = parallelEyes(size_px);
     const StereoSettings settings{.gap_px = 2};
     const auto arrivals = reproject(picture, eyes, settings);
     CHECK(arrivals[17].way == Arrival::kLanded);
-    CHECK(arrivals[17].spread == 24);
+    CHECK(arrivals[17].spread == 20);
     CHECK(arrivals[18].way == Arrival::kBetween);
-    CHECK(arrivals[18].spread == 24);
+    CHECK(arrivals[18].spread == 20);
     CHECK(arrivals[20].way == Arrival::kLanded);
-    CHECK(arrivals[20].spread == 22);
-    CHECK(resolve(arrivals, eyes, settings)[18].spread == 24);
+    CHECK(arrivals[20].spread == 18);
+    CHECK(resolve(arrivals, eyes, settings)[18].spread == 20);
     const auto apart = reproject(picture, eyes, {.gap_px = 0});
     const auto resolved = resolve(apart, eyes, settings);
     CHECK(apart[18].way == Arrival::kNone);
     CHECK(resolved[18].pixel_class == PixelClass::kGap);
     CHECK(resolved[18].spread == 0);
+}
+
+TEST_CASE("a pixel that blends two depths moves with the nearest of itself and its neighbours in the row") {
+    // Content of 0.32 in front of 0.12, at pixels 20 to 22, is moved by 3.2 pixels and what is behind by 1.2; pixels 19 and 23 blend both.
+    const glm::uvec2 size_px(40, 3);
+    Picture picture = makePicture(size_px, 0.12);
+    const auto moved = [&](std::uint32_t code, const StereoSettings& settings) {
+        for (std::size_t x = 59; x <= 63; ++x) {
+            picture.inverse_depth[x] = x == 59 || x == 63 ? 0.2 : 0.32;
+            spread(picture, x, x == 59 || x == 63 ? code : 3);
+        }
+        const auto arrivals = reproject(picture, parallelEyes(size_px), settings);
+        return std::array{arrivals[40 + 16].inverse_depth, arrivals[40 + 20].inverse_depth, arrivals[40 + 16 - 40].inverse_depth};
+    };
+    CHECK(moved(21, {.gap_px = 0}) == std::array{0.32, 0.32, 0.12});
+    CHECK(moved(20, {.gap_px = 0}) == std::array{0.12, 0.0, 0.12});  // nothing arrives at 20
+    CHECK(moved(21, {.forward = true, .gap_px = 0})[0] == 0.12);     // the paper's pixels keep their own depth
 }
 
 TEST_CASE("a tile costs its pairs and 16; where that is no more than moving it, it is cheap") {
