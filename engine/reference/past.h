@@ -17,8 +17,9 @@ namespace binosplat::reference {
 struct PastTile {
     std::uint64_t cost = 0;             // in pairs, when it was last rendered
     std::uint32_t age = 0;              // frames since then
-    double growth = 0.0;                // of its error's amplitude per frame, as measured then; 0: nothing is known
-    std::array<double, 4> errors = {};  // by quarters, row by row: amplitudes of the expected error
+    // By quarters, row by row:
+    std::array<double, 4> growth = {};  // of the error's amplitude per frame, as measured then; 0: nothing is known
+    std::array<double, 4> errors = {};  // amplitudes of the expected error
     std::array<double, 4> grown = {};   // squared errors that this frame's warp is expected to add to a quarter, summed over its pixels
 };
 

@@ -19,8 +19,8 @@ void growErrors(std::span<PastTile> tiles) {
     for (PastTile& tile : tiles) {
         for (std::size_t q = 0; q < 4; ++q) {
             const double expected = std::sqrt(tile.grown[q] / (kChannels * kCellPixels));
-            const double measured = tile.growth > 0.0 && expected < kUnseenGrowth ? kMeasuredShare : 0.0;
-            tile.errors[q] += (1.0 - measured) * expected + measured * tile.growth;
+            const double measured = tile.growth[q] > 0.0 && expected < kUnseenGrowth ? kMeasuredShare : 0.0;
+            tile.errors[q] += (1.0 - measured) * expected + measured * tile.growth[q];
         }
     }
 }
@@ -64,26 +64,28 @@ std::uint64_t costOf(const PastTile& tile) { return std::min(tile.cost + kPairsO
 
 void renderTiles(Past& warped, const Picture& full, std::span<const std::uint64_t> costs, std::span<const TileKind> kinds) {
     const std::size_t width = warped.eye.size_px.x, columns = tileGrid(warped.eye.size_px).x;
-    std::vector<double> squares(kinds.size(), 0.0);
+    std::vector<std::array<double, 4>> squares(kinds.size(), std::array<double, 4>{});
     for (std::size_t i = 0; i < warped.rgba.size(); ++i) {
         const std::size_t tile = i / width / kTileSize * columns + i % width / kTileSize;
         if (kinds[tile] == TileKind::kNone || kinds[tile] == TileKind::kHidden) { continue; }
-        squares[tile] += squareOf(glm::length(glm::dvec3(full.rgba[i] - warped.rgba[i])));
+        const std::size_t quarter = i / width % kTileSize / kCell * 2 + i % width % kTileSize / kCell;
+        squares[tile][quarter] += squareOf(glm::length(glm::dvec3(full.rgba[i] - warped.rgba[i])));
         warped.rgba[i] = full.rgba[i];
         warped.pixels[i] = pixelOf(full, i);
     }
     for (std::size_t t = 0; t < kinds.size(); ++t) {
         if (kinds[t] == TileKind::kNone || kinds[t] == TileKind::kHidden) { continue; }
         const std::uint32_t age = warped.tiles[t].age;
-        const double amplitude = costs[t] > 0 && age > 0 ? std::sqrt(squares[t] / (kChannels * kTilePixels)) / age : 0.0;
-        warped.tiles[t] = {costs[t], 0, amplitude, {}, {}};
+        warped.tiles[t] = {costs[t], 0, {}, {}, {}};
+        if (costs[t] == 0 || age == 0) { continue; }
+        for (std::size_t q = 0; q < 4; ++q) { warped.tiles[t].growth[q] = std::sqrt(squares[t][q] / (kChannels * kCellPixels)) / age; }
     }
 }
 
 Past pastOf(const Eye& eye, const Picture& full, std::span<const std::uint64_t> costs) {
     Past past{eye, full.rgba, {}, {}};
     for (std::size_t i = 0; i < full.rgba.size(); ++i) { past.pixels.push_back(pixelOf(full, i)); }
-    for (const std::uint64_t cost : costs) { past.tiles.push_back({cost, 0, 0.0, {}, {}}); }
+    for (const std::uint64_t cost : costs) { past.tiles.push_back({cost, 0, {}, {}, {}}); }
     return past;
 }
 

@@ -158,14 +158,14 @@ public:
     }
 
 private:
-    // The tile's cost and how fast its error grows are those of where its middle comes from.
+    // The tile's cost and age are those of where its middle comes from.
     [[nodiscard]] PastTile tileBefore(std::size_t tile) const {
         const glm::dvec2 middle_px = glm::min(glm::dvec2(tile % tiles_.x, tile / tiles_.x) * double{kTileSize} + 0.5 * kTileSize,
                                               glm::dvec2(warped_.picture.eye.size_px));
         const double guess = view_.look(view_.place(middle_px, 0.0).place_px).inverse_depth;
         const glm::dvec2 from_px = glm::clamp(view_.place(middle_px, guess).place_px, glm::dvec2(0.0), glm::dvec2(view_.last));
         const PastTile& before = tileOf(past_, from_px);
-        return {before.cost, before.age + 1, before.growth, {}, {}};
+        return {before.cost, before.age + 1, {}, {}, {}};
     }
     static const PastTile& tileOf(const Past& past, const glm::dvec2& place_px) {
         const glm::uvec2 at = glm::uvec2(place_px) / unsigned{kTileSize};
@@ -179,10 +179,14 @@ private:
         const BlockFromPast block = findBlock(view_, first, near_);
         PastTile& tile = warped_.picture.tiles[std::size_t(first.y / kTileSize) * tiles_.x + std::size_t(first.x / kTileSize)];
         const std::size_t quarter = quarterOf(first);
-        // The past's error carries over as the worst of where the quarter's blocks come from.
+        // The past's errors carry over as squares, and how fast they grow as it is: means over where the quarter's blocks come from.
         if (view_.isInside(block.source_px)) {
-            const double carried = tileOf(past_, block.source_px).errors[quarterOf(glm::ivec2(block.source_px))];
-            tile.errors[quarter] = std::max(tile.errors[quarter], carried);
+            const std::size_t from = quarterOf(glm::ivec2(block.source_px));
+            const PastTile& before = tileOf(past_, block.source_px);
+            const bool is_cut = first.x / kCell * kCell + kPastBlock.x >= static_cast<int>(warped_.picture.eye.size_px.x);
+            const double share = is_cut ? 1.0 : static_cast<double>(kPastBlock.x) / kCell;
+            tile.errors[quarter] = std::hypot(tile.errors[quarter], std::sqrt(share) * std::min(before.errors[from], 1.0));
+            tile.growth[quarter] += share * std::min(before.growth[from], 1.0);
         }
         warped_.one_by_one.push_back(block.whole ? 0 : 1);
         tile.grown[quarter] += block.whole ? lossOf(view_, block, first) : leastLossOf(block);  // and that of its pixels

@@ -31,7 +31,7 @@ PastTile withGrowth(PastTile tile) {
     [[unroll]] for (uint q = 0; q < 4; ++q) {
         // The amplitude per pixel and channel.
         const float grown = sqrt(float(tile.grown[q]) / (kErrorSteps * 3 * kCellSize * kCellSize));
-        tile.errors[q] += mix(grown, tile.growth, kMeasuredShare * float(tile.growth > 0 && grown < kUnseenGrowth ? 1 : 0));
+        tile.errors[q] += mix(grown, tile.growth[q], kMeasuredShare * float(tile.growth[q] > 0 && grown < kUnseenGrowth ? 1 : 0));
     }
     return tile;
 }

@@ -65,7 +65,7 @@ void putTile(uvec2 tile, uvec2 size_tiles, bool hidden) {
     const PastTile from = pass.source_tiles.at[tile.y / 2 * half_tiles.x + tile.x / 2];
     const uint at = tile.y * size_tiles.x + tile.x, quarter = 2 * (tile.y & 1) + (tile.x & 1);
     const float lost = sqrt(float(pass.tile_losses.at[at]) / (kErrorSteps * 3 * kTileSize * kTileSize));
-    PastTile its = PastTile(0, 0, 0, vec4(0), uvec4(0));
+    PastTile its = PastTile(0, 0, vec4(0), vec4(0), uvec4(0));
     if (!hidden) {
         its.cost = uint(kOwnCost * float(from.cost));
         its.errors = vec4(lost + from.errors[quarter]);

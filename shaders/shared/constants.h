@@ -203,6 +203,8 @@ BINOSPLAT_CONSTANT int kFrontReach = 2;
 BINOSPLAT_CONSTANT float kUnseenError = 1.0f;
 // The least squared error that a warped pixel takes on, (1/4000)^2 in three channels, so that every tile gets its turn.
 BINOSPLAT_CONSTANT float kLeastGrowth = 1.9e-7f;
+// What the blocks of a quarter bring along from the past, amplitudes up to 1 and their squares, is summed in steps of 2^-30.
+BINOSPLAT_CONSTANT float kCarriedSteps = 1073741824.0f;
 // The weight of the growth of a tile's error that was measured when it was last rendered; the rest is the model's. A quarter of a tile in
 // which much was not seen grows by the model alone.
 BINOSPLAT_CONSTANT float kMeasuredShare = 0.5f;

@@ -157,8 +157,9 @@ BINOSPLAT_ARRAY_OF(PastView, PastViews);
 struct PastTile {
     uint cost;     // in pairs, when it was last rendered
     uint age;      // frames since then
-    float growth;  // of its error's amplitude per frame, as measured then
-    vec4 errors;   // by quarters, row by row: the amplitude of the expected error (root of the mean square over pixels and channels)
+    // By quarters, row by row:
+    vec4 growth;   // of the error's amplitude per frame, as measured then
+    vec4 errors;   // the amplitude of the expected error (root of the mean square over pixels and channels)
     uvec4 grown;   // until tiles are chosen: squared errors that the quarters are expected to take on in this frame, summed, in kErrorSteps
 };
 BINOSPLAT_ARRAY_OF(PastTile, PastTiles);

@@ -41,7 +41,7 @@ shared vec4 batch_depth[kBatchSize + 1];      // 1/z there, its slopes, -log2(op
 shared uvec2 batch_colour[kBatchSize + 1];
 shared uint cell_splats[kCellsPerTile][kBatchSize / 32];  // four words: blendBatch holds them in registers
 shared uint threads_done;
-shared uint squares;  // of the differences between what is rendered and what was there before, in kErrorSteps
+shared uint squares[kCellsPerTile];  // of the differences between what is rendered and what was there before, in kErrorSteps
 
 // The cells of the tile that the splat meets, a bit each.
 uint cellsOf(ProjectedSplat splat, uvec2 tile_px, float low_pass) {
@@ -181,13 +181,14 @@ uint toMove(float alpha, float depth_sum, vec2 inverse_depth_sums) {
 // to have had.
 void leaveTile(uint tile, uint cost, float error) {
     if (kMasked) {
-        atomicAdd(squares, uint(error * kErrorSteps));
+        atomicAdd(squares[gl_LocalInvocationIndex / kThreadsPerCell], uint(error * kErrorSteps));
         barrier();
     }
     if (gl_LocalInvocationIndex != 0) { return; }
-    const float amplitude = kMasked ? sqrt(float(squares) / (kErrorSteps * 3 * kTileSize * kTileSize)) : 0;
+    const vec4 sums = kMasked ? vec4(squares[0], squares[1], squares[2], squares[3]) : vec4(0);
+    const vec4 amplitude = sqrt(sums / (kErrorSteps * 3 * kCellSize * kCellSize));
     const uint age = kMasked ? pass.past_tiles.at[tile].age : 0;  // 0: nothing was there
-    const float growth = age > 0 ? amplitude / float(age) : 0;
+    const vec4 growth = age > 0 ? amplitude / float(age) : vec4(0);
     pass.past_tiles.at[tile] = PastTile(cost, 0, growth, vec4(0), uvec4(0));
 }
 
@@ -219,7 +220,7 @@ void main() [[subgroup_uniform_control_flow]] {
     const uint lanes = laneCount();
     if (gl_LocalInvocationIndex == 0) {
         threads_done = 0;
-        if (kPast) { squares = 0; }
+        if (kPast) { squares = uint[](0, 0, 0, 0); }
         batch_reference[kNoSplat] = vec4(0);
         batch_plane[kNoSplat] = vec4(0);
         batch_depth[kNoSplat] = vec4(1, 0, 0, 1e30);

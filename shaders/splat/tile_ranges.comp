@@ -80,7 +80,7 @@ void main() [[subgroup_uniform_control_flow]] {
     if (listed) {
         full = findPairs(tile);
         if (!full) { empty_tiles[atomicAdd(empty_count, 1)] = tile; }
-        if (kPast && !full) { pass.past_tiles.at[tile] = PastTile(0, 0, 0, vec4(0), uvec4(0)); }
+        if (kPast && !full) { pass.past_tiles.at[tile] = PastTile(0, 0, vec4(0), vec4(0), uvec4(0)); }
     }
     listFull(full, tile);
     barrier();

@@ -29,7 +29,8 @@ const int kColumns = int(kPastColumns), kRows = int(kPastRows);
 
 shared uint listed_count, listed_first;  // this workgroup's part of the list of blocks
 shared uint cell_grown[kRegionCells.x * kRegionCells.y];    // squared errors expected of this step, summed, in kErrorSteps
-shared uint cell_carried[kRegionCells.x * kRegionCells.y];  // the greatest error of the past where a cell comes from, as bits
+// Of where the blocks of a cell come from, summed in kCarriedSteps: the squares of the past's errors, and how fast they grow.
+shared uint cell_carried[kRegionCells.x * kRegionCells.y], cell_growth[kRegionCells.x * kRegionCells.y];
 
 // The offsets from a block's pixels to their places in the past: at its middle, by column and by row.
 struct BlockMoves {
@@ -246,7 +247,7 @@ void main() {
     uint in_list = 0;
     vec2 depths;
     if (thread == 0) { listed_count = 0; }
-    if (thread < kRegionCells.x * kRegionCells.y) { cell_grown[thread] = cell_carried[thread] = 0; }
+    if (thread < kRegionCells.x * kRegionCells.y) { cell_grown[thread] = cell_carried[thread] = cell_growth[thread] = 0; }
     barrier();
     if (all(lessThan(first, view.size_px))) {
         BlockMoves moves;
@@ -255,8 +256,10 @@ void main() {
         const bool as_one = findBlock(view, first, last, moves, depths, source_px, spread);
         if (isInPast(view, source_px)) {
             const uvec2 at = pixelAt(view.past_size_px, source_px), tile = at / kTileSize, quarter = at % kTileSize / kCellSize;
-            const float carried = pass.source_tiles.at[tile.y * view.past_size_tiles.x + tile.x].errors[2 * quarter.y + quarter.x];
-            atomicMax(cell_carried[cell], floatBitsToUint(carried));
+            const uint from = tile.y * view.past_size_tiles.x + tile.x, its = 2 * quarter.y + quarter.x;
+            const float carried = pass.source_tiles.at[from].errors[its], growth = pass.source_tiles.at[from].growth[its];
+            atomicAdd(cell_carried[cell], uint(min(carried * carried, 1) * kCarriedSteps));
+            atomicAdd(cell_growth[cell], uint(min(growth, 1) * kCarriedSteps));
         }
         const float least = any(notEqual(moves.mean, vec2(0))) ? kLeastGrowth : 0;
         if (as_one) {
@@ -288,15 +291,18 @@ void main() {
     if (thread >= kPastTiles) { return; }
     const uvec2 tile = tileOfRegion(view, thread);
     if (any(greaterThanEqual(tile, view.size_tiles))) { return; }
-    // The tile's cost and how fast its error grows are those of where its middle comes from.
+    // The tile's cost and age are those of where its middle comes from.
     const vec2 middle_px = min(vec2(tile * kTileSize) + 0.5 * float(kTileSize), vec2(view.size_px));
     const float guess = look(view, movePixelAnywhere(view.past_from_now, middle_px, 0).xy, middle_px).inverse_depth;
     const uvec2 from = pixelAt(view.past_size_px, movePixelAnywhere(view.past_from_now, middle_px, guess).xy) / kTileSize;
     const PastTile before = pass.source_tiles.at[from.y * view.past_size_tiles.x + from.x];
-    PastTile now = PastTile(before.cost, before.age + 1, before.growth, vec4(0), uvec4(0));
+    PastTile now = PastTile(before.cost, before.age + 1, vec4(0), vec4(0), uvec4(0));
     [[unroll]] for (uint q = 0; q < 4; ++q) {
         const uint its_cell = (q >> 1) * kRegionCells.x + thread * (kTileSize / kCellSize) + (q & 1);
-        now.errors[q] = uintBitsToFloat(cell_carried[its_cell]);
+        // A quarter has two blocks, side by side, if the picture does not end between them.
+        const float blocks = tile.x * kTileSize + (q & 1) * kCellSize + kPastColumns < view.size_px.x ? 2 : 1;
+        now.errors[q] = sqrt(float(cell_carried[its_cell]) / (blocks * kCarriedSteps));
+        now.growth[q] = float(cell_growth[its_cell]) / (blocks * kCarriedSteps);
         now.grown[q] = cell_grown[its_cell];
     }
     const uint at = tile.y * view.size_tiles.x + tile.x;

@@ -11,8 +11,9 @@ namespace binosplat::test {
 inline constexpr double kErrorSteps = 0x1p20;
 
 inline reference::PastTile tileOf(const gpu::PastTile& tile) {
-    reference::PastTile twin{tile.cost, tile.age, static_cast<double>(tile.growth), {}, {}};
+    reference::PastTile twin{tile.cost, tile.age, {}, {}, {}};
     for (int q = 0; q < 4; ++q) {
+        twin.growth[static_cast<std::size_t>(q)] = static_cast<double>(tile.growth[q]);
         twin.errors[static_cast<std::size_t>(q)] = static_cast<double>(tile.errors[q]);
         twin.grown[static_cast<std::size_t>(q)] = tile.grown[q] / kErrorSteps;
     }

@@ -54,7 +54,7 @@ std::vector<gpu::PastTile> makePastTiles(std::size_t count) {
     std::vector<gpu::PastTile> tiles;
     for (std::size_t t = 0; t < count; ++t) {
         const float error = 0.001f * static_cast<float>(t % 9);
-        tiles.push_back({static_cast<gpu::uint>(10 * t), 3, 0.5f, {error, 2 * error, 3 * error, 4 * error}, {1, 2, 3, 4}});
+        tiles.push_back({static_cast<gpu::uint>(10 * t), 3, gpu::vec4(0.5f), {error, 2 * error, 3 * error, 4 * error}, {1, 2, 3, 4}});
     }
     return tiles;
 }
@@ -82,9 +82,9 @@ public:
         if (halves) {  // and later pictures are made from it
             half_.words = gpu.upload("half words", std::vector<gpu::uint>(pixelCount(half_eye_), kUnwritten));
             half_.tiles =
-                gpu.upload("half tiles", std::vector<gpu::PastTile>(tileCount(half_eye_), gpu::PastTile{kUnwritten, 0, 0.0f, {}, {}}));
+                gpu.upload("half tiles", std::vector<gpu::PastTile>(tileCount(half_eye_), gpu::PastTile{kUnwritten, 0, {}, {}, {}}));
             target_.words = gpu.upload("words", std::vector<gpu::uint>(pixelCount(eye), kUnwritten));
-            target_.tiles = gpu.upload("tiles", std::vector<gpu::PastTile>(tileCount(eye), gpu::PastTile{kUnwritten, 0, 0.0f, {}, {}}));
+            target_.tiles = gpu.upload("tiles", std::vector<gpu::PastTile>(tileCount(eye), gpu::PastTile{kUnwritten, 0, {}, {}, {}}));
         }
         half_.depths = gpu.upload("half depths", half_depths);
         target_.depths = gpu.upload("depths", std::vector<gpu::uint>(pixelCount(eye), kUnwritten));

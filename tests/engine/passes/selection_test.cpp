@@ -50,8 +50,8 @@ Tiles drawPast(glm::uvec2 size, std::mt19937& random) {
         tile.cost = static_cast<gpu::uint>(random() % 3 == 0 ? random() % 5000 : random() % 40);
         tile.age = static_cast<gpu::uint>(random() % (random() % 4 == 0 ? 500 : 6));
         const bool is_still = random() % 8 == 0;  // as it is before a still head
-        tile.growth = is_still || random() % 3 == 0 ? 0.0f : 0.02f * draw();
         for (int q = 0; q < 4; ++q) {
+            tile.growth[q] = is_still || random() % 3 == 0 ? 0.0f : 0.02f * draw();
             tile.errors[q] = is_still || random() % 4 == 0 ? 0.0f : 0.2f * std::pow(draw(), 6.0f);
             tile.grown[q] = is_still || random() % 4 == 0 ? 0 : static_cast<gpu::uint>(random()) >> (4 + random() % 28);
         }

@@ -155,18 +155,23 @@ TEST_CASE("what was hidden behind a nearer wall is not taken for seen, and the n
 TEST_CASE("what a tile has gone wrong by comes along from where its blocks come from, and ages") {
     const Eye eye = test::makeEye({96, 64});
     Past past = makePast(eye, waves, [](double, double) { return 0.5; });
-    past.tiles[8] = {70, 3, 0.02, {0.1, 0.2, 0.3, 0.4}, {}};
+    past.tiles[8] = {70, 3, {0.01, 0.02, 0.03, 0.04}, {0.1, 0.2, 0.3, 0.4}, {}};
+    const auto areNear = [](const std::array<double, 4>& a, const std::array<double, 4>& b) {
+        return std::ranges::equal(a, b, [](double one, double other) { return std::abs(one - other) < 1e-12; });
+    };
     const auto still = warpPast(past, eye).picture.tiles[8];
-    CHECK(still.errors == past.tiles[8].errors);
+    CHECK(areNear(still.errors, past.tiles[8].errors));
+    CHECK(areNear(still.growth, past.tiles[8].growth));
     CHECK(still.age == 4);
     CHECK(still.cost == 70);
-    CHECK(still.growth == 0.02);
     // 7.5 px: what was a tile's right half is its left one.
     const auto shifted = warpPast(past, moved(eye, {0.15, 0.0, 0.0})).picture.tiles;
-    CHECK(shifted[8].errors == std::array{0.2, 0.0, 0.4, 0.0});
-    CHECK(shifted[7].errors == std::array{0.0, 0.1, 0.0, 0.3});
-    // 4.5 px: of two blocks of a quarter one comes from each half.
-    CHECK(warpPast(past, moved(eye, {0.09, 0.0, 0.0})).picture.tiles[8].errors == std::array{0.2, 0.2, 0.4, 0.4});
+    CHECK(areNear(shifted[8].errors, {0.2, 0.0, 0.4, 0.0}));
+    CHECK(areNear(shifted[7].errors, {0.0, 0.1, 0.0, 0.3}));
+    // 4.5 px: of two blocks of a quarter one comes from each half. Squares have a mean; how fast errors grow has, too.
+    const auto between = warpPast(past, moved(eye, {0.09, 0.0, 0.0})).picture.tiles[8];
+    CHECK(areNear(between.errors, {std::sqrt(0.025), std::sqrt(0.02), std::sqrt(0.125), std::sqrt(0.08)}));
+    CHECK(areNear(between.growth, {0.015, 0.01, 0.035, 0.02}));
 }
 
 TEST_CASE("nothing comes from where a lens hides the picture, and what it hides is background") {
@@ -182,22 +187,23 @@ TEST_CASE("nothing comes from where a lens hides the picture, and what it hides 
 }
 
 TEST_CASE("errors add up as amplitudes, half of what was measured and half of what is expected") {
-    PastTile tile{100, 2, 0.0, {0.1, 0.0, 0.0, 0.0}, {}};
+    PastTile tile{100, 2, {}, {0.1, 0.0, 0.0, 0.0}, {}};
     tile.grown = {192 * 0.03 * 0.03, 192 * 0.03 * 0.03, 0.0, 192 * 0.06 * 0.06};
     growErrors(std::span(&tile, 1));
     CHECK(tile.errors[0] == doctest::Approx(0.13));
     CHECK(tile.errors[1] == doctest::Approx(0.03));
     CHECK(tile.errors[2] == 0.0);
     CHECK(tile.errors[3] == doctest::Approx(0.06));
-    tile.growth = 0.01;
+    tile.growth = {0.01, 0.05, 0.01, 0.01};
     growErrors(std::span(&tile, 1));
     CHECK(tile.errors[0] == doctest::Approx(0.15));
+    CHECK(tile.errors[1] == doctest::Approx(0.07));
     CHECK(tile.errors[2] == doctest::Approx(0.005));
     CHECK(tile.errors[3] == doctest::Approx(0.12));  // much of it was not seen: nobody has measured that
 }
 
 TEST_CASE("a tile is worth its squared error for each frame that it has waited") {
-    PastTile tile{100, 1, 0.0, {0.1, 0.1, 0.1, 0.1}, {}};
+    PastTile tile{100, 1, {}, {0.1, 0.1, 0.1, 0.1}, {}};
     CHECK(worthOf(tile) == doctest::Approx(256 * 3 * 0.01));
     tile.age = 5;
     CHECK(worthOf(tile) == doctest::Approx(5 * 256 * 3 * 0.01));
@@ -239,9 +245,10 @@ TEST_CASE("a tile that is rendered again says how far off it was, for each frame
     const Eye eye = test::makeEye({40, 16});  // two tiles, and half of one
     Past past = makePast(
         eye, [](double, double) { return glm::dvec3(0.5); }, [](double, double) { return 0.5; });
-    for (PastTile& tile : past.tiles) { tile = {100, 4, 0.0, {0.3, 0.3, 0.3, 0.3}, {}}; }
+    for (PastTile& tile : past.tiles) { tile = {100, 4, {}, {0.3, 0.3, 0.3, 0.3}, {}}; }
     Picture full = makePicture(eye.size_px);
     for (glm::dvec4& colour : full.rgba) { colour = {0.6, 0.5, 0.5, 0.9}; }
+    full.rgba[8] = {0.5, 0.5, 0.5, 1.0};  // a pixel of the second quarter was right
     renderTiles(past, full, std::vector<std::uint64_t>{33, 44, 0}, Kinds{kChosen, kNone, kChosen});
     CHECK(past.rgba[0] == full.rgba[0]);
     CHECK(past.rgba[20] == glm::dvec4(0.5, 0.5, 0.5, 1.0));
@@ -249,9 +256,10 @@ TEST_CASE("a tile that is rendered again says how far off it was, for each frame
     CHECK(past.tiles[0].cost == 33);
     CHECK(past.tiles[0].age == 0);
     CHECK(past.tiles[0].errors == std::array<double, 4>{});
-    CHECK(past.tiles[0].growth == doctest::Approx(std::sqrt(0.01 / 3.0) / 4.0));
+    CHECK(past.tiles[0].growth[0] == doctest::Approx(std::sqrt(0.01 / 3.0) / 4.0));
+    CHECK(past.tiles[0].growth[1] == doctest::Approx(std::sqrt(63.0 / 64.0 * 0.01 / 3.0) / 4.0));
     CHECK(past.tiles[1].age == 4);
-    CHECK(past.tiles[2].growth == 0.0);  // nothing is left there
+    CHECK(past.tiles[2].growth == std::array<double, 4>{});  // nothing is left there
 }
 
 }  // SUITE(past_reference)
