@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 // What grows more is there to fill the disk: as for SPZ.
 constexpr std::uint64_t kMostGrowth = 256, kAlwaysAllowedBytes = 65536;
-constexpr std::size_t kPieceBytes = std::size_t{1} << 20;
+constexpr std::uint64_t kPieceBytes = std::uint64_t{1} << 20;
 constexpr std::size_t kMostNames = 3;  // in a message
 
 // The second is that of an empty one.
@@ -80,9 +80,9 @@ std::string findScene(const std::string& path, std::vector<std::string> files) {
     return files.front();
 }
 
-// All that `read` gives, in a file that messages call `name`.
+// What `read` gives, `first_bytes` of it at most, in a file that messages call `name`.
 template <typename Read>
-std::unique_ptr<InputFile> unpack(const InputFile& packed, const std::string& name, const Read& read) {
+std::unique_ptr<InputFile> unpack(const InputFile& packed, const std::string& name, std::uint64_t first_bytes, const Read& read) {
     TemporaryFolder folder("binosplat-unpacked-", "a packed scene");
     constexpr const char* kName = "scene";
     const std::uint64_t most_bytes = kMostGrowth * packed.sizeBytes() + kAlwaysAllowedBytes;
@@ -91,9 +91,9 @@ std::unique_ptr<InputFile> unpack(const InputFile& packed, const std::string& na
     };
     File target = createFile(folder.path() / kName);
     requireWritten(target != nullptr);
-    std::vector<std::byte> piece(kPieceBytes);
+    std::vector<std::byte> piece(static_cast<std::size_t>(std::min(kPieceBytes, first_bytes)));
     std::uint64_t done = 0;
-    while (const std::size_t got = read(std::span(piece))) {
+    while (const std::size_t got = done < first_bytes ? read(std::span(piece)) : 0) {
         done += got;
         check(done <= most_bytes, "{}: is longer than {} bytes unpacked, expected at most {} times as many as packed", name, most_bytes,
               kMostGrowth);
@@ -111,6 +111,10 @@ bool hasSceneName(const fs::path& file) {
     return hasPlainSceneName(file) || extension == ".zip" || (extension == ".gz" && hasPlainSceneName(file.stem()));
 }
 
+bool mayHaveScene(const fs::path& file) {
+    return hasSceneName(file) || std::ranges::none_of(extensionOf(file), [](char letter) { return letter >= 'a' && letter <= 'z'; });
+}
+
 bool isPacked(InputFile& file) {
     if (isZip(file)) {
         if (!ZipArchive::kIsBuiltIn) { return false; }  // SOG's reader says so
@@ -122,10 +126,10 @@ bool isPacked(InputFile& file) {
     return !start.empty() && std::memcmp(start.data(), "NGSP", start.size()) != 0;
 }
 
-std::unique_ptr<InputFile> unpackScene(std::unique_ptr<InputFile> file, const Progress& progress) {
+std::unique_ptr<InputFile> unpackScene(std::unique_ptr<InputFile> file, const Progress& progress, std::uint64_t first_bytes) {
     if (!isZip(*file)) {
         GzipReader stream(*file);
-        return unpack(*file, file->name(), [&](std::span<std::byte> target) {
+        return unpack(*file, file->name(), first_bytes, [&](std::span<std::byte> target) {
             if (progress) { progress(1.0 - static_cast<double>(file->bytesLeft()) / static_cast<double>(file->sizeBytes())); }
             std::size_t got = stream.read(target);
             while (got < target.size() && stream.next()) { got += stream.read(target.subspan(got)); }
@@ -136,7 +140,7 @@ std::unique_ptr<InputFile> unpackScene(std::unique_ptr<InputFile> file, const Pr
     const ZipArchive::Entry entry = archive.find(findScene(file->name(), filesIn(archive)));
     ZipReader stream(archive, entry);
     double done = 0.0;
-    return unpack(*file, entry.place, [&](std::span<std::byte> target) {
+    return unpack(*file, entry.place, first_bytes, [&](std::span<std::byte> target) {
         if (progress) { progress(std::min(done / static_cast<double>(entry.size_bytes), 1.0)); }
         const std::size_t got = stream.read(target);
         done += static_cast<double>(got);
@@ -144,9 +148,9 @@ std::unique_ptr<InputFile> unpackScene(std::unique_ptr<InputFile> file, const Pr
     });
 }
 
-std::unique_ptr<InputFile> openUnpacked(const std::string& path) {
+std::unique_ptr<InputFile> openUnpacked(const std::string& path, std::uint64_t first_bytes) {
     auto file = std::make_unique<InputFile>(path);
-    return isPacked(*file) ? unpackScene(std::move(file), {}) : std::move(file);
+    return isPacked(*file) ? unpackScene(std::move(file), {}, first_bytes) : std::move(file);
 }
 
 }  // namespace binosplat

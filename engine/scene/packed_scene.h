@@ -4,6 +4,7 @@
 #include "engine/scene/input_file.h"
 #include "engine/scene/scene.h"
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 
@@ -11,14 +12,17 @@ namespace binosplat {
 
 // True if a file's name ends as those of scenes do, packed or not.
 bool hasSceneName(const std::filesystem::path& file);
+// False if it ends in other letters: nobody needs to look into that file. True for names that say nothing, such as 1 and frame.0001.
+bool mayHaveScene(const std::filesystem::path& file);
 
 // True for gzip and zip but those of SPZ and SOG, which are formats of their own.
 bool isPacked(InputFile& file);
 
+inline constexpr std::uint64_t kWholeScene = ~std::uint64_t{0};
 // The scene in a packed file, as a file of its own. Throws Error for an archive that is broken or encrypted, or that holds no scene or
-// several, and for a scene that is more than 256 times as long as what it is packed in.
-std::unique_ptr<InputFile> unpackScene(std::unique_ptr<InputFile> file, const Progress& progress);
+// several, and for a scene that is more than 256 times as long as what it is packed in. What lies behind the first bytes is not unpacked.
+std::unique_ptr<InputFile> unpackScene(std::unique_ptr<InputFile> file, const Progress& progress, std::uint64_t first_bytes = kWholeScene);
 // A scene's file, unpacked if it is packed.
-std::unique_ptr<InputFile> openUnpacked(const std::string& path);
+std::unique_ptr<InputFile> openUnpacked(const std::string& path, std::uint64_t first_bytes = kWholeScene);
 
 }  // namespace binosplat

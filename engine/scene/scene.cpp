@@ -164,8 +164,9 @@ Scene loadFrom(Source& source, LoadNotes& notes, const Progress& progress) {
 }  // namespace
 
 std::string formatOfFile(const std::string& path) {
+    constexpr std::uint64_t kFirstBytes = 65536;  // no format looks at more before it is chosen
     const LevelChoice no_level;
-    Source source{path, openUnpacked(path), no_level};
+    Source source{path, openUnpacked(path, kFirstBytes), no_level};
     const SceneFormat* const format = findFormat(source);
     return format == nullptr ? "" : format->name;
 }

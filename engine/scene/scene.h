@@ -77,7 +77,7 @@ using Progress = std::function<void(double)>;
 Scene loadScene(const std::string& source, std::uint64_t builtin_splats = 0, LoadNotes* notes = nullptr, const Progress& progress = {},
                 const LevelChoice& level = {});
 
-// The format of the scene in a file, by its content; empty if it is none. Throws Error if it cannot be opened.
+// The format of the scene in a file, by the beginning of its content; empty if it is none. Throws Error if that cannot be read.
 std::string formatOfFile(const std::string& path);
 
 // The same for an open file, wherever its scene's other files are.

@@ -3,6 +3,7 @@
 
 #include "engine/error.h"
 #include "engine/scene/address.h"
+#include "engine/scene/packed_scene.h"
 #include "engine/scene/scene.h"
 #include "engine/scene/sog.h"
 #include "engine/scene/streamed_sog.h"
@@ -122,7 +123,9 @@ std::optional<std::string> findOnlyScene(const fs::path& folder) {
     int files = 0;
     std::error_code error, ignored;
     for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
-        if (entry->path().filename().string().starts_with('.') || !entry->is_regular_file(ignored)) { continue; }
+        if (!mayHaveScene(entry->path()) || entry->path().filename().string().starts_with('.') || !entry->is_regular_file(ignored)) {
+            continue;
+        }
         if (++files > kMostFilesOpened) { return std::nullopt; }
         const std::string path = entry->path().string();
         try {

@@ -24,7 +24,8 @@ std::optional<TrainingOutput> findTrainingOutput(const std::filesystem::path& fo
 // there is none.
 std::filesystem::path findCameraFile(const std::filesystem::path& scene);
 
-// The one file of a folder that is a scene, by its content; none if there are several, or more files than are worth opening.
+// The one file of a folder that is a scene, by its content, among those whose names do not say otherwise; none if there are several, or
+// more files than are worth opening.
 inline constexpr int kMostFilesOpened = 64;
 std::optional<std::string> findOnlyScene(const std::filesystem::path& folder);
 

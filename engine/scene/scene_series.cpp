@@ -32,7 +32,7 @@ std::vector<std::vector<NumberedFile>> findSceneGroups(const std::string& folder
     std::vector<std::vector<NumberedFile>> groups = findNumberedFiles(folder);
     const auto formatIn = [](const std::string& path) {
         try {
-            return formatOfFile(path);
+            return mayHaveScene(path) ? formatOfFile(path) : std::string();
         } catch (const Error&) { return std::string(); }  // an archive without a scene, as weights of networks are
     };
     std::erase_if(groups, [&](const std::vector<NumberedFile>& group) {

@@ -31,6 +31,40 @@ TEST_CASE("a scene within gzip is the scene itself, in one stream or several") {
     CHECK(contains(errorOf(gzip("no scene")), "b.gz: not a scene file of a known format"));
 }
 
+TEST_CASE("a folder's scene is found by names and by the first 64 KiB of what is packed: what lies behind them is not unpacked") {
+    const Folder folder;
+    PlyText large = makePly();
+    std::mt19937 random(1);
+    for (Column& column : large.columns) {
+        column.values.resize(8000);
+        for (double& value : column.values) { value = static_cast<double>(random()) / 4e9; }
+    }
+    const std::string ply = large.bytes(), whole = gzip(ply), cut = whole.substr(0, whole.size() / 2);
+    REQUIRE(cut.size() > 3 * 65536);
+    std::filesystem::create_directory(folder.file("in"));
+    const std::string format = formatOfFile(folder.write("in/a.ply", ply));
+    CHECK(formatOfFile(folder.write("a.ply.gz", cut)) == format);
+    CHECK(formatOfFile(folder.write("a.ply.gz", gzip(ply.substr(0, 100)) + gzip(ply.substr(100)).substr(0, cut.size()))) == format);
+#ifdef BINOSPLAT_SOG
+    for (const bool deflated : {false, true}) {
+        std::string broken = makeZip(SogText{{"a.ply", ply}}, deflated);
+        broken[cut.size()] ^= 1;
+        CHECK(contains(loadError(folder.write("a.zip", broken)), "a.zip: a.ply: cannot be read"));
+        CHECK(formatOfFile(folder.file("a.zip")) == format);
+    }
+#endif
+    for (int i = 0; i < 70; ++i) { (void)folder.write(fmt::format("in/{}.jpg", i), "a photograph"); }
+    (void)folder.write("in/dataset.tar.gz", whole);
+    (void)folder.write("in/notes.bak", ply);
+    CHECK(loadScene(folder.file("in")).size() == 8000);
+    (void)folder.write("in/b.ply.gz", cut);
+    CHECK(contains(loadError(folder.file("in")), "is a directory"));
+    std::filesystem::rename(folder.file("in/a.ply"), folder.file("in/1"));
+    CHECK(contains(loadError(folder.file("in")), "is a directory"));
+    std::filesystem::remove(folder.file("in/1"));
+    CHECK(contains(loadError(folder.file("in")), "b.ply.gz: ends within its gzip stream"));
+}
+
 #ifdef BINOSPLAT_SOG
 TEST_CASE("a zip archive with one scene in it is that scene; one with several, none or a password is told in a line") {
     const Folder folder;
