@@ -85,6 +85,9 @@ File createFile(const std::filesystem::path& path);
 // in errno, if that cannot be done.
 std::filesystem::path createFolder(const std::filesystem::path& parent, const std::string& prefix);
 
+// Where files of a folder are kept in memory (tmpfs): all memory there is, and how much of it can be had. None for a disk.
+std::optional<std::filesystem::space_info> memoryBehind(const std::filesystem::path& folder);
+
 // A stamp that changes when a file is written to.
 struct FileStamp {
     std::uint64_t size_bytes = 0;

@@ -7,9 +7,12 @@
 #include <spawn.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
+#include <sys/vfs.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cinttypes>
 #include <csignal>
@@ -170,6 +173,23 @@ File createFile(const fs::path& path) {
 fs::path createFolder(const fs::path& parent, const std::string& prefix) {
     std::string name = (parent / (prefix + "XXXXXX")).string();
     return ::mkdtemp(name.data()) != nullptr ? fs::path(name) : fs::path();
+}
+
+std::optional<fs::space_info> memoryBehind(const fs::path& folder) {
+    constexpr std::array<unsigned, 2> kKeptInMemory{0x01021994, 0x858458f6};  // tmpfs, ramfs
+    struct statfs disk {};
+    if (::statfs(folder.c_str(), &disk) != 0 ||
+        std::ranges::find(kKeptInMemory, static_cast<unsigned>(disk.f_type)) == kKeptInMemory.end()) {
+        return std::nullopt;
+    }
+    std::uintmax_t total_kib = 0, available_kib = 0;
+    std::ifstream memory("/proc/meminfo");
+    for (std::string line; std::getline(memory, line);) {
+        std::sscanf(line.c_str(), "MemTotal: %ju", &total_kib);
+        std::sscanf(line.c_str(), "MemAvailable: %ju", &available_kib);
+    }
+    if (total_kib == 0) { return std::nullopt; }
+    return fs::space_info{total_kib << 10, available_kib << 10, available_kib << 10};
 }
 
 std::optional<FileStamp> stampOf(std::FILE* file) {

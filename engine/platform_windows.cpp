@@ -233,6 +233,8 @@ fs::path createFolder(const fs::path& parent, const std::string& prefix) {
     return {};
 }
 
+std::optional<fs::space_info> memoryBehind(const fs::path&) { return std::nullopt; }
+
 std::optional<FileStamp> stampOf(std::FILE* file) {
     BY_HANDLE_FILE_INFORMATION status{};
     if (::GetFileInformationByHandle(handleOf(file), &status) == 0) {

@@ -80,24 +80,33 @@ std::string findScene(const std::string& path, std::vector<std::string> files) {
     return files.front();
 }
 
-// What `read` gives, `first_bytes` of it at most, in a file that messages call `name`.
+// What `read` gives, as far as `how` asks for it, in a file that messages call `name`. `told_bytes`: how long it says that it is.
 template <typename Read>
-std::unique_ptr<InputFile> unpack(const InputFile& packed, const std::string& name, std::uint64_t first_bytes, const Read& read) {
+std::unique_ptr<InputFile> unpack(const InputFile& packed, const std::string& name, std::uint64_t told_bytes, const Unpacking& how,
+                                  const Read& read) {
     TemporaryFolder folder("binosplat-unpacked-", "a packed scene");
     constexpr const char* kName = "scene";
     const std::uint64_t most_bytes = kMostGrowth * packed.sizeBytes() + kAlwaysAllowedBytes;
+    DiskRoom room(folder.path(), how.room);
+    std::uint64_t done = 0;
+    const auto requireRoom = [&](std::uint64_t more) {
+        const bool fits = room.holds(done, more);  // which may look anew
+        check(fits, "{}: needs at least {} bytes unpacked, but there is room for {} in {}; make some", name, done + more, room.bytes(),
+              folder.path().parent_path().string());
+    };
     const auto requireWritten = [&](bool written) {
         check(written, "{}: cannot be unpacked into {}: {}", name, folder.path().string(), std::strerror(errno));
     };
+    requireRoom(std::min(told_bytes, how.first_bytes));
     File target = createFile(folder.path() / kName);
     requireWritten(target != nullptr);
-    std::vector<std::byte> piece(static_cast<std::size_t>(std::min(kPieceBytes, first_bytes)));
-    std::uint64_t done = 0;
-    while (const std::size_t got = done < first_bytes ? read(std::span(piece)) : 0) {
-        done += got;
-        check(done <= most_bytes, "{}: is longer than {} bytes unpacked, expected at most {} times as many as packed", name, most_bytes,
-              kMostGrowth);
+    std::vector<std::byte> piece(static_cast<std::size_t>(std::min(kPieceBytes, how.first_bytes)));
+    while (const std::size_t got = done < how.first_bytes ? read(std::span(piece)) : 0) {
+        check(done + got <= most_bytes, "{}: is longer than {} bytes unpacked, expected at most {} times as many as packed", name,
+              most_bytes, kMostGrowth);
+        requireRoom(got);
         requireWritten(std::fwrite(piece.data(), 1, got, target.get()) == got);
+        done += got;
     }
     requireWritten(std::fclose(target.release()) == 0);
     packed.requireUnchanged();
@@ -126,10 +135,10 @@ bool isPacked(InputFile& file) {
     return !start.empty() && std::memcmp(start.data(), "NGSP", start.size()) != 0;
 }
 
-std::unique_ptr<InputFile> unpackScene(std::unique_ptr<InputFile> file, const Progress& progress, std::uint64_t first_bytes) {
+std::unique_ptr<InputFile> unpackScene(std::unique_ptr<InputFile> file, const Progress& progress, const Unpacking& how) {
     if (!isZip(*file)) {
         GzipReader stream(*file);
-        return unpack(*file, file->name(), first_bytes, [&](std::span<std::byte> target) {
+        return unpack(*file, file->name(), 0, how, [&](std::span<std::byte> target) {
             if (progress) { progress(1.0 - static_cast<double>(file->bytesLeft()) / static_cast<double>(file->sizeBytes())); }
             std::size_t got = stream.read(target);
             while (got < target.size() && stream.next()) { got += stream.read(target.subspan(got)); }
@@ -140,7 +149,7 @@ std::unique_ptr<InputFile> unpackScene(std::unique_ptr<InputFile> file, const Pr
     const ZipArchive::Entry entry = archive.find(findScene(file->name(), filesIn(archive)));
     ZipReader stream(archive, entry);
     double done = 0.0;
-    return unpack(*file, entry.place, first_bytes, [&](std::span<std::byte> target) {
+    return unpack(*file, entry.place, entry.size_bytes, how, [&](std::span<std::byte> target) {
         if (progress) { progress(std::min(done / static_cast<double>(entry.size_bytes), 1.0)); }
         const std::size_t got = stream.read(target);
         done += static_cast<double>(got);
@@ -148,9 +157,9 @@ std::unique_ptr<InputFile> unpackScene(std::unique_ptr<InputFile> file, const Pr
     });
 }
 
-std::unique_ptr<InputFile> openUnpacked(const std::string& path, std::uint64_t first_bytes) {
+std::unique_ptr<InputFile> openUnpacked(const std::string& path, const Unpacking& how) {
     auto file = std::make_unique<InputFile>(path);
-    return isPacked(*file) ? unpackScene(std::move(file), {}, first_bytes) : std::move(file);
+    return isPacked(*file) ? unpackScene(std::move(file), {}, how) : std::move(file);
 }
 
 }  // namespace binosplat

@@ -166,7 +166,7 @@ Scene loadFrom(Source& source, LoadNotes& notes, const Progress& progress) {
 std::string formatOfFile(const std::string& path) {
     constexpr std::uint64_t kFirstBytes = 65536;  // no format looks at more before it is chosen
     const LevelChoice no_level;
-    Source source{path, openUnpacked(path, kFirstBytes), no_level};
+    Source source{path, openUnpacked(path, {.first_bytes = kFirstBytes}), no_level};
     const SceneFormat* const format = findFormat(source);
     return format == nullptr ? "" : format->name;
 }

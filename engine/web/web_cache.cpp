@@ -19,9 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t kFreeBytes = std::uint64_t{1} << 30, kFreeShare = 20;
-// Others write to the disk, too: it is looked at again after so many bytes.
-constexpr std::uint64_t kLookBytes = std::uint64_t{16} << 20;
 constexpr std::uint64_t kLongestNote = 1 << 16;
 constexpr int kMostNames = 1000;
 // A file that is no copy, and that nothing was written to for this long, is no longer on its way.
@@ -67,12 +64,6 @@ std::optional<FileStamp> stampOf(const fs::path& path) {
     return file ? binosplat::stampOf(file.get()) : std::nullopt;
 }
 
-std::uint64_t roomIn(const fs::path& folder) {
-    std::error_code error;
-    const fs::space_info disk = fs::space(folder, error);
-    return error ? 0 : roomOn(disk);
-}
-
 fs::path with(fs::path stem, const char* extension) { return stem += extension; }
 
 std::int64_t secondsNow() {
@@ -81,13 +72,7 @@ std::int64_t secondsNow() {
 
 }  // namespace
 
-std::uint64_t roomOn(const fs::space_info& disk) {
-    const std::uint64_t kept = std::min<std::uint64_t>(kFreeBytes, disk.capacity / kFreeShare);
-    return disk.available - std::min<std::uint64_t>(disk.available, kept);
-}
-
-IncomingFile::IncomingFile(fs::path path, File file)
-    : path_(std::move(path)), file_(std::move(file)), room_bytes_(roomIn(path_.parent_path())) {}
+IncomingFile::IncomingFile(fs::path path, File file) : path_(std::move(path)), file_(std::move(file)), room_(path_.parent_path()) {}
 
 IncomingFile::~IncomingFile() {
     file_.reset();
@@ -96,12 +81,7 @@ IncomingFile::~IncomingFile() {
 }
 
 bool IncomingFile::write(const char* data, std::size_t bytes) {
-    if (size_bytes_ - looked_at_bytes_ >= kLookBytes) {
-        looked_at_bytes_ = size_bytes_;
-        room_bytes_ = size_bytes_ + roomIn(path_.parent_path());
-    }
-    errno = ENOSPC;
-    if (bytes > room_bytes_ - size_bytes_ || std::fwrite(data, 1, bytes, file_.get()) != bytes) { return false; }
+    if (!room_.holds(size_bytes_, bytes) || std::fwrite(data, 1, bytes, file_.get()) != bytes) { return false; }
     size_bytes_ += bytes;
     return true;
 }

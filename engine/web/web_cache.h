@@ -3,6 +3,7 @@
 // a note that was written for other bytes is ignored.
 #pragma once
 
+#include "engine/disk_room.h"
 #include "engine/platform.h"
 
 #include <cstdint>
@@ -12,9 +13,6 @@
 #include <string>
 
 namespace binosplat {
-
-// How much may be written to a disk: the smaller of 1 GiB and 5 % of it stays free for other programs.
-std::uint64_t roomOn(const std::filesystem::space_info& disk);
 
 // A file on its way into the cache: removed again unless it is kept.
 class IncomingFile {
@@ -27,14 +25,15 @@ public:
     // False if the disk has no room for them.
     [[nodiscard]] bool write(const char* data, std::size_t bytes);
     // How much may be written in all, so that the disk keeps some free space.
-    [[nodiscard]] std::uint64_t roomBytes() const { return room_bytes_; }
+    [[nodiscard]] std::uint64_t roomBytes() const { return room_.bytes(); }
     [[nodiscard]] std::uint64_t sizeBytes() const { return size_bytes_; }
 
 private:
     friend class WebCache;
     std::filesystem::path path_;
     File file_;
-    std::uint64_t room_bytes_, size_bytes_ = 0, looked_at_bytes_ = 0;
+    DiskRoom room_;
+    std::uint64_t size_bytes_ = 0;
     bool is_kept_ = false;
 };
 

@@ -1,4 +1,5 @@
 // Scenes that come packed: within gzip, or alone in a zip archive.
+#include "engine/scene/packed_scene.h"
 #include "engine/scene/scene.h"
 #include "tests/engine/scene/ply_files.h"
 #include "tests/engine/scene/spz_files.h"
@@ -63,6 +64,40 @@ TEST_CASE("a folder's scene is found by names and by the first 64 KiB of what is
     CHECK(contains(loadError(folder.file("in")), "is a directory"));
     std::filesystem::remove(folder.file("in/1"));
     CHECK(contains(loadError(folder.file("in")), "b.ply.gz: ends within its gzip stream"));
+}
+
+TEST_CASE("a scene is not unpacked into more room than there is, and leaves nothing there") {
+    const Folder folder;
+    std::string noise(40 << 20, ' ');
+    std::mt19937 random(1);
+    for (std::size_t i = 0; i < noise.size(); i += 64) { noise[i] = static_cast<char>(random()); }
+    constexpr std::uint64_t kMib = std::uint64_t{1} << 20;
+    const auto unpackInto = [&](const std::string& name, std::vector<std::uint64_t> room) {
+        std::size_t looks = 0;
+        std::filesystem::path used;
+        const Unpacking how{.room = [&](const std::filesystem::path& place) {
+            used = place;
+            CHECK(std::filesystem::is_empty(place) == (looks == 0));
+            return room.at(looks++);
+        }};
+        const std::string error = errorOf([&] { (void)unpackScene(std::make_unique<InputFile>(folder.file(name)), {}, how); });
+        CHECK(looks == room.size());
+        CHECK_FALSE(std::filesystem::exists(used));
+        return error;
+    };
+    const auto said = [](std::uint64_t needed, std::uint64_t room) {
+        return fmt::format("needs at least {} bytes unpacked, but there is room for {} in ", needed, room);
+    };
+    (void)folder.write("a.gz", deflated(noise, MAX_WBITS + 16, 1));
+    CHECK(unpackInto("a.gz", {100 * kMib, 100 * kMib, 100 * kMib}).empty());
+    CHECK(contains(unpackInto("a.gz", {100 * kMib, 3 * kMib}), "a.gz: " + said(20 * kMib, 19 * kMib)));
+    CHECK(contains(unpackInto("a.gz", {kMib / 2}), said(kMib, kMib / 2)));
+#ifdef BINOSPLAT_SOG
+    (void)folder.write("a.zip", makeZip(SogText{{"a.ply", noise}}, true));
+    CHECK(unpackInto("a.zip", {40 * kMib, 24 * kMib, 8 * kMib}).empty());
+    CHECK(contains(unpackInto("a.zip", {39 * kMib}), "a.zip: a.ply: " + said(40 * kMib, 39 * kMib)));
+    CHECK(contains(unpackInto("a.zip", {40 * kMib, 24 * kMib, 0}), said(33 * kMib, 32 * kMib)));
+#endif
 }
 
 #ifdef BINOSPLAT_SOG

@@ -109,14 +109,6 @@ TEST_CASE("the cache keeps its limit, and what was used last") {
     CHECK(filesIn(folder.file("cache")).empty());
 }
 
-TEST_CASE("the smaller of 1 GiB and 5 % of the disk stays free") {
-    constexpr std::uint64_t kGib = std::uint64_t{1} << 30;
-    for (const auto& [capacity, available, room] : std::vector<std::array<std::uint64_t, 3>>{
-             {1000 * kGib, 500 * kGib, 499 * kGib}, {1000 * kGib, kGib, 0}, {1000 * kGib, 0, 0}, {10 * kGib, kGib, kGib / 2}, {0, 0, 0}}) {
-        CHECK(roomOn({capacity, available, available}) == room);
-    }
-}
-
 TEST_CASE("without a folder for a cache nothing stays") {
     const Folder folder;
     const WebServer server({{"/a.ply", kPly}});

@@ -1,0 +1,47 @@
+// What the system says of a disk, less what stays free.
+#include "engine/disk_room.h"
+
+#include "engine/platform.h"
+
+#include <algorithm>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+namespace binosplat {
+
+namespace {
+
+constexpr std::uint64_t kFreeBytes = std::uint64_t{1} << 30, kFreeShare = 20;
+constexpr std::uint64_t kLookBytes = std::uint64_t{16} << 20;
+// On a disk that does not say how large it is: a write to it fails when it is full.
+constexpr std::uint64_t kUntoldBytes = std::uint64_t{1} << 62;
+
+}  // namespace
+
+std::uint64_t roomOn(const std::filesystem::space_info& disk) {
+    const std::uint64_t kept = std::min<std::uint64_t>(kFreeBytes, disk.capacity / kFreeShare);
+    return disk.available - std::min<std::uint64_t>(disk.available, kept);
+}
+
+std::uint64_t roomIn(const std::filesystem::path& folder) {
+    std::error_code error;
+    const std::filesystem::space_info disk = std::filesystem::space(folder, error);
+    if (error) { return 0; }
+    const std::uint64_t bytes = disk.capacity > 0 ? roomOn(disk) : kUntoldBytes;
+    const std::optional<std::filesystem::space_info> memory = memoryBehind(folder);
+    return memory ? std::min(bytes, roomOn(*memory)) : bytes;
+}
+
+DiskRoom::DiskRoom(std::filesystem::path folder, Measure measure)
+    : folder_(std::move(folder)), measure_(std::move(measure)), bytes_(measure_(folder_)) {}
+
+bool DiskRoom::holds(std::uint64_t written, std::uint64_t more) {
+    if (written - looked_at_bytes_ >= kLookBytes) {
+        looked_at_bytes_ = written;
+        bytes_ = written + measure_(folder_);
+    }
+    return more <= bytes_ - written;
+}
+
+}  // namespace binosplat

@@ -1,0 +1,51 @@
+// Facts about the room that is left on disks.
+#include "engine/disk_room.h"
+
+#include "engine/platform.h"
+#include "tests/suite.h"
+
+SUITE(disk_room) {
+
+TEST_CASE("the smaller of 1 GiB and 5 % of the disk stays free") {
+    constexpr std::uint64_t kGib = std::uint64_t{1} << 30;
+    for (const auto& [capacity, available, room] : std::vector<std::array<std::uint64_t, 3>>{
+             {1000 * kGib, 500 * kGib, 499 * kGib}, {1000 * kGib, kGib, 0}, {1000 * kGib, 0, 0}, {10 * kGib, kGib, kGib / 2}, {0, 0, 0}}) {
+        CHECK(roomOn({capacity, available, available}) == room);
+    }
+}
+
+TEST_CASE("a disk is looked at again after 16 MiB, and what others wrote meanwhile counts") {
+    constexpr std::uint64_t kMib = std::uint64_t{1} << 20;
+    std::vector<std::uint64_t> found{100 * kMib, 20 * kMib, 4 * kMib};
+    std::size_t looks = 0;
+    DiskRoom room("a folder", [&](const std::filesystem::path& folder) {
+        CHECK(folder == "a folder");
+        return found.at(looks++);
+    });
+    CHECK(room.bytes() == 100 * kMib);
+    CHECK(room.holds(0, 100 * kMib));
+    CHECK_FALSE(room.holds(0, 100 * kMib + 1));
+    CHECK(room.holds(16 * kMib - 1, 70 * kMib));
+    CHECK(looks == 1);
+    CHECK_FALSE(room.holds(16 * kMib, 21 * kMib));
+    CHECK(looks == 2);
+    CHECK(room.bytes() == 36 * kMib);
+    CHECK(room.holds(16 * kMib, 20 * kMib));
+    CHECK(room.holds(32 * kMib, 4 * kMib));
+    CHECK_FALSE(room.holds(36 * kMib, 1));
+    CHECK(looks == 3);
+}
+
+TEST_CASE("a folder in memory has no more room than memory, one on a disk no more than that, and one that is not there none") {
+    const std::filesystem::path folder = std::filesystem::temp_directory_path();
+    CHECK(roomIn(folder) <= std::filesystem::space(folder).available);
+    CHECK(roomIn(folder / "not there") == 0);
+    CHECK_FALSE(memoryBehind("/proc").has_value());
+    if (!std::filesystem::exists("/dev/shm")) { return; }
+    const std::optional<std::filesystem::space_info> memory = memoryBehind("/dev/shm");
+    REQUIRE(memory.has_value());
+    CHECK(memory->available > 0);
+    CHECK(memory->available < memory->capacity);
+}
+
+}  // SUITE(disk_room)
