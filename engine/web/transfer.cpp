@@ -69,8 +69,6 @@ Transfer::Transfer(const WebCache& cache, const FetchSettings& settings, FetchTa
     set(CURLOPT_FOLLOWLOCATION, 1l);
     set(CURLOPT_MAXREDIRS, kMostRedirects);
     set(CURLOPT_DISALLOW_USERNAME_IN_URL, 1l);
-    // Whole files are asked for as they are (setHeaders), but some servers hold packed ones and send no others.
-    set(CURLOPT_ACCEPT_ENCODING, "gzip, deflate");
     set(CURLOPT_PREREQFUNCTION, &Transfer::checkServer);
     set(CURLOPT_PREREQDATA, static_cast<void*>(this));
     set(CURLOPT_HTTP_VERSION, static_cast<long>(CURL_HTTP_VERSION_2TLS));
@@ -105,7 +103,9 @@ void Transfer::setHeaders() {
         (void)headers.release();
         headers.reset(longer);
     };
+    // Whole files are asked for as they are, but some servers hold packed ones and send no others.
     add("Accept-Encoding", "identity");
+    curl_easy_setopt(easy_.get(), CURLOPT_ACCEPT_ENCODING, is_unpacked_ ? "gzip, deflate" : nullptr);
     if (kept_bytes_ == 0) {
         add("If-None-Match", request_.version.etag);
         add("If-Modified-Since", request_.version.last_modified);
@@ -240,7 +240,7 @@ bool Transfer::canGoOn() const {
 
 bool Transfer::isEncoded() const {
     const std::string encoding = header("Content-Encoding");
-    return !encoding.empty() && encoding != "identity";
+    return is_unpacked_ && !encoding.empty() && encoding != "identity";
 }
 
 bool Transfer::exceedsCache(std::uint64_t bytes) const { return settings_.cache_bytes > 0 && bytes > settings_.cache_bytes; }
@@ -278,6 +278,12 @@ FileVersion Transfer::versionSent() const {
 }
 
 bool Transfer::finish(CURLcode code, bool is_stalled) {
+    // Some servers name what is no packing (UTF-8, aws-chunked), or one that they have not done: asked once more, for the bytes as they
+    // come.
+    if (code == CURLE_BAD_CONTENT_ENCODING && got_bytes_ == kept_bytes_ && std::exchange(is_unpacked_, false)) {
+        --attempts_;
+        return false;
+    }
     std::optional<Fetched> verdict = judge(code, is_stalled);
     if (!verdict) {
         if (!canGoOn()) { startOver(); }

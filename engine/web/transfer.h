@@ -96,7 +96,8 @@ private:
                                                          // file is always another one would be asked forever
     Clock::time_point due_{}, watched_since_{};
     std::uint64_t got_bytes_ = 0, watched_bytes_ = 0, expected_bytes_ = 0;
-    bool is_sized_ = false;  // the server has said how long it is
+    bool is_sized_ = false;    // the server has said how long it is
+    bool is_unpacked_ = true;  // as Content-Encoding says
     std::unique_ptr<IncomingFile> file_;
     FileVersion version_;                // of the bytes in file_
     std::uint64_t kept_bytes_ = 0;       // of them, those from earlier attempts; more than 0: the rest was asked for

@@ -259,8 +259,41 @@ TEST_CASE("a body that is packed on its way is unpacked, and never resumed") {
               1);
         std::filesystem::remove_all(folder.file("cache"));
     }
-    CHECK(errorOf(answer("200 OK", "Content-Encoding: gzip\r\n", kPly)).starts_with("cannot be had ("));
-    CHECK(errorOf(answer("200 OK", "Content-Encoding: unknown\r\n", kPly)).starts_with("cannot be had ("));
+    std::string broken = deflated(kPly, MAX_WBITS + 16);
+    broken[broken.size() - 6] ^= 1;  // of the checksum, behind all of the file
+    CHECK(errorOf(answer("200 OK", "Content-Encoding: gzip\r\n", broken)).starts_with("cannot be had ("));
+}
+
+TEST_CASE("a body that is not packed as the server says, or in no way that is known, is taken as it comes, and resumed") {
+    const Folder folder;
+    const Scene scene = loadScene(folder.write("a.ply", kPly));
+    for (const char* encoding : {"aws-chunked", "UTF-8", "gzip", "gzip, unknown"}) {
+        CAPTURE(encoding);
+        const std::string header = fmt::format("Content-Encoding: {}\r\n", encoding);
+        const WebServer server([&](const WebRequest& request) {
+            WebAnswer given = answer("200 OK", header + "ETag: \"1\"\r\n", kPly);
+            if (request.number == 2) {
+                CHECK(request.header("range") == "bytes=300-");
+                return answer("206 Partial Content",
+                              header + fmt::format("ETag: \"1\"\r\nContent-Range: bytes 300-{0}/{0}\r\n", kPly.size()), kPly.substr(300));
+            }
+            if (request.number == 1) { given = {given.bytes.substr(0, given.bytes.size() - kPly.size() + 300), WebAnswer::Then::kClose}; }
+            return given;
+        });
+        WebSettings settings = webSettings(folder);
+        settings.fetch.attempts = 2;
+        checkSameScene(scene, loadFromWeb(server.at("/a.ply"), settings));
+        CHECK(server.asked().size() == 3);
+        std::filesystem::remove_all(folder.file("cache"));
+    }
+    CHECK(errorOf(answer("404 Not Found", "Content-Encoding: unknown\r\n", "no such page"), webSettings, 2).starts_with("is not there"));
+    const auto little = [](const Folder& place) {
+        WebSettings settings = webSettings(place);
+        settings.fetch.most_bytes = kPly.size() - 1;
+        return settings;
+    };
+    CHECK(errorOf(answer("200 OK", "Content-Encoding: unknown\r\n", kPly), little, 2) ==
+          fmt::format("is {} bytes long, expected at most {}", kPly.size(), kPly.size() - 1));
 }
 
 TEST_CASE("a server that falls silent is given up") {
