@@ -1,7 +1,11 @@
 // Addresses on the web, as far as scenes need them (RFC 3986).
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <optional>
 #include <string>
+#include <string_view>
 
 namespace binosplat {
 
@@ -14,7 +18,11 @@ struct Address {
 // Throws Error if `source` is no http or https address, or names a user, whose password no message repeats.
 Address parseAddress(const std::string& source);
 
-// True for the address of a machine, in numbers, that is not on the public web: this one, or one on a private network or link.
+// The eight groups of an address in numbers; of an IPv4 one as IPv6 has it (::ffff:0:0/96). None for anything else, as a name is.
+std::optional<std::array<std::uint16_t, 8>> parseIp(std::string_view ip);
+
+// True for the address of a machine, in numbers, that is not on the public web: this one, or one on a private network or link. An IPv4
+// address within an IPv6 one (mapped, NAT64, 6to4) counts as what it is.
 bool isPrivateAddress(const std::string& ip);
 
 // The address of the file `name` in the folder of `address`; for the empty name `address` itself. Throws Error if it would lead out.

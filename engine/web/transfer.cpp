@@ -87,7 +87,6 @@ Transfer::Transfer(const WebCache& cache, const FetchSettings& settings, FetchTa
 void Transfer::start() {
     ++attempts_;
     error_[0] = '\0';
-    began_private_.reset();
     got_bytes_ = kept_bytes_ = file_ != nullptr ? file_->sizeBytes() : 0;
     setHeaders();
     watched_since_ = Clock::now();
@@ -117,13 +116,41 @@ void Transfer::setHeaders() {
     headers_ = std::move(headers);
 }
 
-// A public server must not make us ask those that only this machine, or its network, can reach.
-int Transfer::checkServer(void* transfer, char* ip, char*, int, int) {
+// Of the server that is asked, where curl is connected to `ip`; empty if that is a proxy's, which alone knows it. A proxy on the very port
+// of the server is taken for the server.
+std::string Transfer::ipOfServer(const std::string& ip, int port) const {
+    char* text = nullptr;
+    curl_easy_getinfo(easy_.get(), CURLINFO_EFFECTIVE_URL, &text);
+    const std::unique_ptr<CURLU, UrlCloser> url(curl_url());
+    curl_url_set(url.get(), CURLUPART_URL, text, 0);
+    const auto part = [&](CURLUPart which) {
+        char* found = nullptr;
+        curl_url_get(url.get(), which, &found, CURLU_DEFAULT_PORT);
+        std::string copy = found != nullptr ? found : "";
+        curl_free(found);
+        return copy;
+    };
+    std::string host = part(CURLUPART_HOST);
+    if (host.starts_with('[')) { host = host.substr(1, host.size() - 2); }
+    if (parseIp(host)) { return host; }
+    if (host.ends_with('.')) { host.pop_back(); }
+    constexpr std::string_view kHere = "localhost";
+    const bool is_here = host.size() >= kHere.size() && beginsWith(std::string_view(host).substr(host.size() - kHere.size()), kHere) &&
+                         (host.size() == kHere.size() || host[host.size() - kHere.size() - 1] == '.');
+    if (is_here) { return "127.0.0.1"; }
+    return part(CURLUPART_PORT) == std::to_string(port) ? ip : "";
+}
+
+// A scene from a public server must not make us ask those that only this machine, or its network, can reach.
+int Transfer::checkServer(void* transfer, char* ip, char*, int port, int) {
     auto& self = *static_cast<Transfer*>(transfer);
-    const bool is_private = self.settings_.is_private(ip);
-    if (!self.began_private_) { self.began_private_ = is_private; }
-    if (!is_private || *self.began_private_) { return CURL_PREREQFUNC_OK; }
-    self.refused_ = fmt::format("redirects from the public web to {}, which is on a private network, expected a public server", ip);
+    try {
+        const std::string server = self.ipOfServer(ip, port);
+        const bool is_private = !server.empty() && self.settings_.is_private(server);
+        if (!self.tally_.began_private) { self.tally_.began_private = is_private; }
+        if (!is_private || *self.tally_.began_private) { return CURL_PREREQFUNC_OK; }
+        self.refused_ = fmt::format("leads from the public web to {}, which is on a private network, expected a public server", server);
+    } catch (const std::exception& error) { self.refused_ = fmt::format("cannot be had ({})", error.what()); }
     return CURL_PREREQFUNC_ABORT;
 }
 

@@ -20,14 +20,18 @@ struct EasyCloser {
 struct MultiCloser {
     void operator()(CURLM* multi) const { curl_multi_cleanup(multi); }
 };
+struct UrlCloser {
+    void operator()(CURLU* url) const { curl_url_cleanup(url); }
+};
 struct ListCloser {
     void operator()(curl_slist* list) const { curl_slist_free_all(list); }
 };
 
-// Bytes that came and bytes to come, of all transfers together.
+// Of all transfers together: bytes that came and bytes to come.
 struct FetchTally {
     std::atomic<std::uint64_t> got_bytes = 0, expected_bytes = 0;
     std::atomic<std::size_t> asked = 0, sized = 0;  // files, and those of known length
+    std::optional<bool> began_private;  // whether the first server that was asked is on a private network; curl's thread alone has it
 };
 
 // Stays where it is: curl has its address.
@@ -53,6 +57,7 @@ public:
 private:
     static int checkServer(void* transfer, char* ip, char* own_ip, int port, int own_port);
     static std::size_t writeBody(char* data, std::size_t size, std::size_t count, void* transfer);
+    [[nodiscard]] std::string ipOfServer(const std::string& ip, int port) const;
     std::size_t take(const char* data, std::size_t bytes);
     // False, with the reason, if the body is not to be had.
     [[nodiscard]] bool beginBody();
@@ -99,10 +104,9 @@ private:
     bool is_sized_ = false;    // the server has said how long it is
     bool is_unpacked_ = true;  // as Content-Encoding says
     std::unique_ptr<IncomingFile> file_;
-    FileVersion version_;                // of the bytes in file_
-    std::uint64_t kept_bytes_ = 0;       // of them, those from earlier attempts; more than 0: the rest was asked for
-    std::optional<bool> began_private_;  // whether the first server that was asked is on a private network
-    std::string refused_;                // why the body was not taken
+    FileVersion version_;           // of the bytes in file_
+    std::uint64_t kept_bytes_ = 0;  // of them, those from earlier attempts; more than 0: the rest was asked for
+    std::string refused_;           // why the body was not taken
 };
 
 }  // namespace binosplat

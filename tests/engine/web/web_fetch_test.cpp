@@ -1,4 +1,5 @@
 // Servers that are busy, cut off, lie, lead elsewhere or vanish: the scene all the same, or one plain line and nothing left behind.
+#include "tests/engine/scene/gltf_files.h"
 #include "tests/engine/scene/packed_bytes.h"
 #include "tests/engine/web/web_runs.h"
 
@@ -233,10 +234,53 @@ TEST_CASE("no redirect leads from the public web to a machine of this network") 
         const std::string message = webError(server.at("/1"), settings);
         CHECK(message.empty() == way.is_followed);
         if (!way.is_followed) {
-            CHECK(contains(message, "redirects from the public web to 127.0.0.1, which is on a private network, expected a public server"));
+            CHECK(contains(message, "leads from the public web to 127.0.0.1, which is on a private network, expected a public server"));
         }
     }
     CHECK(server.asked() == std::vector<std::string>{"/1", "/a.ply", "/1", "/a.ply", "/1", "/a.ply", "/1"});
+}
+
+TEST_CASE("a scene that began on the public web stays there: in further attempts, and in further files") {
+    const Folder folder;
+    const WebServer server([&](const WebRequest& request) {
+        if (request.number == 0) { return answer("503 Service Unavailable"); }
+        return answer("200 OK", "", makeGltf().json(R"(,"uri":"a.bin")"));
+    });
+    for (const auto& [address, requests] : {std::pair("/a.ply", 1u), std::pair("/a.gltf", 2u)}) {
+        WebSettings settings = webSettings(folder);
+        settings.fetch.is_private = [servers = 0](const std::string&) mutable { return servers++ > 0; };
+        CHECK_THROWS_WITH_AS((void)loadFromWeb(server.at(address), settings), doctest::Contains("leads from the public web to 127.0.0.1"),
+                             Error);
+        CHECK(server.asked().size() == requests);
+    }
+}
+
+TEST_CASE("through a proxy, servers are judged by the addresses that name them in numbers, and not by the proxy's") {
+    const Folder folder;
+    std::string target;
+    const WebServer proxy([&](const WebRequest& request) {
+        return request.path.ends_with("/1") ? answer("302 Found", "Location: " + target + "\r\n") : answer("200 OK", "", kPly);
+    });
+    const auto fetch = [&](const std::string& first, const std::string& second) {
+        const WebSettings settings = webSettings(folder);
+        std::filesystem::remove_all(settings.cache_folder);
+        target = second;
+        setEnvironment("http_proxy", proxy.at(""));
+        const std::string message = webError(first, settings);
+        setEnvironment("http_proxy", "");
+        return message;
+    };
+    CHECK(fetch("http://scenes.example/1", "http://other.example/a.ply").empty());
+    CHECK(fetch("http://8.8.8.8/1", "http://other.example/a.ply").empty());
+    CHECK(fetch("http://10.0.0.1/1", "http://10.0.0.2/a.ply").empty());
+    CHECK(fetch("http://localhost/1", "http://[fe80::1]/a.ply").empty());
+    CHECK(proxy.asked().size() == 8);
+    for (const std::string within : {"10.0.0.1", "169.254.169.254", "[::1]", "[64:ff9b::a00:1]", "localhost", "LOCALHOST.",
+                                     "a.localhost:99", "0xa.1", "167772161", "10.1:8080"}) {
+        const std::string message = fetch("http://scenes.example/1", fmt::format("http://{}/a.ply", within));
+        CHECK_MESSAGE(contains(message, "leads from the public web to "), within);
+        CHECK(proxy.asked().back() == "http://scenes.example/1");
+    }
 }
 
 TEST_CASE("a body that is packed on its way is unpacked, and never resumed") {
