@@ -4,6 +4,7 @@
 
 #include "engine/error.h"
 #include "engine/git_lfs.h"
+#include "engine/scene/scene_files.h"
 
 #include <algorithm>
 #include <array>
@@ -34,6 +35,20 @@ InputFile::InputFile(const std::filesystem::path& path, std::string name, SceneF
 InputFile::InputFile(TemporaryFolder folder, const std::string& file, std::string name)
     : folder_(std::move(folder)), path_(folder_->path() / file), name_(std::move(name)) {
     open();
+}
+
+InputFile::~InputFile() = default;
+
+void InputFile::takeOthers(std::unique_ptr<SceneFiles> others) {
+    own_others_ = std::move(others);
+    others_ = own_others_.get();
+}
+
+std::function<std::unique_ptr<InputFile>()> InputFile::again() const {
+    if (others_ != nullptr && !folder_) {
+        return [others = others_] { return others->open(""); };
+    }
+    return [path = path_.string()] { return std::make_unique<InputFile>(path); };
 }
 
 void InputFile::open() {

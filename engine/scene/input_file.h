@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -30,12 +31,16 @@ public:
     InputFile(const std::filesystem::path& path, std::string name, SceneFiles& others);
     // A file in a folder of its own, which is gone with it; messages call it `name`.
     InputFile(TemporaryFolder folder, const std::string& file, std::string name);
+    ~InputFile();
 
     [[nodiscard]] const std::string& name() const { return name_; }
     // Where it lies on the disk.
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }
     // Null: they lie beside it, on the disk.
     [[nodiscard]] SceneFiles* others() const { return others_; }
+    void takeOthers(std::unique_ptr<SceneFiles> others);
+    // Opens it once more, while this one lives, or the others that it was given.
+    [[nodiscard]] std::function<std::unique_ptr<InputFile>()> again() const;
     [[nodiscard]] std::uint64_t sizeBytes() const { return opened_.size_bytes; }
     [[nodiscard]] std::uint64_t positionBytes() const { return position_bytes_; }
     [[nodiscard]] std::uint64_t bytesLeft() const { return sizeBytes() > position_bytes_ ? sizeBytes() - position_bytes_ : 0; }
@@ -75,6 +80,7 @@ private:
     std::optional<TemporaryFolder> folder_;  // removed after the file is closed
     std::filesystem::path path_;
     std::string name_;
+    std::unique_ptr<SceneFiles> own_others_;
     SceneFiles* others_ = nullptr;
     File file_;
     FileStamp opened_;

@@ -24,6 +24,7 @@ namespace fs = std::filesystem;
 constexpr std::uint64_t kMostGrowth = 256, kAlwaysAllowedBytes = 65536;
 constexpr std::uint64_t kPieceBytes = std::uint64_t{1} << 20;
 constexpr std::size_t kMostNames = 3;  // in a message
+constexpr const char* kExpected = "one with a scene in it";
 
 // The second is that of an empty one.
 bool isZip(InputFile& file) {
@@ -45,13 +46,6 @@ std::string extensionOf(const fs::path& file) {
 bool hasPlainSceneName(const fs::path& file) {
     static constexpr std::array<std::string_view, 7> kExtensions{".ply", ".splat", ".ksplat", ".spz", ".sog", ".gltf", ".glb"};
     return std::ranges::find(kExtensions, extensionOf(file)) != kExtensions.end();
-}
-
-ZipArchive openArchive(const InputFile& file) {
-    if (file.others() != nullptr) {
-        return {file.name(), "one with a scene in it", [others = file.others()] { return others->open(""); }};
-    }
-    return {file.name(), "one with a scene in it", [path = file.path().string()] { return std::make_unique<InputFile>(path); }};
 }
 
 // Without folders, hidden files and what macOS adds.
@@ -80,13 +74,15 @@ std::string findScene(const std::string& path, std::vector<std::string> files) {
     return files.front();
 }
 
+std::uint64_t mostUnpacked(const InputFile& packed) { return kMostGrowth * packed.sizeBytes() + kAlwaysAllowedBytes; }
+
 // What `read` gives, as far as `how` asks for it, in a file that messages call `name`. `told_bytes`: how long it says that it is.
 template <typename Read>
 std::unique_ptr<InputFile> unpack(const InputFile& packed, const std::string& name, std::uint64_t told_bytes, const Unpacking& how,
                                   const Read& read) {
     TemporaryFolder folder("binosplat-unpacked-", "a packed scene");
     constexpr const char* kName = "scene";
-    const std::uint64_t most_bytes = kMostGrowth * packed.sizeBytes() + kAlwaysAllowedBytes;
+    const std::uint64_t most_bytes = mostUnpacked(packed);
     DiskRoom room(folder.path(), how.room);
     std::uint64_t done = 0;
     const auto requireRoom = [&](std::uint64_t more) {
@@ -113,6 +109,59 @@ std::unique_ptr<InputFile> unpack(const InputFile& packed, const std::string& na
     return std::make_unique<InputFile>(std::move(folder), kName, name);
 }
 
+std::unique_ptr<InputFile> unpackEntry(const InputFile& packed, const ZipArchive& archive, const ZipArchive::Entry& entry,
+                                       const Unpacking& how, const Progress& progress) {
+    ZipReader stream(archive, entry);
+    double done = 0.0;
+    return unpack(packed, entry.place, entry.size_bytes, how, [&](std::span<std::byte> target) {
+        if (progress) { progress(std::min(done / static_cast<double>(entry.size_bytes), 1.0)); }
+        const std::size_t got = stream.read(target);
+        done += static_cast<double>(got);
+        return got;
+    });
+}
+
+// What lies beside a packed scene: in the same folder of its archive, or, without one, where the packed file is.
+class FilesBeside final : public SceneFiles {
+public:
+    FilesBeside(std::unique_ptr<InputFile> packed, std::unique_ptr<ZipArchive> archive, std::string folder)
+        : packed_(std::move(packed)), archive_(std::move(archive)), folder_(std::move(folder)) {}
+
+    std::unique_ptr<InputFile> open(const std::string& name, std::uint64_t most_bytes) override {
+        if (name.empty()) { return unpackScene(packed_->again()(), {}); }
+        if (archive_ == nullptr) { return packed_->others()->open(name, most_bytes); }
+        // Also one that was written with backslashes.
+        const std::vector<std::string> names = archive_->names();
+        const auto found = std::ranges::find(names, withSlashes(folder_ + name), withSlashes);
+        const ZipArchive::Entry entry = archive_->find(found != names.end() ? *found : folder_ + name);
+        check(entry.size_bytes <= most_bytes, "{}: is {} bytes long, expected at most {}", entry.place, entry.size_bytes, most_bytes);
+        std::unique_ptr<InputFile> file = unpackEntry(*packed_, *archive_, entry, {}, {});
+        // Entries may share their bytes, and a scene may name one as often as it likes.
+        unpacked_bytes_ += file->sizeBytes();
+        check(unpacked_bytes_ <= mostUnpacked(*packed_),
+              "{}: the files that it names are longer than {} bytes unpacked, expected at most {} times as many as packed", packed_->name(),
+              mostUnpacked(*packed_), kMostGrowth);
+        return file;
+    }
+    void expect(const std::vector<std::string>& names, std::uint64_t most_bytes) override {
+        if (archive_ == nullptr) { packed_->others()->expect(names, most_bytes); }
+    }
+    std::string place(const std::string& name) const override {
+        return archive_ == nullptr ? packed_->others()->place(name) : packed_->name() + ": " + folder_ + name;
+    }
+
+private:
+    static std::string withSlashes(std::string path) {
+        std::ranges::replace(path, '\\', '/');
+        return path;
+    }
+
+    std::unique_ptr<InputFile> packed_;
+    std::unique_ptr<ZipArchive> archive_;
+    std::string folder_;  // in the archive, with its slash
+    std::uint64_t unpacked_bytes_ = 0;
+};
+
 }  // namespace
 
 bool hasSceneName(const fs::path& file) {
@@ -127,7 +176,7 @@ bool mayHaveScene(const fs::path& file) {
 bool isPacked(InputFile& file) {
     if (isZip(file)) {
         if (!ZipArchive::kIsBuiltIn) { return false; }  // SOG's reader says so
-        const std::vector<std::string> files = filesIn(openArchive(file));
+        const std::vector<std::string> files = filesIn(ZipArchive(file.name(), kExpected, file.again()));
         const bool is_sog = std::ranges::any_of(files, [](const std::string& name) { return isNamed(name, "meta.json"); });
         return !is_sog || std::ranges::any_of(files, isLevels);
     }
@@ -136,25 +185,23 @@ bool isPacked(InputFile& file) {
 }
 
 std::unique_ptr<InputFile> unpackScene(std::unique_ptr<InputFile> file, const Progress& progress, const Unpacking& how) {
+    std::unique_ptr<InputFile> unpacked;
     if (!isZip(*file)) {
         GzipReader stream(*file);
-        return unpack(*file, file->name(), 0, how, [&](std::span<std::byte> target) {
+        unpacked = unpack(*file, file->name(), 0, how, [&](std::span<std::byte> target) {
             if (progress) { progress(1.0 - static_cast<double>(file->bytesLeft()) / static_cast<double>(file->sizeBytes())); }
             std::size_t got = stream.read(target);
             while (got < target.size() && stream.next()) { got += stream.read(target.subspan(got)); }
             return got;
         });
+        if (file->others() != nullptr) { unpacked->takeOthers(std::make_unique<FilesBeside>(std::move(file), nullptr, "")); }
+        return unpacked;
     }
-    const ZipArchive archive = openArchive(*file);
-    const ZipArchive::Entry entry = archive.find(findScene(file->name(), filesIn(archive)));
-    ZipReader stream(archive, entry);
-    double done = 0.0;
-    return unpack(*file, entry.place, entry.size_bytes, how, [&](std::span<std::byte> target) {
-        if (progress) { progress(std::min(done / static_cast<double>(entry.size_bytes), 1.0)); }
-        const std::size_t got = stream.read(target);
-        done += static_cast<double>(got);
-        return got;
-    });
+    auto archive = std::make_unique<ZipArchive>(file->name(), kExpected, file->again());
+    const std::string name = findScene(file->name(), filesIn(*archive));
+    unpacked = unpackEntry(*file, *archive, archive->find(name), how, progress);
+    unpacked->takeOthers(std::make_unique<FilesBeside>(std::move(file), std::move(archive), name.substr(0, name.find_last_of("/\\") + 1)));
+    return unpacked;
 }
 
 std::unique_ptr<InputFile> openUnpacked(const std::string& path, const Unpacking& how) {

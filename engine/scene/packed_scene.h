@@ -24,8 +24,9 @@ struct Unpacking {
     DiskRoom::Measure room = roomIn;
 };
 
-// The scene in a packed file, as a file of its own. Throws Error for an archive that is broken or encrypted, or that holds no scene or
-// several, and for a scene that is more than 256 times as long as what it is packed in, or has no room where temporary files are.
+// The scene in a packed file, as a file of its own; what it names beside it is looked for in its archive. Throws Error for an archive that
+// is broken or encrypted, or that holds no scene or several, and for a scene that is more than 256 times as long as what it is packed in,
+// or has no room where temporary files are.
 std::unique_ptr<InputFile> unpackScene(std::unique_ptr<InputFile> file, const Progress& progress, const Unpacking& how = {});
 // A scene's file, unpacked if it is packed.
 std::unique_ptr<InputFile> openUnpacked(const std::string& path, const Unpacking& how = {});

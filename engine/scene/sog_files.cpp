@@ -141,9 +141,7 @@ std::unique_ptr<SogFiles> openSogFolder(SceneFiles& files, const std::string& me
 }
 
 std::unique_ptr<SogFiles> openSogBundle(const InputFile& file) {
-    if (file.others() != nullptr) { return openSogBundle(*file.others(), ""); }
-    return std::make_unique<BundleFiles>(file.name(), file.sizeBytes(),
-                                         [path = file.path().string()] { return std::make_unique<InputFile>(path); });
+    return std::make_unique<BundleFiles>(file.name(), file.sizeBytes(), file.again());
 }
 
 std::unique_ptr<SogFiles> openSogBundle(SceneFiles& files, const std::string& bundle) {

@@ -1,6 +1,7 @@
 // Scenes that come packed: within gzip, or alone in a zip archive.
 #include "engine/scene/packed_scene.h"
 #include "engine/scene/scene.h"
+#include "tests/engine/scene/gltf_files.h"
 #include "tests/engine/scene/ply_files.h"
 #include "tests/engine/scene/spz_files.h"
 #ifdef BINOSPLAT_SOG
@@ -137,6 +138,32 @@ TEST_CASE("a zip archive with one scene in it is that scene; one with several, n
         {zip({{"a.ply.gz", gzip(ply)}}), "b.zip: is packed twice"},
         {zip({{"a.ply", std::string(5'000'000, ' ')}}, true), "expected at most 256 times as many as packed"}};
     for (const auto& [bytes, message] : faults) { CHECK(contains(loadError(folder.write("b.zip", bytes)), message)); }
+}
+
+TEST_CASE("what a scene in a zip archive names beside it is in that archive") {
+    const Folder folder;
+    const std::string gltf = makeGltf().json(R"(,"uri":"parts/a%20b.bin")"), binary = makeGltf().binary();
+    const Scene whole = loadScene(folder.write("a.glb", makeGltf().glb()));
+    for (const char* prefix : {"", "in/", "in\\"}) {
+        for (const char* part : {"parts/a b.bin", "parts\\a b.bin"}) {
+            checkSameScene(whole, loadScene(folder.write("a.zip", makeZip(SogText{{"a.gltf", gltf}, {part, binary}}, true, prefix))));
+        }
+    }
+    (void)folder.write("a.bin", binary);  // beside the archive is not in it
+    const std::string beside = makeGltf().json(R"(,"uri":"a.bin")");
+    CHECK(contains(loadError(folder.write("a.zip", makeZip(SogText{{"in/a.gltf", beside}, {"a.bin", binary}}))),
+                   "a.zip: in/a.bin: not in the archive"));
+    CHECK(contains(loadError(folder.write("a.zip", makeZip(SogText{{"a.gltf", beside}, {"a.bin", binary.substr(1)}}))),
+                   fmt::format("{} bytes", binary.size() - 1)));
+    // One that is named time and again, as a hostile scene may, is not unpacked without end.
+    const auto naming = [&](int times) {
+        std::string uri = R"(,"uri":"a.bin")";
+        for (int i = 1; i < times; ++i) { uri += R"(},{"byteLength":4,"uri":"a.bin")"; }
+        return loadError(folder.write(
+            "a.zip", makeZip(SogText{{"a.gltf", makeGltf().json(uri)}, {"a.bin", binary + std::string(300'000, '\0')}}, true)));
+    };
+    CHECK(naming(1).empty());
+    CHECK(contains(naming(4), "a.zip: the files that it names are longer than"));
 }
 #endif
 
