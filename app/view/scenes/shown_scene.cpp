@@ -35,7 +35,10 @@ void ShownScene::begin(const std::string& scene) {
     ++asked_count_;
     asked_ = scene;
     RunOptions run = options_.run;
-    if (scene != options_.scene) { run.camera.cameras_file.clear(); }  // these belong to the first scene
+    if (scene != options_.scene) {  // a given place belongs to the first one
+        run.camera.cameras_file.clear();
+        run.camera.eye = run.camera.look = run.camera.up = std::nullopt;
+    }
     loader_ = std::make_unique<SceneLoader>(context_, scene, std::move(run), ahead_, options_.load_first);
 }
 
@@ -151,7 +154,8 @@ std::string ShownScene::place(ViewState& state) {
     const CameraOptions& camera = options_.run.camera;
     const std::optional<Similarity> asked = state.takeAsked();
     state.place(asked.value_or(scene_->start));
-    if (asked || camera.eye || camera.look || camera.up || (!camera.cameras_file.empty() && scene_->name == options_.scene)) { return {}; }
+    const bool is_given = camera.eye || camera.look || camera.up || !camera.cameras_file.empty();
+    if (asked || (is_given && scene_->name == options_.scene)) { return {}; }
     if (scene_->remembered) {
         state.place(*scene_->remembered);
         log_.say("the wearer stands where this scene was saved");

@@ -102,6 +102,29 @@ TEST_CASE_FIXTURE(Shown,
 }
 
 TEST_CASE_FIXTURE(
+    Shown, "a place that was given belongs to the scene that it was given with: others start at their own, or where they were saved") {
+    const auto startOf = [&](const std::string& scene, const ViewOptions& given) {
+        ShownScene scenes(context(), given, log);
+        scenes.begin(scene);
+        REQUIRE(scenes.take(state).empty());
+        return state.sceneFromRoom();
+    };
+    const Similarity own = startOf("builtin:step-edge", options), other = startOf("builtin:fence", options);
+    options.run.camera.eye = glm::dvec3(0.0, -0.5, -3.0);
+    options.run.camera.up = glm::dvec3(0.0, 0.0, 1.0);
+    ShownScene scenes(context(), options, log);
+    REQUIRE(scenes.take(state).empty());
+    const Similarity given = state.sceneFromRoom();
+    CHECK_FALSE(same(given, own));
+    CHECK(same(startOf("builtin:fence", options), other));
+    ViewSettings moved = state.withPlacement();
+    moved.scene_from_room->position += glm::dvec3(1.0, 2.0, 3.0);
+    for (const char* scene : {"builtin:fence", "builtin:step-edge"}) { (void)saveViewSettings(scene, moved); }
+    CHECK(same(startOf("builtin:fence", options), *moved.scene_from_room));
+    CHECK(same(startOf("builtin:step-edge", options), given));
+}
+
+TEST_CASE_FIXTURE(
     Shown, "a remembered place that cannot be used is one line, the scene is shown at its start, and saving replaces a broken file") {
     const fs::path file = viewSettingsFile(options.scene);
     const auto showAgain = [&](std::string& complaint) {
