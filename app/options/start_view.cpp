@@ -48,11 +48,30 @@ std::optional<StartView> viewAtCamera(const Scene& scene, const SceneCameras& ow
 
 glm::dvec3 along(const FileCamera& camera, const glm::dvec3& axis) { return camera.eye.world_from_camera.orientation * axis; }
 
+// True for cameras that turn about their own up far more than they roll, as before a wall: whoever looks straight down keeps the sight
+// plumb, and is as free to turn about that.
+bool keepLevel(const std::vector<FileCamera>& cameras, const glm::dvec3& ahead, const glm::dvec3& up) {
+    constexpr double kLeastTurn = 0.005, kMoreThanRoll = 2.0;  // radians
+    const glm::dvec3 right = glm::normalize(glm::cross(ahead, up));
+    const auto spread = [&](const glm::dvec3& axis, const glm::dvec3& direction) {
+        double sum = 0.0, squares = 0.0;
+        for (const FileCamera& camera : cameras) {
+            const double off = glm::dot(along(camera, axis), direction);
+            sum += off;
+            squares += off * off;
+        }
+        const auto count = static_cast<double>(cameras.size());
+        return std::sqrt(std::max(squares / count - sum / count * sum / count, 0.0));
+    };
+    const double turn = spread({0.0, 0.0, 1.0}, right), roll = spread({1.0, 0.0, 0.0}, up);
+    return turn > kLeastTurn && turn > kMoreThanRoll * roll;
+}
+
 // True for cameras that all look one way, and are as far apart along their own up as befits a drone that looks straight down, or one before
 // a facade: nobody who walks is.
 bool mayLookDown(const std::vector<FileCamera>& cameras, const glm::dvec3& ahead, const glm::dvec3& up, const Scene& scene) {
     constexpr double kAllOneWay = 0.97, kLeastApart = 0.5;  // of their distance from the scene
-    if (!(glm::length(ahead) > kAllOneWay)) { return false; }
+    if (!(glm::length(ahead) > kAllOneWay) || keepLevel(cameras, ahead, up)) { return false; }
     std::vector<double> heights, distances;
     for (const FileCamera& camera : cameras) {
         heights.push_back(glm::dot(camera.eye.world_from_camera.position, up));

@@ -221,7 +221,35 @@ TEST_CASE("the up of cameras that all look straight down on one course is the gr
         CHECK(glm::dot(close->up, x) > 0.999);
         CHECK(close->why == "the mean of all cameras'");
     }
-    // So are those before a wall that has a street at its foot, however far apart.
+    // Nothing but a wall may look as the ground does. Who stands before one keeps level, and turns; who looks down keeps plumb, and turns,
+    // too.
+    std::mt19937 random(1);
+    std::normal_distribution<double> normal;
+    // Turned about their own up, their sight and their right by so many degrees.
+    const auto shaken = [&](double about_up, double about_sight, double about_right) {
+        std::vector<FileCamera> cameras = grid(-z_up, x, 8.0);
+        for (FileCamera& camera : cameras) {
+            const auto by = [&](double degrees, const glm::dvec3& axis) {
+                return glm::angleAxis(glm::radians(degrees) * normal(random), axis);
+            };
+            glm::dquat& turn = camera.eye.world_from_camera.orientation;
+            turn = by(about_up, x) * turn;
+            turn = turn * by(about_right, {1.0, 0.0, 0.0}) * by(about_sight, {0.0, 0.0, 1.0});
+        }
+        return upOfCameras(cameras, field(-z_up, x));
+    };
+    for (int i = 0; i < 20; ++i) {
+        for (const auto& found : {shaken(6.0, 1.0, 5.0), shaken(2.0, 0.3, 0.3), shaken(1.0, 0.0, 6.0)}) {
+            REQUIRE(found);
+            CHECK(glm::dot(found->up, x) > 0.98);
+            CHECK(found->why == "the mean of all cameras'");
+        }
+        for (const auto& found : {shaken(0.5, 2.0, 0.5), shaken(2.0, 3.0, 2.0), shaken(0.2, 0.0, 0.2), shaken(3.0, 3.0, 1.0)}) {
+            REQUIRE(found);
+            CHECK(glm::dot(found->up, -z_up) > 0.999);
+        }
+    }
+    // Those before a wall that has a street at its foot are believed, however far apart.
     Scene wall = field(-z_up, x);
     for (double u = -20.0; u < 20.0; u += 0.5) {
         for (double w = 0.0; w < 16.0; w += 0.5) {
