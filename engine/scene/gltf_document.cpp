@@ -19,6 +19,8 @@ namespace {
 
 constexpr std::uint64_t kMostTextBytes = std::uint64_t{32} << 20;            // in memory ten times as long; splats belong into a buffer
 constexpr std::uint32_t kJsonChunk = 0x4e4f534a, kBinaryChunk = 0x004e4942;  // "JSON", "BIN\0"
+// In all nodes: a file of a few megabytes may name each of a million primitives a million times.
+constexpr std::uint64_t kMostPrimitives = std::uint64_t{1} << 18;
 constexpr const char* kPrefix = "KHR_gaussian_splatting:";
 
 // The text to parse, and the chunk of a GLB that holds its first buffer.
@@ -245,7 +247,7 @@ void placeParts(const gltf::Model& model, const std::string& file, GltfDocument&
     for (const std::size_t root : model.roots) { open.emplace_back(root, glm::dmat4(1.0)); }
     std::reverse(open.begin(), open.end());
     std::vector<bool> seen(model.nodes.size(), false);
-    std::uint64_t left_out = 0;
+    std::uint64_t left_out = 0, primitives_met = 0;
     Wishes wishes(file);
     while (!open.empty()) {
         const auto [index, world_from_parent] = open.back();
@@ -257,6 +259,9 @@ void placeParts(const gltf::Model& model, const std::string& file, GltfDocument&
         for (auto child = node.children.rbegin(); child != node.children.rend(); ++child) { open.emplace_back(*child, world_from_node); }
         if (!node.mesh) { continue; }
         const std::vector<gltf::Primitive>& primitives = model.meshes[*node.mesh];
+        primitives_met += primitives.size();
+        check(primitives_met <= kMostPrimitives, "{}: its nodes have {} primitives and more, expected at most {}", file, primitives_met,
+              kMostPrimitives);
         for (std::size_t i = 0; i < primitives.size(); ++i) {
             if (!primitives[i].splatting) {
                 ++left_out;

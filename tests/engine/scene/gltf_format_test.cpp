@@ -307,6 +307,23 @@ TEST_CASE("an unknown kernel and colour space are drawn as what is known, and CO
     CHECK(contains(notes.lines[0] + notes.lines[1], "custom_space_display"));
 }
 
+TEST_CASE("a small file whose nodes name many primitives many times is refused before it fills the memory") {
+    const Folder folder;
+    const auto errorOf = [&](std::size_t nodes, std::size_t primitives) {
+        GltfText gltf = makeGltf(0);
+        gltf.nodes = R"([{"mesh":0})", gltf.roots = "[0";
+        for (std::size_t i = 1; i < nodes; ++i) {
+            gltf.nodes += R"(,{"mesh":0})";
+            gltf.roots += fmt::format(",{}", i);
+        }
+        gltf.nodes += "]", gltf.roots += "]";
+        for (std::size_t i = 1; i < primitives; ++i) { gltf.other_primitives += ",{}"; }
+        return loadError(folder.write("a.glb", gltf.glb()));
+    };
+    CHECK(errorOf(512, 512).empty());
+    CHECK(contains(errorOf(513, 512), "a.glb: its nodes have 262656 primitives and more, expected at most 262144"));
+}
+
 TEST_CASE("a glTF that does not fit is named with its place") {
     const Folder folder;
     const auto glbError = [&](const std::string& bytes) { return loadError(folder.write("broken.glb", bytes)); };
