@@ -127,9 +127,9 @@ void SeriesLoader::run() {
         std::string trouble;
         try {
             splats = makeSceneFrame(load_(*scene), traits_);
-        } catch (const Error& error) { trouble = error.what(); } catch (const std::bad_alloc&) {
+        } catch (const std::bad_alloc&) {
             trouble = "a frame of the moving scene does not fit into memory";
-        }
+        } catch (const std::exception& error) { trouble = error.what(); }
         lock.lock();
         reading_[*scene] = false;
         if (splats) {

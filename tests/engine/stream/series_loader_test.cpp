@@ -51,6 +51,27 @@ TEST_CASE("with room for all every frame is read once, in order, and stays") {
     CHECK(loader.takeLines().empty());
 }
 
+TEST_CASE("a frame that cannot be read is told once, whatever went wrong, and the others come") {
+    const SceneTraits traits = traitsOf(shifted(0));
+    SeriesLoader loader(
+        [&](std::size_t scene) {
+            if (scene == 1) { fail("the first trouble"); }
+            if (scene == 2) { throw std::bad_alloc(); }
+            if (scene == 3) { throw std::length_error("the third trouble"); }
+            return shifted(scene);
+        },
+        kScenes, traits, {});
+    want(loader, from(0));
+    for (std::size_t scene = 1; scene < 4; ++scene) {
+        waitUntil([&] { return loader.isSurelyBroken(scene); });
+    }
+    CHECK(loader.get(11) != nullptr);
+    CHECK(loader.takeLines() ==
+          std::vector<std::string>{"the first trouble", "a frame of the moving scene does not fit into memory", "the third trouble"});
+    CHECK(loader.takeLines().empty());
+    CHECK_THROWS_WITH_AS((void)loader.get(3), "the third trouble", Error);
+}
+
 TEST_CASE("within a limit the next ones are there, and what is needed last makes room") {
     const SceneTraits traits = traitsOf(shifted(0));
     const std::uint64_t bytes = bytesIn(makeSceneFrame(shifted(0), traits));
