@@ -32,13 +32,9 @@ struct Content {
 std::vector<std::byte> readText(InputFile& file, std::uint64_t bytes) {
     check(bytes <= kMostTextBytes, "{}: has {} bytes of JSON, expected at most {}", file.name(), bytes, kMostTextBytes);
     check(bytes <= file.bytesLeft(), "{}: ends after {} bytes, expected {} of JSON", file.name(), file.bytesLeft(), bytes);
-    std::vector<std::byte> text;
-    text.reserve(bytes);
-    while (text.size() < bytes) {
-        const std::span<const std::byte> block = file.readBlock(std::min<std::uint64_t>(bytes - text.size(), std::uint64_t{1} << 20));
-        check(!block.empty(), "{}: ends after {} of {} bytes of JSON", file.name(), text.size(), bytes);
-        text.insert(text.end(), block.begin(), block.end());
-    }
+    std::vector<std::byte> text(bytes);
+    const std::size_t got = file.read(text);
+    check(got == bytes, "{}: ends after {} of {} bytes of JSON", file.name(), got, bytes);
     return text;
 }
 

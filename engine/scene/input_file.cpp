@@ -138,6 +138,17 @@ std::size_t InputFile::readAt(std::uint64_t offset, std::span<std::byte> target)
     return *got;
 }
 
+std::size_t InputFile::read(std::span<std::byte> target) {
+    std::size_t done = 0;
+    while (done < target.size()) {
+        const std::span<const std::byte> block = readBlock(target.size() - done);
+        if (block.empty()) { break; }
+        std::ranges::copy(block, target.begin() + static_cast<std::ptrdiff_t>(done));
+        done += block.size();
+    }
+    return done;
+}
+
 void InputFile::skip(std::uint64_t count) {
     while (count > 0) {
         const std::size_t got = readBlock(static_cast<std::size_t>(std::min<std::uint64_t>(count, buffer_.size()))).size();
@@ -148,17 +159,10 @@ void InputFile::skip(std::uint64_t count) {
 
 std::vector<std::byte> InputFile::readWhole(std::uint64_t most_bytes) {
     check(sizeBytes() <= most_bytes, "{}: is {} bytes long, expected at most {}", name_, sizeBytes(), most_bytes);
-    std::vector<std::byte> bytes;
-    bytes.reserve(sizeBytes());
-    for (;;) {
-        const std::span<const std::byte> block = readBlock(std::size_t{1} << 16);
-        if (block.empty()) {
-            requireUnchanged();
-            return bytes;
-        }
-        check(bytes.size() + block.size() <= most_bytes, "{}: grows while it is read", name_);
-        bytes.insert(bytes.end(), block.begin(), block.end());
-    }
+    std::vector<std::byte> bytes(sizeBytes());
+    bytes.resize(read(bytes));
+    requireUnchanged();
+    return bytes;
 }
 
 }  // namespace binosplat

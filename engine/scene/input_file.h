@@ -63,6 +63,9 @@ public:
     // The next `count` bytes, at most 1 MiB; fewer only at the end of the file. Valid until the next call.
     [[nodiscard]] std::span<const std::byte> readBlock(std::size_t count);
 
+    // Fills `target` as far as the file goes, and says how far.
+    [[nodiscard]] std::size_t read(std::span<std::byte> target);
+
     // Moves on by `count` bytes, which must be there.
     void skip(std::uint64_t count);
 

@@ -84,19 +84,6 @@ Attributes reserveAttributes(const InputFile& file, const Header& header) {
 // Fills its target as far as there is something to read, and says how far.
 using ReadSome = std::function<std::size_t(std::span<std::byte> target)>;
 
-ReadSome readBare(InputFile& file) {
-    return [&file](std::span<std::byte> target) {
-        std::size_t done = 0;
-        while (done < target.size()) {
-            const std::span<const std::byte> block = file.readBlock(std::min(target.size() - done, std::size_t{1} << 20));
-            if (block.empty()) { break; }
-            std::ranges::copy(block, target.begin() + static_cast<std::ptrdiff_t>(done));
-            done += block.size();
-        }
-        return done;
-    };
-}
-
 // Versions 2 and 3: one stream, within gzip or bare.
 Attributes readStream(InputFile& file, const ReadSome& read, const Header& header, const Progress& progress) {
     Attributes attributes = reserveAttributes(file, header);
@@ -144,15 +131,13 @@ Attributes readContainer(InputFile& file, const Header& header, std::size_t stre
         const std::uint64_t expected = per_splat[i] * header.splats;
         check(plain == expected, "{}: stream {}: {} bytes, expected {} for {} splats", file.name(), i, plain, expected, header.splats);
         check(packed <= file.bytesLeft(), "{}: stream {}: {} bytes are left of {}", file.name(), i, file.bytesLeft(), packed);
-        std::vector<std::byte> bytes;
-        bytes.reserve(packed);
+        std::vector<std::byte> bytes(packed);
         const auto before = static_cast<double>(target - attributes.bytes.data());
-        while (bytes.size() < packed) {
-            const double read = static_cast<double>(plain) * static_cast<double>(bytes.size()) / static_cast<double>(packed);
+        for (std::size_t done = 0, more = 0; done < packed; done += more) {
+            const double read = static_cast<double>(plain) * static_cast<double>(done) / static_cast<double>(packed);
             if (progress) { progress(kUnpackingShare * (before + read) / std::max(static_cast<double>(attributes.bytes.size()), 1.0)); }
-            const std::span<const std::byte> block = file.readBlock(std::min<std::uint64_t>(packed - bytes.size(), std::uint64_t{1} << 20));
-            check(!block.empty(), "{}: stream {}: ends after {} of {} bytes", file.name(), i, bytes.size(), packed);
-            bytes.insert(bytes.end(), block.begin(), block.end());
+            more = file.read(std::span(bytes).subspan(done, std::min<std::size_t>(packed - done, kPieceBytes)));
+            check(more > 0, "{}: stream {}: ends after {} of {} bytes", file.name(), i, done, packed);
         }
         const std::size_t got = ZSTD_decompress(target, plain, bytes.data(), bytes.size());
         check(ZSTD_isError(got) == 0, "{}: stream {}: broken ({})", file.name(), i, ZSTD_getErrorName(got));
@@ -244,7 +229,7 @@ Scene readSpz(InputFile& file, LoadNotes& notes, const Progress& progress) {
     Attributes attributes{};
     std::optional<GzipReader> stream;
     if (file.peek(4) != "NGSP") { stream.emplace(file); }
-    const ReadSome read = stream ? ReadSome([&](std::span<std::byte> target) { return stream->read(target); }) : readBare(file);
+    const ReadSome read = [&](std::span<std::byte> target) { return stream ? stream->read(target) : file.read(target); };
     std::array<std::byte, spz::kHeaderBytes> bytes{}, more{};
     header = parseHeader(file.name(), std::span(bytes).first(read(bytes)), stream.has_value());
     if (header.version == 4) {
