@@ -135,7 +135,7 @@ private:
     const WebCache& cache_;
     const FetchSettings settings_;
     FetchTally tally_;
-    std::unique_ptr<CURLM, MultiCloser> multi_;
+    std::unique_ptr<CURLM, CurlCloser<curl_multi_cleanup>> multi_;
     Transfers waiting_, running_;  // the thread's own
 
     std::mutex mutex_;

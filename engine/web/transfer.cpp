@@ -94,7 +94,7 @@ void Transfer::start() {
 }
 
 void Transfer::setHeaders() {
-    std::unique_ptr<curl_slist, ListCloser> headers;
+    std::unique_ptr<curl_slist, CurlCloser<curl_slist_free_all>> headers;
     const auto add = [&](const char* name, const std::string& value) {
         if (value.empty() || !isPlain(value)) { return; }
         curl_slist* longer = curl_slist_append(headers.get(), fmt::format("{}: {}", name, value).c_str());
@@ -121,7 +121,7 @@ void Transfer::setHeaders() {
 std::string Transfer::ipOfServer(const std::string& ip, int port) const {
     char* text = nullptr;
     curl_easy_getinfo(easy_.get(), CURLINFO_EFFECTIVE_URL, &text);
-    const std::unique_ptr<CURLU, UrlCloser> url(curl_url());
+    const std::unique_ptr<CURLU, CurlCloser<curl_url_cleanup>> url(curl_url());
     curl_url_set(url.get(), CURLUPART_URL, text, 0);
     const auto part = [&](CURLUPart which) {
         char* found = nullptr;

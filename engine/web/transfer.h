@@ -14,17 +14,10 @@
 
 namespace binosplat {
 
-struct EasyCloser {
-    void operator()(CURL* easy) const { curl_easy_cleanup(easy); }
-};
-struct MultiCloser {
-    void operator()(CURLM* multi) const { curl_multi_cleanup(multi); }
-};
-struct UrlCloser {
-    void operator()(CURLU* url) const { curl_url_cleanup(url); }
-};
-struct ListCloser {
-    void operator()(curl_slist* list) const { curl_slist_free_all(list); }
+// Gives back what curl made.
+template <auto kClose>
+struct CurlCloser {
+    void operator()(auto* made) const { kClose(made); }
 };
 
 // Of all transfers together: bytes that came and bytes to come.
@@ -90,8 +83,8 @@ private:
     FetchTally& tally_;
     FetchRequest request_;
     std::promise<Fetched> promise_;
-    std::unique_ptr<CURL, EasyCloser> easy_;
-    std::unique_ptr<curl_slist, ListCloser> headers_;
+    std::unique_ptr<CURL, CurlCloser<curl_easy_cleanup>> easy_;
+    std::unique_ptr<curl_slist, CurlCloser<curl_slist_free_all>> headers_;
     std::array<char, CURL_ERROR_SIZE> error_{};
 
     // An attempt that brought this much, and whose rest can be asked for, does not count: large files may break off often.
