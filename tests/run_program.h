@@ -92,4 +92,9 @@ private:
     static std::filesystem::path makeBase() { return createFolder(std::filesystem::temp_directory_path(), "binosplat-test-"); }
 };
 
+// For facts that have one: TEST_CASE_FIXTURE(AtWork, "...").
+struct AtWork {
+    const Workplace work;
+};
+
 }  // namespace binosplat::test

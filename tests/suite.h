@@ -56,6 +56,12 @@ inline std::string textIn(const fs::path& file) {
     return {std::istreambuf_iterator<char>(stream), {}};
 }
 
+// JSON with some of its keys as they are to be: equal to what it was if they are so.
+inline nlohmann::json expecting(nlohmann::json json, const nlohmann::json& keys) {
+    json.merge_patch(keys);
+    return json;
+}
+
 // The message of the Error that `action` throws; empty if it throws none.
 inline std::string errorOf(const std::function<void()>& action) {
     try {

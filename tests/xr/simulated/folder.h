@@ -7,6 +7,11 @@
 
 namespace simulated {
 
+// A headset's file, whose last table may go on.
+inline const std::string kHeadsetToml =
+    "name = \"n\"\nsource = \"s\"\nsize = \"100x100\"\ncanting_deg = 0\neye_distance_m = 0.06\n"
+    "[left]\nleft = -40\nright = 40\nup = 40\ndown = -40\n[right]\nleft = -40\nright = 40\nup = 40\ndown = -40\n";
+
 struct Folder {
     std::filesystem::path path = std::filesystem::temp_directory_path() / ("binosplat_simulated_" + std::to_string(::getpid()));
 
@@ -22,6 +27,9 @@ struct Folder {
         for (const auto& entry : std::filesystem::directory_iterator(path)) { names.insert(entry.path().filename().string()); }
         return names;
     }
+};
+struct InFolder {
+    const Folder folder;
 };
 
 }  // namespace simulated

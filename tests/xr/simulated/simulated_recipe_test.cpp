@@ -176,8 +176,7 @@ TEST_CASE("the tool that compares logs says what differs, within what it was tol
                             {"{}\n[{}]\n", "", 2, "b/frames.jsonl:2: not a frame, must be an object of JSON"},
                             {"{}\nnull\n", "", 2, "b/frames.jsonl:2: not a frame, must be an object of JSON"},
                             {"{}\n\"x\"\n", "", 2, "b/frames.jsonl:2: not a frame, must be an object of JSON"}}) {
-        CAPTURE(one.actual);
-        CAPTURE(one.options);
+        INFO("one.actual ", one.actual, ", one.options ", one.options);
         write("b", one.actual, 110);
         const Run run = compareRuns("a", "b", one.options);
         CHECK(run.exit_code == one.exit_code);

@@ -178,38 +178,22 @@ TEST_CASE_FIXTURE(AutomationFixture, "devices take up profiles, one by one, and 
     CHECK(boolean(jump, right).isActive == XR_FALSE);
 }
 
-TEST_CASE_FIXTURE(EitherHandFixture, "a pose of either hand is that of a hand that is there, and stays") {
-    switchTo(false, left);
-    synchronize();
-    CHECK(whoIsFollowed() == "right");
-    switchTo(true, left);
-    synchronize();
-    CHECK(whoIsFollowed() == "right");
-}
-
-TEST_CASE_FIXTURE(EitherHandFixture, "a pose of either hand stays with its hand, though that is put down") {
-    synchronize();
-    CHECK(whoIsFollowed() == "left");
-    switchTo(false, left);
-    synchronize();
-    CHECK(whoIsFollowed() == "nobody");
-    switchTo(true, left);
-    synchronize();
-    CHECK(whoIsFollowed() == "left");
-}
-
-TEST_CASE_FIXTURE(EitherHandFixture, "a pose of either hand goes to the hand that is synchronized") {
-    synchronize(left);
-    CHECK(whoIsFollowed() == "left");
-    synchronize(right);
-    CHECK(whoIsFollowed() == "right");
-    synchronize();
-    CHECK(whoIsFollowed() == "right");
-    switchTo(false, left);
-    synchronize(left);
-    CHECK(whoIsFollowed() == "nobody");
-    synchronize();
-    CHECK(whoIsFollowed() == "right");
+TEST_CASE(
+    "a pose of either hand is that of a hand that is there, stays with it though it is put down, and goes to one that is synchronized") {
+    // Whether the left hand is put down or taken up, which hand is synchronized, if not both, and whose pose it is then.
+    using Step = std::array<std::string, 3>;
+    for (const std::vector<Step>& steps :
+         {std::vector<Step>{{"down", "", "right"}, {"up", "", "right"}},
+          {{"", "", "left"}, {"down", "", "nobody"}, {"up", "", "left"}},
+          {{"", "left", "left"}, {"", "right", "right"}, {"", "", "right"}, {"down", "left", "nobody"}, {"", "", "right"}}}) {
+        const EitherHandFixture made;
+        for (const auto& [left, synchronized, followed] : steps) {
+            INFO(left, " ", synchronized);
+            if (!left.empty()) { made.switchTo(left == "up", made.left); }
+            made.synchronize(synchronized.empty() ? XR_NULL_PATH : made.path("/user/hand/" + synchronized));
+            CHECK(made.whoIsFollowed() == followed);
+        }
+    }
 }
 
 TEST_CASE_FIXTURE(AutomationFixture, "there is no input that the device's profile lacks") {
@@ -218,8 +202,7 @@ TEST_CASE_FIXTURE(AutomationFixture, "there is no input that the device's profil
     CHECK(setFloat(session, right, path("/user/hand/right/input/nose/value"), 1) == XR_ERROR_PATH_UNSUPPORTED);
     CHECK(setFloat(session, left, trigger, 1) == XR_ERROR_PATH_UNSUPPORTED);
     CHECK(setFloat(session, path("/user/treadmill"), trigger, 1) == XR_ERROR_PATH_UNSUPPORTED);
-    CHECK(setFloat(session, XR_NULL_PATH, trigger, 1) == XR_ERROR_PATH_INVALID);
-    CHECK(setFloat(session, right, 123456, 1) == XR_ERROR_PATH_INVALID);
+    checkEach(XR_ERROR_PATH_INVALID, {setFloat(session, XR_NULL_PATH, trigger, 1), setFloat(session, right, 123456, 1)});
     CHECK(setFloat(session, right, trigger, NAN) == XR_ERROR_VALIDATION_FAILURE);
     CHECK(setFloat(XR_NULL_HANDLE, right, trigger, 1) == XR_ERROR_HANDLE_INVALID);
     CHECK(setVector(session, right, trigger, {0, 0}) == XR_ERROR_PATH_UNSUPPORTED);

@@ -1,14 +1,8 @@
-// Extensions of the simulated runtime that need no graphics, in headless sessions and without a loader, and objects that end in every
-// order.
+// Headless sessions (XR_MND_headless) of the simulated runtime, without a loader: the extensions that need no graphics (but for messages,
+// see simulated_messages_test.cpp), and objects that end in every order.
 #include "tests/xr/simulated/api/simulated_direct.h"
 
 SUITE(simulated_extensions) {
-
-constexpr auto kError = XR_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
-constexpr auto kInfo = XR_DEBUG_UTILS_MESSAGE_SEVERITY_INFO_BIT_EXT;
-constexpr auto kGeneral = XR_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT;
-constexpr auto kValidation = XR_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT;
-using Names = std::vector<std::string>;
 
 std::int64_t nanoseconds(const timespec& time) { return time.tv_sec * 1'000'000'000LL + time.tv_nsec; }
 
@@ -52,54 +46,6 @@ struct Hand {
     }
 };
 
-struct Heard {
-    XrDebugUtilsMessageSeverityFlagsEXT severity;
-    XrDebugUtilsMessageTypeFlagsEXT types;
-    std::string id, function, text;
-    Names labels, objects;
-};
-
-XrBool32 hear(XrDebugUtilsMessageSeverityFlagsEXT severity, XrDebugUtilsMessageTypeFlagsEXT types,
-              const XrDebugUtilsMessengerCallbackDataEXT* data, void* heard) {
-    const auto textOf = [](const char* text) { return text == nullptr ? "none" : text; };
-    Heard message{severity, types, textOf(data->messageId), textOf(data->functionName), data->message, {}, {}};
-    for (std::uint32_t i = 0; i < data->sessionLabelCount; ++i) { message.labels.emplace_back(data->sessionLabels[i].labelName); }
-    for (std::uint32_t i = 0; i < data->objectCount; ++i) { message.objects.emplace_back(textOf(data->objects[i].objectName)); }
-    static_cast<std::vector<Heard>*>(heard)->push_back(message);
-    return XR_FALSE;
-}
-
-XrDebugUtilsMessengerCreateInfoEXT messengerOf(std::vector<Heard>& heard) {
-    return {XR_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT, nullptr, kError | kInfo, kValidation | kGeneral, hear, &heard};
-}
-
-struct MessageFixture : HeadlessSession {
-    std::vector<Heard> heard;
-    XrDebugUtilsMessengerEXT messenger = XR_NULL_HANDLE;
-    PFN_xrSubmitDebugUtilsMessageEXT submit = XR(xrSubmitDebugUtilsMessageEXT);
-    PFN_xrSetDebugUtilsObjectNameEXT setName = XR(xrSetDebugUtilsObjectNameEXT);
-    XrDebugUtilsObjectNameInfoEXT object{XR_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT, nullptr, XR_OBJECT_TYPE_SESSION,
-                                         reinterpret_cast<std::uint64_t>(session), "the session"};
-
-    MessageFixture() : HeadlessSession(k1_0, {XR_EXT_DEBUG_UTILS_EXTENSION_NAME}) {
-        const XrDebugUtilsMessengerCreateInfoEXT info = messengerOf(heard);
-        REQUIRE(create(&info) == XR_SUCCESS);
-    }
-    XrResult create(const XrDebugUtilsMessengerCreateInfoEXT* info) {
-        return XR(xrCreateDebugUtilsMessengerEXT)(instance, info, &messenger);
-    }
-    void beMistaken() const {
-        XrPath path = XR_NULL_PATH;
-        CHECK(XR(xrStringToPath)(instance, "no slash", &path) == XR_ERROR_PATH_FORMAT_INVALID);
-    }
-    std::string reason() {
-        REQUIRE(heard.size() == 1);
-        return std::exchange(heard, {})[0].text;
-    }
-};
-
-XrDebugUtilsLabelEXT label(const char* name) { return {XR_TYPE_DEBUG_UTILS_LABEL_EXT, nullptr, name}; }
-
 struct Everything : HeadlessSession {
     struct Object {
         const char* parent;
@@ -122,8 +68,10 @@ struct Everything : HeadlessSession {
     };
 
     explicit Everything(bool attaches) : HeadlessSession(k1_1, {XR_EXT_DEBUG_UTILS_EXTENSION_NAME, XR_EXT_HAND_TRACKING_EXTENSION_NAME}) {
-        static std::vector<Heard> heard;
-        const XrDebugUtilsMessengerCreateInfoEXT info = messengerOf(heard);
+        const XrDebugUtilsMessengerCreateInfoEXT info{
+            XR_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT, nullptr,
+            XR_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT, XR_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT,
+            [](auto...) { return XrBool32{XR_FALSE}; },    nullptr};
         REQUIRE(XR(xrCreateDebugUtilsMessengerEXT)(instance, &info, &messenger) == XR_SUCCESS);
         if (attaches) { attach({set}); }
         action_space = makeActionSpace(action);
@@ -146,8 +94,7 @@ TEST_CASE("time is converted to CLOCK_MONOTONIC and back") {
     timespec now{}, back{};
     REQUIRE(clock_gettime(CLOCK_MONOTONIC, &now) == 0);
     XrTime time = 0, later = 0;
-    CHECK(toTime(made.instance, &now, &time) == XR_SUCCESS);
-    CHECK(toTimespec(made.instance, time, &back) == XR_SUCCESS);
+    checkEach(XR_SUCCESS, {toTime(made.instance, &now, &time), toTimespec(made.instance, time, &back)});
     CHECK(nanoseconds(back) == nanoseconds(now));
     // In lock-step the two meet when they are first asked for: OpenXR's time has not begun to move.
     CHECK(time <= kStart);
@@ -214,8 +161,7 @@ TEST_CASE("the display's rate is one of a list, or the one that is fixed") {
         const std::vector<float> rates = checkList<float>(list);
         if (is_fixed) {
             CHECK(rates == std::vector<float>{80});
-            CHECK(request(80) == XR_SUCCESS);
-            CHECK(request(0) == XR_SUCCESS);
+            checkEach(XR_SUCCESS, {request(80), request(0)});
             CHECK(request(90) == XR_ERROR_DISPLAY_REFRESH_RATE_UNSUPPORTED_FB);
             continue;
         }
@@ -226,11 +172,9 @@ TEST_CASE("the display's rate is one of a list, or the one that is fixed") {
         };
         CHECK(rates == std::vector<float>{72, 80, 90, 100, 120});
         CHECK(current() == 100);
-        CHECK(request(75) == XR_ERROR_DISPLAY_REFRESH_RATE_UNSUPPORTED_FB);
-        CHECK(request(NAN) == XR_ERROR_DISPLAY_REFRESH_RATE_UNSUPPORTED_FB);
+        checkEach(XR_ERROR_DISPLAY_REFRESH_RATE_UNSUPPORTED_FB, {request(75), request(NAN)});
         made.states();
-        CHECK(request(80) == XR_SUCCESS);
-        CHECK(request(80) == XR_SUCCESS);
+        checkEach(XR_SUCCESS, {request(80), request(80)});
         const auto changes = made.events<XrEventDataDisplayRefreshRateChangedFB>(XR_TYPE_EVENT_DATA_DISPLAY_REFRESH_RATE_CHANGED_FB);
         REQUIRE(changes.size() == 1);
         CHECK(changes[0].fromDisplayRefreshRate == 100);
@@ -289,8 +233,7 @@ TEST_CASE("hands hold the script's controllers, in focus and while they are trac
     checkArguments(made.XR(xrLocateHandJointsEXT), left.tracker, &left.where, &left.locations);
     const auto destroy = made.XR(xrDestroyHandTrackerEXT);
     CHECK(destroy(left.tracker) == XR_SUCCESS);
-    CHECK(destroy(left.tracker) == XR_ERROR_HANDLE_INVALID);
-    CHECK(locate() == XR_ERROR_HANDLE_INVALID);
+    checkEach(XR_ERROR_HANDLE_INVALID, {destroy(left.tracker), locate()});
 }
 
 TEST_CASE("the joints of a hand turn with its controller, and those of a finger that bends with that, too") {
@@ -313,168 +256,64 @@ TEST_CASE("the joints of a hand turn with its controller, and those of a finger 
     CHECK(right.turning(XR_HAND_JOINT_LITTLE_TIP_EXT) == doctest::Approx(0));
 }
 
-TEST_CASE_FIXTURE(MessageFixture, "a refused call is told to the application's own function, with what was wrong, to which it asked for") {
-    beMistaken();
-    REQUIRE(heard.size() == 1);
-    CHECK(heard[0].severity == kError);
-    CHECK(heard[0].types == kValidation);
-    CHECK(heard[0].id == "XR_ERROR_PATH_FORMAT_INVALID");
-    CHECK(heard[0].function == "xrStringToPath");
-    CHECK(heard[0].text == "'no slash' is not a well-formed path");
-    CHECK(heard[0].labels.empty());
-    // The loader's own questions are no mistakes.
-    CHECK_FALSE(has("xrMakeCoffee"));
-    CHECK(heard.size() == 1);
-    CHECK(XR(xrDestroyDebugUtilsMessengerEXT)(messenger) == XR_SUCCESS);
-    beMistaken();
-    CHECK(heard.size() == 1);
-    CHECK(XR(xrDestroyDebugUtilsMessengerEXT)(messenger) == XR_ERROR_HANDLE_INVALID);
-
-    XrDebugUtilsMessengerCreateInfoEXT info = messengerOf(heard);
-    const auto make = [&] { return create(&info); };
-    checkChanges(make, XR_SUCCESS, to(info.messageSeverities, XR_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT),
-                 to(info.messageTypes, XR_DEBUG_UTILS_MESSAGE_TYPE_CONFORMANCE_BIT_EXT));
-    beMistaken();
-    CHECK(heard.size() == 1);
-    checkChanges(make, XR_ERROR_VALIDATION_FAILURE, to(info.messageSeverities, 0), to(info.messageSeverities, 2), to(info.messageTypes, 0),
-                 to(info.messageTypes, 1 << 9), to(info.userCallback, nullptr));
-    checkArguments(XR(xrCreateDebugUtilsMessengerEXT), instance, &info, &messenger);
+TEST_CASE("a headless session has no swapchains, needs no frames, and is in focus at once") {
+    const HeadlessSession made(k1_0, {}, "rate 10\nat 0.35 focused off\nat 0.55 exit\n");
+    std::uint32_t count = 9;
+    CHECK(made.XR(xrEnumerateSwapchainFormats)(made.session, 0, &count, nullptr) == XR_SUCCESS);
+    CHECK(count == 0);
+    const XrSwapchainCreateInfo info = swapchainInfo();
+    XrSwapchain swapchain = XR_NULL_HANDLE;
+    CHECK(made.XR(xrCreateSwapchain)(made.session, &info, &swapchain) == XR_ERROR_VALIDATION_FAILURE);
+    CHECK(made.states() == States{XR_SESSION_STATE_IDLE, XR_SESSION_STATE_READY});
+    made.begin();
+    CHECK(made.states() == States{XR_SESSION_STATE_SYNCHRONIZED, XR_SESSION_STATE_VISIBLE, XR_SESSION_STATE_FOCUSED});
+    // Each xrSyncActions is a frame's time: 0, 0.1, 0.2, 0.3 s in focus.
+    for (int i = 0; i < 4; ++i) { CHECK(made.sync() == XR_SUCCESS); }
+    CHECK(made.sync() == XR_SESSION_NOT_FOCUSED);
+    CHECK(made.states() == States{XR_SESSION_STATE_VISIBLE});
+    for (int i = 0; i < 2; ++i) { CHECK(made.sync() == XR_SESSION_NOT_FOCUSED); }
+    CHECK(made.states() == States{XR_SESSION_STATE_SYNCHRONIZED, XR_SESSION_STATE_STOPPING});
+    CHECK(made.XR(xrEndSession)(made.session) == XR_SUCCESS);
 }
 
-TEST_CASE_FIXTURE(MessageFixture, "the reason of a refusal names what was refused") {
-    const std::string trigger = "/user/hand/left/input/trigger/", profiles = "/interaction_profiles/";
-    for (const auto& [profile, binding, expected] :
-         {std::tuple("khr/simple_controller", "value",
-                     "khr/simple_controller has no /user/hand/left/input/trigger/value, suggested for the action action"),
-          std::tuple("oculus/touch_controller", "proximity",
-                     "oculus/touch_controller has no /user/hand/left/input/trigger/proximity without XR_VERSION_1_1, suggested for the "
-                     "action action"),
-          std::tuple("meta/touch_plus_controller", "value", "meta/touch_plus_controller needs XR_VERSION_1_1"),
-          std::tuple("nobody/nothing", "value", "nobody/nothing is not an interaction profile")}) {
-        CHECK(suggest(profiles + profile, trigger + binding) == XR_ERROR_PATH_UNSUPPORTED);
-        CHECK(reason() == profiles + expected);
+TEST_CASE("a headless session may have frames, which nobody draws; time and states then go by them alone") {
+    const HeadlessSession made(k1_0, {}, "rate 10\nat 0 gpu-load 250 %\nat 0.15 focused off\nat 0.35 exit\n");
+    const auto begin = made.XR(xrBeginFrame);
+    XrFrameState state{XR_TYPE_FRAME_STATE};
+    CHECK(made.XR(xrWaitFrame)(made.session, nullptr, &state) == XR_ERROR_SESSION_NOT_RUNNING);
+    made.begin();
+    made.states();
+    checkEach(XR_ERROR_CALL_ORDER_INVALID, {begin(made.session, nullptr), made.endFrame(kStart)});
+    const States expected[] = {{}, {}, {XR_SESSION_STATE_VISIBLE}, {}, {XR_SESSION_STATE_SYNCHRONIZED}, {XR_SESSION_STATE_STOPPING}};
+    for (int frame = 0; frame < 6; ++frame) {
+        state = made.waitFrame();
+        CHECK(state.shouldRender == XR_FALSE);
+        CHECK(state.predictedDisplayTime == kStart + frame * 100'000'000);
+        CHECK(state.predictedDisplayPeriod == 100'000'000);
+        for (int i = 0; i < 2; ++i) { CHECK(made.sync() == (frame < 3 ? XR_SUCCESS : XR_SESSION_NOT_FOCUSED)); }
+        REQUIRE(begin(made.session, nullptr) == XR_SUCCESS);
+        // Its picture would need a swapchain, which there cannot be; even one that names none is refused as a layer.
+        const XrCompositionLayerQuad quad{XR_TYPE_COMPOSITION_LAYER_QUAD};
+        CHECK(made.endFrame(state.predictedDisplayTime, {headerOf(quad)}) == XR_ERROR_LAYER_INVALID);
+        REQUIRE(made.endFrame(state.predictedDisplayTime) == XR_SUCCESS);
+        CHECK(made.states() == expected[frame]);
     }
-    std::uint32_t count = 0;
-    char text[4];
-    CHECK(XR(xrPathToString)(instance, path("/user/head"), 4, &count, text) == XR_ERROR_SIZE_INSUFFICIENT);
-    CHECK(reason() == "the array has room for 4, must have for 11");
-    CHECK(XR(xrPathToString)(instance, 4711, 4, &count, text) == XR_ERROR_PATH_INVALID);
-    CHECK(reason() == "the number 4711 is not a path");
-    XrSpace space = XR_NULL_HANDLE;
-    XrReferenceSpaceCreateInfo info{XR_TYPE_ACTION_CREATE_INFO, nullptr, XR_REFERENCE_SPACE_TYPE_LOCAL, {{0, 0, 0, 2}, {0, 0, 0}}};
-    const auto make = XR(xrCreateReferenceSpace);
-    CHECK(make(session, &info, &space) == XR_ERROR_VALIDATION_FAILURE);
-    CHECK(reason() == "a structure is of type XR_TYPE_ACTION_CREATE_INFO, must be XR_TYPE_REFERENCE_SPACE_CREATE_INFO");
-    info.type = XR_TYPE_REFERENCE_SPACE_CREATE_INFO;
-    CHECK(make(session, &info, &space) == XR_ERROR_POSE_INVALID);
-    CHECK(reason() == "the quaternion 0 0 0 2 is not of length 1");
-    CHECK(make(reinterpret_cast<XrSession>(0x1234), &info, &space) == XR_ERROR_HANDLE_INVALID);
-    CHECK(reason() == "0x1234 is not an XrSession that lives");
+    CHECK(made.XR(xrEndSession)(made.session) == XR_SUCCESS);
 }
 
-TEST_CASE_FIXTURE(MessageFixture, "applications submit messages of their own, with the session's labels and the objects' names") {
-    const auto begin_region = XR(xrSessionBeginDebugUtilsLabelRegionEXT);
-    const auto end_region = XR(xrSessionEndDebugUtilsLabelRegionEXT);
-    const auto insert = XR(xrSessionInsertDebugUtilsLabelEXT);
-    const auto frame = label("frame"), eye = label("left eye"), here = label("here"), nameless = label(nullptr);
-    CHECK(begin_region(session, &frame) == XR_SUCCESS);
-    CHECK(begin_region(session, &eye) == XR_SUCCESS);
-    CHECK(insert(session, &here) == XR_SUCCESS);
-    CHECK(setName(instance, &object) == XR_SUCCESS);
-    object.objectName = nullptr;
-    XrDebugUtilsMessengerCallbackDataEXT data{
-        XR_TYPE_DEBUG_UTILS_MESSENGER_CALLBACK_DATA_EXT, nullptr, nullptr, "main", "hello", 1, &object, 0, nullptr};
-    CHECK(submit(instance, kInfo, kGeneral, &data) == XR_SUCCESS);
-    REQUIRE(heard.size() == 1);
-    CHECK(heard[0].text == "hello");
-    CHECK(heard[0].function == "main");
-    CHECK(heard[0].severity == kInfo);
-    CHECK(heard[0].labels == Names{"here", "left eye", "frame"});
-    CHECK(heard[0].objects == Names{"the session"});
-
-    CHECK(setName(instance, &object) == XR_SUCCESS);
-    CHECK(end_region(session) == XR_SUCCESS);
-    CHECK(submit(instance, kInfo, kGeneral, &data) == XR_SUCCESS);
-    REQUIRE(heard.size() == 2);
-    CHECK(heard[1].labels == Names{"frame"});
-    CHECK(heard[1].objects == Names{"none"});
-    CHECK(submit(instance, XR_DEBUG_UTILS_MESSAGE_SEVERITY_VERBOSE_BIT_EXT, kGeneral, &data) == XR_SUCCESS);
-    CHECK(heard.size() == 2);
-
-    CHECK(submit(instance, 0, kGeneral, &data) == XR_ERROR_VALIDATION_FAILURE);
-    data.message = nullptr;
-    CHECK(submit(instance, kInfo, kGeneral, &data) == XR_ERROR_VALIDATION_FAILURE);
-    CHECK(submit(XR_NULL_HANDLE, kInfo, kGeneral, &data) == XR_ERROR_HANDLE_INVALID);
-    object.objectHandle = 0;
-    CHECK(setName(instance, &object) == XR_ERROR_VALIDATION_FAILURE);
-    CHECK(begin_region(XR_NULL_HANDLE, &frame) == XR_ERROR_HANDLE_INVALID);
-    CHECK(begin_region(session, nullptr) == XR_ERROR_VALIDATION_FAILURE);
-    CHECK(insert(session, &nameless) == XR_ERROR_VALIDATION_FAILURE);
-    CHECK(end_region(XR_NULL_HANDLE) == XR_ERROR_HANDLE_INVALID);
-}
-
-TEST_CASE_FIXTURE(MessageFixture, "what an application's message says is passed on, but objects go by the names they were given for good") {
-    const auto region = label("the session's own");
-    CHECK(XR(xrSessionBeginDebugUtilsLabelRegionEXT)(session, &region) == XR_SUCCESS);
-    CHECK(setName(instance, &object) == XR_SUCCESS);
-    XrDebugUtilsLabelEXT labels[]{label("inner"), label("outer")};
-    XrDebugUtilsObjectNameInfoEXT objects[3] = {object, object, object};
-    objects[0].objectName = "passed";
-    objects[1].objectName = nullptr;
-    objects[2].objectHandle = 77;
-    objects[2].objectName = "never registered";
-    XrDebugUtilsMessengerCallbackDataEXT data{
-        XR_TYPE_DEBUG_UTILS_MESSENGER_CALLBACK_DATA_EXT, nullptr, nullptr, nullptr, "hello", 3, objects, 2, labels};
-    const auto send = [&] { return submit(instance, kInfo, kGeneral, &data); };
-    CHECK(send() == XR_SUCCESS);
-    REQUIRE(heard.size() == 1);
-    CHECK(heard[0].id == "none");
-    CHECK(heard[0].function == "none");
-    CHECK(heard[0].labels == Names{"inner", "outer"});
-    CHECK(heard[0].objects == Names{"the session", "the session", "never registered"});
-    data.messageId = "an id";
-    data.functionName = "";
-    CHECK(send() == XR_SUCCESS);
-    REQUIRE(heard.size() == 2);
-    CHECK(heard[1].id == "an id");
-    CHECK(heard[1].function.empty());
-    checkChanges(send, XR_ERROR_VALIDATION_FAILURE, to(labels[1].labelName, nullptr), to(data.sessionLabels, nullptr));
-}
-
-TEST_CASE("a messenger in the chain hears why the instance itself was refused; messages come through the loader, too") {
-    std::vector<Heard> heard;
-    XrDebugUtilsMessengerCreateInfoEXT messenger_info = messengerOf(heard);
-    {
-        const Headset headset(kQuietScript);
-        const Direct runtime;
-        const Extensions foreign{XR_EXT_DEBUG_UTILS_EXTENSION_NAME, "XR_KHR_opengl_enable"}, unknown{"XR_KHR_nothing"};
-        XrInstanceCreateInfo info = instanceInfo(foreign);
-        info.next = &messenger_info;
-        CHECK(tryInstance(info, runtime.get) == XR_ERROR_EXTENSION_NOT_PRESENT);
-        REQUIRE(heard.size() == 1);
-        CHECK(heard[0].id == "XR_ERROR_EXTENSION_NOT_PRESENT");
-        CHECK(heard[0].text == "XR_KHR_opengl_enable: this runtime has Vulkan alone, XR_KHR_vulkan_enable2 or XR_KHR_vulkan_enable");
-        // Without the extension nobody listens.
-        info = instanceInfo(unknown);
-        info.next = &messenger_info;
-        CHECK(tryInstance(info, runtime.get) == XR_ERROR_EXTENSION_NOT_PRESENT);
-        CHECK(heard.size() == 1);
+TEST_CASE("a headless session begins whatever view configuration it names, and ends at once when it is asked to") {
+    for (const auto type :
+         {static_cast<XrViewConfigurationType>(0), XR_VIEW_CONFIGURATION_TYPE_PRIMARY_MONO, static_cast<XrViewConfigurationType>(4711)}) {
+        const HeadlessSession made(k1_0, {});
+        made.begin(type);
+        CHECK(made.states().back() == XR_SESSION_STATE_FOCUSED);
+        checkEach(XR_SUCCESS, {made.XR(xrRequestExitSession)(made.session), made.XR(xrEndSession)(made.session)});
     }
-    heard.clear();
-    const InstanceFixture made(kQuietScript, {XR_EXT_DEBUG_UTILS_EXTENSION_NAME});
-    XrDebugUtilsMessengerEXT messenger = XR_NULL_HANDLE;
-    REQUIRE(made.XR(xrCreateDebugUtilsMessengerEXT)(made.instance, &messenger_info, &messenger) == XR_SUCCESS);
-    XrPath path = XR_NULL_PATH;
-    CHECK(xrStringToPath(made.instance, "no slash", &path) == XR_ERROR_PATH_FORMAT_INVALID);
-    REQUIRE(heard.size() == 1);
-    CHECK(heard[0].function == "xrStringToPath");
-    CHECK(heard[0].text == "'no slash' is not a well-formed path");
-    CHECK(made.XR(xrDestroyDebugUtilsMessengerEXT)(messenger) == XR_SUCCESS);
 }
 
 TEST_CASE("objects end in every order, each once, and with their parents") {
     for (const bool attaches : {false, true}) {
-        Names order;
+        std::vector<std::string> order;
         for (const auto& [name, object] : Everything(attaches).objects) { order.push_back(name); }
         int number = 0;
         do {

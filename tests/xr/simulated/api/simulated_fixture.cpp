@@ -7,8 +7,6 @@
 #include <cstdlib>
 #include <fstream>
 
-doctest::String doctest::StringMaker<XrResult>::convert(XrResult result) { return doctest::toString(static_cast<int>(result)); }
-
 namespace binosplat::test {
 namespace {
 

@@ -2,8 +2,6 @@
 // Vulkan device with validation, or a headless one; frames and actions. Any message of the Vulkan validation layer fails the test.
 #pragma once
 
-#include "tests/suite.h"
-
 #define XR_USE_GRAPHICS_API_VULKAN
 #define XR_USE_TIMESPEC
 #include <time.h>
@@ -12,12 +10,7 @@
 #include <openxr/openxr.h>
 #include <openxr/openxr_platform.h>
 
-namespace doctest {
-template <>
-struct StringMaker<XrResult> {
-    static String convert(XrResult result);
-};
-}  // namespace doctest
+#include "tests/xr/simulated/api/simulated_checks.h"
 
 // A function of a fixture's instance: made.XR(xrLocateSpace)(...).
 #define XR(name) function<PFN_##name>(#name)
@@ -37,70 +30,6 @@ inline constexpr XrSpaceVelocityFlags kMoving = XR_SPACE_VELOCITY_LINEAR_VALID_B
 using Extensions = std::vector<const char*>;
 using Layers = std::vector<const XrCompositionLayerBaseHeader*>;
 using States = std::vector<XrSessionState>;
-
-// What a call answers while a value is another.
-template <class Value, class Call>
-auto with(Value& place, std::type_identity_t<Value> value, const Call& call) {
-    const Value before = std::exchange(place, value);
-    const auto answer = call();
-    place = before;
-    return answer;
-}
-
-// A change for checkChanges.
-template <class Value>
-auto to(Value& place, std::type_identity_t<Value> value) {
-    return [&place, value](const auto& call) { return with(place, value, call); };
-}
-// What a call answers to each of some changes, made one at a time.
-template <class Call, class... Change>
-void checkChanges(const Call& call, XrResult expected, const Change&... changes) {
-    int number = 0;
-    const auto check = [&](const auto& change) {
-        ++number;
-        CAPTURE(number);
-        CHECK(change(call) == expected);
-    };
-    (check(changes), ...);
-}
-
-// What a call answers to a handle that is none, and to each structure, or place for an answer, that is missing or of another type.
-template <class Function, class Handle, class... Places>
-void checkArguments(Function call, Handle handle, Places*... places) {
-    const auto answer = [&](Handle of, Places*... to) { return call(of, to...); };
-    CHECK(answer(XR_NULL_HANDLE, places...) == XR_ERROR_HANDLE_INVALID);
-    std::tuple<Places*...> all{places...};
-    const auto checkOne = [&](auto& place) {
-        const auto again = [&] { return std::apply([&](Places*... to) { return answer(handle, to...); }, all); };
-        CHECK(with(place, nullptr, again) == XR_ERROR_VALIDATION_FAILURE);
-        if constexpr (requires { place->type; }) { CHECK(with(place->type, XR_TYPE_UNKNOWN, again) == XR_ERROR_VALIDATION_FAILURE); }
-    };
-    std::apply([&](auto&... place) { (checkOne(place), ...); }, all);
-}
-
-// All that a function lists in two calls, and what it says of too little room and of places that are missing.
-template <class Value, class List>
-std::vector<Value> checkList(const List& list, const Value& blank = {}) {
-    std::uint32_t count = 0;
-    CHECK(list(0u, &count, static_cast<Value*>(nullptr)) == XR_SUCCESS);
-    REQUIRE(count > 0);
-    std::vector<Value> values(count, blank);
-    CHECK(list(count, &count, static_cast<Value*>(nullptr)) == XR_ERROR_VALIDATION_FAILURE);
-    CHECK(list(count, static_cast<std::uint32_t*>(nullptr), values.data()) == XR_ERROR_VALIDATION_FAILURE);
-    if (count > 1) { CHECK(list(count - 1, &count, values.data()) == XR_ERROR_SIZE_INSUFFICIENT); }
-    CHECK(count == values.size());
-    CHECK(list(count, &count, values.data()) == XR_SUCCESS);
-    if constexpr (requires { values[0].type; }) {
-        CHECK(with(values.back().type, XR_TYPE_UNKNOWN, [&] { return list(count, &count, values.data()); }) == XR_ERROR_VALIDATION_FAILURE);
-    }
-    return values;
-}
-
-inline void checkNear(const XrVector3f& found, const XrVector3f& expected) {
-    CHECK(found.x == doctest::Approx(expected.x));
-    CHECK(found.y == doctest::Approx(expected.y));
-    CHECK(found.z == doctest::Approx(expected.z));
-}
 
 template <std::size_t size>
 void setText(char (&destination)[size], const std::string& text) {
@@ -225,15 +154,11 @@ struct InstanceFixture : Headset {
                                                  sets.data()};
         REQUIRE(XR(xrAttachSessionActionSets)(session, &info) == XR_SUCCESS);
     }
-    XrResult sync() const {
-        const XrActionsSyncInfo info{XR_TYPE_ACTIONS_SYNC_INFO};
+    XrResult sync(const std::vector<XrActiveActionSet>& active = {}) const {
+        const XrActionsSyncInfo info{XR_TYPE_ACTIONS_SYNC_INFO, nullptr, static_cast<std::uint32_t>(active.size()), active.data()};
         return XR(xrSyncActions)(session, &info);
     }
-    XrResult sync(XrActionSet set, XrPath subaction_path = XR_NULL_PATH) const {
-        const XrActiveActionSet active{set, subaction_path};
-        const XrActionsSyncInfo info{XR_TYPE_ACTIONS_SYNC_INFO, nullptr, 1, &active};
-        return XR(xrSyncActions)(session, &info);
-    }
+    XrResult sync(XrActionSet set, XrPath subaction_path = XR_NULL_PATH) const { return sync({XrActiveActionSet{set, subaction_path}}); }
     XrActionStateBoolean boolean(XrAction action, XrPath hand = XR_NULL_PATH) const {
         return stateOf<XrActionStateBoolean>(XR(xrGetActionStateBoolean), XR_TYPE_ACTION_STATE_BOOLEAN, action, hand);
     }

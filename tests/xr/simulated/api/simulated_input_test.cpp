@@ -66,8 +66,7 @@ TEST_CASE_FIXTURE(InstanceFixture, "an action set has two names of its own, an a
     CHECK(makeSet("walking", "Running") == XR_ERROR_NAME_DUPLICATED);
     CHECK(makeSet("running", "Walking") == XR_ERROR_LOCALIZED_NAME_DUPLICATED);
     CHECK(makeSet("running", "\xC3\x28") == XR_ERROR_VALIDATION_FAILURE);
-    CHECK(makeSet("running", "L\xC3\xA4uft") == XR_SUCCESS);
-    CHECK(xrDestroyActionSet(set) == XR_SUCCESS);
+    checkEach(XR_SUCCESS, {makeSet("running", "L\xC3\xA4uft"), xrDestroyActionSet(set)});
     CHECK(xrDestroyActionSet(set) == XR_ERROR_HANDLE_INVALID);
     CHECK(xrCreateActionSet(instance, &set_info, &set) == XR_SUCCESS);
     checkArguments(xrCreateActionSet, instance, &set_info, &set);
@@ -84,8 +83,7 @@ TEST_CASE_FIXTURE(InstanceFixture, "an action set has two names of its own, an a
     CHECK(xrCreateAction(set, &info, &action) == XR_SUCCESS);
     CHECK(make("jump", "Jump") == XR_ERROR_NAME_DUPLICATED);
     CHECK(make("duck", "Jump") == XR_ERROR_LOCALIZED_NAME_DUPLICATED);
-    CHECK(xrCreateAction(other_set, &info, &other) == XR_SUCCESS);
-    CHECK(xrDestroyAction(action) == XR_SUCCESS);
+    checkEach(XR_SUCCESS, {xrCreateAction(other_set, &info, &other), xrDestroyAction(action)});
     CHECK(xrDestroyAction(action) == XR_ERROR_HANDLE_INVALID);
     CHECK(make("duck", "Jump") == XR_SUCCESS);
     CHECK(make("", "Roll") == XR_ERROR_NAME_INVALID);
@@ -113,8 +111,7 @@ TEST_CASE_FIXTURE(SessionFixture, "suggestions are whole, action sets are attach
     const XrPath left = path("/user/hand/left"), click = path("/user/hand/left/input/select/click");
     CHECK(suggest(kSimple, std::vector<XrActionSuggestedBinding>{}) == XR_ERROR_VALIDATION_FAILURE);
     CHECK(suggest(kSimple, {{XR_NULL_HANDLE, click}}) == XR_ERROR_HANDLE_INVALID);
-    CHECK(suggest(kSimple, {{action, XR_NULL_PATH}}) == XR_ERROR_PATH_INVALID);
-    CHECK(suggest(kSimple, {{action, 123'456}}) == XR_ERROR_PATH_INVALID);
+    checkEach(XR_ERROR_PATH_INVALID, {suggest(kSimple, {{action, XR_NULL_PATH}}), suggest(kSimple, {{action, 123'456}})});
     CHECK(suggest("/user/hand/left", {{action, click}}) == XR_ERROR_PATH_UNSUPPORTED);
     const XrActionSuggestedBinding binding{action, click};
     XrInteractionProfileSuggestedBinding suggestion{XR_TYPE_INTERACTION_PROFILE_SUGGESTED_BINDING, nullptr, path(kSimple), 1, &binding};
@@ -125,9 +122,8 @@ TEST_CASE_FIXTURE(SessionFixture, "suggestions are whole, action sets are attach
     XrActionStateBoolean state{XR_TYPE_ACTION_STATE_BOOLEAN};
     XrActionStateGetInfo get{XR_TYPE_ACTION_STATE_GET_INFO, nullptr, action, XR_NULL_PATH};
     XrInteractionProfileState profile{XR_TYPE_INTERACTION_PROFILE_STATE};
-    CHECK(xrGetActionStateBoolean(session, &get, &state) == XR_ERROR_ACTIONSET_NOT_ATTACHED);
-    CHECK(xrGetCurrentInteractionProfile(session, left, &profile) == XR_ERROR_ACTIONSET_NOT_ATTACHED);
-    CHECK(sync(set) == XR_ERROR_ACTIONSET_NOT_ATTACHED);
+    checkEach(XR_ERROR_ACTIONSET_NOT_ATTACHED,
+              {xrGetActionStateBoolean(session, &get, &state), xrGetCurrentInteractionProfile(session, left, &profile), sync(set)});
     const XrActionSet nothing = XR_NULL_HANDLE;
     XrSessionActionSetsAttachInfo info{XR_TYPE_SESSION_ACTION_SETS_ATTACH_INFO, nullptr, 1, &set};
     const auto attachIt = [&] { return xrAttachSessionActionSets(session, &info); };
@@ -310,21 +306,17 @@ TEST_CASE_FIXTURE(InputFixture, "haptics go to haptic actions, in focus; the log
     XrHapticActionInfo info{XR_TYPE_HAPTIC_ACTION_INFO, nullptr, shake, left};
     const auto apply = [&] { return xrApplyHapticFeedback(session, &info, feedback); };
     const auto stop = [&] { return xrStopHapticFeedback(session, &info); };
-    CHECK(apply() == XR_SESSION_NOT_FOCUSED);
-    CHECK(stop() == XR_SESSION_NOT_FOCUSED);
+    checkEach(XR_SESSION_NOT_FOCUSED, {apply(), stop()});
     begin();
     frame();
-    CHECK(apply() == XR_SESSION_NOT_FOCUSED);
-    CHECK(stop() == XR_SESSION_NOT_FOCUSED);
+    checkEach(XR_SESSION_NOT_FOCUSED, {apply(), stop()});
     frame();
     frame();
-    CHECK(apply() == XR_SUCCESS);
-    CHECK(stop() == XR_SUCCESS);
+    checkEach(XR_SUCCESS, {apply(), stop()});
     CHECK(with(info.subactionPath, path("/user/head"), apply) == XR_ERROR_PATH_UNSUPPORTED);
     checkChanges(apply, XR_ERROR_VALIDATION_FAILURE, to(vibration.amplitude, 2), to(vibration.type, XR_TYPE_UNKNOWN));
     CHECK(xrApplyHapticFeedback(session, &info, nullptr) == XR_ERROR_VALIDATION_FAILURE);
-    CHECK(with(info.action, pull, apply) == XR_ERROR_ACTION_TYPE_MISMATCH);
-    CHECK(with(info.action, pull, stop) == XR_ERROR_ACTION_TYPE_MISMATCH);
+    checkEach(XR_ERROR_ACTION_TYPE_MISMATCH, {with(info.action, pull, apply), with(info.action, pull, stop)});
     CHECK(with(info.action, XR_NULL_HANDLE, stop) == XR_ERROR_HANDLE_INVALID);
 
     frame();

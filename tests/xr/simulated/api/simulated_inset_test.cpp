@@ -210,8 +210,7 @@ TEST_CASE("no lens hides anything of an inset") {
     CHECK(mask.indexCountOutput > 0);
     REQUIRE(get(kInset, 2) == XR_SUCCESS);
     CHECK(mask.indexCountOutput == 0);
-    CHECK(get(kInset, 4) == XR_ERROR_VALIDATION_FAILURE);
-    CHECK(get(kStereo, 2) == XR_ERROR_VALIDATION_FAILURE);
+    checkEach(XR_ERROR_VALIDATION_FAILURE, {get(kInset, 4), get(kStereo, 2)});
 }
 
 }  // SUITE(simulated_inset)

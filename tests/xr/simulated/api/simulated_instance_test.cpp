@@ -1,5 +1,4 @@
-// Chapters 4 to 6 of OpenXR on the simulated runtime, and XR_KHR_vulkan_enable2: the library, instances, systems, view configurations,
-// paths, names of values, Vulkan's instances and devices.
+// Chapters 4 to 6 of OpenXR on the simulated runtime: the library, instances, systems, view configurations, paths and names of values.
 #include "tests/xr/simulated/api/simulated_direct.h"
 
 #include <unistd.h>
@@ -92,43 +91,38 @@ TEST_CASE("extensions are listed in two calls, and enabled alone, and all, some 
     CHECK(xrCreateSession(made.instance, &info, &headless) == XR_SUCCESS);
 }
 
-TEST_CASE("an instance is refused for what its description lacks, and for a script that is none") {
+TEST_CASE(
+    "instances are of 1.0 and 1.1, whatever the patch; one is refused for what its description lacks, and for a script that is none") {
     {
         const Headset headset(kQuietScript);
+        const Direct runtime;
         XrInstance instance = XR_NULL_HANDLE;
         XrInstanceCreateInfo info = instanceInfo({});
         XrApplicationInfo& application = info.applicationInfo;
-        const auto make = [&] { return tryInstance(info); };
-        CHECK(xrCreateInstance(nullptr, &instance) == XR_ERROR_VALIDATION_FAILURE);
-        CHECK(xrCreateInstance(&info, nullptr) == XR_ERROR_VALIDATION_FAILURE);
-        checkChanges(make, XR_ERROR_VALIDATION_FAILURE, to(info.type, XR_TYPE_SYSTEM_GET_INFO), to(info.createFlags, 1));
-        CHECK(with(application.applicationName[0], '\0', make) == XR_ERROR_NAME_INVALID);
-        CHECK(with(application.engineName[0], '\xFF', make) == XR_ERROR_VALIDATION_FAILURE);
-        checkChanges(make, XR_ERROR_API_VERSION_UNSUPPORTED, to(application.apiVersion, XR_MAKE_VERSION(1, 2, 0)),
-                     to(application.apiVersion, 0));
+        checkEach(XR_ERROR_VALIDATION_FAILURE, {xrCreateInstance(nullptr, &instance), xrCreateInstance(&info, nullptr)});
+        for (const PFN_xrGetInstanceProcAddr find : {xrGetInstanceProcAddr, runtime.get}) {
+            const auto make = [&] { return tryInstance(info, find); };
+            checkChanges(make, XR_ERROR_VALIDATION_FAILURE, to(info.type, XR_TYPE_SYSTEM_GET_INFO), to(info.createFlags, 1),
+                         to(application.engineName[0], '\xFF'));
+            CHECK(with(application.applicationName[0], '\0', make) == XR_ERROR_NAME_INVALID);
+            checkChanges(make, XR_ERROR_API_VERSION_UNSUPPORTED, to(application.apiVersion, XR_MAKE_VERSION(1, 2, 0)),
+                         to(application.apiVersion, 0));
+        }
+        const auto make = [&] { return tryInstance(info, runtime.get); };
+        checkChanges(make, XR_ERROR_API_VERSION_UNSUPPORTED, to(application.apiVersion, XR_MAKE_VERSION(2, 0, 0)),
+                     to(application.apiVersion, XR_MAKE_VERSION(0, 9, 0)), to(application.apiVersion, 1));
+        checkChanges(make, XR_SUCCESS, to(application.apiVersion, XR_MAKE_VERSION(1, 0, 34)), to(application.apiVersion, k1_1),
+                     to(application.apiVersion, XR_MAKE_VERSION(1, 1, 4711)));
+        // Names that are not ended.
+        for (char* const name : {application.engineName, application.applicationName}) {
+            info = instanceInfo({});
+            std::memset(name, 'a', name == application.engineName ? sizeof application.engineName : sizeof application.applicationName);
+            CHECK(make() == XR_ERROR_NAME_INVALID);
+        }
     }
     CHECK(tryScript(kQuietScript, {"XR_KHR_nothing"}) == XR_ERROR_EXTENSION_NOT_PRESENT);
-    CHECK(tryScript("profile khr/simple_controller\npress left squeeze 0 1\n") == XR_ERROR_RUNTIME_FAILURE);
-    CHECK(tryScript("hed 0 position 0 0 0\n") == XR_ERROR_RUNTIME_FAILURE);
-}
-
-TEST_CASE("instances are of 1.0 and 1.1, whatever the patch, and of nothing else; names that are not ended are invalid") {
-    const Headset headset(kQuietScript);
-    const Direct runtime;
-    XrInstanceCreateInfo info = instanceInfo({});
-    const auto make = [&] { return tryInstance(info, runtime.get); };
-    for (const XrVersion good :
-         {XR_MAKE_VERSION(1, 0, 0), XR_MAKE_VERSION(1, 0, 34), XR_MAKE_VERSION(1, 1, 0), XR_MAKE_VERSION(1, 1, 4711)}) {
-        CHECK(with(info.applicationInfo.apiVersion, good, make) == XR_SUCCESS);
-    }
-    for (const XrVersion bad : {XR_MAKE_VERSION(1, 2, 0), XR_MAKE_VERSION(2, 0, 0), XR_MAKE_VERSION(0, 9, 0), 1ULL}) {
-        CHECK(with(info.applicationInfo.apiVersion, bad, make) == XR_ERROR_API_VERSION_UNSUPPORTED);
-    }
-    std::memset(info.applicationInfo.engineName, 'a', sizeof info.applicationInfo.engineName);
-    CHECK(make() == XR_ERROR_NAME_INVALID);
-    info = instanceInfo({});
-    std::memset(info.applicationInfo.applicationName, 'a', sizeof info.applicationInfo.applicationName);
-    CHECK(make() == XR_ERROR_NAME_INVALID);
+    checkEach(XR_ERROR_RUNTIME_FAILURE,
+              {tryScript("profile khr/simple_controller\npress left squeeze 0 1\n"), tryScript("hed 0 position 0 0 0\n")});
 }
 
 TEST_CASE("layers are the loader's business, whatever they are called") {
@@ -287,6 +281,7 @@ TEST_CASE_FIXTURE(InstanceFixture, "a system is one head-mounted display; a next
     XrSystemProperties properties{XR_TYPE_SYSTEM_PROPERTIES};
     CHECK(xrGetSystemProperties(instance, system, &properties) == XR_SUCCESS);
     CHECK(properties.systemId == system);
+    CHECK(std::string(properties.systemName) == "Simulated headset");
     CHECK(properties.graphicsProperties.maxLayerCount >= XR_MIN_COMPOSITION_LAYERS_SUPPORTED);
     CHECK(properties.trackingProperties.positionTracking == XR_TRUE);
     CHECK(xrGetSystemProperties(instance, XR_NULL_SYSTEM_ID, &properties) == XR_ERROR_SYSTEM_INVALID);
@@ -342,91 +337,7 @@ TEST_CASE_FIXTURE(InstanceFixture, "paths are the same for the same text, and ba
          {"", "/", "a", "a/b", "/a/", "//a", "/a//b", "/A", "/a b", "/a/.", "/..", "/a/.../b", "/\xC3\xA4", "/a\n", longer.c_str()}) {
         CHECK_MESSAGE(xrStringToPath(instance, bad, &made) == XR_ERROR_PATH_FORMAT_INVALID, bad);
     }
-    CHECK(xrStringToPath(instance, nullptr, &made) == XR_ERROR_VALIDATION_FAILURE);
-    CHECK(xrStringToPath(instance, "/a", nullptr) == XR_ERROR_VALIDATION_FAILURE);
-}
-
-TEST_CASE_FIXTURE(InstanceFixture, "Vulkan's requirements are a range of versions, asked for before a session, its own refusal is told") {
-    const auto getRequirements = XR(xrGetVulkanGraphicsRequirements2KHR);
-    XrGraphicsRequirementsVulkan2KHR requirements{XR_TYPE_GRAPHICS_REQUIREMENTS_VULKAN2_KHR};
-    CHECK(getRequirements(instance, system + 1, &requirements) == XR_ERROR_SYSTEM_INVALID);
-    const auto get = [&] { return getRequirements(instance, system, &requirements); };
-    const auto getFor = [&](XrInstance of, auto* place) { return getRequirements(of, system, place); };
-    checkArguments(getFor, instance, &requirements);
-    const XrGraphicsBindingVulkan2KHR graphics{XR_TYPE_GRAPHICS_BINDING_VULKAN2_KHR};
-    const XrSessionCreateInfo session_info{XR_TYPE_SESSION_CREATE_INFO, &graphics, 0, system};
-    CHECK(xrCreateSession(instance, &session_info, &session) == XR_ERROR_GRAPHICS_REQUIREMENTS_CALL_MISSING);
-    CHECK(get() == XR_SUCCESS);
-    CHECK(requirements.minApiVersionSupported <= XR_MAKE_VERSION(1, 1, 0));
-    CHECK(requirements.maxApiVersionSupported >= XR_MAKE_VERSION(1, 2, 0));
-    CHECK(xrCreateSession(instance, &session_info, &session) == XR_ERROR_GRAPHICS_DEVICE_INVALID);
-
-    const auto create = XR(xrCreateVulkanInstanceKHR);
-    const char* const nothing = "VK_KHR_nothing";
-    VkInstanceCreateInfo vulkan_info{VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO};
-    vulkan_info.enabledExtensionCount = 1;
-    vulkan_info.ppEnabledExtensionNames = &nothing;
-    XrVulkanInstanceCreateInfoKHR info{
-        XR_TYPE_VULKAN_INSTANCE_CREATE_INFO_KHR, nullptr, system, 0, vkGetInstanceProcAddr, &vulkan_info, nullptr};
-    VkInstance vulkan = VK_NULL_HANDLE;
-    VkResult result = VK_SUCCESS;
-    const auto make = [&] { return create(instance, &info, &vulkan, &result); };
-    CHECK(make() == XR_SUCCESS);
-    CHECK(result == VK_ERROR_EXTENSION_NOT_PRESENT);
-    CHECK(with(info.createFlags, 1, make) == XR_ERROR_VALIDATION_FAILURE);
-    CHECK(with(info.systemId, 9, make) == XR_ERROR_SYSTEM_INVALID);
-    checkChanges(make, XR_ERROR_VALIDATION_FAILURE, to(info.pfnGetInstanceProcAddr, nullptr), to(info.vulkanCreateInfo, nullptr));
-    checkArguments(create, instance, &info, &vulkan, &result);
-}
-
-TEST_CASE_FIXTURE(VulkanFixture, "the graphics device is one of Vulkan's instance, the same each time, and devices are made on it alone") {
-    const auto get = XR(xrGetVulkanGraphicsDevice2KHR);
-    XrVulkanGraphicsDeviceGetInfoKHR get_info{XR_TYPE_VULKAN_GRAPHICS_DEVICE_GET_INFO_KHR, nullptr, system, vulkan};
-    VkPhysicalDevice found = VK_NULL_HANDLE;
-    const auto find = [&] { return get(instance, &get_info, &found); };
-    CHECK(find() == XR_SUCCESS);
-    CHECK(found == physical_device);
-    CHECK(with(get_info.systemId, 0, find) == XR_ERROR_SYSTEM_INVALID);
-    CHECK(with(get_info.vulkanInstance, VK_NULL_HANDLE, find) == XR_ERROR_VALIDATION_FAILURE);
-    checkArguments(get, instance, &get_info, &found);
-    for (const char* index : {"99", "first", "0x"}) {
-        setenv("SIMULATED_OPENXR_GPU", index, 1);
-        CHECK_MESSAGE(find() == XR_ERROR_RUNTIME_FAILURE, index);
-    }
-    unsetenv("SIMULATED_OPENXR_GPU");
-    CHECK(find() == XR_SUCCESS);
-
-    const VkDeviceCreateInfo vulkan_info{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO};
-    XrVulkanDeviceCreateInfoKHR info{
-        XR_TYPE_VULKAN_DEVICE_CREATE_INFO_KHR, nullptr, system, 0, vkGetInstanceProcAddr, physical_device, &vulkan_info, nullptr};
-    VkDevice made = VK_NULL_HANDLE;
-    VkResult result = VK_SUCCESS;
-    checkArguments(XR(xrCreateVulkanDeviceKHR), instance, &info, &made, &result);
-    const auto make = [&] { return XR(xrCreateVulkanDeviceKHR)(instance, &info, &made, &result); };
-    CHECK(with(info.vulkanPhysicalDevice, VK_NULL_HANDLE, make) == XR_ERROR_HANDLE_INVALID);
-    CHECK(with(info.systemId, 4, make) == XR_ERROR_SYSTEM_INVALID);
-}
-
-TEST_CASE("the older extension has functions of its own, and needs no extensions of Vulkan") {
-    const DirectInstance made(k1_0, {XR_KHR_VULKAN_ENABLE_EXTENSION_NAME});
-    CHECK_FALSE(made.has("xrCreateVulkanInstanceKHR"));
-    CHECK(made.has("xrGetVulkanGraphicsDeviceKHR"));
-    for (const auto getExtensions : {made.XR(xrGetVulkanInstanceExtensionsKHR), made.XR(xrGetVulkanDeviceExtensionsKHR)}) {
-        std::uint32_t count = 0;
-        char text[4] = "no";
-        CHECK(getExtensions(made.instance, 1, 0, &count, nullptr) == XR_SUCCESS);
-        CHECK(count == 1);
-        CHECK(getExtensions(made.instance, 1, 4, &count, text) == XR_SUCCESS);
-        CHECK(std::string(text).empty());
-        CHECK(getExtensions(made.instance, 2, 4, &count, text) == XR_ERROR_SYSTEM_INVALID);
-    }
-    const auto getRequirements = made.XR(xrGetVulkanGraphicsRequirementsKHR);
-    XrGraphicsRequirementsVulkanKHR requirements{XR_TYPE_GRAPHICS_REQUIREMENTS_VULKAN_KHR};
-    CHECK(getRequirements(made.instance, 1, &requirements) == XR_SUCCESS);
-    CHECK(requirements.minApiVersionSupported <= XR_MAKE_VERSION(1, 1, 0));
-    CHECK(requirements.maxApiVersionSupported >= XR_MAKE_VERSION(1, 2, 0));
-    CHECK(getRequirements(made.instance, 2, &requirements) == XR_ERROR_SYSTEM_INVALID);
-    checkArguments([&](XrInstance of, auto* place) { return getRequirements(of, 1, place); }, made.instance, &requirements);
+    checkEach(XR_ERROR_VALIDATION_FAILURE, {xrStringToPath(instance, nullptr, &made), xrStringToPath(instance, "/a", nullptr)});
 }
 
 }  // SUITE(simulated_instance)

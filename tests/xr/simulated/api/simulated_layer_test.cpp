@@ -80,11 +80,9 @@ struct SurroundFixture : SessionFixture {
 TEST_CASE_FIXTURE(FlatFixture, "layers are of a known type, some eye's, of poses of length 1, and as many as the system says") {
     const auto showQuad = [&] { return show(&quad); };
     const auto showViews = [&] { return show(&projection); };
-    CHECK(showViews() == XR_SUCCESS);
-    CHECK(showQuad() == XR_SUCCESS);
+    checkEach(XR_SUCCESS, {showViews(), showQuad()});
     CHECK(frame({headerOf(projection), headerOf(quad)}).shouldRender == XR_TRUE);
-    CHECK(show(nullptr) == XR_ERROR_LAYER_INVALID);
-    CHECK(with(quad.type, XR_TYPE_COMPOSITION_LAYER_CUBE_KHR, showQuad) == XR_ERROR_LAYER_INVALID);
+    checkEach(XR_ERROR_LAYER_INVALID, {show(nullptr), with(quad.type, XR_TYPE_COMPOSITION_LAYER_CUBE_KHR, showQuad)});
     CHECK(with(quad.layerFlags, 1 << 20, showQuad) == kNotValid);
     CHECK(with(quad.space, XR_NULL_HANDLE, showQuad) == XR_ERROR_HANDLE_INVALID);
     CHECK(with(quad.pose.orientation.w, 0, showQuad) == XR_ERROR_POSE_INVALID);
@@ -120,8 +118,7 @@ TEST_CASE_FIXTURE(FlatFixture, "rectangles stay inside their image, of a swapcha
     for (const XrRect2Di& outside :
          {XrRect2Di{{0, 0}, {65, 32}}, XrRect2Di{{1, 0}, {64, 32}}, XrRect2Di{{0, 1}, {64, 32}}, XrRect2Di{{-1, 0}, {32, 32}},
           XrRect2Di{{32, 0}, {-32, 32}}, XrRect2Di{{1, 0}, {INT32_MAX, 32}}, XrRect2Di{{65, 0}, {0, 0}}, XrRect2Di{{0, 0}, {32, -1}}}) {
-        CAPTURE(outside.offset.x);
-        CAPTURE(outside.extent.width);
+        INFO("outside.offset.x ", outside.offset.x, ", outside.extent.width ", outside.extent.width);
         CHECK(with(quad.subImage.imageRect, outside, showQuad) == XR_ERROR_SWAPCHAIN_RECT_INVALID);
     }
     // Empty ones reach out nowhere.
@@ -149,27 +146,21 @@ TEST_CASE("frames are logged, and pictures written for those with layers, also o
     CHECK_FALSE(std::filesystem::exists(made.written / "frame_000002.png"));
     const std::vector<Json> lines = made.logged();
     REQUIRE(lines.size() == 4);
-    CHECK(lines[3]["frame"] == 3);
-    CHECK(lines[3]["session_state"] == "FOCUSED");
-    CHECK(lines[3]["should_render"] == true);
-    CHECK(lines[3]["blend_mode"] == "OPAQUE");
+    CHECK(lines[3] == expecting(lines[3], {{"frame", 3}, {"session_state", "FOCUSED"}, {"should_render", true}, {"blend_mode", "OPAQUE"}}));
     CHECK(lines[3]["gpu_ms"].get<double>() == doctest::Approx(2 * 2.048));  // of both views
     CHECK(lines[3]["eyes"][0]["fov"]["left"].get<double>() == doctest::Approx(-0.7));
     CHECK_FALSE(lines[2].contains("picture"));
     REQUIRE(lines[3]["layers"].size() == 2);
     const Json &projection = lines[3]["layers"][0], &quad = lines[3]["layers"][1];
-    CHECK(projection["type"] == "projection");
-    CHECK(projection["space"] == "LOCAL");
-    CHECK(projection["flags"] == Json{"blend_texture_source_alpha"});
-    CHECK(projection["views"].size() == 2);
-    CHECK(projection["views"][1]["rect"] == Json{0, 0, 64, 32});
-    CHECK(projection["views"][0]["format"] == "VK_FORMAT_R8G8B8A8_SRGB");
-    CHECK(projection["views"][0]["depth"]["format"] == "VK_FORMAT_D32_SFLOAT");
-    CHECK(projection["views"][0]["depth"]["far"] == 100.0);
-    CHECK(projection["views"][0]["depth"]["near"].is_null());  // infinite
+    CHECK(projection == expecting(projection, {{"type", "projection"}, {"space", "LOCAL"}, {"flags", {"blend_texture_source_alpha"}}}));
+    const Json& views = projection["views"];
+    CHECK(views.size() == 2);
+    CHECK(views[1]["rect"] == Json{0, 0, 64, 32});
+    CHECK(views[0] ==
+          expecting(views[0], {{"format", "VK_FORMAT_R8G8B8A8_SRGB"}, {"depth", {{"format", "VK_FORMAT_D32_SFLOAT"}, {"far", 100.0}}}}));
+    CHECK(views[0]["depth"]["near"].is_null());  // infinite
     CHECK_FALSE(projection.contains("size"));
-    CHECK(quad["size"] == Json{1.0, 0.5});
-    CHECK(quad["eye_visibility"] == "left");
+    CHECK(quad == expecting(quad, {{"size", {1.0, 0.5}}, {"eye_visibility", "left"}}));
     CHECK_FALSE(quad["views"][0].contains("pose"));
     made.turn(made.colour);
     for (int i = 0; i < 3; ++i) { made.acquire(made.colour); }
@@ -185,10 +176,8 @@ TEST_CASE_FIXTURE(SurroundFixture, "layers that surround reach the wearer and th
     CHECK(show(&cylinder) == XR_SUCCESS);
     CHECK(seen() == Texel{255, 0, 0, 255});
     Json layer = logged().back()["layers"][0];
-    CHECK(layer["type"] == "cylinder");
+    CHECK(layer == expecting(layer, {{"type", "cylinder"}, {"radius", 0.0}, {"eye_visibility", "both"}}));
     CHECK(layer["central_angle"].get<double>() == doctest::Approx(kPi));
-    CHECK(layer["radius"] == 0.0);
-    CHECK(layer["eye_visibility"] == "both");
     CHECK(show(&sphere) == XR_SUCCESS);
     CHECK(seen() == Texel{255, 0, 0, 255});
     layer = logged().back()["layers"][0];
@@ -210,9 +199,9 @@ TEST_CASE_FIXTURE(SurroundFixture, "layers that surround reach the wearer and th
     REQUIRE(xrBeginFrame(session, nullptr) == XR_SUCCESS);
     CHECK(endFrame(time, {headerOf(sphere), headerOf(cylinder)}) == kNotValid);
     const Json refused = logged().back();
-    CHECK(refused["refused"] == "XR_ERROR_VALIDATION_FAILURE");
-    CHECK(refused["reason"] == "layer 1: the central angle is 7, must be 0 to 2 pi");
-    CHECK(refused["session_state"] == "FOCUSED");
+    CHECK(refused == expecting(refused, {{"refused", "XR_ERROR_VALIDATION_FAILURE"},
+                                         {"reason", "layer 1: the central angle is 7, must be 0 to 2 pi"},
+                                         {"session_state", "FOCUSED"}}));
     CHECK_FALSE(refused.contains("picture"));
     cylinder.centralAngle = 1;
     CHECK(endFrame(time, {headerOf(sphere), headerOf(cylinder)}) == XR_SUCCESS);

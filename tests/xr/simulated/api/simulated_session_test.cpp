@@ -1,6 +1,6 @@
 // Chapter 9 and section 10.4 of OpenXR on the simulated runtime: the life of a session, its frame loop, the pace of its frames by script,
-// how either ends early, and sessions without graphics (XR_MND_headless; there is no loader then).
-#include "tests/xr/simulated/api/simulated_direct.h"
+// and how either ends early.
+#include "tests/xr/simulated/api/simulated_fixture.h"
 
 SUITE(simulated_session) {
 
@@ -13,6 +13,12 @@ const States kWholeLife{XR_SESSION_STATE_IDLE,    XR_SESSION_STATE_READY,   XR_S
 
 struct Begun : SessionFixture {
     explicit Begun(const std::string& script, const Extensions& extensions = {}) : SessionFixture(kSmall + script, extensions) { begin(); }
+
+    std::vector<XrFrameState> frames(int count) const {
+        std::vector<XrFrameState> states;
+        for (int i = 0; i < count; ++i) { states.push_back(frame()); }
+        return states;
+    }
 };
 
 // A hundred frames per second, and the wearer leaves after ten.
@@ -64,30 +70,22 @@ TEST_CASE_FIXTURE(VulkanFixture, "a session wants a graphics binding and a syste
     REQUIRE(xrCreateSwapchain(session, &swapchain_info, &swapchain) == XR_SUCCESS);
     const XrSpace space = makeSpace(XR_REFERENCE_SPACE_TYPE_LOCAL);
     // A handle of one type is not taken for another.
-    CHECK(xrDestroySession(reinterpret_cast<XrSession>(space)) == XR_ERROR_HANDLE_INVALID);
-    CHECK(xrDestroySpace(reinterpret_cast<XrSpace>(session)) == XR_ERROR_HANDLE_INVALID);
-    CHECK(xrDestroySwapchain(reinterpret_cast<XrSwapchain>(instance)) == XR_ERROR_HANDLE_INVALID);
-    CHECK(xrDestroySession(XR_NULL_HANDLE) == XR_ERROR_HANDLE_INVALID);
+    checkEach(XR_ERROR_HANDLE_INVALID,
+              {xrDestroySession(reinterpret_cast<XrSession>(space)), xrDestroySpace(reinterpret_cast<XrSpace>(session)),
+               xrDestroySwapchain(reinterpret_cast<XrSwapchain>(instance)), xrDestroySession(XR_NULL_HANDLE)});
 
     CHECK(xrDestroySession(session) == XR_SUCCESS);
-    CHECK(xrDestroySession(session) == XR_ERROR_HANDLE_INVALID);
-    CHECK(xrDestroySpace(space) == XR_ERROR_HANDLE_INVALID);
-    CHECK(xrDestroySwapchain(swapchain) == XR_ERROR_HANDLE_INVALID);
-    CHECK(xrRequestExitSession(session) == XR_ERROR_HANDLE_INVALID);
+    checkEach(XR_ERROR_HANDLE_INVALID,
+              {xrDestroySession(session), xrDestroySpace(space), xrDestroySwapchain(swapchain), xrRequestExitSession(session)});
     CHECK(states().empty());
-    CHECK(make() == XR_SUCCESS);
-    CHECK(xrDestroySession(session) == XR_SUCCESS);
-    CHECK(make() == XR_SUCCESS);
+    checkEach(XR_SUCCESS, {make(), xrDestroySession(session), make()});
     CHECK(states() == States{XR_SESSION_STATE_IDLE, XR_SESSION_STATE_READY});
 }
 
 TEST_CASE_FIXTURE(SessionFixture, "a session begins once, when it is READY, in stereo, and goes from IDLE to FOCUSED, a state per frame") {
     XrFrameState state{XR_TYPE_FRAME_STATE};
-    CHECK(xrWaitFrame(session, nullptr, &state) == XR_ERROR_SESSION_NOT_RUNNING);
-    CHECK(xrBeginFrame(session, nullptr) == XR_ERROR_SESSION_NOT_RUNNING);
-    CHECK(endFrame(1) == XR_ERROR_SESSION_NOT_RUNNING);
-    CHECK(xrEndSession(session) == XR_ERROR_SESSION_NOT_RUNNING);
-    CHECK(xrRequestExitSession(session) == XR_ERROR_SESSION_NOT_RUNNING);
+    checkEach(XR_ERROR_SESSION_NOT_RUNNING, {xrWaitFrame(session, nullptr, &state), xrBeginFrame(session, nullptr), endFrame(1),
+                                             xrEndSession(session), xrRequestExitSession(session)});
 
     XrSessionBeginInfo info{XR_TYPE_SESSION_BEGIN_INFO, nullptr, kStereo};
     const auto begin = [&] { return xrBeginSession(session, &info); };
@@ -124,11 +122,9 @@ TEST_CASE_FIXTURE(SessionFixture, "a session begins once, when it is READY, in s
 
 TEST_CASE_FIXTURE(SessionFixture, "frames are waited for, begun and ended in this order, in structures of their types") {
     begin();
-    CHECK(xrBeginFrame(session, nullptr) == XR_ERROR_CALL_ORDER_INVALID);
-    CHECK(endFrame(1) == XR_ERROR_CALL_ORDER_INVALID);
+    checkEach(XR_ERROR_CALL_ORDER_INVALID, {xrBeginFrame(session, nullptr), endFrame(1)});
     XrFrameState state{XR_TYPE_FRAME_END_INFO};
-    CHECK(xrWaitFrame(session, nullptr, &state) == XR_ERROR_VALIDATION_FAILURE);
-    CHECK(xrWaitFrame(session, nullptr, nullptr) == XR_ERROR_VALIDATION_FAILURE);
+    checkEach(XR_ERROR_VALIDATION_FAILURE, {xrWaitFrame(session, nullptr, &state), xrWaitFrame(session, nullptr, nullptr)});
     const XrFrameWaitInfo wait{XR_TYPE_FRAME_BEGIN_INFO};
     state.type = XR_TYPE_FRAME_STATE;
     CHECK(xrWaitFrame(session, &wait, &state) == XR_ERROR_VALIDATION_FAILURE);
@@ -203,9 +199,8 @@ TEST_CASE("a session that is being lost says so with every success, and then fai
     CHECK(xrEnumerateReferenceSpaces(session, 0, &count, nullptr) == XR_SESSION_LOSS_PENDING);
     CHECK(xrBeginFrame(session, nullptr) == XR_SESSION_LOSS_PENDING);
     CHECK(made.endFrame(state.predictedDisplayTime) == XR_SESSION_LOSS_PENDING);
-    CHECK(failureOf(made) == XR_ERROR_SESSION_LOST);
-    CHECK(xrEnumerateReferenceSpaces(session, 0, &count, nullptr) == XR_ERROR_SESSION_LOST);
-    CHECK(xrRequestExitSession(session) == XR_ERROR_SESSION_LOST);
+    checkEach(XR_ERROR_SESSION_LOST,
+              {failureOf(made), xrEnumerateReferenceSpaces(session, 0, &count, nullptr), xrRequestExitSession(session)});
     CHECK(xrDestroySession(session) == XR_SUCCESS);
     // Time went on, so the script's line is past.
     made.makeSession();
@@ -223,8 +218,7 @@ TEST_CASE("an instance that is lost says when, and then fails") {
     CHECK(XR_SUCCEEDED(xrBeginFrame(made.session, nullptr)));
     CHECK(failureOf(made) == XR_ERROR_INSTANCE_LOST);
     XrPath path = XR_NULL_PATH;
-    CHECK(xrStringToPath(made.instance, "/a", &path) == XR_ERROR_INSTANCE_LOST);
-    CHECK(xrPollEvent(made.instance, &event) == XR_ERROR_INSTANCE_LOST);
+    checkEach(XR_ERROR_INSTANCE_LOST, {xrStringToPath(made.instance, "/a", &path), xrPollEvent(made.instance, &event)});
 }
 
 TEST_CASE("events that nobody polls are lost and counted") {
@@ -232,7 +226,7 @@ TEST_CASE("events that nobody polls are lost and counted") {
     std::string script = "rate 10\n";
     for (int i = 0; i < 110; ++i) { script += "at " + std::to_string(0.25 + 0.1 * i) + (i % 2 == 0 ? " focused off\n" : " focused on\n"); }
     const Begun made(script);
-    for (int i = 0; i < 100; ++i) { made.frame(); }
+    made.frames(100);
     XrEventDataBuffer event;
     int kept = 0;
     XrStructureType type = made.poll(event);
@@ -274,13 +268,11 @@ TEST_CASE("frames go by the display's rate from the next one on: that which the 
     CHECK(std::count(rates, rates + count, 50.0f) == 1);
 }
 
-TEST_CASE("irregular periods differ, within what the script says, and do not drift") {
-    const Begun made("rate 100\nirregular 50");
-    XrTime before = 0;
-    std::set<XrDuration> steps;
-    for (int i = 0; i < 200; ++i) {
-        const XrFrameState state = made.frame();
-        if (before != 0) { steps.insert(state.predictedDisplayTime - before); }
+TEST_CASE("irregular periods differ, within what the script says, and do not drift; a stretched one is as many as the frame before took") {
+    std::set<XrDuration> steps, stated;
+    XrTime before = kStart;
+    for (const XrFrameState& state : Begun("rate 100\nirregular 50").frames(200)) {
+        if (state.predictedDisplayTime != kStart) { steps.insert(state.predictedDisplayTime - before); }
         before = state.predictedDisplayTime;
         CHECK(state.predictedDisplayPeriod == kPeriod);
     }
@@ -288,17 +280,25 @@ TEST_CASE("irregular periods differ, within what the script says, and do not dri
     CHECK(*steps.begin() >= kPeriod / 2);
     CHECK(*steps.rbegin() <= kPeriod + kPeriod / 2);
     CHECK(std::abs(before - kStart - 199 * kPeriod) <= kPeriod / 4);
+
+    before = kStart - kPeriod;
+    for (const XrFrameState& state : Begun("rate 100\nperiod stretched\nat 0.1 gpu-load 25 ms\nat 0.3 gpu-load 0 ms").frames(40)) {
+        CHECK(state.predictedDisplayTime - before == state.predictedDisplayPeriod);
+        before = state.predictedDisplayTime;
+        stated.insert(state.predictedDisplayPeriod);
+    }
+    CHECK(stated == std::set<XrDuration>{kPeriod, 3 * kPeriod});
 }
 
 TEST_CASE("a device that takes longer than a period misses displays, and the log says how long it takes") {
     const Begun made("rate 100\nat 0.1 gpu-load 70 %\nat 0.2 gpu-load 25 ms\nat 0.4 gpu-load 0 ms");
-    std::vector<XrTime> times;
-    for (int i = 0; i < 40; ++i) { times.push_back(made.frame().predictedDisplayTime); }
+    const std::vector<XrFrameState> frames = made.frames(40);
     const auto stepsIn = [&](double from_s, double to_s) {
         std::set<XrDuration> steps;
-        for (std::size_t i = 1; i < times.size(); ++i) {
-            const double time_s = 1e-9 * static_cast<double>(times[i - 1] - kStart);
-            if (time_s >= from_s && time_s < to_s) { steps.insert((times[i] - times[i - 1]) / kPeriod); }
+        for (std::size_t i = 1; i < frames.size(); ++i) {
+            const XrTime time = frames[i - 1].predictedDisplayTime;
+            const double time_s = 1e-9 * static_cast<double>(time - kStart);
+            if (time_s >= from_s && time_s < to_s) { steps.insert((frames[i].predictedDisplayTime - time) / kPeriod); }
         }
         return steps;
     };
@@ -308,19 +308,6 @@ TEST_CASE("a device that takes longer than a period misses displays, and the log
     std::set<double> said;
     for (const Json& line : made.logged()) { said.insert(line.value("gpu_ms", 0.0)); }
     CHECK(said == std::set<double>{0.0, 7.0, 25.0});
-}
-
-TEST_CASE("a stretched period is as many as the frame before took") {
-    const Begun made("rate 100\nperiod stretched\nat 0.1 gpu-load 25 ms\nat 0.3 gpu-load 0 ms");
-    XrTime last = 0;
-    std::set<XrDuration> stated;
-    for (int i = 0; i < 40; ++i) {
-        const XrFrameState state = made.frame();
-        if (last != 0) { CHECK(state.predictedDisplayTime - last == state.predictedDisplayPeriod); }
-        last = state.predictedDisplayTime;
-        stated.insert(state.predictedDisplayPeriod);
-    }
-    CHECK(stated == std::set<XrDuration>{kPeriod, 3 * kPeriod});
 }
 
 TEST_CASE_FIXTURE(Leaving, "the script goes on and the session moves though every frame is refused, and the log has each with its reason") {
@@ -392,63 +379,6 @@ TEST_CASE("states change while a frame is open, where the script says so, and th
     CHECK(open.back() == XR_SESSION_STATE_STOPPING);
     CHECK(std::ranges::count(closed, XR_SESSION_STATE_FOCUSED) == 0);
     CHECK(xrEndSession(made.session) == XR_SUCCESS);
-}
-
-TEST_CASE("a headless session has no swapchains, needs no frames, and is in focus at once") {
-    const HeadlessSession made(k1_0, {}, "rate 10\nat 0.35 focused off\nat 0.55 exit\n");
-    std::uint32_t count = 9;
-    CHECK(made.XR(xrEnumerateSwapchainFormats)(made.session, 0, &count, nullptr) == XR_SUCCESS);
-    CHECK(count == 0);
-    const XrSwapchainCreateInfo info = swapchainInfo();
-    XrSwapchain swapchain = XR_NULL_HANDLE;
-    CHECK(made.XR(xrCreateSwapchain)(made.session, &info, &swapchain) == XR_ERROR_VALIDATION_FAILURE);
-    CHECK(made.states() == States{XR_SESSION_STATE_IDLE, XR_SESSION_STATE_READY});
-    made.begin();
-    CHECK(made.states() == States{XR_SESSION_STATE_SYNCHRONIZED, XR_SESSION_STATE_VISIBLE, XR_SESSION_STATE_FOCUSED});
-    // Each xrSyncActions is a frame's time: 0, 0.1, 0.2, 0.3 s in focus.
-    for (int i = 0; i < 4; ++i) { CHECK(made.sync() == XR_SUCCESS); }
-    CHECK(made.sync() == XR_SESSION_NOT_FOCUSED);
-    CHECK(made.states() == States{XR_SESSION_STATE_VISIBLE});
-    for (int i = 0; i < 2; ++i) { CHECK(made.sync() == XR_SESSION_NOT_FOCUSED); }
-    CHECK(made.states() == States{XR_SESSION_STATE_SYNCHRONIZED, XR_SESSION_STATE_STOPPING});
-    CHECK(made.XR(xrEndSession)(made.session) == XR_SUCCESS);
-}
-
-TEST_CASE("a headless session may have frames, which nobody draws; time and states then go by them alone") {
-    const HeadlessSession made(k1_0, {}, "rate 10\nat 0 gpu-load 250 %\nat 0.15 focused off\nat 0.35 exit\n");
-    const auto begin = made.XR(xrBeginFrame);
-    XrFrameState state{XR_TYPE_FRAME_STATE};
-    CHECK(made.XR(xrWaitFrame)(made.session, nullptr, &state) == XR_ERROR_SESSION_NOT_RUNNING);
-    made.begin();
-    made.states();
-    CHECK(begin(made.session, nullptr) == XR_ERROR_CALL_ORDER_INVALID);
-    CHECK(made.endFrame(kStart) == XR_ERROR_CALL_ORDER_INVALID);
-    const States expected[] = {{}, {}, {XR_SESSION_STATE_VISIBLE}, {}, {XR_SESSION_STATE_SYNCHRONIZED}, {XR_SESSION_STATE_STOPPING}};
-    for (int frame = 0; frame < 6; ++frame) {
-        state = made.waitFrame();
-        CHECK(state.shouldRender == XR_FALSE);
-        CHECK(state.predictedDisplayTime == kStart + frame * 100'000'000);
-        CHECK(state.predictedDisplayPeriod == 100'000'000);
-        for (int i = 0; i < 2; ++i) { CHECK(made.sync() == (frame < 3 ? XR_SUCCESS : XR_SESSION_NOT_FOCUSED)); }
-        REQUIRE(begin(made.session, nullptr) == XR_SUCCESS);
-        // Its picture would need a swapchain, which there cannot be; even one that names none is refused as a layer.
-        const XrCompositionLayerQuad quad{XR_TYPE_COMPOSITION_LAYER_QUAD};
-        CHECK(made.endFrame(state.predictedDisplayTime, {headerOf(quad)}) == XR_ERROR_LAYER_INVALID);
-        REQUIRE(made.endFrame(state.predictedDisplayTime) == XR_SUCCESS);
-        CHECK(made.states() == expected[frame]);
-    }
-    CHECK(made.XR(xrEndSession)(made.session) == XR_SUCCESS);
-}
-
-TEST_CASE("a headless session begins whatever view configuration it names, and ends at once when it is asked to") {
-    for (const auto type :
-         {static_cast<XrViewConfigurationType>(0), XR_VIEW_CONFIGURATION_TYPE_PRIMARY_MONO, static_cast<XrViewConfigurationType>(4711)}) {
-        const HeadlessSession made(k1_0, {});
-        made.begin(type);
-        CHECK(made.states().back() == XR_SESSION_STATE_FOCUSED);
-        CHECK(made.XR(xrRequestExitSession)(made.session) == XR_SUCCESS);
-        CHECK(made.XR(xrEndSession)(made.session) == XR_SUCCESS);
-    }
 }
 
 }  // SUITE(simulated_session)

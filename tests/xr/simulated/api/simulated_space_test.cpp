@@ -42,8 +42,7 @@ TEST_CASE_FIXTURE(SessionFixture, "reference spaces are VIEW, LOCAL and STAGE, e
     XrReferenceSpaceCreateInfo info{XR_TYPE_REFERENCE_SPACE_CREATE_INFO, nullptr, XR_REFERENCE_SPACE_TYPE_STAGE, kIdentity};
     XrSpace space = XR_NULL_HANDLE;
     const auto make = [&] { return xrCreateReferenceSpace(session, &info, &space); };
-    CHECK(make() == XR_SUCCESS);
-    CHECK(xrDestroySpace(space) == XR_SUCCESS);
+    checkEach(XR_SUCCESS, {make(), xrDestroySpace(space)});
     CHECK(xrDestroySpace(space) == XR_ERROR_HANDLE_INVALID);
     checkArguments(xrCreateReferenceSpace, session, &info, &space);
     CHECK(with(info.referenceSpaceType, static_cast<XrReferenceSpaceType>(99), make) == XR_ERROR_REFERENCE_SPACE_UNSUPPORTED);
@@ -60,8 +59,7 @@ TEST_CASE_FIXTURE(SessionFixture, "reference spaces are VIEW, LOCAL and STAGE, e
 
     // Locating wants two spaces, a time and a place for the answer.
     XrSpaceLocation location{XR_TYPE_SPACE_LOCATION};
-    CHECK(xrLocateSpace(local, local, 0, &location) == XR_ERROR_TIME_INVALID);
-    CHECK(xrLocateSpace(local, local, -1, &location) == XR_ERROR_TIME_INVALID);
+    checkEach(XR_ERROR_TIME_INVALID, {xrLocateSpace(local, local, 0, &location), xrLocateSpace(local, local, -1, &location)});
     checkArguments([&](XrSpace of, auto* place) { return xrLocateSpace(of, local, 1, place); }, local, &location);
     checkArguments([&](XrSpace base, auto* place) { return xrLocateSpace(local, base, 1, place); }, local, &location);
 

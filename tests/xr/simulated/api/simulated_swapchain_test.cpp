@@ -1,4 +1,6 @@
-// Section 10.1 of OpenXR on the simulated runtime: swapchains, and the layouts in which XR_KHR_vulkan_enable2 hands their images over.
+// XR_KHR_vulkan_enable2 and section 10.1 of OpenXR on the simulated runtime: Vulkan's instances and devices, swapchains, and the layouts in
+// which their images are handed over.
+#include "tests/xr/simulated/api/simulated_direct.h"
 #include "tests/xr/simulated/api/simulated_painter.h"
 
 SUITE(simulated_swapchain) {
@@ -41,6 +43,89 @@ std::vector<std::uint32_t> turnsOf(const std::string& images, int times) {
         CHECK(found.back() < made.imagesOf(swapchain).size());
     }
     return found;
+}
+
+TEST_CASE_FIXTURE(InstanceFixture, "Vulkan's requirements are a range of versions, asked for before a session, its own refusal is told") {
+    const auto getRequirements = XR(xrGetVulkanGraphicsRequirements2KHR);
+    XrGraphicsRequirementsVulkan2KHR requirements{XR_TYPE_GRAPHICS_REQUIREMENTS_VULKAN2_KHR};
+    CHECK(getRequirements(instance, system + 1, &requirements) == XR_ERROR_SYSTEM_INVALID);
+    const auto get = [&] { return getRequirements(instance, system, &requirements); };
+    const auto getFor = [&](XrInstance of, auto* place) { return getRequirements(of, system, place); };
+    checkArguments(getFor, instance, &requirements);
+    const XrGraphicsBindingVulkan2KHR graphics{XR_TYPE_GRAPHICS_BINDING_VULKAN2_KHR};
+    const XrSessionCreateInfo session_info{XR_TYPE_SESSION_CREATE_INFO, &graphics, 0, system};
+    CHECK(xrCreateSession(instance, &session_info, &session) == XR_ERROR_GRAPHICS_REQUIREMENTS_CALL_MISSING);
+    CHECK(get() == XR_SUCCESS);
+    CHECK(requirements.minApiVersionSupported <= XR_MAKE_VERSION(1, 1, 0));
+    CHECK(requirements.maxApiVersionSupported >= XR_MAKE_VERSION(1, 2, 0));
+    CHECK(xrCreateSession(instance, &session_info, &session) == XR_ERROR_GRAPHICS_DEVICE_INVALID);
+
+    const auto create = XR(xrCreateVulkanInstanceKHR);
+    const char* const nothing = "VK_KHR_nothing";
+    VkInstanceCreateInfo vulkan_info{VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO};
+    vulkan_info.enabledExtensionCount = 1;
+    vulkan_info.ppEnabledExtensionNames = &nothing;
+    XrVulkanInstanceCreateInfoKHR info{
+        XR_TYPE_VULKAN_INSTANCE_CREATE_INFO_KHR, nullptr, system, 0, vkGetInstanceProcAddr, &vulkan_info, nullptr};
+    VkInstance vulkan = VK_NULL_HANDLE;
+    VkResult result = VK_SUCCESS;
+    const auto make = [&] { return create(instance, &info, &vulkan, &result); };
+    CHECK(make() == XR_SUCCESS);
+    CHECK(result == VK_ERROR_EXTENSION_NOT_PRESENT);
+    CHECK(with(info.createFlags, 1, make) == XR_ERROR_VALIDATION_FAILURE);
+    CHECK(with(info.systemId, 9, make) == XR_ERROR_SYSTEM_INVALID);
+    checkChanges(make, XR_ERROR_VALIDATION_FAILURE, to(info.pfnGetInstanceProcAddr, nullptr), to(info.vulkanCreateInfo, nullptr));
+    checkArguments(create, instance, &info, &vulkan, &result);
+}
+
+TEST_CASE_FIXTURE(VulkanFixture, "the graphics device is one of Vulkan's instance, the same each time, and devices are made on it alone") {
+    const auto get = XR(xrGetVulkanGraphicsDevice2KHR);
+    XrVulkanGraphicsDeviceGetInfoKHR get_info{XR_TYPE_VULKAN_GRAPHICS_DEVICE_GET_INFO_KHR, nullptr, system, vulkan};
+    VkPhysicalDevice found = VK_NULL_HANDLE;
+    const auto find = [&] { return get(instance, &get_info, &found); };
+    CHECK(find() == XR_SUCCESS);
+    CHECK(found == physical_device);
+    CHECK(with(get_info.systemId, 0, find) == XR_ERROR_SYSTEM_INVALID);
+    CHECK(with(get_info.vulkanInstance, VK_NULL_HANDLE, find) == XR_ERROR_VALIDATION_FAILURE);
+    checkArguments(get, instance, &get_info, &found);
+    for (const char* index : {"99", "first", "0x"}) {
+        setenv("SIMULATED_OPENXR_GPU", index, 1);
+        CHECK_MESSAGE(find() == XR_ERROR_RUNTIME_FAILURE, index);
+    }
+    unsetenv("SIMULATED_OPENXR_GPU");
+    CHECK(find() == XR_SUCCESS);
+
+    const VkDeviceCreateInfo vulkan_info{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO};
+    XrVulkanDeviceCreateInfoKHR info{
+        XR_TYPE_VULKAN_DEVICE_CREATE_INFO_KHR, nullptr, system, 0, vkGetInstanceProcAddr, physical_device, &vulkan_info, nullptr};
+    VkDevice made = VK_NULL_HANDLE;
+    VkResult result = VK_SUCCESS;
+    checkArguments(XR(xrCreateVulkanDeviceKHR), instance, &info, &made, &result);
+    const auto make = [&] { return XR(xrCreateVulkanDeviceKHR)(instance, &info, &made, &result); };
+    CHECK(with(info.vulkanPhysicalDevice, VK_NULL_HANDLE, make) == XR_ERROR_HANDLE_INVALID);
+    CHECK(with(info.systemId, 4, make) == XR_ERROR_SYSTEM_INVALID);
+}
+
+TEST_CASE("the older extension has functions of its own, and needs no extensions of Vulkan") {
+    const DirectInstance made(k1_0, {XR_KHR_VULKAN_ENABLE_EXTENSION_NAME});
+    CHECK_FALSE(made.has("xrCreateVulkanInstanceKHR"));
+    CHECK(made.has("xrGetVulkanGraphicsDeviceKHR"));
+    for (const auto getExtensions : {made.XR(xrGetVulkanInstanceExtensionsKHR), made.XR(xrGetVulkanDeviceExtensionsKHR)}) {
+        std::uint32_t count = 0;
+        char text[4] = "no";
+        CHECK(getExtensions(made.instance, 1, 0, &count, nullptr) == XR_SUCCESS);
+        CHECK(count == 1);
+        CHECK(getExtensions(made.instance, 1, 4, &count, text) == XR_SUCCESS);
+        CHECK(std::string(text).empty());
+        CHECK(getExtensions(made.instance, 2, 4, &count, text) == XR_ERROR_SYSTEM_INVALID);
+    }
+    const auto getRequirements = made.XR(xrGetVulkanGraphicsRequirementsKHR);
+    XrGraphicsRequirementsVulkanKHR requirements{XR_TYPE_GRAPHICS_REQUIREMENTS_VULKAN_KHR};
+    CHECK(getRequirements(made.instance, 1, &requirements) == XR_SUCCESS);
+    CHECK(requirements.minApiVersionSupported <= XR_MAKE_VERSION(1, 1, 0));
+    CHECK(requirements.maxApiVersionSupported >= XR_MAKE_VERSION(1, 2, 0));
+    CHECK(getRequirements(made.instance, 2, &requirements) == XR_ERROR_SYSTEM_INVALID);
+    checkArguments([&](XrInstance of, auto* place) { return getRequirements(of, 1, place); }, made.instance, &requirements);
 }
 
 TEST_CASE_FIXTURE(SessionFixture, "formats are enumerated, sRGB first, and a swapchain is refused for what it cannot be") {
@@ -106,8 +191,7 @@ TEST_CASE_FIXTURE(SessionFixture,
                 for (int round = 0; round < (shape == 3 ? 1 : 2); ++round) {
                     for (std::size_t held = 0; held < images; ++held) { acquire(swapchain); }
                     for (std::size_t held = 0; held < images; ++held) {
-                        CHECK(xrWaitSwapchainImage(swapchain, &kWait) == XR_SUCCESS);
-                        CHECK(xrReleaseSwapchainImage(swapchain, nullptr) == XR_SUCCESS);
+                        checkEach(XR_SUCCESS, {xrWaitSwapchainImage(swapchain, &kWait), xrReleaseSwapchainImage(swapchain, nullptr)});
                     }
                 }
                 CHECK(xrDestroySwapchain(swapchain) == XR_SUCCESS);
@@ -147,8 +231,7 @@ TEST_CASE_FIXTURE(SessionFixture, "images are acquired, waited for and released 
     CHECK(xrEnumerateSwapchainImages(XR_NULL_HANDLE, 0, &count, nullptr) == XR_ERROR_HANDLE_INVALID);
 
     std::uint32_t index = 99;
-    CHECK(xrWaitSwapchainImage(swapchain, &kWait) == XR_ERROR_CALL_ORDER_INVALID);
-    CHECK(xrReleaseSwapchainImage(swapchain, nullptr) == XR_ERROR_CALL_ORDER_INVALID);
+    checkEach(XR_ERROR_CALL_ORDER_INVALID, {xrWaitSwapchainImage(swapchain, &kWait), xrReleaseSwapchainImage(swapchain, nullptr)});
     CHECK(xrAcquireSwapchainImage(swapchain, nullptr, nullptr) == XR_ERROR_VALIDATION_FAILURE);
     CHECK(xrAcquireSwapchainImage(swapchain, nullptr, &index) == XR_SUCCESS);
     CHECK(index < 3);
@@ -165,8 +248,7 @@ TEST_CASE_FIXTURE(SessionFixture, "images are acquired, waited for and released 
     const std::uint32_t first = acquire(swapchain);
     CHECK(std::set{first, acquire(swapchain), acquire(swapchain)}.size() == 3);
     CHECK(xrAcquireSwapchainImage(swapchain, nullptr, &index) == XR_ERROR_CALL_ORDER_INVALID);
-    CHECK(xrWaitSwapchainImage(swapchain, &at_once) == XR_SUCCESS);
-    CHECK(xrReleaseSwapchainImage(swapchain, nullptr) == XR_SUCCESS);
+    checkEach(XR_SUCCESS, {xrWaitSwapchainImage(swapchain, &at_once), xrReleaseSwapchainImage(swapchain, nullptr)});
     CHECK(acquire(swapchain) == first);
 
     // A static one has one image, for one time.
@@ -189,8 +271,7 @@ TEST_CASE("a slow image times out, and is there later; not while a session is be
         CHECK(xrWaitSwapchainImage(swapchain, &wait) == XR_TIMEOUT_EXPIRED);
         CHECK(xrReleaseSwapchainImage(swapchain, nullptr) == XR_ERROR_CALL_ORDER_INVALID);
         CHECK(xrWaitSwapchainImage(swapchain, &wait) == XR_TIMEOUT_EXPIRED);
-        CHECK(xrWaitSwapchainImage(swapchain, &wait) == XR_SUCCESS);
-        CHECK(xrReleaseSwapchainImage(swapchain, nullptr) == XR_SUCCESS);
+        checkEach(XR_SUCCESS, {xrWaitSwapchainImage(swapchain, &wait), xrReleaseSwapchainImage(swapchain, nullptr)});
     }
     const SessionFixture losing("size 64 64\nframes none\nat 0 slow-images 2\nat 0 lose-session\n");
     const XrSwapchain swapchain = losing.makeSwapchain();

@@ -205,8 +205,8 @@ TEST_CASE("alpha is multiplied first where it was not, and the rest shines throu
     }
 }
 
-TEST_CASE("rectangles outside the picture are refused") {
-    const Canvas canvas({4, 4}, {1, 2, 3, 4});
+TEST_CASE("rectangles outside the picture are refused, and empty ones show nothing") {
+    const Canvas canvas({4, 4}, {255, 255, 255, 255});
     QuadLayer layer = quad(canvas, {0, 0, -1}, {1, 1});
     for (const Rect& rect : {Rect{{0, 0}, {5, 4}}, Rect{{4, 0}, {1, 1}}, Rect{{0xffffffffu, 0}, {1, 1}}}) {
         layer.rect = rect;
@@ -215,10 +215,7 @@ TEST_CASE("rectangles outside the picture are refused") {
     layer.rect = canvas.whole();
     layer.picture.bytes = layer.picture.bytes.subspan(1);
     CHECK_THROWS_AS((void)compose(eyeOf({2, 2}), {layer}), std::invalid_argument);
-}
 
-TEST_CASE("empty rectangles show nothing") {
-    const Canvas canvas({4, 4}, {255, 255, 255, 255});
     const EyeView eye = eyeOf({2, 2});
     for (const Rect& rect : {Rect{{0, 0}, {0, 4}}, Rect{{0, 0}, {4, 0}}, Rect{{4, 4}, {0, 0}}}) {
         QuadLayer flat = quad(canvas, {0, 0, -1}, {9, 9});
@@ -252,8 +249,7 @@ TEST_CASE("eyes side by side keep their pixels, come back from files, and those 
 }
 
 #ifndef _WIN32  // where links take a privilege
-TEST_CASE("a picture is not written through a link or over an unfinished one") {
-    const Folder folder;
+TEST_CASE_FIXTURE(InFolder, "a picture is not written through a link or over an unfinished one") {
     folder.write("victim", "keep me");
     for (const char* name : {".a.unfinished.png", "b.png"}) { std::filesystem::create_symlink("victim", folder.path / name); }
     folder.write(nameUnfinishedPicture(folder.path / "c.png").filename().string(), "keep me");
@@ -325,33 +321,28 @@ TEST_CASE("a sphere's picture lies between its angles") {
     CHECK(looking(0.0, 0.0) == kBlack);
 }
 
-TEST_CASE("a cube map's faces are in Vulkan's order") {
-    const std::array<Canvas, 6> faces{Canvas({2, 2}, {255, 0, 0, 255}),   Canvas({2, 2}, {0, 255, 0, 255}),
-                                      Canvas({2, 2}, {0, 0, 255, 255}),   Canvas({2, 2}, {255, 255, 0, 255}),
-                                      Canvas({2, 2}, {255, 0, 255, 255}), Canvas({2, 2}, {0, 255, 255, 255})};
+TEST_CASE("a cube map's faces are in Vulkan's order, and the top left texel of each is where Vulkan has it") {
+    const std::array<Rgb, 6> colours{{{255, 0, 0}, {0, 255, 0}, {0, 0, 255}, {255, 255, 0}, {255, 0, 255}, {0, 255, 255}}};
+    // Where each is seen: to the left, and up, in eighths of a turn.
+    const std::array<glm::dvec2, 6> ways{{{-2, 0}, {2, 0}, {0, 2}, {0, -2}, {4, 0}, {0, 0}}};
+    std::vector<Canvas> canvases;
+    for (const auto& [r, g, b] : colours) { canvases.emplace_back(glm::uvec2(2, 2), std::array{r, g, b, 255}); }
     CubeLayer layer;
-    for (std::size_t face = 0; face < 6; ++face) { layer.faces[face] = faces[face].picture(); }
+    for (std::size_t face = 0; face < 6; ++face) { layer.faces[face] = canvases[face].picture(); }
     // Infinitely far, so that the place does not matter.
     const auto looking = [&](double yaw_rad, double pitch_rad) { return lookAt(layer, yaw_rad, pitch_rad, {5, 6, 7}); };
-    CHECK(looking(-2.0 * kEighth, 0) == Rgb{255, 0, 0});
-    CHECK(looking(2.0 * kEighth, 0) == Rgb{0, 255, 0});
-    CHECK(looking(0, 2.0 * kEighth) == Rgb{0, 0, 255});
-    CHECK(looking(0, -2.0 * kEighth) == Rgb{255, 255, 0});
-    CHECK(looking(4.0 * kEighth, 0) == Rgb{255, 0, 255});
-    CHECK(looking(0, 0) == Rgb{0, 255, 255});
+    for (std::size_t face = 0; face < 6; ++face) { CHECK(looking(ways[face].x * kEighth, ways[face].y * kEighth) == colours[face]); }
     layer.stage_from_cube = glm::angleAxis(2.0 * kEighth, glm::dvec3(0, 1, 0));  // its -z is the stage's -x
     CHECK(looking(2.0 * kEighth, 0) == Rgb{0, 255, 255});
     layer.visibility = Visibility::kRight;
     CHECK(looking(0, 0) == kBlack);
-}
 
-TEST_CASE("the top left texel of a cube's face is where Vulkan has it") {
     // On -z, s grows towards -x and t towards -y.
     Canvas marked({8, 8}, {0, 0, 0, 255});
     marked.fill({{0, 0}, {4, 4}}, {255, 0, 0, 255});
-    CubeLayer layer;
-    layer.faces.fill(marked.picture());
-    const RgbPicture seen = compose(eyeOf({8, 8}), {layer});
+    CubeLayer turned;
+    turned.faces.fill(marked.picture());
+    const RgbPicture seen = compose(eyeOf({8, 8}), {turned});
     CHECK(at(seen, 6, 1) == Rgb{255, 0, 0});
     CHECK(at(seen, 1, 1) == kBlack);
     CHECK(at(seen, 6, 6) == kBlack);

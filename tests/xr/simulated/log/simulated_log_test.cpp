@@ -39,14 +39,11 @@ TEST_CASE("what happens between frames has a line without a number") {
     CHECK(states == Json{{"session_state", "EXITING"}, {"display_time_ns", 7}, {"events", {"state IDLE", "state EXITING"}}});
     const Json refused = Json::parse(makeBetweenLine({"XR_ERROR_TIME_INVALID", "the time is 0", 9, true, "FOCUSED", {}}));
     CHECK_FALSE(refused.contains("frame"));
-    CHECK(refused["refused"] == "XR_ERROR_TIME_INVALID");
-    CHECK(refused["reason"] == "the time is 0");
-    CHECK(refused["should_render"] == true);
+    CHECK(refused == expecting(refused, {{"refused", "XR_ERROR_TIME_INVALID"}, {"reason", "the time is 0"}, {"should_render", true}}));
     CHECK(refused["events"].empty());
 }
 
-TEST_CASE("lines are there before the log is closed") {
-    const Folder folder;
+TEST_CASE_FIXTURE(InFolder, "lines are there before the log is closed") {
     const std::filesystem::path path = folder.path / "log";
     {
         FrameLog log(path);

@@ -42,10 +42,6 @@ struct ScriptFolder : Folder {
     void refusesHeadset(const std::string& text, const std::string& part) const { refusesFile("headset", "h.toml", text, part); }
 };
 
-const std::string kHeadset =
-    "name = \"n\"\nsource = \"s\"\nsize = \"100x100\"\ncanting_deg = 0\neye_distance_m = 0.06\n"
-    "[left]\nleft = -40\nright = 40\nup = 40\ndown = -40\n[right]\nleft = -40\nright = 40\nup = 40\ndown = -40\n";
-
 std::string replaced(std::string text, const std::string& what, const std::string& with) {
     return text.replace(text.find(what), what.size(), with);
 }
@@ -197,39 +193,35 @@ TEST_CASE("inputs that the controllers lack are named with their line") {
          {"press left a 0 1\npress left menu 0 1\n", "accepted"}});
 }
 
-TEST_CASE("files that cannot be read are said with the line that names them") {
-    const ScriptFolder folder;
-    folder.refuses("\nheadset none.toml", "a.script:2: ");
-    folder.refuses("\nheadset none.toml", "none.toml: cannot be read (No such file or directory), must be a TOML file of a headset");
-    folder.refuses("head-motion none.csv", "none.csv: cannot be read (No such file or directory), must be a CSV file of head motion");
-    folder.refuses("headset .", "cannot be read (not a regular file)");
+TEST_CASE_FIXTURE(ScriptFolder, "files that cannot be read are said with the line that names them") {
+    refuses("\nheadset none.toml", "a.script:2: ");
+    refuses("\nheadset none.toml", "none.toml: cannot be read (No such file or directory), must be a TOML file of a headset");
+    refuses("head-motion none.csv", "none.csv: cannot be read (No such file or directory), must be a CSV file of head motion");
+    refuses("headset .", "cannot be read (not a regular file)");
 #ifndef _WIN32
-    folder.refuses("head-motion /dev/zero", "/dev/zero: cannot be read (not a regular file)");
+    refuses("head-motion /dev/zero", "/dev/zero: cannot be read (not a regular file)");
 #endif
     const std::size_t mebibyte = std::size_t{1} << 20;
-    folder.refusesFile("head-motion", "long.csv", std::string(16 * mebibyte + 1, '#'), "cannot be read (longer than 16 MiB)");
-    folder.refusesHeadset(std::string(4 * mebibyte + 1, '#'), "cannot be read (longer than 4 MiB)");
-    folder.refusesHeadset("version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n",
-                          "h.toml: cannot be read (a Git LFS pointer, ");
-    CHECK_THROWS_AS((void)Script::load(folder.path / "h.toml"), ScriptError);
-    const std::filesystem::path none = folder.path / "none.script";
+    refusesFile("head-motion", "long.csv", std::string(16 * mebibyte + 1, '#'), "cannot be read (longer than 16 MiB)");
+    refusesHeadset(std::string(4 * mebibyte + 1, '#'), "cannot be read (longer than 4 MiB)");
+    refusesHeadset("version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n", "h.toml: cannot be read (a Git LFS pointer, ");
+    CHECK_THROWS_AS((void)Script::load(path / "h.toml"), ScriptError);
+    const std::filesystem::path none = path / "none.script";
     CHECK_THROWS_WITH_AS((void)Script::load(none),
                          (none.string() + ": cannot be read (No such file or directory), must be a script").c_str(), ScriptError);
     CHECK_THROWS_AS((void)Script::load("/dev/zero"), ScriptError);
 }
 
-TEST_CASE("headset files with mistakes are refused with their own line, and stand before what changes them") {
-    const ScriptFolder folder;
-    folder.refusesHeadset("name = \"n", "h.toml:1: ");
-    folder.refusesHeadset(replaced(kHeadset, "size = \"100x100\"\n", ""), "size is missing, must be given");
-    folder.refusesHeadset(replaced(kHeadset, "100x100", "100*100"), "h.toml:3: size is 100*100, must be WxH with 1 to 16384 per side");
-    folder.refusesHeadset(replaced(kHeadset, "100x100", "100x0"), "h.toml:3: size is 100x0");
-    folder.refusesHeadset(replaced(kHeadset, "0.06", "nan"), "h.toml:5: eye_distance_m is nan, must be a number from 0 to 1");
-    folder.refusesHeadset(replaced(kHeadset, "left = -40", "left = 50"), "h.toml:6: left.left must be less than left.right");
-    folder.refusesHeadset(replaced(kHeadset, "up = 40", "up = \"high\""), "h.toml:9: left.up is high, must be a number from -85 to 85");
-    folder.refusesHeadset(replaced(kHeadset, "[right]", "[middle]"), "middle is not a key of a headset");
-    folder.refusesHeadset(replaced(kHeadset, "canting_deg", "kanting"),
-                          "h.toml:4: kanting is not a key of a headset, must be name, source");
+TEST_CASE_FIXTURE(ScriptFolder, "headset files with mistakes are refused with their own line, and stand before what changes them") {
+    refusesHeadset("name = \"n", "h.toml:1: ");
+    refusesHeadset(replaced(kHeadsetToml, "size = \"100x100\"\n", ""), "size is missing, must be given");
+    refusesHeadset(replaced(kHeadsetToml, "100x100", "100*100"), "h.toml:3: size is 100*100, must be WxH with 1 to 16384 per side");
+    refusesHeadset(replaced(kHeadsetToml, "100x100", "100x0"), "h.toml:3: size is 100x0");
+    refusesHeadset(replaced(kHeadsetToml, "0.06", "nan"), "h.toml:5: eye_distance_m is nan, must be a number from 0 to 1");
+    refusesHeadset(replaced(kHeadsetToml, "left = -40", "left = 50"), "h.toml:6: left.left must be less than left.right");
+    refusesHeadset(replaced(kHeadsetToml, "up = 40", "up = \"high\""), "h.toml:9: left.up is high, must be a number from -85 to 85");
+    refusesHeadset(replaced(kHeadsetToml, "[right]", "[middle]"), "middle is not a key of a headset");
+    refusesHeadset(replaced(kHeadsetToml, "canting_deg", "kanting"), "h.toml:4: kanting is not a key of a headset, must be name, source");
     for (const auto& [more, part] :
          {std::pair<std::string, const char*>("\xc3\xa9 = 1\n", ":16: a letter that is neither ASCII nor in quotes nor in a comment"),
           {"a = 2\"\xc3\xa9\"\n", ":16: quotes within a word, must be around it"},
@@ -239,16 +231,15 @@ TEST_CASE("headset files with mistakes are refused with their own line, and stan
           {"[inset]\nsize = \"60x50\"\n", "inset.half_angle_deg is missing, must be given"},
           {"[inset]\nhalf_angle_deg = 9\nsize = \"60\"\n", ":18: inset.size is 60, must be WxH"},
           {"[inset]\nhalf_angle = 9\n", "inset.half_angle is not a key of a headset"}}) {
-        folder.refusesHeadset(kHeadset + more, part);
+        refusesHeadset(kHeadsetToml + more, part);
     }
-    folder.refusesHeadset(kHeadset, "accepted");
-    folder.refuses("ipd 0.06\nheadset h.toml", "a.script:2: headset sets ipd, too, must stand before it");
-    folder.refuses("inset 20\nheadset h.toml", "a.script:2: headset sets inset, too, must stand before it");
-    folder.refuses("headset h.toml\nipd 0.06", "accepted");
+    refusesHeadset(kHeadsetToml, "accepted");
+    refuses("ipd 0.06\nheadset h.toml", "a.script:2: headset sets ipd, too, must stand before it");
+    refuses("inset 20\nheadset h.toml", "a.script:2: headset sets inset, too, must stand before it");
+    refuses("headset h.toml\nipd 0.06", "accepted");
 }
 
-TEST_CASE("recordings with mistakes are refused with their own line") {
-    const ScriptFolder folder;
+TEST_CASE_FIXTURE(ScriptFolder, "recordings with mistakes are refused with their own line") {
     for (const auto& [text, part] : {std::pair("", "m.csv: holds no poses"),
                                      {"time,x,y,z,qx,qy,qz,qw\n", "m.csv: holds no poses"},
                                      {"0,0,0,0,0,0,1\n", "m.csv:1: 7 columns, must be 8"},
@@ -257,13 +248,13 @@ TEST_CASE("recordings with mistakes are refused with their own line") {
                                      {"0,nan,0,0,0,0,0,1\n", "m.csv:1: x is nan, must be a finite number"},
                                      {"0,0,0,0,0,0,,1\n", "m.csv:1: qz is empty"},
                                      {"5e12,0,0,0,0,0,0,1\n", "m.csv:1: time is 5e12, must be seconds"}}) {
-        folder.refusesFile("head-motion", "m.csv", text, part);
+        refusesFile("head-motion", "m.csv", text, part);
     }
-    folder.write("m.csv", "0,0,0,0,0,0,0,1\n1,0,0,0,0,0,0,1\n");
-    folder.refuses("head-motion m.csv skip 2", "a.script:1: the seconds to skip are 2, must be at most 1, the recording's length");
-    folder.refuses("head-motion m.csv axes opengl", "the axes is opengl, must be openxr or unity");
-    folder.refuses("head-motion m.csv\nhead 0 turn 0 0\nhead 1 turn 0 0", "a.script:3: the head has a recorded motion");
-    folder.refuses("head 0 turn 0 0\nhead 1 turn 0 0\nhead-motion m.csv", "a.script:3: the head has keys on more than one line");
+    write("m.csv", "0,0,0,0,0,0,0,1\n1,0,0,0,0,0,0,1\n");
+    refuses("head-motion m.csv skip 2", "a.script:1: the seconds to skip are 2, must be at most 1, the recording's length");
+    refuses("head-motion m.csv axes opengl", "the axes is opengl, must be openxr or unity");
+    refuses("head-motion m.csv\nhead 0 turn 0 0\nhead 1 turn 0 0", "a.script:3: the head has a recorded motion");
+    refuses("head 0 turn 0 0\nhead 1 turn 0 0\nhead-motion m.csv", "a.script:3: the head has keys on more than one line");
 }
 
 TEST_CASE("a script cut off anywhere, or with any byte changed, is a script or an error") {
@@ -287,20 +278,19 @@ TEST_CASE("a script cut off anywhere, or with any byte changed, is a script or a
     CHECK(countRefused(changed) > 1000);
 }
 
-TEST_CASE("headsets and recordings cut off anywhere are read or refused") {
-    const ScriptFolder folder;
+TEST_CASE_FIXTURE(ScriptFolder, "headsets and recordings cut off anywhere are read or refused") {
     const std::string motion = "time_ms,x,y,z,qw,qx,qy,qz\n0,1,2,3,1,0,0,0\n16.5,1e-1,-2,3,0.70710678,0,0.70710678,0\n";
-    for (const auto& [line, whole] : {std::pair("headset cut", kHeadset), std::pair("head-motion cut", motion)}) {
+    for (const auto& [line, whole] : {std::pair("headset cut", kHeadsetToml), std::pair("head-motion cut", motion)}) {
         std::size_t refused = 0;
         for (std::size_t length = 0; length <= whole.size(); ++length) {
-            folder.write("cut", whole.substr(0, length));
-            const std::string message = folder.messageOf(line);
+            write("cut", whole.substr(0, length));
+            const std::string message = messageOf(line);
             if (message == "accepted") { continue; }
             ++refused;
-            if (message.find((folder.path / "cut").string()) == std::string::npos) { FAIL_CHECK(message); }
+            if (message.find((path / "cut").string()) == std::string::npos) { FAIL_CHECK(message); }
         }
         CHECK(refused > 40);
-        CHECK(folder.messageOf(line) == "accepted");
+        CHECK(messageOf(line) == "accepted");
     }
 }
 

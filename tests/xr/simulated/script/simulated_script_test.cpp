@@ -84,8 +84,7 @@ TEST_CASE("the head goes on straight lines and the shorter great arcs from key t
                                 {"head 0 position 0 1 0 look 3 5 -2", 0.0, {0, 1, 0}, glm::normalize(glm::dvec3(3, 4, -2))},
                                 {"head 0 position 0 1 0 look 0 9 0", 0.0, {0, 1, 0}, {0, 1, 0}},
                                 {"head 0 position 5 1 0\nhead 1 look 6 1 0", 1.0, {5, 1, 0}, {1, 0, 0}}}) {
-        CAPTURE(one.script);
-        CAPTURE(one.time_s);
+        INFO("one.script ", one.script, ", one.time_s ", one.time_s);
         const Pose head = parse(one.script).at(one.time_s).stage_from_head;
         CHECK(isNear(head.position, one.position));
         CHECK(isNear(forwardOf(head), one.forward));
@@ -119,12 +118,12 @@ TEST_CASE("LOCAL stands where the head is at time zero without its tilt, or wher
 TEST_CASE("controllers move and aim from their grip") {
     const Script script =
         parse("controller right 0 position 0 1 0 turn 90 0\ncontroller right 2 position 0 3 0\naim right position 0 0 -0.1 turn 0 90\n");
-    const ControllerState right = script.at(1.0).controllers[kRight];
+    const auto [left, right] = script.at(1.0).controllers;
     CHECK(isNear(right.stage_from_grip.position, {0.0, 2.0, 0.0}));
     // Ahead of a hand that is turned to the left is -x.
     CHECK(isNear(right.stage_from_aim.position, {-0.1, 2.0, 0.0}));
     CHECK(isNear(forwardOf(right.stage_from_aim), {0.0, 1.0, 0.0}));
-    CHECK(isNear(script.at(1.0).controllers[kLeft].stage_from_grip.position, {-0.2, 1.2, -0.35}));
+    CHECK(isNear(left.stage_from_grip.position, {-0.2, 1.2, -0.35}));
 }
 
 TEST_CASE("presses last from their beginning until before their end, touches do not press, gestures are ready, and axes are linear") {
@@ -202,12 +201,11 @@ TEST_CASE("frames are chosen by number, extensions and the mask are switched, an
         }
         return frames;
     };
-    CHECK(chosen("") == "0123456789");
-    CHECK(chosen("frames all") == "0123456789");
-    CHECK(chosen("frames none").empty());
-    CHECK(chosen("frames every 4") == "048");
-    CHECK(chosen("frames from 3 to 5") == "345");
-    CHECK(chosen("frames from 1 to 8 every 3") == "147");
+    for (const auto& [text, frames] :
+         {std::pair("", "0123456789"), std::pair("frames all", "0123456789"), std::pair("frames none", ""),
+          std::pair("frames every 4", "048"), std::pair("frames from 3 to 5", "345"), std::pair("frames from 1 to 8 every 3", "147")}) {
+        CHECK(chosen(text) == frames);
+    }
     const Script script = parse("extension XR_KHR_visibility_mask off\nvisibility-mask on");
     CHECK_FALSE(script.allowsExtension("XR_KHR_visibility_mask"));
     CHECK(script.allowsExtension("XR_KHR_vulkan_enable2"));
@@ -236,11 +234,7 @@ TEST_CASE("headset files give size, distance, canting, angles and insets, and ev
 
     const ScriptFolder folder;
     const auto readWith = [&](const std::string& inset) {
-        folder.write(
-            "h.toml",
-            "name = \"n\"\nsource = \"s\"\nsize = \"100x100\"\ncanting_deg = 0\neye_distance_m = 0.06\n[left]\nleft = -40\nright = 40\n"
-            "up = 40\ndown = -40\n[right]\nleft = -40\nright = 40\nup = 40\ndown = -40\n" +
-                inset);
+        folder.write("h.toml", kHeadsetToml + inset);
         return folder.script("headset h.toml");
     };
     const Script full = readWith("[inset]\nhalf_angle_deg = 15\nsize = \"60x50\"\ncontext_size = \"40x30\"\n");
@@ -260,20 +254,19 @@ TEST_CASE("insets lie where a headset's lenses have their middles, while there i
     CHECK(0.5 * (right.left_rad + right.right_rad) == doctest::Approx(-0.1));
 }
 
-TEST_CASE("recorded motion starts where the head line says and keeps its tilt") {
-    const ScriptFolder folder;
+TEST_CASE_FIXTURE(ScriptFolder, "recorded motion starts where the head line says and keeps its tilt") {
     // A recording that faces a quarter turn to the left and moves 1 m ahead of there: that is ahead of the wearer, too. Its second
     // pose also looks up by 60 degrees.
-    folder.write("m.csv",
-                 "time_s,x,y,z,qx,qy,qz,qw\n10,5,1,5,0,0.70710678118654752,0,0.70710678118654752\n"
-                 "11,4,1.5,5,0.35355339059327373,0.61237243569579447,-0.35355339059327373,0.61237243569579447\n");
+    write("m.csv",
+          "time_s,x,y,z,qx,qy,qz,qw\n10,5,1,5,0,0.70710678118654752,0,0.70710678118654752\n"
+          "11,4,1.5,5,0.35355339059327373,0.61237243569579447,-0.35355339059327373,0.61237243569579447\n");
     // Looks up by 60 degrees at first and moves a metre up: up in STAGE, too, and not along the tilted head's axes.
-    folder.write("tilted.csv", "0,0,0,0,0.5,0,0,0.86602540378443865\n1,0,1,0,0,0,0,1\n");
+    write("tilted.csv", "0,0,0,0,0.5,0,0,0.86602540378443865\n1,0,1,0,0,0,0,1\n");
     // Of Unity: left-handed with z ahead, so a positive turn about y looks right, and +z is ahead.
-    folder.write("unity.csv", "0,0,0,0,0,0,0,1\n1,1,0,2,0,0.70710678118654752,0,0.70710678118654752\n");
-    folder.write("long.csv", "0,0,0,0,0,0,0,1\n2,2,0,0,0,0,0,1\n4,2,0,8,0,0,0,1\n");
-    folder.write("cut.csv", "0,0,0,0,0,0,0,1\n1,2,0,0,0,0,0,1\n2,9,0");
-    const std::vector<std::string> notes = folder.script("head-motion cut.csv").notes;
+    write("unity.csv", "0,0,0,0,0,0,0,1\n1,1,0,2,0,0.70710678118654752,0,0.70710678118654752\n");
+    write("long.csv", "0,0,0,0,0,0,0,1\n2,2,0,0,0,0,0,1\n4,2,0,8,0,0,0,1\n");
+    write("cut.csv", "0,0,0,0,0,0,0,1\n1,2,0,0,0,0,0,1\n2,9,0");
+    const std::vector<std::string> notes = script("head-motion cut.csv").notes;
     REQUIRE(notes.size() == 1);
     CHECK(notes[0].ends_with(
         "cut.csv:3: 3 columns, must be 8: time, position x, y, z, orientation x, y, z, w; the last row, cut off, is left out"));
@@ -292,13 +285,12 @@ TEST_CASE("recorded motion starts where the head line says and keeps its tilt") 
                                 {kSkipped, 0.0, {0, 0, 0}, ahead},
                                 {kSkipped, 1.0, {1, 0, 0}, ahead},
                                 {kSkipped, 2.0, {1, 0, 4}, ahead}}) {
-        CAPTURE(one.script);
-        CAPTURE(one.time_s);
-        const Pose head = folder.script(one.script).at(one.time_s).stage_from_head;
+        INFO("one.script ", one.script, ", one.time_s ", one.time_s);
+        const Pose head = script(one.script).at(one.time_s).stage_from_head;
         CHECK(isNear(head.position, one.position, 1e-9));
         CHECK(isNear(forwardOf(head), one.forward, 1e-9));
     }
-    CHECK(isNear(folder.script(kStanding).at(2.5).stage_from_head.position, {0.0, 1.85, -0.5}, 1e-9));
+    CHECK(isNear(script(kStanding).at(2.5).stage_from_head.position, {0.0, 1.85, -0.5}, 1e-9));
 }
 
 TEST_CASE("recordings in ticks are read" * binosplat::test::needsSharedData()) {
