@@ -62,6 +62,10 @@ inline nlohmann::json expecting(nlohmann::json json, const nlohmann::json& keys)
     return json;
 }
 
+// From 0 to 1. The numbers of std::mt19937 are the same everywhere; those of the standard's distributions are not.
+inline double drawUnit(std::mt19937& random) { return static_cast<double>(random() >> 8) / 16777216.0; }
+inline double drawBetween(std::mt19937& random, double low, double high) { return low + (high - low) * drawUnit(random); }
+
 // The message of the Error that `action` throws; empty if it throws none.
 inline std::string errorOf(const std::function<void()>& action) {
     try {

@@ -61,8 +61,7 @@ TEST_CASE_FIXTURE(Gpu, "without a distance between the eyes, the other eye's pic
     for (const gpu::uint depth_choice : {gpu::kDepthSum, gpu::kDepthMean, gpu::kDepthInverse}) {
         CAPTURE(depth_choice);
         for (FrameSettings settings : makeReprojecting(depth_choice == gpu::kDepthMean ? kRight : kLeft)) {
-            CAPTURE(static_cast<int>(settings.mode));
-            CAPTURE(settings.stereo.forward);
+            INFO("settings.mode ", static_cast<int>(settings.mode), ", settings.stereo.forward ", settings.stereo.forward);
             settings.background = {0.1, 0.7, 0.3};
             settings.stereo.depth_choice = depth_choice;
             const AffiliatedFrame made = makeAffiliated(frame, stereoPair(view.eye, 0.0), settings);
@@ -82,8 +81,7 @@ TEST_CASE_FIXTURE(Gpu, "every mode gives the same bytes from run to run, whateve
     std::vector<FrameSettings> all = makeReprojecting();
     for (const Mode mode : {Mode::kTwoPass, Mode::kShared}) { all.push_back(makeSettings(mode)); }
     for (const FrameSettings& settings : all) {
-        CAPTURE(static_cast<int>(settings.mode));
-        CAPTURE(settings.stereo.forward);
+        INFO("settings.mode ", static_cast<int>(settings.mode), ", settings.stereo.forward ", settings.stereo.forward);
         std::vector<AffiliatedFrame> made;
         std::vector<Image> depths;
         for (const FrameCapacity& first : {FrameOptions{}.first_capacity, FrameCapacity{1, 1}}) {
@@ -117,10 +115,8 @@ TEST_CASE_FIXTURE(Gpu, "every pixel of the other eye is written, with parallel, 
             const Image full = makeAffiliated(frame, eyes, full_settings).pictures[1 - dominant];
             REQUIRE(countFlaws(full) == 0);
             for (FrameSettings settings : makeReprojecting(dominant)) {
-                CAPTURE(canting_rad);
-                CAPTURE(static_cast<int>(dominant));
-                CAPTURE(static_cast<int>(settings.mode));
-                CAPTURE(settings.stereo.forward);
+                INFO("canting_rad ", canting_rad, ", dominant ", static_cast<int>(dominant), ", settings.mode ",
+                     static_cast<int>(settings.mode), ", settings.stereo.forward ", settings.stereo.forward);
                 settings.background = full_settings.background;
                 const AffiliatedFrame made = makeAffiliated(frame, eyes, settings);
                 CHECK(countFlaws(made.pictures[1 - dominant]) == 0);
@@ -144,8 +140,7 @@ TEST_CASE_FIXTURE(Gpu, "tiles that are rendered again are those of the full rend
         double before_db = compare(makeAffiliated(frame, eyes, makeSettings(Mode::kReproject)).pictures[kRight], full).psnrDb() - 0.4;
         for (const auto& [mode, budget] : {std::pair(Mode::kPaper, 0.0), std::pair(Mode::kPredicted, 0.0), std::pair(Mode::kPredicted, 0.2),
                                            std::pair(Mode::kPredicted, 0.5), std::pair(Mode::kPredicted, 1.0)}) {
-            CAPTURE(static_cast<int>(mode));
-            CAPTURE(budget);
+            INFO("mode ", static_cast<int>(mode), ", budget ", budget);
             FrameSettings settings = makeSettings(mode);
             settings.stereo.budget = budget;
             settings.keep_both_depths = true;

@@ -32,6 +32,11 @@ Eye ofSize(Eye eye, glm::uvec2 size_px) {
     return eye;
 }
 
+struct Atelier : Gpu {
+    const ViewedScene view = viewAtelier();
+    const GpuScene scene{context(), view.scene};
+};
+
 // Lists that begin without room, and eyes that see all of the room or nothing of it without moving.
 constexpr FrameOptions kNoRoom{.first_capacity = {1, 1}, .threads_per_cell = 0};
 FrameSettings seeing() { return makeSettings(Mode::kShared); }
@@ -49,9 +54,8 @@ FrameResult goAhead(StereoFrame& frame, const std::array<Eye, 2>& eyes, const Fr
     return last;
 }
 
-TEST_CASE_FIXTURE(Gpu, "a frame that is not waited for is the one that is, byte for byte, in every mode, also after one of another size") {
-    const ViewedScene view = viewAtelier();
-    const GpuScene scene(context(), view.scene);
+TEST_CASE_FIXTURE(Atelier,
+                  "a frame that is not waited for is the one that is, byte for byte, in every mode, also after one of another size") {
     for (const Mode mode :
          {Mode::kTwoPass, Mode::kShared, Mode::kReproject, Mode::kPaper, Mode::kPredicted, Mode::kAlternate, Mode::kTemporal}) {
         CAPTURE(nameOf(mode));
@@ -68,10 +72,8 @@ TEST_CASE_FIXTURE(Gpu, "a frame that is not waited for is the one that is, byte 
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "what a frame says of itself comes two frames later, the first and the last at once") {
-    const ViewedScene view = viewAtelier();
-    const GpuScene scene(context(), view.scene);
-    KeptFrame frame(context(), view.scene);
+TEST_CASE_FIXTURE(Atelier, "what a frame says of itself comes two frames later, the first and the last at once") {
+    KeptFrame frame(context(), scene);
     const auto waited = StereoFrame::beside(frame);
     std::vector<std::uint64_t> visible;
     for (int step = 0; step < 6; ++step) {
@@ -91,9 +93,8 @@ TEST_CASE_FIXTURE(Gpu, "what a frame says of itself comes two frames later, the 
     CHECK_FALSE(frame.finish().has_value());
 }
 
-TEST_CASE_FIXTURE(Gpu, "lists have room ahead of what eyes need, so that a view that moves is not cut short") {
-    const ViewedScene view = viewAtelier();
-    KeptFrame frame(context(), view.scene, kNoRoom);
+TEST_CASE_FIXTURE(Atelier, "lists have room ahead of what eyes need, so that a view that moves is not cut short") {
+    KeptFrame frame(context(), scene, kNoRoom);
     for (int step = 0; step < 20; ++step) {
         const auto result = frame.renderAhead(eyesAt(view.eye, step), makeSettings(Mode::kShared));
         if (step == 0) { CHECK(countOf(*result, "frames_done_again") == 1); }  // nothing was known yet
@@ -101,9 +102,7 @@ TEST_CASE_FIXTURE(Gpu, "lists have room ahead of what eyes need, so that a view 
     CHECK(countOf(*frame.finish(), "frames_cut_short") == 0);
 }
 
-TEST_CASE_FIXTURE(Gpu, "lists have room ahead however many pairs a pixel has, and so however many of them are sorted in the picture") {
-    const ViewedScene view = viewAtelier();
-    const GpuScene scene(context(), view.scene);
+TEST_CASE_FIXTURE(Atelier, "lists have room ahead however many pairs a pixel has, and so however many of them are sorted in the picture") {
     StereoFrame counting(context(), scene);
     const auto pairsOf = [&](const std::array<Eye, 2>& eyes) {
         const FrameResult result = counting.render(eyes, seeing());
@@ -134,9 +133,7 @@ TEST_CASE_FIXTURE(Gpu, "lists have room ahead however many pairs a pixel has, an
 }
 
 TEST_CASE_FIXTURE(
-    Gpu, "walking is no jump, however near the near plane and however large the scene; a step of the wearer and a turn by a step are") {
-    const ViewedScene view = viewAtelier();
-    const GpuScene scene(context(), view.scene);
+    Atelier, "walking is no jump, however near the near plane and however large the scene; a step of the wearer and a turn by a step are") {
     // Whether a frame is waited for: then what it says comes at once.
     const auto waits = [&](double units_per_metre, double metres, double degrees) {
         KeptFrame frame(context(), scene);
@@ -159,10 +156,8 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(Gpu,
+TEST_CASE_FIXTURE(Atelier,
                   "after a jump a frame is waited for, and done again once at most before anybody sees it, whatever lists have no room") {
-    const ViewedScene view = viewAtelier();
-    const GpuScene scene(context(), view.scene);
     for (const Mode mode : {Mode::kTwoPass, Mode::kShared, Mode::kReproject, Mode::kPaper, Mode::kPredicted}) {
         CAPTURE(nameOf(mode));
         KeptFrame frame(context(), scene, kNoRoom);
@@ -187,10 +182,9 @@ TEST_CASE_FIXTURE(Gpu,
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "kernels that were made before change nothing in a picture") {
-    const ViewedScene view = viewAtelier();
+TEST_CASE_FIXTURE(Atelier, "kernels that were made before change nothing in a picture") {
     for (const Mode mode : {Mode::kShared, Mode::kPaper, Mode::kPredicted}) {
-        KeptFrame plain(context(), view.scene);
+        KeptFrame plain(context(), scene);
         const auto ready = StereoFrame::beside(plain);
         Eye small = view.eye;
         small.size_px = {96, 16};
@@ -201,12 +195,11 @@ TEST_CASE_FIXTURE(Gpu, "kernels that were made before change nothing in a pictur
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "a frame that finds no room is whole after a jump; otherwise it is counted, and the next one is whole") {
-    const ViewedScene view = viewAtelier();
+TEST_CASE_FIXTURE(Atelier, "a frame that finds no room is whole after a jump; otherwise it is counted, and the next one is whole") {
     const auto eyes = eyesAt(view.eye, 0);
     for (const bool jumps : {true, false}) {  // or nothing moves but a wall of splats that comes out from behind the near plane
         CAPTURE(jumps);
-        KeptFrame frame(context(), view.scene, kNoRoom);
+        KeptFrame frame(context(), scene, kNoRoom);
         const auto waited = StereoFrame::beside(frame);
         goAhead(frame, jumps ? eyesAt(awayFrom(view.eye), 0) : eyes, jumps ? seeing() : blind(), 3);
         const FrameResult last = goAhead(frame, eyes, seeing(), jumps ? 1 : 4);
@@ -217,8 +210,7 @@ TEST_CASE_FIXTURE(Gpu, "a frame that finds no room is whole after a jump; otherw
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "lists that the device has no memory for cost the picture, not the session") {
-    const ViewedScene view = viewAtelier();
+TEST_CASE_FIXTURE(Atelier, "lists that the device has no memory for cost the picture, not the session") {
     const auto eyes = eyesAt(view.eye, 0);
     const std::uint64_t before = context().memoryUse().current_bytes;
     KeptFrame roomy(context(), view.scene, kNoRoom);
@@ -228,8 +220,8 @@ TEST_CASE_FIXTURE(Gpu, "lists that the device has no memory for cost the picture
     const std::uint64_t most = context().memoryUse().current_bytes - before;
 
     const Context tight({.device = {}, .validation = test::kValidation, .memory_limit_bytes = (least + most) / 2});
-    const GpuScene scene(tight, view.scene);
-    StereoFrame frame(tight, scene, kNoRoom);
+    const GpuScene held(tight, view.scene);
+    StereoFrame frame(tight, held, kNoRoom);
     goAhead(frame, eyes, blind(), 3);
     FrameResult last = goAhead(frame, eyes, seeing(), 4);
     const std::uint64_t cut_short = countOf(last, "frames_cut_short");
@@ -250,11 +242,10 @@ TEST_CASE_FIXTURE(Gpu, "lists that the device has no memory for cost the picture
     CHECK(tight.validationMessages().empty());
 }
 
-TEST_CASE_FIXTURE(Gpu, "pictures that the device has no memory for are refused before a frame is begun, and smaller ones go on") {
-    const ViewedScene view = viewAtelier();
+TEST_CASE_FIXTURE(Atelier, "pictures that the device has no memory for are refused before a frame is begun, and smaller ones go on") {
     const Context tight({.device = {}, .validation = test::kValidation, .memory_limit_bytes = 64u << 20});
-    const GpuScene scene(tight, view.scene);
-    StereoFrame frame(tight, scene);
+    const GpuScene held(tight, view.scene);
+    StereoFrame frame(tight, held);
     const FrameSettings settings = makeSettings(Mode::kPredicted);
     const std::array<Eye, 2> fits = eyesAt(view.eye, 0);
     std::array<Eye, 2> large = fits;
@@ -273,9 +264,8 @@ TEST_CASE_FIXTURE(Gpu, "pictures that the device has no memory for are refused b
     CHECK(tight.validationMessages().empty());
 }
 
-TEST_CASE_FIXTURE(Gpu, "other sizes, modes and hidden tiles wait for the frames that are under way") {
-    const ViewedScene view = viewAtelier();
-    KeptFrame frame(context(), view.scene);
+TEST_CASE_FIXTURE(Atelier, "other sizes, modes and hidden tiles wait for the frames that are under way") {
+    KeptFrame frame(context(), scene);
     const std::array<Eye, 2> small = eyesAt(ofSize(view.eye, {64, 48}), 0);
     std::vector<std::uint8_t> hidden(std::size_t{6} * 6, 0);
     hidden[0] = 1;

@@ -14,7 +14,7 @@ constexpr double kLeastDb = 17.0;
 class Dice {
 public:
     explicit Dice(unsigned seed) : random_(seed) {}
-    double share() { return static_cast<double>(random_() >> 8) / 16777216.0; }
+    double share() { return drawUnit(random_); }
     double between(double low, double high) { return low + (high - low) * share(); }
     bool falls(double odds) { return share() < odds; }
     std::size_t below(std::size_t count) { return random_() % count; }
@@ -149,9 +149,7 @@ TEST_CASE_FIXTURE(Gpu, "any frame may follow any other") {
         for (int i = 0; i < kFrames; ++i) {
             const std::vector<Eye> eyes = walk.eyes();
             const FrameSettings settings = walk.settings();
-            CAPTURE(seed);
-            CAPTURE(i);
-            CAPTURE(static_cast<int>(settings.mode));
+            INFO("seed ", seed, ", i ", i, ", settings.mode ", static_cast<int>(settings.mode));
             if (walk.goesAhead()) {
                 mixed.renderAhead(eyes, settings);
             } else {

@@ -31,7 +31,7 @@ inline ViewedScene viewCloud(glm::uvec2 size_px) {
     const Eye eye = makeOddEye(size_px);
     Scene scene = makeCloud(1500, 3);
     std::mt19937 random(4);
-    const auto draw = [&] { return static_cast<double>(random() >> 8) / 16777216.0; };
+    const auto draw = [&] { return drawUnit(random); };
     for (std::size_t i = 0; i < 300; ++i) {
         // t_u along the line of sight but for a small angle: the plane all but holds the eye.
         const glm::dvec3 sight = glm::normalize(glm::dvec3(scene.positions[i]) - eye.world_from_camera.position);
@@ -55,10 +55,9 @@ inline ViewedScene viewGaussians(glm::uvec2 size_px, bool antialiased) {
     view.name = antialiased ? "antialiased Gaussians" : "Gaussians";
     view.scene.antialiased = antialiased;
     std::mt19937 random(5);
-    const auto draw = [&] { return static_cast<float>(random() >> 8) / 16777216.0f; };
     for (std::size_t i = 380; i < 400; ++i) { view.scene.scales[i] = {1e-6f, 1.0f}; }
     for (const glm::vec2& scale : view.scene.scales) {
-        const float share = draw();
+        const auto share = static_cast<float>(drawUnit(random));
         view.scene.thicknesses.push_back(std::min(scale.x, scale.y) * (share < 0.1f ? 0.0f : share));
     }
     return view;

@@ -17,6 +17,10 @@ ViewedScene viewAtelier(glm::uvec2 size_px = {96, 80}) {
     return view;
 }
 
+struct Atelier : Gpu {
+    const ViewedScene view = viewAtelier();
+};
+
 std::vector<Eye> eyesFor(Mode mode, const Eye& middle, double cant = 0.0) {
     if (mode == Mode::kMono) { return {middle}; }
     std::array<Eye, 2> eyes = stereoPair(middle, 0.063);
@@ -47,8 +51,7 @@ constexpr std::array kModes{Mode::kMono, Mode::kTwoPass, Mode::kShared, Mode::kP
 void checkPagesAreTheScene(const Context& context, const Scene& in_order, const Eye& start, std::span<const Mode> modes, double cant) {
     const GpuScene whole(context, in_order);
     for (const Mode mode : modes) {
-        CAPTURE(static_cast<int>(mode));
-        CAPTURE(cant);
+        INFO("mode ", static_cast<int>(mode), ", cant ", cant);
         const test::WholeInPages pages(context, in_order, 7);
         KeptFrame frame(context, pages.resident.scene());
         const auto other = StereoFrame::beside(frame);
@@ -126,8 +129,7 @@ TEST_CASE_FIXTURE(Gpu,
     CHECK(countOf(frame.render(eyes, makeSettings(Mode::kShared)), "splats_visible_left") == 0);
 }
 
-TEST_CASE_FIXTURE(Gpu, "a fade multiplies opacities, and at 0 nothing is seen or culled") {
-    const ViewedScene view = viewAtelier();
+TEST_CASE_FIXTURE(Atelier, "a fade multiplies opacities, and at 0 nothing is seen or culled") {
     test::WholeInPages pages(context(), view.scene);
     KeptFrame frame(context(), pages.resident.scene());
     const std::vector<Eye> eyes{view.eye};
@@ -144,8 +146,7 @@ TEST_CASE_FIXTURE(Gpu, "a fade multiplies opacities, and at 0 nothing is seen or
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "a part that is longer than what a frame may bring is seen once all of it is there") {
-    const ViewedScene view = viewAtelier();
+TEST_CASE_FIXTURE(Atelier, "a part that is longer than what a frame may bring is seen once all of it is there") {
     const std::uint32_t pages = test::pagesOf(view.scene.size());
     ResidentScene resident(context(), traitsOf(view.scene), {.capacity_pages = pages, .most_bytes_a_frame = 1});
     const ResidentScene::Part part = resident.add(PackedPages(view.scene, resident.traits())).value();
@@ -168,8 +169,7 @@ TEST_CASE_FIXTURE(Gpu, "a part that is longer than what a frame may bring is see
     CHECK(resident.freePages() == pages);
 }
 
-TEST_CASE_FIXTURE(Gpu, "what has no room, or is of another kind, is refused, and the rest stays") {
-    const ViewedScene view = viewAtelier();
+TEST_CASE_FIXTURE(Atelier, "what has no room, or is of another kind, is refused, and the rest stays") {
     const std::uint32_t pages = test::pagesOf(view.scene.size());
     CHECK_THROWS_AS(ResidentScene(context(), traitsOf(view.scene), {.capacity_pages = 0}), Error);
     ResidentScene resident(context(), traitsOf(view.scene), {.capacity_pages = pages + 1});
@@ -200,8 +200,7 @@ TEST_CASE_FIXTURE(Gpu, "colours of fewer SH bands than the scene's are as they a
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "kernels that are made ahead leave what has come to the frame that is drawn") {
-    const ViewedScene view = viewAtelier();
+TEST_CASE_FIXTURE(Atelier, "kernels that are made ahead leave what has come to the frame that is drawn") {
     const test::WholeInPages pages(context(), view.scene);
     KeptFrame frame(context(), pages.resident.scene());
     const std::vector<Eye> eyes = eyesFor(Mode::kTemporal, view.eye);
@@ -253,8 +252,7 @@ TEST_CASE("frames go on while parts come and go, though the device has not begun
     CHECK(context.validationMessages().empty());
 }
 
-TEST_CASE_FIXTURE(Gpu, "lists have room for what comes, so that no frame is cut short for it") {
-    const ViewedScene view = viewAtelier();
+TEST_CASE_FIXTURE(Atelier, "lists have room for what comes, so that no frame is cut short for it") {
     const std::vector<Scene> parts = inParts(view.scene, 8);
     ResidentScene resident(context(), traitsOf(view.scene), {.capacity_pages = test::pagesOf(view.scene.size()) + 8});
     KeptFrame frame(context(), resident.scene(), {.first_capacity = {1, 1}, .threads_per_cell = 0});

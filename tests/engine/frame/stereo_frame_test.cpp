@@ -63,8 +63,7 @@ TEST_CASE_FIXTURE(Gpu, "a pass that does not run has no time") {
     const ViewedScene view = viewAtelier();
     for (const Mode mode : {Mode::kReproject, Mode::kPaper, Mode::kPredicted}) {
         for (const double canting_rad : {0.0, glm::radians(5.0)}) {
-            CAPTURE(nameOf(mode));
-            CAPTURE(canting_rad);
+            INFO("nameOf(mode) ", nameOf(mode), ", canting_rad ", canting_rad);
             const auto made = renderPair(context(), view.scene, test::headsetEyes(view.eye, canting_rad), makeSettings(mode));
             const auto ran = [&](const char* pass) {
                 return std::ranges::any_of(made.result.gpu_ms, [&](const auto& one) { return one.label.text() == pass; });

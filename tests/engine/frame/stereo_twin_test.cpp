@@ -41,11 +41,8 @@ constexpr Making kMakings[] = {{TileChoice::kNone, 0, false},          {TileChoi
 
 // `full`: the twin's full render of the other eye.
 void checkIsTwins(KeptFrame& frame, const View& seen, Side dominant, const Making& making, const Image& full) {
-    CAPTURE(seen.name);
-    CAPTURE(static_cast<int>(dominant));
-    CAPTURE(static_cast<int>(making.method));
-    CAPTURE(making.move_cost);
-    CAPTURE(making.letter);
+    INFO("seen.name ", seen.name, ", dominant ", static_cast<int>(dominant), ", making.method ", static_cast<int>(making.method),
+         ", making.move_cost ", making.move_cost, ", making.letter ", making.letter);
     const reference::StereoSettings twin_settings{.choice = making.method,
                                                   .depth_choice = making.letter ? DepthChoice::kSum : DepthChoice::kInverse,
                                                   .forward = making.letter,

@@ -15,7 +15,7 @@ const reference::Settings kSettings{};
 // one.
 std::vector<Eye> eyesAbout(const ViewedScene& view, int count) {
     std::mt19937 random(7);
-    const auto draw = [&](double low, double high) { return low + (high - low) * static_cast<double>(random() >> 8) / 16777216.0; };
+    const auto draw = [&](double low, double high) { return drawBetween(random, low, high); };
     std::vector<Eye> eyes;
     for (int i = 0; i < count; ++i) {
         Eye eye = view.eye;

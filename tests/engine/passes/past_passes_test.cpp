@@ -8,9 +8,6 @@
 SUITE(past_passes) {
 
 using reference::TileKind;
-using Walk = test::PastWalk;
-
-constexpr double kSteps = test::kErrorSteps;
 
 const ViewedScene& atelier() {
     static const ViewedScene view = test::viewBuiltin("builtin:atelier", {150, 110}, 20000);
@@ -49,7 +46,7 @@ void compareWarped(Differences& differences, const EyeOnDevice& made, reference:
         for (std::size_t q = 0; q < 4; ++q) {
             differences.other_growth += test::isNear(a.growth[q], b.growth[q], 1e-5, 1e-8) ? 0 : 1;
             // A pixel's error is cut off to steps.
-            differences.other_grown += test::isNear(a.grown[q], b.grown[q], 0.02, 66.0 / kSteps) ? 0 : 1;
+            differences.other_grown += test::isNear(a.grown[q], b.grown[q], 0.02, 66.0 / kErrorSteps) ? 0 : 1;
             differences.grown += a.grown[q];
             differences.twin_grown += b.grown[q];
         }
@@ -79,7 +76,7 @@ std::size_t countOtherDepths(const Image& depths, const reference::Past& past) {
 // Boxes about an eye: before it, around it, beside it and behind it, from a speck to a hall.
 std::vector<SceneChange> boxesAbout(const Eye& eye, int count, unsigned seed) {
     std::mt19937 random(seed);
-    const auto draw = [&](double low, double high) { return low + (high - low) * static_cast<double>(random() >> 8) / 16777216.0; };
+    const auto draw = [&](double low, double high) { return low + (high - low) * drawUnit(random); };
     std::vector<SceneChange> boxes;
     for (int i = 0; i < count; ++i) {
         const glm::dvec3 middle = eye.world_from_camera.position + glm::dvec3(draw(-3, 3), draw(-3, 3), draw(-3, 3));
@@ -109,21 +106,20 @@ void checkWarped(Gpu& gpu, const Way& way) {
     INFO(way.view.name, ", hides ", way.hides);
     const test::WalkSettings settings = way.settings();
     const auto& hidden = settings.hidden;
-    Walk walk(gpu, way.view, settings);
+    PastWalk walk(gpu, way.view, settings);
     walk.go(0.0, 0.0);
     std::array<EyeOnDevice, 2> before{walk.read(kLeft), walk.read(kRight)};
     Differences all;
     std::size_t one_by_one = 0, blocks = 0;
     for (const double step : {1.0, 2.0, 10.0}) {  // the last so far that blocks of a cell come from two
         walk.go(step, 0.0);
-        for (const int eye : {kLeft, kRight}) {
-            EyeOnDevice made = walk.read(eye);
-            const auto e = static_cast<std::size_t>(eye);
+        for (const std::size_t e : {0, 1}) {
+            EyeOnDevice made = walk.read(static_cast<int>(e));
             reference::WarpedPast warped = reference::warpPast(before[e].past, walk.eyes()[e], hidden[e], settings.background);
             one_by_one += static_cast<std::size_t>(std::ranges::count(warped.one_by_one, 1));
             blocks += warped.one_by_one.size();
             compareWarped(all, made, std::move(warped.picture));
-            if (eye == kLeft) { CHECK(countOtherDepths(walk.readDepth(), made.past) == 0); }
+            if (e == 0) { CHECK(countOtherDepths(walk.readDepth(), made.past) == 0); }
             before[e] = std::move(made);
         }
     }
@@ -144,7 +140,7 @@ void checkFirst(Gpu& gpu, const Way& way) {
     INFO(way.view.name, ", half floats ", way.half_floats, ", cant ", way.cant, ", hides ", way.hides);
     const test::WalkSettings settings = way.settings();
     const auto& hidden = settings.hidden;
-    Walk walk(gpu, way.view, settings);
+    PastWalk walk(gpu, way.view, settings);
     const FrameResult result = walk.go(0.0, 0.2);
     const std::array<Image, 2> full = walk.full();
     std::size_t pixels = 0, other_depths = 0, other_spreads = 0;
@@ -188,13 +184,13 @@ TEST_CASE_FIXTURE(Gpu, "warp_past and warp_pixels make the twin's picture, and e
 }
 
 TEST_CASE_FIXTURE(Gpu, "pixels are the same whether they are moved as addresses, as on software devices, or as what they are") {
-    const auto walk = [](Walk& of) {
+    const auto walk = [](PastWalk& of) {
         for (int step = 0; step < 3; ++step) { of.go(step, 0.0); }
         return of.read(kRight).past.rgba;
     };
     for (const bool half_floats : {false, true}) {
         const ViewedScene& view = half_floats ? evenFence() : atelier();
-        Walk own(*this, view, {.half_floats = half_floats});
+        PastWalk own(*this, view, {.half_floats = half_floats});
         const auto expected = walk(own);
         for (const auto& [name, last_constant] : {std::pair("warp_past", 4u), std::pair("warp_pixels", 3u)}) {
             constexpr std::uint32_t kDecorate = 71, kSpecId = 1;
@@ -206,7 +202,7 @@ TEST_CASE_FIXTURE(Gpu, "pixels are the same whether they are moved as addresses,
                 if (is_it) { words[at + 3] = 99; }  // which nobody sets: by_address keeps its default
             }
         }
-        Walk other(*this, view, {.half_floats = half_floats});
+        PastWalk other(*this, view, {.half_floats = half_floats});
         CHECK(walk(other) == expected);
         context().replacedShaders().clear();
     }
@@ -233,7 +229,7 @@ TEST_CASE_FIXTURE(Gpu, "a frame's choice is the twin's, and tiles that were rend
     for (const ViewedScene* view : {&atelier(), &fence()}) {
         CAPTURE(view->name);
         // Of two walks that are alike so far one renders tiles again in the last frame.
-        Walk walk(*this, *view), only_warps(*this, *view);
+        PastWalk walk(*this, *view), only_warps(*this, *view);
         constexpr int kFrames = 3;
         for (int step = 0; step <= kFrames; ++step) {
             walk.go(step, step == kFrames ? 0.3 : 0.0);
@@ -248,10 +244,10 @@ TEST_CASE_FIXTURE(Gpu, "a frame's choice is the twin's, and tiles that were rend
             std::vector<double> errors;
             costs.emplace_back(made[e].costs.begin(), made[e].costs.end());
             for (std::size_t t = 0; t < costs[e].size(); ++t) {
-                errors.push_back(made[e].errors[t] / kSteps);
+                errors.push_back(made[e].errors[t] / kErrorSteps);
                 picture_cost += costs[e][t];
                 CHECK(costs[e][t] == reference::costOf(warped[e].past.tiles[t]));
-                CHECK(test::isNear(errors[t], reference::worthOf(warped[e].past.tiles[t]), 1e-5, 1.0 / kSteps));
+                CHECK(test::isNear(errors[t], reference::worthOf(warped[e].past.tiles[t]), 1e-5, 1.0 / kErrorSteps));
             }
             kinds.emplace_back(costs[e].size(), TileKind::kNone);
             prices.push_back(reference::price(kinds[e], errors, costs[e]));
@@ -294,7 +290,7 @@ TEST_CASE_FIXTURE(Gpu, "every tile of a picture that moves has its turn, also wh
             {{0.0f, 0.06f * z * static_cast<float>(bar), z}, {1, 0, 0, 0}, z * glm::vec2(3.0f, 0.02f), 0.99f, glm::vec3(0.5f)});
     }
     const ViewedScene view{"bars", test::makeScene(splats), test::makeEye({96, 64})};
-    Walk walk(*this, view, {.background = glm::dvec3(0.5)});
+    PastWalk walk(*this, view, {.background = glm::dvec3(0.5)});
     walk.go(0.0, 0.0);
     walk.go(5.0, 0.0);
     for (const int eye : {kLeft, kRight}) { CHECK(std::ranges::count(walk.read(eye).errors, 0u) == 0); }
@@ -304,7 +300,7 @@ TEST_CASE("what lies in a box is seen in its rectangle, also where the box reach
     const Eye eye = test::makeOddEye({200, 150});
     const glm::dmat3 camera_from_world = glm::mat3_cast(glm::conjugate(eye.world_from_camera.orientation));
     std::mt19937 random(11);
-    const auto draw = [&] { return static_cast<double>(random() >> 8) / 16777216.0; };
+    const auto draw = [&] { return drawUnit(random); };
     std::size_t seen = 0, unseen_boxes = 0, through = 0;
     for (const SceneChange& box : boxesAbout(eye, 400, 1)) {
         const std::vector<gpu::ChangedRect> rects = rectsOf({&box, 1}, eye, 0.2);
@@ -372,11 +368,9 @@ TEST_CASE_FIXTURE(Gpu, "mark_changed gives the twin's errors") {
         std::vector<gpu::PastTile> tiles(std::size_t{size_tiles.x} * size_tiles.y);
         std::vector<reference::PastTile> twin;
         for (gpu::PastTile& tile : tiles) {
-            tile = {.cost = static_cast<gpu::uint>(random() % 100),
-                    .age = static_cast<gpu::uint>(random() % 10),
-                    .growth = gpu::vec4(0.25f),
-                    .errors = {},
-                    .grown = {}};
+            tile.cost = static_cast<gpu::uint>(random() % 100);
+            tile.age = static_cast<gpu::uint>(random() % 10);
+            tile.growth = gpu::vec4(0.25f);
             for (int q = 0; q < 4; ++q) { tile.errors[q] = static_cast<float>(random() % 512) / 2048.0f; }
             twin.push_back(test::tileOf(tile));
         }

@@ -1,7 +1,7 @@
 // Facts about pictures on their way to a headset: the pass against its float64 twin, on the device, and the images that they become.
 #include "engine/passes/present.h"
 #include "engine/reference/present.h"
-#include "tests/engine/gpu/gpu_fixture.h"
+#include "tests/engine/gpu/device_image.h"
 #include "tests/engine/passes/stereo_cases.h"
 
 SUITE(present) {
@@ -73,36 +73,6 @@ std::size_t countOff(std::span<const std::uint32_t> actual, const Bytes& expecte
 }
 
 std::vector<glm::dvec4> asDoubles(const Colours& colours) { return {colours.begin(), colours.end()}; }
-
-// An image of sRGB bytes on the device.
-struct DeviceImage {
-    DeviceImage(const Context& context, glm::uvec2 size_px, std::uint32_t levels) : image(nullptr), memory(nullptr) {
-        using Usage = vk::ImageUsageFlagBits;
-        image = vk::raii::Image(context.device(), vk::ImageCreateInfo({}, vk::ImageType::e2D, kFormat, {size_px.x, size_px.y, 1}, levels, 1,
-                                                                      vk::SampleCountFlagBits::e1, vk::ImageTiling::eOptimal,
-                                                                      Usage::eTransferDst | Usage::eTransferSrc | Usage::eColorAttachment));
-        const auto needs = image.getMemoryRequirements();
-        memory =
-            vk::raii::DeviceMemory(context.device(), vk::MemoryAllocateInfo(needs.size, context.memoryType(needs.memoryTypeBits, {}, {})));
-        image.bindMemory(*memory, 0);
-    }
-    // Once it is an attachment.
-    void copyLevel(const Commands& commands, std::uint32_t level, glm::uvec2 size_px, const Buffer& to, std::uint64_t bytes) const {
-        const vk::ImageMemoryBarrier barrier(vk::AccessFlagBits::eMemoryWrite, vk::AccessFlagBits::eTransferRead,
-                                             vk::ImageLayout::eColorAttachmentOptimal, vk::ImageLayout::eTransferSrcOptimal,
-                                             VK_QUEUE_FAMILY_IGNORED, VK_QUEUE_FAMILY_IGNORED, *image,
-                                             {vk::ImageAspectFlagBits::eColor, level, 1, 0, 1});
-        commands.buffer().pipelineBarrier(vk::PipelineStageFlagBits::eAllCommands, vk::PipelineStageFlagBits::eTransfer, {}, {}, {},
-                                          barrier);
-        commands.buffer().copyImageToBuffer(
-            *image, vk::ImageLayout::eTransferSrcOptimal, to.handle(),
-            vk::BufferImageCopy(bytes, 0, 0, {vk::ImageAspectFlagBits::eColor, level, 0, 1}, {}, {size_px.x, size_px.y, 1}));
-    }
-
-    static constexpr vk::Format kFormat = vk::Format::eR8G8B8A8Srgb;
-    vk::raii::Image image;
-    vk::raii::DeviceMemory memory;
-};
 
 TEST_CASE_FIXTURE(Gpu, "pictures of floats or half floats become the bytes of their twin, at every order of channels and encoding") {
     for (const glm::uvec2 size_px : {glm::uvec2(1, 1), glm::uvec2(15, 17), glm::uvec2(16, 16), glm::uvec2(100, 70)}) {
@@ -183,7 +153,7 @@ TEST_CASE_FIXTURE(Gpu, "depth is near over depth, and nothing is infinitely far,
 
 TEST_CASE_FIXTURE(Gpu, "the bytes reach an image, rows top to bottom, and images of other formats are refused") {
     const glm::uvec2 size_px(5, 3);
-    const DeviceImage image(context(), size_px, 1);
+    const DeviceImage image(context(), size_px);
     const Colours colours = makeColours(size_px);
     const Picture eye{.colours = upload("colours", colours), .depths = {}};
     Presenter presenter(context(), DeviceImage::kFormat);
@@ -200,7 +170,7 @@ TEST_CASE_FIXTURE(Gpu, "smaller copies of a picture are the mean of its pixels, 
     constexpr glm::uvec2 kSize(8, 4);
     constexpr std::uint32_t kLevels = 4;
     REQUIRE(Commands::canMakeMips(context(), DeviceImage::kFormat));
-    const DeviceImage image(context(), kSize, kLevels);
+    const DeviceImage image(context(), kSize, DeviceImage::kFormat, kLevels);
     // Black and white in turn on the left, white on the right.
     Bytes texels;
     for (std::uint32_t i = 0; i < kSize.x * kSize.y; ++i) {

@@ -9,8 +9,8 @@ inline constexpr std::size_t kNetworkWeights = 722'496, kHeadWeights = 2'240;
 
 // Of either sign in the network, so large that features stay of one size from layer to layer; heads from 0 to 1.
 inline std::vector<float> makeLpipsWeights(unsigned seed) {
-    std::mt19937 random(seed);  // its numbers are the same everywhere; those of the standard's distributions are not
-    const auto next = [&] { return static_cast<float>(random() >> 8) / 16777216.0f; };
+    std::mt19937 random(seed);
+    const auto next = [&] { return static_cast<float>(drawUnit(random)); };
     std::vector<float> values;
     const auto add = [&](std::size_t inputs, std::size_t outputs, std::size_t taps) {
         const float reach = std::sqrt(6.0f / static_cast<float>(inputs * taps));

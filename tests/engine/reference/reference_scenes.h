@@ -34,7 +34,7 @@ inline Eye makeEye(glm::uvec2 size_px) { return {Pose{}, {100.0, 100.0, 0.5 * si
 // Random splats about an eye at the origin: near and far, large and thin, behind, through the near plane, off the image.
 inline Scene makeCloud(int count, unsigned seed) {
     std::mt19937 random(seed);
-    const auto draw = [&](float low, float high) { return low + (high - low) * static_cast<float>(random() >> 8) / 16777216.0f; };
+    const auto draw = [&](float low, float high) { return low + (high - low) * static_cast<float>(drawUnit(random)); };
     std::vector<Splat> splats;
     for (int i = 0; i < count; ++i) {
         Splat splat;
