@@ -41,8 +41,7 @@ TEST_CASE("a thread's work counts, and not that of others") {
     CHECK(of_another < threadSeconds());
 }
 
-TEST_CASE("a file or a folder is made only where nothing is, and no link is followed") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "a file or a folder is made only where nothing is, and no link is followed") {
     const fs::path victim = work.path / "victim", file = work.path / "file";
     work.write("victim", "keep me");
     fs::create_symlink(victim, work.path / "link");
@@ -93,8 +92,7 @@ TEST_CASE("only a file on a disk is opened, and nothing else is waited for") {
     CHECK(reasonFor(work.path / "file" / "below") == "Not a directory");
 }
 
-TEST_CASE("a file is read from anywhere, and its stamp tells when it was written to") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "a file is read from anywhere, and its stamp tells when it was written to") {
     work.write("file", "0123456789");
     std::string reason;
     const File file = openRegularFile(work.path / "file", reason);
@@ -113,8 +111,7 @@ TEST_CASE("a file is read from anywhere, and its stamp tells when it was written
     CHECK(stampOf(file.get()) != stamp);
 }
 
-TEST_CASE("a scene that is written does not go through a link that waits where its unfinished file will be") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "a scene that is written does not go through a link that waits where its unfinished file will be") {
     const fs::path victim = work.path / "victim", target = work.path / "scene.ply";
     work.write("victim", "keep me");
     const auto planted = [&](const std::string& attempt) { return fmt::format("scene.ply.part{}{}", processId(), attempt); };
@@ -138,8 +135,7 @@ TEST_CASE("a scene that is written does not go through a link that waits where i
     CHECK(std::distance(fs::directory_iterator(work.path), {}) == 5);
 }
 
-TEST_CASE("files that appear together do not replace a pipe, a device or a folder") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "files that appear together do not replace a pipe, a device or a folder") {
     makePipe(work.path / "report");
     OutputFiles files(work.path);
     writeText(files.staging() / "another", "1");
@@ -197,8 +193,7 @@ TEST_CASE("settings, headsets, cameras, head motion and pictures are files of a 
     CHECK_THROWS_WITH_AS((void)readTextFile(path, "a text"), message.c_str(), Error);
 }
 
-TEST_CASE("a program runs with what it prints in a new file") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "a program runs with what it prints in a new file") {
     CHECK(runProgram({"sh", "-c", "echo out; echo error >&2; cat"}, work.path / "log"));
     CHECK(work.bytesOf("log") == "out\nerror\n");
     CHECK_FALSE(runProgram({"sh", "-c", "exit 3"}, work.path / "other"));

@@ -73,8 +73,7 @@ TEST_CASE("it is kept in the user's cache folder, or where the environment says"
     CHECK(pipelineCacheFolder().empty());
 }
 
-TEST_CASE("a folder that cannot be written, a file of rubbish and a pipe trouble nobody") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "a folder that cannot be written, a file of rubbish and a pipe trouble nobody") {
     const fs::path folder = work.path / "rubbish", pipe_folder = work.path / "pipes";
     const auto fileIn = [](const fs::path& place) {
         const Environment chosen("BINOSPLAT_PIPELINE_CACHE", place.string());

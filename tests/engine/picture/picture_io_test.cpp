@@ -35,20 +35,19 @@ TEST_CASE("a value becomes the nearest of a display's, whatever it is") {
     }
 }
 
-TEST_CASE("a float picture comes back to the bit") {
-    const Workplace folder;
+TEST_CASE_FIXTURE(AtWork, "a float picture comes back to the bit") {
     for (int channels : {1, 3, 4}) {
         const Image image = makeRamp({17, 33}, channels);
         if (channels != 4) {
-            writePfm(folder.path / "a.pfm", image);
-            const Image back = readPicture(folder.path / "a.pfm");
+            writePfm(work.path / "a.pfm", image);
+            const Image back = readPicture(work.path / "a.pfm");
             CHECK(back.size_px == image.size_px);
             CHECK(back.channels == channels);
             CHECK(back.values == image.values);
         }
-        const auto files = writePicture(folder.path / "a.b", PictureKind::kFloat, image);
+        const auto files = writePicture(work.path / "a.b", PictureKind::kFloat, image);
         REQUIRE(!files.empty());
-        CHECK(files.front() == folder.path / (std::string("a.b") + extensionOf(PictureKind::kFloat)));
+        CHECK(files.front() == work.path / (std::string("a.b") + extensionOf(PictureKind::kFloat)));
         const Image back = readPicture(files.front());
         CHECK(back.size_px == image.size_px);
         if (files.size() == 2) {
@@ -60,33 +59,31 @@ TEST_CASE("a float picture comes back to the bit") {
     }
 }
 
-TEST_CASE("a display picture comes back opaque, each value the nearest of 255") {
-    const Workplace folder;
+TEST_CASE_FIXTURE(AtWork, "a display picture comes back opaque, each value the nearest of 255") {
     const Image display = makeDisplay({16, 9}), rgb = selectChannels(display, 0, 3);
     for (int channels : {1, 3}) {
         const Image image = selectChannels(display, 0, channels);
-        writePnm(folder.path / "a.ppm", image);
-        const Image back = readPicture(folder.path / "a.ppm");
+        writePnm(work.path / "a.ppm", image);
+        const Image back = readPicture(work.path / "a.ppm");
         REQUIRE(back.values.size() == image.values.size());
         CHECK(back.channels == channels);
         for (std::size_t i = 0; i < back.values.size(); ++i) {
             CHECK(back.values[i] == static_cast<float>(quantize(image.values[i])) / 255.0f);
         }
     }
-    const auto files = writePicture(folder.path / "a", PictureKind::kDisplay, display);
+    const auto files = writePicture(work.path / "a", PictureKind::kDisplay, display);
     REQUIRE(files.size() == 1);
     const Image back = readPicture(files.front());
     REQUIRE(back.channels == 3);
     for (std::size_t i = 0; i < rgb.values.size(); ++i) { CHECK(std::lround(back.values[i] * 255.0f) == quantize(rgb.values[i])); }
 }
 
-TEST_CASE("a write that fails leaves nothing") {
-    const Workplace folder;
+TEST_CASE_FIXTURE(AtWork, "a write that fails leaves nothing") {
     const Image image = makeRamp({4, 4}, 4);
-    CHECK_THROWS_AS(writePicture(folder.path / "missing" / "a", PictureKind::kFloat, image), Error);
-    CHECK_THROWS_AS(writePicture(folder.path / "missing" / "a", PictureKind::kDisplay, image), Error);
-    CHECK_THROWS_AS(writePicture(folder.path / "a", PictureKind::kFloat, Image{{4, 4}, 4, {1.0f}}), Error);
-    CHECK(folder.isEmpty());
+    CHECK_THROWS_AS(writePicture(work.path / "missing" / "a", PictureKind::kFloat, image), Error);
+    CHECK_THROWS_AS(writePicture(work.path / "missing" / "a", PictureKind::kDisplay, image), Error);
+    CHECK_THROWS_AS(writePicture(work.path / "a", PictureKind::kFloat, Image{{4, 4}, 4, {1.0f}}), Error);
+    CHECK(work.isEmpty());
 }
 
 #ifdef BINOSPLAT_HAS_PNG
@@ -128,28 +125,27 @@ TEST_CASE("a volume is no picture") {
 
 #endif
 
-TEST_CASE("files that end early or are something else are errors") {
-    const Workplace folder;
-    writePfm(folder.path / "a.pfm", makeRamp({8, 8}, 3));
-    fs::resize_file(folder.path / "a.pfm", fs::file_size(folder.path / "a.pfm") - 1);
-    CHECK_THROWS_AS(readPicture(folder.path / "a.pfm"), Error);
-    std::ofstream(folder.path / "b.pfm") << "not an image";
-    CHECK_THROWS_AS(readPicture(folder.path / "b.pfm"), Error);
-    std::ofstream(folder.path / "huge.ppm") << "P6\n4000000000 4000000000\n255\nx";
-    CHECK_THROWS_AS(readPicture(folder.path / "huge.ppm"), Error);
+TEST_CASE_FIXTURE(AtWork, "files that end early or are something else are errors") {
+    writePfm(work.path / "a.pfm", makeRamp({8, 8}, 3));
+    fs::resize_file(work.path / "a.pfm", fs::file_size(work.path / "a.pfm") - 1);
+    CHECK_THROWS_AS(readPicture(work.path / "a.pfm"), Error);
+    std::ofstream(work.path / "b.pfm") << "not an image";
+    CHECK_THROWS_AS(readPicture(work.path / "b.pfm"), Error);
+    std::ofstream(work.path / "huge.ppm") << "P6\n4000000000 4000000000\n255\nx";
+    CHECK_THROWS_AS(readPicture(work.path / "huge.ppm"), Error);
     // What a header promises is not reserved before the file is known to hold it.
     for (const char* header : {"PF\n30000 30000\n-1\n", "P6\n30000 30000\n255\n"}) {
-        const fs::path path = folder.path / (header[1] == 'F' ? "promise.pfm" : "promise.ppm");
+        const fs::path path = work.path / (header[1] == 'F' ? "promise.pfm" : "promise.ppm");
         std::ofstream(path, std::ios::binary) << header << "xyz";
         const std::string bytes = header[1] == 'F' ? "10800000000" : "2700000000";
         CHECK_THROWS_WITH_AS(readPicture(path), (path.string() + ": ends after 3 of " + bytes + " bytes of pixels").c_str(), Error);
     }
-    CHECK_THROWS_AS(readPicture(folder.path / "none.exr"), Error);
+    CHECK_THROWS_AS(readPicture(work.path / "none.exr"), Error);
     for (const char* name : {"p.png", "p.jpg", "p.pfm", "p.ppm"}) {
-        std::ofstream(folder.path / name) << "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n";
+        std::ofstream(work.path / name) << "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n";
         CHECK_THROWS_WITH_AS(
-            readPicture(folder.path / name),
-            ((folder.path / name).string() + ": is a Git LFS pointer, three lines in place of the file: must be fetched (`git lfs pull`)")
+            readPicture(work.path / name),
+            ((work.path / name).string() + ": is a Git LFS pointer, three lines in place of the file: must be fetched (`git lfs pull`)")
                 .c_str(),
             Error);
     }

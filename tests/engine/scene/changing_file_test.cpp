@@ -50,8 +50,7 @@ TEST_CASE("a file that is cut off, grows or is written to while it is read is re
         if (change.starts_with("re")) { continue; }
 #endif
         for (const std::string& path : writeFiles(folder)) {
-            CAPTURE(change);
-            CAPTURE(path);
+            INFO("change ", change, ", path ", path);
             const std::size_t splats = loadScene(path).size();
             const std::string other = folder.write("other", "not a scene");
             Scene scene;
@@ -85,8 +84,7 @@ TEST_CASE("blocks are read a little ahead of those that are taken, and whoever s
 }
 
 #ifdef BINOSPLAT_SOG
-TEST_CASE("a SOG folder that loses a picture while it is read is refused in one line") {
-    const Folder folder;
+TEST_CASE_FIXTURE(InFolder, "a SOG folder that loses a picture while it is read is refused in one line") {
     const std::string path = writeSogFolder(folder, "sog", makeSog());
     CHECK(withSlashes(load(path, [&] { fs::remove(path + "/q.webp"); })) == withSlashes(path + "/q.webp: no such file"));
     (void)writeSogFolder(folder, "sog", makeSog());

@@ -6,8 +6,7 @@ SUITE(compressed_ply_format) {
 
 double shown(const Scene& scene, std::size_t at) { return 0.5 + 0.28209479 * static_cast<double>(scene.sh[at]); }
 
-TEST_CASE("words lie between the bounds of their chunk") {
-    const Folder folder;
+TEST_CASE_FIXTURE(InFolder, "words lie between the bounds of their chunk") {
     LoadNotes notes;
     // x: all of 11 bits; y: none of 10; z: all of 11.
     const CompressedPly packed{.splats = 257, .position = 0x7ffu << 21 | 0x7ffu, .colour = 0xff0080ffu};
@@ -36,8 +35,7 @@ TEST_CASE("words lie between the bounds of their chunk") {
     CHECK(plain.opacities[0] == 0.0f);
 }
 
-TEST_CASE("rotation words name their largest component") {
-    const Folder folder;
+TEST_CASE_FIXTURE(InFolder, "rotation words name their largest component") {
     for (std::uint32_t largest = 0; largest < 4; ++largest) {
         // Scales -2, -1, -4 at their bounds keep z the shortest, so that the quaternion is the stored one.
         const CompressedPly packed{.rotation = largest << 30 | CompressedPly().rotation, .scale = 0x7ffu << 21 | 0x3ffu << 11};
@@ -49,8 +47,7 @@ TEST_CASE("rotation words name their largest component") {
     }
 }
 
-TEST_CASE("SH bytes stand for the middle of their interval within -4 to 4") {
-    const Folder folder;
+TEST_CASE_FIXTURE(InFolder, "SH bytes stand for the middle of their interval within -4 to 4") {
     std::vector<int> rest(24, 0);
     rest[1] = 255, rest[8] = 64, rest[23] = 200;  // red of coefficient 2, green of 1, blue of 8
     const Scene scene = loadScene(folder.write("a.ply", CompressedPly{.splats = 3, .rest = rest}.bytes()));
@@ -65,8 +62,7 @@ TEST_CASE("SH bytes stand for the middle of their interval within -4 to 4") {
 TEST_CASE("a real compressed PLY gives the values another decoder gave" * needsSharedData()) {
     const auto data = sharedData();
     if (!data) { return; }
-    LoadNotes notes;
-    const Scene scene = loadScene((*data / "guitar/guitar.compressed.ply").string(), 0, &notes);
+    const auto [notes, scene] = readScene((*data / "guitar/guitar.compressed.ply").string());
     REQUIRE(scene.size() == 90854);
     CHECK(notes.skipped_not_finite + notes.skipped_zero_rotation == 0);
     CHECK(glm::distance(scene.positions[300], {-0.4802096f, -4.1130406f, -0.0136646f}) < 1e-6f);
@@ -79,8 +75,7 @@ TEST_CASE("a real compressed PLY gives the values another decoder gave" * needsS
     CHECK(notes.median_flatness < 1.0);
 }
 
-TEST_CASE("headers and counts that do not fit are named; a comment asks for antialiasing here, too") {
-    const Folder folder;
+TEST_CASE_FIXTURE(InFolder, "headers and counts that do not fit are named; a comment asks for antialiasing here, too") {
     const std::string good = CompressedPly{.splats = 300, .rest = std::vector<int>(9, 1)}.bytes();
     CHECK_FALSE(loadScene(folder.write("plain.ply", good)).antialiased);
     const std::string said = replaced(good, "comment made for a test", "comment SplatRenderMode: mip");
@@ -107,8 +102,7 @@ TEST_CASE("headers and counts that do not fit are named; a comment asks for anti
     CHECK(contains(loadError(folder, many), "bytes are left for 72057594037927936 chunks"));
 }
 
-TEST_CASE("chunks with bounds that are no numbers lose their splats alone") {
-    const Folder folder;
+TEST_CASE_FIXTURE(InFolder, "chunks with bounds that are no numbers lose their splats alone") {
     std::string bytes = CompressedPly{.splats = 257}.bytes();
     const float nan = std::numeric_limits<float>::quiet_NaN();
     std::memcpy(bytes.data() + bytes.find("end_header\n") + 11, &nan, sizeof(nan));

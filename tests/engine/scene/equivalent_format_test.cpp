@@ -115,8 +115,7 @@ void checkFormats(const std::vector<std::string>& sources, const std::vector<glm
         const double away = 1.5 * std::max(survey.size, 0.5);
         for (const auto& [name, least_db] :
              {std::pair("a.ply", 100.0), std::pair("a.spz", scene.isGaussian3d() ? 40.0 : 42.0), std::pair("a.sog", 45.0)}) {
-            CAPTURE(source);
-            CAPTURE(name);
+            INFO("source ", source, ", name ", name);
             const Folder folder;
             findSceneTarget(name).write(scene, folder.file(name), {});
             LoadNotes notes;

@@ -18,15 +18,13 @@ constexpr std::pair<int, double> kTurns[] = {{0, 0.0}, {0, 90.0}, {0, -90.0}, {2
 // The same scene, whichever of the file's axes is up.
 void checkTurned(const Scene& scene, bool is_inside, const std::function<void(const glm::dvec3& eye)>& check) {
     for (const auto& [axis, degrees] : kTurns) {
-        CAPTURE(axis);
-        CAPTURE(degrees);
+        INFO("axis ", axis, ", degrees ", degrees);
         const glm::dquat turn = aboutAxis(axis, degrees);
         Scene turned = scene;
         turned.name.clear();
         turnScene(turned, turn);
         const Standpoint point = judgeStandpoint(turned);
-        CAPTURE(point.why);
-        CAPTURE(point.up_why);
+        INFO("point.why ", point.why, ", point.up_why ", point.up_why);
         CHECK(degreesBetween(glm::conjugate(turn) * point.view.up, kUp) < 5.0);
         CHECK(point.up_why.starts_with("of the floor: "));
         CHECK(isInside(point) == is_inside);

@@ -39,8 +39,7 @@ TEST_CASE("a .ksplat of each level gives what its bytes mean: sections of each d
     const Folder folder;
     for (const int level : {0, 1, 2}) {
         for (const std::vector<int>& degrees : {std::vector<int>{0}, {1}, {2}, {0, 2, 1}}) {
-            CAPTURE(level);
-            CAPTURE(degrees.front());
+            INFO("level ", level, ", degrees.front() ", degrees.front());
             KsplatText text;
             text.level = level;
             text.degrees = degrees;
@@ -79,8 +78,7 @@ TEST_CASE("the same four splats as .splat and as .ksplat are the same scene" * n
     for (std::size_t i = 0; i < 4; ++i) { CHECK(glm::length(scene.rotations[i] - plain.rotations[i]) < 1e-2f); }
 }
 
-TEST_CASE("a .ksplat that does not fit is named") {
-    const Folder folder;
+TEST_CASE_FIXTURE(InFolder, "a .ksplat that does not fit is named") {
     const std::string good = KsplatText{}.bytes();
     const auto errorWith = [&](std::size_t at, const std::string& bytes) {
         std::string broken = good;

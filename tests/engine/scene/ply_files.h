@@ -30,6 +30,10 @@ public:
 private:
     std::filesystem::path path_;
 };
+// For facts that have one: TEST_CASE_FIXTURE(InFolder, "...").
+struct InFolder {
+    const Folder folder;
+};
 
 enum class Encoding { kAscii, kLittle, kBig };
 inline constexpr Encoding kEncodings[] = {Encoding::kAscii, Encoding::kLittle, Encoding::kBig};
@@ -149,6 +153,22 @@ inline std::string withSlashes(std::string text) {
 }
 inline bool contains(const std::string& text, const std::string& part) {
     return withSlashes(text).find(withSlashes(part)) != std::string::npos;
+}
+// One line is there, which has this part.
+inline void checkSays(const std::vector<std::string>& lines, const std::string& part) {
+    REQUIRE(lines.size() == 1);
+    CHECK_MESSAGE(contains(lines[0], part), lines[0]);
+}
+
+// A scene, and what there was to note.
+struct ReadScene {
+    LoadNotes notes;
+    Scene scene;
+};
+inline ReadScene readScene(const std::string& source) {
+    ReadScene read;
+    read.scene = loadScene(source, 0, &read.notes);
+    return read;
 }
 
 inline void checkSameScene(const Scene& a, const Scene& b) {

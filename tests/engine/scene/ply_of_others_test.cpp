@@ -7,8 +7,7 @@ SUITE(ply_of_others) {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-TEST_CASE("properties come in any order, of any type, among others") {
-    const Folder folder;
+TEST_CASE_FIXTURE(InFolder, "properties come in any order, of any type, among others") {
     const Scene expected = loadScene(folder.write("plain.ply", makePly(9).bytes()));
     std::uint32_t state = 1;
     for (int round = 0; round < 12; ++round) {
@@ -58,8 +57,7 @@ TEST_CASE("other elements are passed over, with and without lists, before and af
     }
 }
 
-TEST_CASE("a comment names the vertical axis, and writing keeps it") {
-    const Folder folder;
+TEST_CASE_FIXTURE(InFolder, "a comment names the vertical axis, and writing keeps it") {
     for (const auto& [comment, axis] : {std::pair("comment Vertical axis: z\n", 2),
                                         {"comment vertical AXIS:  X\n", 0},
                                         {"comment Vertical axis: y\n", -1},
@@ -76,8 +74,7 @@ TEST_CASE("a comment names the vertical axis, and writing keeps it") {
     }
 }
 
-TEST_CASE("a PLY that looks as if its activations had been applied is loaded as usual, with one line that says so") {
-    const Folder folder;
+TEST_CASE_FIXTURE(InFolder, "a PLY that looks as if its activations had been applied is loaded as usual, with one line that says so") {
     for (const bool three_scales : {false, true}) {
         PlyText ply = makePly(0, three_scales);
         ply["opacity"].values = {0.0, 1.0, 0.5};
@@ -100,8 +97,7 @@ TEST_CASE("a PLY that looks as if its activations had been applied is loaded as 
     }
 }
 
-TEST_CASE("a byte order mark, CloudCompare's names and harmonics of degree 4 are passed over") {
-    const Folder folder;
+TEST_CASE_FIXTURE(InFolder, "a byte order mark, CloudCompare's names and harmonics of degree 4 are passed over") {
     LoadNotes notes;
     const Scene plain = loadScene(folder.write("plain.ply", makePly(45, true).bytes()));
     checkSameScene(loadScene(folder.write("marked.ply", "\xef\xbb\xbf" + makePly(45, true).bytes())), plain);
@@ -117,23 +113,19 @@ TEST_CASE("a byte order mark, CloudCompare's names and harmonics of degree 4 are
         values = i % 24 < 15 ? makePly(45)[fmt::format("f_rest_{}", i / 24 * 15 + i % 24)].values : std::vector<double>{kNan, 1.0, 2.0};
     }
     checkSameScene(loadScene(folder.write("larger.ply", larger.bytes()), 0, &notes), plain);
-    REQUIRE(notes.lines.size() == 1);
-    CHECK(contains(notes.lines[0], "larger.ply: SH of degree 4 were left out, degree 3 is kept"));
+    checkSays(notes.lines, "larger.ply: SH of degree 4 were left out, degree 3 is kept");
 }
 
-TEST_CASE("positions of float64 far from 0 keep their detail, and are written back to where they were") {
-    const Folder folder;
+TEST_CASE_FIXTURE(InFolder, "positions of float64 far from 0 keep their detail, and are written back to where they were") {
     for (const Encoding encoding : kEncodings) {
         PlyText ply = makeIn(encoding, 9, true);
         for (const char* name : {"x", "y", "z"}) { ply[name].type = "double"; }
         ply["x"].values = {431250.001, 431250.002, 431249.5};
         ply["y"].values = {-5412000.1, -5412000.1001, -5412001.0};
         ply["z"].values = {210.5, 211.25, 209.0};
-        LoadNotes notes;
-        const Scene scene = loadScene(folder.write("far.ply", ply.bytes()), 0, &notes);
+        const auto [notes, scene] = readScene(folder.write("far.ply", ply.bytes()));
         CHECK(scene.origin == glm::dvec3(431250.0, -5412000.0, 0.0));
-        REQUIRE(notes.lines.size() == 1);
-        CHECK(contains(notes.lines[0], "count from 431250,-5412000,0"));
+        checkSays(notes.lines, "count from 431250,-5412000,0");
         writePly(scene, folder.file("again.ply"));
         const Scene again = loadScene(folder.file("again.ply"));
         CHECK(again.origin == scene.origin);
@@ -158,13 +150,10 @@ TEST_CASE("positions of float64 far from 0 keep their detail, and are written ba
     }
 }
 
-TEST_CASE("of splats that move and fade the still of one moment is shown, and a note says which") {
-    const Folder folder;
+TEST_CASE_FIXTURE(InFolder, "of splats that move and fade the still of one moment is shown, and a note says which") {
     const auto load = [&](const PlyText& ply, const std::string& note) {
-        LoadNotes notes;
-        const Scene scene = loadScene(folder.write("moving.ply", ply.bytes()), 0, &notes);
-        REQUIRE(notes.lines.size() == 1);
-        CHECK(contains(notes.lines[0], note));
+        const auto [notes, scene] = readScene(folder.write("moving.ply", ply.bytes()));
+        checkSays(notes.lines, note);
         return scene;
     };
     for (const Encoding encoding : kEncodings) {
@@ -205,8 +194,7 @@ TEST_CASE("of splats that move and fade the still of one moment is shown, and a 
     checkSameScene(load(unknown, "(motion_0): all are shown at once"), loadScene(folder.write("still.ply", makePly().bytes())));
 }
 
-TEST_CASE("a point cloud or a mesh is named as what it is, with the place where a training leaves its splats") {
-    const Folder folder;
+TEST_CASE_FIXTURE(InFolder, "a point cloud or a mesh is named as what it is, with the place where a training leaves its splats") {
     for (const Encoding encoding : kEncodings) {
         PlyText ply;
         ply.encoding = encoding;

@@ -125,16 +125,14 @@ TEST_CASE("built-in names and counts that do not exist are refused") {
     CHECK_FALSE(builtinView("castle").has_value());
 }
 
-TEST_CASE("a summary counts what is there and what is not needed") {
-    const Folder folder;
+TEST_CASE_FIXTURE(InFolder, "a summary counts what is there and what is not needed") {
     PlyText ply = makePly(45);
     for (int i = 0; i < 45; ++i) {
         const bool kept = i % 15 < 3;
         for (double& value : ply[fmt::format("f_rest_{}", i)].values) { value = kept ? value : 0.0; }
     }
     ply["opacity"].values[2] = -9.0;
-    LoadNotes notes;
-    const Scene scene = loadScene(folder.write("bands.ply", ply.bytes()), 0, &notes);
+    const auto [notes, scene] = readScene(folder.write("bands.ply", ply.bytes()));
     const SceneSummary summary = describeScene(scene, &notes);
     CHECK(summary.splats == 3);
     CHECK(summary.min_position == glm::vec3(-3.0f, 0.125f, 4.0f));
@@ -191,16 +189,14 @@ TEST_CASE("a folder is streamed SOG, SOG, a training's output, a moving scene or
 #endif
     LoadNotes of_one;
     CHECK(loadScene(root, 0, &of_one).size() == 4);
-    REQUIRE(of_one.lines.size() == 1);
-    CHECK(contains(of_one.lines[0], ": a folder, of which"));
+    checkSays(of_one.lines, ": a folder, of which");
     CHECK(contains(of_one.lines[0], "alone_1.ply was loaded, its only scene"));
     garden.place({{"other.ply", 1}});
     CHECK(loadError(root) == four);
     garden.place({{"step_10.ply", 1}, {"step_9.ply", 2}, {"step_100.ply", 1}});
     LoadNotes of_moving;
     CHECK(loadScene(root, 0, &of_moving).size() == 2);
-    REQUIRE(of_moving.lines.size() == 1);
-    CHECK(contains(of_moving.lines[0], ": a moving scene of 3 frames, of which"));
+    checkSays(of_moving.lines, ": a moving scene of 3 frames, of which");
     CHECK(contains(of_moving.lines[0], "step_9.ply was loaded"));
 
     garden.place({{"point_cloud/iteration_7000/point_cloud.ply", 7}});
@@ -211,8 +207,7 @@ TEST_CASE("a folder is streamed SOG, SOG, a training's output, a moving scene or
                   {"point_cloud/iteration_best/point_cloud.ply", 5}});
     LoadNotes notes;
     CHECK(loadScene(root + "/", 0, &notes).size() == 30);
-    REQUIRE(notes.lines.size() == 1);
-    CHECK(contains(notes.lines[0], "iteration_30000"));
+    checkSays(notes.lines, "iteration_30000");
 
     garden.place({{"meta.json", 0}});
 #ifdef BINOSPLAT_SOG
@@ -261,8 +256,7 @@ TEST_CASE("checkpoints of a training, as folders or files with round numbers, ar
     }
 }
 
-TEST_CASE("files and folders that people take for a scene are named as what they are, with what to open instead") {
-    const Folder folder;
+TEST_CASE_FIXTURE(InFolder, "files and folders that people take for a scene are named as what they are, with what to open instead") {
     const std::string training = "point_cloud/iteration_N/point_cloud.ply";
     const struct {
         const char *name, *bytes;
@@ -292,18 +286,17 @@ TEST_CASE("files and folders that people take for a scene are named as what they
     }
 }
 
-TEST_CASE("numbered files are frames in the order of their numbers, whatever else lies beside them") {
-    const Garden garden;
-    CHECK_FALSE(isMovingScene(garden.path()));
-    garden.place({{"step_9.ply", 1}, {"notes_1.txt", 0}, {"notes_2.txt", 0}, {"notes_3.txt", 0}});
-    CHECK_FALSE(isMovingScene(garden.path()));
-    CHECK_FALSE(garden.error().empty());
-    garden.place({{"step_10.ply", 2}, {"step_11.ply", 3}, {"other.ply", 9}});
-    CHECK(isMovingScene(garden.path()));
-    CHECK(garden.counts() == std::vector<std::size_t>{1, 2, 3});
-    CHECK(SceneSeries(garden.path()).lines().empty());
-    CHECK(SceneSeries(garden.path()).growth() > 1.0);
-    CHECK_FALSE(isMovingScene(garden.file("step_9.ply")));
+TEST_CASE_FIXTURE(Garden, "numbered files are frames in the order of their numbers, whatever else lies beside them") {
+    CHECK_FALSE(isMovingScene(path()));
+    place({{"step_9.ply", 1}, {"notes_1.txt", 0}, {"notes_2.txt", 0}, {"notes_3.txt", 0}});
+    CHECK_FALSE(isMovingScene(path()));
+    CHECK_FALSE(error().empty());
+    place({{"step_10.ply", 2}, {"step_11.ply", 3}, {"other.ply", 9}});
+    CHECK(isMovingScene(path()));
+    CHECK(counts() == std::vector<std::size_t>{1, 2, 3});
+    CHECK(SceneSeries(path()).lines().empty());
+    CHECK(SceneSeries(path()).growth() > 1.0);
+    CHECK_FALSE(isMovingScene(file("step_9.ply")));
     CHECK_FALSE(isMovingScene("builtin:atelier"));
 }
 
@@ -313,23 +306,21 @@ TEST_CASE("a number that is missing shows what comes before it for longer, and n
     CHECK(garden.counts() == std::vector<std::size_t>{1, 2, 2, 2, 5, 6});
     const SceneSeries series(garden.path());
     CHECK(series.sceneCount() == 4);
-    REQUIRE(series.lines().size() == 1);
-    CHECK(contains(series.lines()[0], "2 of 6 numbered files are missing, the first after t020.ply"));
+    checkSays(series.lines(), "2 of 6 numbered files are missing, the first after t020.ply");
     garden.place({{"t901.ply", 9}, {"t99999999999999999999999999.ply", 7}});
     CHECK(garden.counts() == std::vector<std::size_t>{1, 2, 5, 6, 9, 7});
 }
 
-TEST_CASE("the frames of a moving scene count from one place") {
-    const Garden garden;
+TEST_CASE_FIXTURE(Garden, "the frames of a moving scene count from one place") {
     PlyText ply = makePly();
     ply["x"].type = "double";
     for (const bool packed : {false, true}) {
         CAPTURE(packed);
         for (const double moved : {0.0, 2.75}) {
             ply["x"].values = {100'000.25 + moved, 100'000.25 + moved, 100'000.25 + moved};
-            (void)garden.write(moved == 0.0 ? "f1.ply" : "f2.ply", packed ? gzip(ply.bytes()) : ply.bytes());
+            (void)write(moved == 0.0 ? "f1.ply" : "f2.ply", packed ? gzip(ply.bytes()) : ply.bytes());
         }
-        const SceneSeries series(garden.path());
+        const SceneSeries series(path());
         LoadNotes notes;
         const Scene second = series.load(1, notes), first = series.load(0, notes);
         CHECK(first.origin == glm::dvec3(100'000.0, 0.0, 0.0));
@@ -339,17 +330,16 @@ TEST_CASE("the frames of a moving scene count from one place") {
     }
 }
 
-TEST_CASE("two moving scenes in one folder, and formats that differ, are refused") {
-    const Garden garden;
-    garden.place({{"a1.ply", 1}, {"a2.ply", 1}});
-    CHECK(garden.error().empty());
-    garden.place({{"b1.ply", 1}, {"b2.ply", 1}});
-    CHECK(contains(garden.error(), "expected one moving scene"));
-    garden.place({{"b3.ply", 3}});  // now one is the larger
-    CHECK(garden.counts() == std::vector<std::size_t>{1, 1, 3});
+TEST_CASE_FIXTURE(Garden, "two moving scenes in one folder, and formats that differ, are refused") {
+    place({{"a1.ply", 1}, {"a2.ply", 1}});
+    CHECK(error().empty());
+    place({{"b1.ply", 1}, {"b2.ply", 1}});
+    CHECK(contains(error(), "expected one moving scene"));
+    place({{"b3.ply", 3}});  // now one is the larger
+    CHECK(counts() == std::vector<std::size_t>{1, 1, 3});
     // In the middle, where nobody has looked yet.
-    (void)garden.write("b2.ply", std::string(320, '\0'));
-    const SceneSeries series(garden.path());
+    (void)write("b2.ply", std::string(320, '\0'));
+    const SceneSeries series(path());
     LoadNotes notes;
     CHECK_THROWS_AS((void)series.load(1, notes), Error);
     CHECK(series.load(2, notes).size() == 3);

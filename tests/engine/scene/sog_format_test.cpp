@@ -49,8 +49,7 @@ TEST_CASE("a WebP picture among other chunks is found, and gives back the bytes 
     }
 }
 
-TEST_CASE("both versions mean what their tables say, in a directory, a bundle, and by their meta.json") {
-    const Folder folder;
+TEST_CASE_FIXTURE(InFolder, "both versions mean what their tables say, in a directory, a bundle, and by their meta.json") {
     for (const int version : {1, 2}) {
         CAPTURE(version);
         const SogText files = makeSog(version);
@@ -75,8 +74,7 @@ TEST_CASE("both versions mean what their tables say, in a directory, a bundle, a
     }
 }
 
-TEST_CASE("rotations name their largest component; splats that use what is not there are skipped and counted") {
-    const Folder folder;
+TEST_CASE_FIXTURE(InFolder, "rotations name their largest component; splats that use what is not there are skipped and counted") {
     SogText files = makeSog();
     // Scales with the third the shortest keep the quaternion as it is stored.
     files["s.webp"] = makeNine([](int) { return std::array{9, 9, 0, 9}; });
@@ -96,8 +94,7 @@ TEST_CASE("rotations name their largest component; splats that use what is not t
     CHECK(notes.skipped_zero_rotation == 1);
 }
 
-TEST_CASE("a key asks for antialiasing, by the name of old writers or of new ones, or says that the scene is of discs") {
-    const Folder folder;
+TEST_CASE_FIXTURE(InFolder, "a key asks for antialiasing, by the name of old writers or of new ones, or says that the scene is of discs") {
     LoadNotes notes;
     const auto loadWith = [&](const std::string& key) {
         SogText files = makeSog();
@@ -125,8 +122,7 @@ TEST_CASE("a key asks for antialiasing, by the name of old writers or of new one
     CHECK(discs.rotations == gaussians.rotations);
 }
 
-TEST_CASE("a meta.json that does not fit is named with its key") {
-    const Folder folder;
+TEST_CASE_FIXTURE(InFolder, "a meta.json that does not fit is named with its key") {
     SogText files = makeSog();
     const std::string good = files["meta.json"];
     files["meta.json"] = replaced(good, "[-8,", "[null,");  // in front of a codebook it continues the row
@@ -166,8 +162,7 @@ TEST_CASE("a meta.json that does not fit is named with its key") {
     });
 }
 
-TEST_CASE("pictures of the wrong size or kind are named, and those that are there to fill the memory are refused") {
-    const Folder folder;
+TEST_CASE_FIXTURE(InFolder, "pictures of the wrong size or kind are named, and those that are there to fill the memory are refused") {
     SogText files = makeSog();
     const std::vector<std::uint8_t> bytes(191 * 8, 255);
     const std::string whole = files.at("u.webp");
@@ -199,8 +194,7 @@ TEST_CASE("pictures of the wrong size or kind are named, and those that are ther
     CHECK(contains(loadError(writeSogFolder(folder, "scene", files)), "expected fewer than 256 per byte"));
 }
 
-TEST_CASE("a bundle's files may come in any order, and among others; archives that are not whole are refused") {
-    const Folder folder;
+TEST_CASE_FIXTURE(InFolder, "a bundle's files may come in any order, and among others; archives that are not whole are refused") {
     const SogText files = makeSog();
     std::vector<std::pair<std::string, std::string>> entries(files.begin(), files.end());
     const Scene scene = loadScene(writeSogFolder(folder, "scene", files));

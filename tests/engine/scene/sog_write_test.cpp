@@ -96,8 +96,7 @@ TEST_CASE("a palette's rows come nearer to the harmonics the more there are") {
     CHECK(before < 1e-9);  // an entry for each
 }
 
-TEST_CASE("writing and reading back keeps every attribute within its quantum, along a curve through the scene") {
-    const Folder folder;
+TEST_CASE_FIXTURE(InFolder, "writing and reading back keeps every attribute within its quantum, along a curve through the scene") {
     for (const int degree : {0, 1, 3}) {
         CAPTURE(degree);
         const Scene scene = randomScene(degree, 5000);
@@ -105,8 +104,7 @@ TEST_CASE("writing and reading back keeps every attribute within its quantum, al
         CHECK(std::set<std::uint32_t>(order.begin(), order.end()).size() == scene.size());
         writeSog(scene, folder.file("a.sog"));
         CHECK(folder.fileCount() == 1);
-        LoadNotes notes;
-        const Scene back = loadScene(folder.file("a.sog"), 0, &notes);
+        const auto [notes, back] = readScene(folder.file("a.sog"));
         REQUIRE(back.size() == scene.size());
         REQUIRE(back.sh_degree == degree);
         REQUIRE(back.isGaussian3d());
@@ -137,8 +135,7 @@ TEST_CASE("writing and reading back keeps every attribute within its quantum, al
     }
 }
 
-TEST_CASE("discs stay discs, antialiased Gaussians stay so, and scales without extent, whatever the others are") {
-    const Folder folder;
+TEST_CASE_FIXTURE(InFolder, "discs stay discs, antialiased Gaussians stay so, and scales without extent, whatever the others are") {
     LoadNotes notes;
     CHECK_FALSE(throughSog(folder, randomScene(0, 100, false), &notes).isGaussian3d());
     CHECK_FALSE(notes.three_scales);
@@ -155,8 +152,7 @@ TEST_CASE("discs stay discs, antialiased Gaussians stay so, and scales without e
     }
 }
 
-TEST_CASE("scenes of no splat, one, on one plane and far away are written and read") {
-    const Folder folder;
+TEST_CASE_FIXTURE(InFolder, "scenes of no splat, one, on one plane and far away are written and read") {
     CHECK(throughSog(folder, {}).size() == 0);
     const Scene one = randomScene(3, 1);
     const Scene back = throughSog(folder, one);

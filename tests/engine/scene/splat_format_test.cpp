@@ -12,8 +12,7 @@ std::string repeat(const std::string& row, int count) {
     return rows;
 }
 
-TEST_CASE("a .splat is read row by row, whatever its name") {
-    const Folder folder;
+TEST_CASE_FIXTURE(InFolder, "a .splat is read row by row, whatever its name") {
     LoadNotes notes;
     const std::string turned = splatRow({-4, 5, -6}, {0.125f, 0.5f, 0.25f}, {0, 255, 102, 255, 218, 38, 128, 128});
     const Scene scene = loadScene(folder.write("scene.bin", repeat(kPlain, 300) + turned), 0, &notes);
@@ -35,22 +34,19 @@ TEST_CASE("a .splat is read row by row, whatever its name") {
     CHECK(scene.sh_degree == 0);
 }
 
-TEST_CASE("rotations of length 2 are normalised, and those of length zero turn nothing, even in every row") {
-    const Folder folder;
+TEST_CASE_FIXTURE(InFolder, "rotations of length 2 are normalised, and those of length zero turn nothing, even in every row") {
     const std::string none = splatRow({1, 2, 3}, {1, 1, 0.5f}, {0, 0, 0, 0, 128, 128, 128, 128}),
                       is_long = splatRow({1, 2, 3}, {1, 1, 0.5f}, {0, 0, 0, 0, 255, 0, 0, 0});
     for (const auto& [rows, expected] : {std::pair(repeat(none, 20), glm::quat(1.0f, 0.0f, 0.0f, 0.0f)),
                                          std::pair(repeat(is_long, 20), glm::normalize(glm::quat(127.0f, -128.0f, -128.0f, -128.0f)))}) {
-        LoadNotes notes;
-        const Scene scene = loadScene(folder.write("a.splat", rows), 0, &notes);
+        const auto [notes, scene] = readScene(folder.write("a.splat", rows));
         REQUIRE(scene.size() == 20);
         CHECK(std::abs(glm::dot(scene.rotations[19], expected)) == doctest::Approx(1.0));
         CHECK(notes.lines.empty());
     }
 }
 
-TEST_CASE("a few broken splats are skipped and counted") {
-    const Folder folder;
+TEST_CASE_FIXTURE(InFolder, "a few broken splats are skipped and counted") {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     std::string rows = repeat(kPlain, 50);
     rows += splatRow({nan, 0, 0}, {1, 1, 1}, {0, 0, 0, 0, 255, 128, 128, 128});
@@ -60,8 +56,7 @@ TEST_CASE("a few broken splats are skipped and counted") {
     CHECK(notes.skipped_not_finite == 2);
 }
 
-TEST_CASE("a .splat that ends within a splat says so") {
-    const Folder folder;
+TEST_CASE_FIXTURE(InFolder, "a .splat that ends within a splat says so") {
     const std::string whole = repeat(kPlain, 3);
     for (std::size_t length = 0; length < whole.size(); ++length) {
         const std::string message = loadError(folder, whole.substr(0, length));
@@ -74,8 +69,7 @@ TEST_CASE("a .splat that ends within a splat says so") {
     }
 }
 
-TEST_CASE("other files are not taken for a .splat") {
-    const Folder folder;
+TEST_CASE_FIXTURE(InFolder, "other files are not taken for a .splat") {
     for (const std::string& bytes : {std::string(64, '\0'), std::string(96, '\xff'), repeat("0123456789abcdefghijklmnopqrstuv", 40),
                                      repeat("{\"a\": [0.5, 0.25, 0.125, 1.0]}\n ", 40)}) {
         CHECK(contains(loadError(folder, bytes), "not a scene file"));

@@ -107,11 +107,7 @@ void checkKinds(bool has_floaters, double tilt, double heading) {
         Maker made = kind.make();
         if (has_floaters) { made.floaters(30.0); }
         Standpoint point = judgeStandpoint(made.turn(turn).scene());
-        CAPTURE(kind.name);
-        CAPTURE(has_floaters);
-        CAPTURE(tilt);
-        CAPTURE(heading);
-        CAPTURE(point.why);
+        INFO("kind.name ", kind.name, ", has_floaters ", has_floaters, ", tilt ", tilt, ", heading ", heading, ", point.why ", point.why);
         for (glm::dvec3* const end : {&point.view.eye, &point.view.look, &point.view.up}) { *end = glm::conjugate(turn) * *end; }
         CHECK(kind.is_inside.value_or(isInside(point)) == isInside(point));
         CHECK(degreesBetween(point.view.up, kUp) <= kind.up_deg);

@@ -9,6 +9,10 @@
 
 SUITE(streamed_sog) {
 
+struct Streamed : InFolder {
+    const std::string source = writeStreamed(folder, "scene", makeLodMeta());
+};
+
 Scene loadLevel(const std::string& source, std::uint32_t level, LoadNotes* notes = nullptr) {
     return loadScene(source, 0, notes, {}, {level, {}});
 }
@@ -32,9 +36,7 @@ void addSplats(Scene& whole, const Scene& part, std::size_t first, std::size_t c
 
 void addWhole(Scene& whole, const Scene& part) { addSplats(whole, part, 0, part.size()); }
 
-TEST_CASE("a level is its chunks in their order, with the environment behind") {
-    const Folder folder;
-    const std::string source = writeStreamed(folder, "scene", makeLodMeta());
+TEST_CASE_FIXTURE(Streamed, "a level is its chunks in their order, with the environment behind") {
     const Scene a = loadScene(source + "/a"), b = loadScene(source + "/b"), c = loadScene(source + "/c"), env = loadScene(source + "/env");
     REQUIRE(a.positions[0] != b.positions[0]);
     REQUIRE(a.sh_degree == 1);
@@ -114,9 +116,7 @@ TEST_CASE("a leaf that has no splats at a level shows the next coarser one, if i
     CHECK(contains(notes.lines.back(), "scene/env/meta.json is not there"));
 }
 
-TEST_CASE("chunks and the environment may be bundles") {
-    const Folder folder;
-    const std::string source = writeStreamed(folder, "scene", makeLodMeta());
+TEST_CASE_FIXTURE(Streamed, "chunks and the environment may be bundles") {
     const Scene fine = loadLevel(source, 0), coarse = loadLevel(source, 1);
     for (const std::vector<std::string>& bundles : {std::vector<std::string>{"a"}, {"env"}, {"a", "b", "c", "env"}}) {
         (void)writeStreamed(folder, "scene", makeLodMeta(), bundles);
@@ -160,8 +160,7 @@ TEST_CASE("a scene may have more bundles than a program may have open files") {
 }
 #endif
 
-TEST_CASE("what a leaf names is counted in stored splats, broken ones among them") {
-    const Folder folder;
+TEST_CASE_FIXTURE(InFolder, "what a leaf names is counted in stored splats, broken ones among them") {
     // Of the chunk only splats 2 to 4 and 6 are wanted; 3 and 7 are broken.
     std::string meta = replaced(makeLodMeta(), R"("offset":5,"count":3)", R"("offset":6,"count":1)");
     meta = replaced(meta, R"("offset":0,"count":5)", R"("offset":2,"count":3)");
@@ -189,9 +188,7 @@ TEST_CASE("files of the first writers, without version, counts and environment, 
     CHECK(loadScene(writeStreamed(folder, "scene", meta)).size() == 16);
 }
 
-TEST_CASE("the finest level that fits is chosen, or the coarsest") {
-    const Folder folder;
-    const std::string source = writeStreamed(folder, "scene", makeLodMeta());
+TEST_CASE_FIXTURE(Streamed, "the finest level that fits is chosen, or the coarsest") {
     std::vector<std::pair<std::uint64_t, int>> asked;
     const auto levelWithin = [&](std::uint64_t most) {
         LoadNotes notes;
@@ -212,9 +209,7 @@ TEST_CASE("the finest level that fits is chosen, or the coarsest") {
     CHECK(levelWithin(0) == 1);
 }
 
-TEST_CASE("a level that a scene does not have is refused") {
-    const Folder folder;
-    const std::string source = writeStreamed(folder, "scene", makeLodMeta());
+TEST_CASE_FIXTURE(Streamed, "a level that a scene does not have is refused") {
     const auto errorAt = [](const std::string& scene, std::uint32_t level) { return errorOf([&] { (void)loadLevel(scene, level); }); };
     CHECK(contains(errorAt(source, 2), "scene/lod-meta.json: lod is 2, expected one of the scene's levels of detail, 0 (the finest) to 1"));
     CHECK(contains(errorAt(source, 0xffffffff), "lod is 4294967295"));
@@ -222,8 +217,7 @@ TEST_CASE("a level that a scene does not have is refused") {
     CHECK(contains(errorAt("builtin:one-splat", 1), "builtin:one-splat: lod is 1, but a scene of this kind (built-in)"));
 }
 
-TEST_CASE("a lod-meta.json that does not fit is named with its key") {
-    const Folder folder;
+TEST_CASE_FIXTURE(InFolder, "a lod-meta.json that does not fit is named with its key") {
     CHECK(loadError(writeStreamed(folder, "scene", makeLodMeta())).empty());
     const auto loadMeta = [&](const std::string& meta) {
         (void)folder.write("scene/lod-meta.json", meta);
@@ -297,9 +291,7 @@ TEST_CASE("a lod-meta.json that does not fit is named with its key") {
 }
 
 #ifndef _WIN32  // where links take a privilege
-TEST_CASE("links that lead out of the folder or to the same chunk are refused") {
-    const Folder folder;
-    const std::string source = writeStreamed(folder, "scene", makeLodMeta());
+TEST_CASE_FIXTURE(Streamed, "links that lead out of the folder or to the same chunk are refused") {
     std::filesystem::rename(source + "/b", folder.file("elsewhere"));
     std::filesystem::create_directory_symlink(folder.file("elsewhere"), source + "/b");
     std::string message = loadError(source);
@@ -318,9 +310,8 @@ TEST_CASE("links that lead out of the folder or to the same chunk are refused") 
 }
 #endif
 
-TEST_CASE("chunks that are missing or broken are named before any is decoded") {
-    const Folder folder;
-    const std::string source = writeStreamed(folder, "scene", makeLodMeta()), meta = makeSog().at("meta.json");
+TEST_CASE_FIXTURE(Streamed, "chunks that are missing or broken are named before any is decoded") {
+    const std::string meta = makeSog().at("meta.json");
     const auto error = [&] {
         std::vector<double> shares;
         const std::string message = errorOf([&] { (void)loadScene(source, 0, nullptr, [&](double share) { shares.push_back(share); }); });

@@ -74,8 +74,7 @@ TEST_CASE("canted eyes turn outwards") {
     CHECK(std::atan((100.0 - middle.cx) / middle.fx) == doctest::Approx(0.9));
 }
 
-TEST_CASE("a headset's file may name its lenses' centres, and mistakes in it are named with their line") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "a headset's file may name its lenses' centres, and mistakes in it are named with their line") {
     const std::string top = "name = \"a\"\nsource = \"b\"\nsize = \"8x8\"\ncanting_deg = 0\neye_distance_m = 0.06\n";
     const std::string left = "[left]\nleft = -50\nright = 40\nup = 45\ndown = -45\n",
                       right = "[right]\nleft = -40\nright = 50\nup = 45\ndown = -45\n";

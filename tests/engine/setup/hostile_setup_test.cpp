@@ -133,8 +133,7 @@ TEST_CASE("settings as deep as a file can be, or in strange letters, are read or
     attempts.attempt("a line break in a table's name", "[\"a\\nb\"]\nc = {d = 1}\n");
 }
 
-TEST_CASE("letters outside of ASCII are read in quotes and comments and refused elsewhere, with their line") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "letters outside of ASCII are read in quotes and comments and refused elsewhere, with their line") {
     const auto read = [&](const std::string& text) {
         std::ofstream(work.path / "letters.toml", std::ios::binary) << text;
         (void)readSettingsFile(work.path / "letters.toml");

@@ -17,8 +17,7 @@ fs::path writeFile(const fs::path& path, const std::string& text) {
     return path;
 }
 
-TEST_CASE("a camera file is world-from-camera, its rows as they are written, and resizing an eye keeps what it sees") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "a camera file is world-from-camera, its rows as they are written, and resizing an eye keeps what it sees") {
     // The camera stands at (1, 2, 3) and looks along world x: its z axis is the third column, (1, 0, 0); its x axis is (0, 0, -1).
     const auto cameras = readCameraFile(writeFile(work.path / "c.json", R"([
         {"id": 0, "img_name": "a", "width": 640, "height": 480, "fx": 500, "fy": 510,
@@ -43,8 +42,7 @@ TEST_CASE("a camera file is world-from-camera, its rows as they are written, and
     CHECK(half.size_px == glm::uvec2(320, 240));
 }
 
-TEST_CASE("a Git LFS pointer is named as what it is") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "a Git LFS pointer is named as what it is") {
     const fs::path file = writeFile(work.path / "pointer", "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n");
     const doctest::Contains said(": is a Git LFS pointer");
     CHECK_THROWS_WITH_AS((void)readSettingsFile(file), said, Error);
@@ -62,8 +60,7 @@ TEST_CASE("numbers are read whole") {
     }
 }
 
-TEST_CASE("output files appear together or not at all, and a run that fails keeps what was there") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "output files appear together or not at all, and a run that fails keeps what was there") {
     const fs::path folder = work.path / "a" / "b";
     const auto write = [&](const std::string& text, bool publishes) {
         OutputFiles files(folder);
@@ -80,8 +77,7 @@ TEST_CASE("output files appear together or not at all, and a run that fails keep
     CHECK(fs::file_size(folder / "two") == 1);
 }
 
-TEST_CASE("an output folder whose path leaves no room for files is refused, and nothing of it stays") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "an output folder whose path leaves no room for files is refused, and nothing of it stays") {
     fs::path folder = work.path;
     constexpr std::size_t kLength = PATH_MAX - 50;  // its hidden folder fits, and then 40 letters do not
     while (folder.string().size() + 102 < kLength) { folder /= std::string(100, 'x'); }
@@ -91,8 +87,7 @@ TEST_CASE("an output folder whose path leaves no room for files is refused, and 
     CHECK(work.isEmpty());
 }
 
-TEST_CASE("a folder is removed with all in it, and what its links lead to stays") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "a folder is removed with all in it, and what its links lead to stays") {
     const fs::path kept = work.path / "kept", gone = work.path / "gone";
     fs::create_directories(kept);
     fs::create_directories(gone / "a" / "b");
