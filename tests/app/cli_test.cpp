@@ -13,8 +13,7 @@ nlohmann::json reportOf(const Workplace& work, const std::string& folder) {
     return nlohmann::json::parse(work.bytesOf(folder + "/report.json"));
 }
 
-TEST_CASE("errors end the program with one line and the code of their kind, and leave nothing behind") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "errors end the program with one line and the code of their kind, and leave nothing behind") {
     // A command line that is not understood, a value, a scene.
     work.checkRefused("", 2, "subcommand");
     work.checkRefused("render builtin:one-splat --out out --bogus", 2, "--bogus");
@@ -51,8 +50,7 @@ TEST_CASE("errors end the program with one line and the code of their kind, and 
     CHECK(work.files() == std::set<std::string>{"cut.ply", "file", "text.ply"});
 }
 
-TEST_CASE("pipes, folders and endless files are refused at once") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "pipes, folders and endless files are refused at once") {
     REQUIRE(work.runCommand("mkfifo pipe.toml && mkdir folder.toml && truncate -s 100M long.toml").exit_code == 0);
     std::vector<std::string> commands{"render builtin:one-splat --out out --config ", "render builtin:one-splat --out out --cameras ",
                                       "render builtin:one-splat --out out --headset ./", "bench builtin:one-splat --out out --motion "};
@@ -70,8 +68,7 @@ TEST_CASE("pipes, folders and endless files are refused at once") {
     CHECK_FALSE(work.holds("out"));
 }
 
-TEST_CASE("a scene can be written and described") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "a scene can be written and described") {
     work.go("scene one-splat --out one.ply");
     const Outcome info = work.go("info one.ply");
     CHECK(info.errors.empty());
@@ -80,8 +77,7 @@ TEST_CASE("a scene can be written and described") {
     CHECK(work.run("info one.ply >/dev/full").exit_code == 1);
 }
 
-TEST_CASE("what two hints say of a file is said once in its notes, and goes from file to file") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "what two hints say of a file is said once in its notes, and goes from file to file") {
     std::string ply = "ply\nformat ascii 1.0\ncomment SplatRenderMode: mip\nelement vertex 1\n";
     for (const char* name :
          {"x", "y", "z", "f_dc_0", "f_dc_1", "f_dc_2", "opacity", "scale_0", "scale_1", "scale_2", "rot_0", "rot_1", "rot_2", "rot_3"}) {
@@ -104,8 +100,7 @@ TEST_CASE("what two hints say of a file is said once in its notes, and goes from
     }
 }
 
-TEST_CASE("a training's output is rendered from its own cameras") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "a training's output is rendered from its own cameras") {
     fs::create_directories(work.path / "garden/point_cloud/iteration_30000");
     work.go("scene one-splat --out garden/point_cloud/iteration_30000/point_cloud.ply");
     const std::string rotation = R"("rotation": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]})";
@@ -120,8 +115,7 @@ TEST_CASE("a training's output is rendered from its own cameras") {
     CHECK(options["cameras"] == "garden/cameras.json");
 }
 
-TEST_CASE("a glTF says in which order its splats are blended unless the user does") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "a glTF says in which order its splats are blended unless the user does") {
     GltfText gltf = makeGltf(9);
     gltf.extension = R"({"kernel":"ellipse","colorSpace":"srgb_rec709_display","sortingMethod":"cameraDistance"})";
     work.write("a.glb", gltf.glb());
@@ -131,8 +125,7 @@ TEST_CASE("a glTF says in which order its splats are blended unless the user doe
     CHECK(reportOf(work, "asked")["options"]["order"] == "depth");
 }
 
-TEST_CASE("of a camera that sees no splat one line says so, and where the nearest is") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "of a camera that sees no splat one line says so, and where the nearest is") {
     const auto checkSaid = [&](const std::string& arguments, const std::string& part) {
         const Outcome outcome = work.go("render builtin:one-splat --size 16x8 --out out --eye 0,0,0 " + arguments);
         INFO(outcome.errors);
@@ -156,8 +149,7 @@ TEST_CASE("of a camera that sees no splat one line says so, and where the neares
               "builtin:one-splat: frame 1, the first of 2 of 3: no splat is seen from 0,0,9: the nearest is 7 scene units away");
 }
 
-TEST_CASE("render writes its files and nothing else") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "render writes its files and nothing else") {
     const std::string float_extension = extensionOf(PictureKind::kFloat), display_extension = extensionOf(PictureKind::kDisplay);
     for (const std::string mode : {"mono", "two-pass", "shared", "reproject", "paper", "predicted"}) {
         const std::string command = fmt::format("render builtin:one-splat --size 40x24 --out a/{0} --mode {0}", mode);
@@ -192,8 +184,7 @@ TEST_CASE("render writes its files and nothing else") {
     }
 }
 
-TEST_CASE("the default mode is predicted, and the budget is a share of the work") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "the default mode is predicted, and the budget is a share of the work") {
     const auto tilesPatched = [&](const std::string& options) {
         work.go("render builtin:step-edge --size 64x64 --out a " + options, "BINOSPLAT_VALIDATION=1");
         return reportOf(work, "a")["counters"]["tiles_patched"].get<int>();
@@ -206,8 +197,7 @@ TEST_CASE("the default mode is predicted, and the budget is a share of the work"
     CHECK(tilesPatched("--mode paper --center-roi --edge-bounds tight --dominant right --depth mean") > 0);
 }
 
-TEST_CASE("BINOSPLAT_DATA names the folder that holds configs, and the program knows nothing of that of its sources") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "BINOSPLAT_DATA names the folder that holds configs, and the program knows nothing of that of its sources") {
     const fs::path headsets = work.base / "data" / "configs" / "headsets";
     fs::create_directories(headsets);
     fs::copy_file(kSource / "configs" / "headsets" / "index.toml", headsets / "mine.toml");
@@ -219,15 +209,13 @@ TEST_CASE("BINOSPLAT_DATA names the folder that holds configs, and the program k
     CHECK(program.find((kSource / "shaders").string()) == std::string::npos);
 }
 
-TEST_CASE("every command has a help") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "every command has a help") {
     for (const char* command : {"", "render ", "bench ", "view ", "info ", "scene ", "convert ", "compare "}) {
         CHECK(!work.go(fmt::format("{}--help", command)).output.empty());
     }
 }
 
-TEST_CASE("every kernel, one for each variant of every shader, is built and listed" * nightly()) {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "every kernel, one for each variant of every shader, is built and listed" * nightly()) {
     work.go("kernels --out k");
     const auto listed = nlohmann::json::parse(work.bytesOf("k/kernels.json"));
     CHECK_FALSE(listed.at("device").get<std::string>().empty());

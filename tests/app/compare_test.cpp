@@ -34,9 +34,8 @@ struct Pictures : Workplace {
     }
 };
 
-TEST_CASE("each score is a line with its name, LPIPS comes with its weights, and FLIP sees less from afar") {
-    const Pictures pictures;
-    const auto three = pictures.scores("a.pfm b.pfm"), four = pictures.scores("a.pfm b.pfm --lpips w.bin");
+TEST_CASE_FIXTURE(Pictures, "each score is a line with its name, LPIPS comes with its weights, and FLIP sees less from afar") {
+    const auto three = scores("a.pfm b.pfm"), four = scores("a.pfm b.pfm --lpips w.bin");
     REQUIRE(three.size() == 3);
     REQUIRE(four.size() == 4);
     CHECK(std::equal(three.begin(), three.end(), four.begin()));
@@ -49,8 +48,8 @@ TEST_CASE("each score is a line with its name, LPIPS comes with its weights, and
     CHECK(four[2].second > 0.01);
     CHECK(four[3].first == "lpips");
     CHECK(four[3].second > 0.01);
-    CHECK(pictures.scores("a.pfm b.pfm --pixels-per-degree 67.0206") == three);
-    CHECK(pictures.scores("a.pfm b.pfm --pixels-per-degree 500").at(2).second < 0.8 * three[2].second);
+    CHECK(scores("a.pfm b.pfm --pixels-per-degree 67.0206") == three);
+    CHECK(scores("a.pfm b.pfm --pixels-per-degree 500").at(2).second < 0.8 * three[2].second);
 }
 
 TEST_CASE("equal pictures have infinite PSNR, whatever their format, and a value that is not finite is as far off as can be") {

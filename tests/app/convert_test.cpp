@@ -56,12 +56,11 @@ TEST_CASE("a scene goes through every format within what the line says that it l
 #endif
 }
 
-TEST_CASE("a sphere can be cut out of a scene, and keeps all that its splats have") {
-    const Converted work;
+TEST_CASE_FIXTURE(Converted, "a sphere can be cut out of a scene, and keeps all that its splats have") {
     const Scene wall = loadScene("builtin:slanted-wall");
     const glm::dvec3 centre(wall.positions[100]);
-    const Outcome outcome = work.go(fmt::format("convert builtin:slanted-wall a.ply --crop {},{},{},0.5", centre.x, centre.y, centre.z));
-    const Scene cut = work.load("a.ply");
+    const Outcome outcome = go(fmt::format("convert builtin:slanted-wall a.ply --crop {},{},{},0.5", centre.x, centre.y, centre.z));
+    const Scene cut = load("a.ply");
     CHECK(outcome.output.find(fmt::format("{} of 1681 splats lie within", cut.size())) != std::string::npos);
     std::size_t next = 0;
     for (std::size_t i = 0; i < wall.size(); ++i) {
@@ -74,26 +73,25 @@ TEST_CASE("a sphere can be cut out of a scene, and keeps all that its splats hav
     CHECK(next == cut.size());
     CHECK(next > 1);
     CHECK(next < wall.size());
-    work.checkRefused("convert builtin:slanted-wall b.ply --crop 1e6,0,0,1", 1,
-                      "builtin:slanted-wall: none of its 1681 splats lies within --crop 1000000,0,0,1");
-    CHECK(work.files() == Files{"a.ply"});
+    checkRefused("convert builtin:slanted-wall b.ply --crop 1e6,0,0,1", 1,
+                 "builtin:slanted-wall: none of its 1681 splats lies within --crop 1000000,0,0,1");
+    CHECK(files() == Files{"a.ply"});
 }
 
-TEST_CASE("what cannot be converted leaves nothing behind") {
-    const Converted work;
-    std::filesystem::create_directory(work.path / "folder.spz");
-    work.write("file", "");
-    work.checkRefused("convert builtin:one-splat a.obj", 1, "a.obj: must be a file whose name ends in .ply, .spz or .sog");
-    work.checkRefused("convert builtin:one-splat nowhere/a.ply", 1, "nowhere must be a directory");
-    work.checkRefused("convert absent.ply a.ply", 1, "absent.ply: no such file");
-    work.checkRefused("convert builtin:one-splat folder.spz", 1, "folder.spz: is a directory");
+TEST_CASE_FIXTURE(Converted, "what cannot be converted leaves nothing behind") {
+    std::filesystem::create_directory(path / "folder.spz");
+    write("file", "");
+    checkRefused("convert builtin:one-splat a.obj", 1, "a.obj: must be a file whose name ends in .ply, .spz or .sog");
+    checkRefused("convert builtin:one-splat nowhere/a.ply", 1, "nowhere must be a directory");
+    checkRefused("convert absent.ply a.ply", 1, "absent.ply: no such file");
+    checkRefused("convert builtin:one-splat folder.spz", 1, "folder.spz: is a directory");
 #ifdef BINOSPLAT_SOG
-    std::filesystem::create_directory(work.path / "folder.sog");
-    work.checkRefused("convert builtin:one-splat file/c.sog", 1, "file must be a directory");
-    work.checkRefused("convert builtin:one-splat folder.sog", 1, "folder.sog: is a directory");
-    std::filesystem::remove(work.path / "folder.sog");
+    std::filesystem::create_directory(path / "folder.sog");
+    checkRefused("convert builtin:one-splat file/c.sog", 1, "file must be a directory");
+    checkRefused("convert builtin:one-splat folder.sog", 1, "folder.sog: is a directory");
+    std::filesystem::remove(path / "folder.sog");
 #endif
-    CHECK(work.files() == Files{"file", "folder.spz"});
+    CHECK(files() == Files{"file", "folder.spz"});
 }
 
 }  // SUITE(convert)

@@ -168,8 +168,7 @@ TEST_CASE("variables of the environment that the program reads are documented") 
     }
 }
 
-TEST_CASE("bash completes commands, options, the values of choices, and files where an option takes one") {
-    const test::Workplace work;
+TEST_CASE_FIXTURE(test::AtWork, "bash completes commands, options, the values of choices, and files where an option takes one") {
     work.write("complete",
                documentOf("bash") +
                    "\ncomplete_words() { COMPREPLY=(); COMP_CWORD=$1; shift; COMP_WORDS=(\"$@\"); _binosplat; echo \"${COMPREPLY[*]}\"; }\n"
@@ -183,8 +182,7 @@ TEST_CASE("bash completes commands, options, the values of choices, and files wh
     CHECK(work.runCommand("bash ./complete").output == "render\npredicted\n--lpips\nposes.csv\nposes.csv\n\n");
 }
 
-TEST_CASE("the man page has no line that groff complains about, and the program prints the documents") {
-    const test::Workplace work;
+TEST_CASE_FIXTURE(test::AtWork, "the man page has no line that groff complains about, and the program prints the documents") {
     work.write("page", work.go("document man").output);
     CHECK(work.bytesOf("page") == documentOf("man"));
     const test::Outcome formatted = work.runCommand("! command -v groff >/dev/null || groff -man -Tascii -ww page");
@@ -251,8 +249,7 @@ TEST_CASE("commands that the documents show are understood" * test::nightly()) {
     CHECK(runs > 4);
 }
 
-TEST_CASE("the README's commands about files do what they say" * test::nightly()) {
-    const test::Workplace work;
+TEST_CASE_FIXTURE(test::AtWork, "the README's commands about files do what they say" * test::nightly()) {
     int done = 0;
     for (const std::string& line : codeLines(textIn(kSource / "README.md"))) {
         const std::vector<std::string> call = callOfProgram(line);

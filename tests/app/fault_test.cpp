@@ -84,10 +84,9 @@ TEST_CASE("a limit of device memory is kept, and named where it does not suffice
     CHECK(machine.holds("out/pictures/mono" BINOSPLAT_FLOAT_EXTENSION));
 }
 
-TEST_CASE("where one type of memory is full, another serves that a buffer may lie in as well") {
-    const Machine machine;
-    machine.go(kRender, fault("allocate", 3, "type-full"));
-    CHECK(machine.holds("out/pictures/mono" BINOSPLAT_FLOAT_EXTENSION));
+TEST_CASE_FIXTURE(Machine, "where one type of memory is full, another serves that a buffer may lie in as well") {
+    go(kRender, fault("allocate", 3, "type-full"));
+    CHECK(holds("out/pictures/mono" BINOSPLAT_FLOAT_EXTENSION));
 }
 
 #ifdef BINOSPLAT_LIBRARY_USER
@@ -104,8 +103,7 @@ std::string loadWithout(const Machine& machine, int number) {
     return outcome.output;
 }
 
-TEST_CASE("the library draws a small scene as near as it is small, and one far from 0 where its file has it") {
-    const Machine machine;
+TEST_CASE_FIXTURE(Machine, "the library draws a small scene as near as it is small, and one far from 0 where its file has it") {
     struct Seen {
         double share = 0.0;
         glm::dvec3 from{0.0};
@@ -117,8 +115,8 @@ TEST_CASE("the library draws a small scene as near as it is small, and one far f
         for (glm::vec3& position : scene.positions) { position *= static_cast<float>(factor); }
         for (glm::vec2& scale : scene.scales) { scale *= static_cast<float>(factor); }
         scene.origin = at;
-        writePly(scene, (machine.path / "scene.ply").string());
-        const Outcome outcome = machine.runCommand("'" BINOSPLAT_LIBRARY_USER "' scene.ply");
+        writePly(scene, (path / "scene.ply").string());
+        const Outcome outcome = runCommand("'" BINOSPLAT_LIBRARY_USER "' scene.ply");
         INFO(outcome.errors);
         REQUIRE(outcome.exit_code == 0);
         Seen seen;
@@ -150,23 +148,21 @@ TEST_CASE("wherever a load() of the library fails it does so" * nightly()) {
 }
 #endif
 
-TEST_CASE("on a full disk the message names the file, and no file is left") {
-    const Machine machine;
-    machine.checkFails(kRender, filesOf(1), 1, "mono" BINOSPLAT_FLOAT_EXTENSION ": cannot be written (");
-    machine.checkFails(kTiny, filesOf(2), 1, "report.json: cannot be written (");
-    machine.checkFails(kBench, filesOf(1), 1, "bench.json: cannot be written (");
-    machine.checkFails("scene fence --out fence.ply", filesOf(1), 1, "fence.ply: writing failed: ");
-    machine.checkFails("convert builtin:fence fence.spz", filesOf(1), 1, "fence.spz: writing failed: ");
+TEST_CASE_FIXTURE(Machine, "on a full disk the message names the file, and no file is left") {
+    checkFails(kRender, filesOf(1), 1, "mono" BINOSPLAT_FLOAT_EXTENSION ": cannot be written (");
+    checkFails(kTiny, filesOf(2), 1, "report.json: cannot be written (");
+    checkFails(kBench, filesOf(1), 1, "bench.json: cannot be written (");
+    checkFails("scene fence --out fence.ply", filesOf(1), 1, "fence.ply: writing failed: ");
+    checkFails("convert builtin:fence fence.spz", filesOf(1), 1, "fence.spz: writing failed: ");
 }
 
 #ifdef BINOSPLAT_OPENXR
-TEST_CASE("faults end the viewer in its own line, behind what the runtime says, and SIGTERM ends it as its wearer would") {
-    const Machine machine;
+TEST_CASE_FIXTURE(Machine, "faults end the viewer in its own line, behind what the runtime says, and SIGTERM ends it as its wearer would") {
     const std::string view = "view builtin:slanted-wall --mode mono --simulate small.script --load-first --out seen";
     const std::string no_display = "DISPLAY= WAYLAND_DISPLAY= ";
     const auto checkEnds = [&](const std::string& environment, int exit_code, const std::string& part) {
         CAPTURE(environment);
-        const Outcome outcome = machine.run(view + " --frames 6", no_display + environment);
+        const Outcome outcome = run(view + " --frames 6", no_display + environment);
         INFO("stdout: " << outcome.output << " stderr: " << outcome.errors);
         CHECK(outcome.exit_code == exit_code);
         CHECK(outcome.errors.find(part) != std::string::npos);
@@ -178,14 +174,14 @@ TEST_CASE("faults end the viewer in its own line, behind what the runtime says, 
             own += is_own;
         }
         CHECK(own == 1);
-        for (const std::string& name : machine.files()) { CHECK(name.find("unfinished") == std::string::npos); }
+        for (const std::string& name : files()) { CHECK(name.find("unfinished") == std::string::npos); }
     };
     // The scene is on its way up beside the first frames, so it may be either side's call.
     checkEnds(fault("submit", 2, "lost"), 3, "DeviceLost");
     checkEnds(fault("wait", 12, "lost"), 3, "DeviceLost");
     checkEnds(fault("allocate", 1, "no-device-memory"), 1, "not enough memory for this scene and picture size");
     checkEnds("ulimit -f 1;", 3, "frames.jsonl: cannot be written");
-    const Outcome ended = machine.go(view, no_display + fault("submit", 30, "SIGTERM"));
+    const Outcome ended = go(view, no_display + fault("submit", 30, "SIGTERM"));
     CHECK(ended.output.find("the runtime asked for the end") != std::string::npos);
     CHECK(ended.errors.empty());
 }

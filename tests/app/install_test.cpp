@@ -75,8 +75,7 @@ TEST_CASE("an installed program finds its headsets, from any folder and by the d
 #endif
 }
 
-TEST_CASE("a program of somebody else finds the installed engine by CMake and renders a scene file in stereo" * nightly()) {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "a program of somebody else finds the installed engine by CMake and renders a scene file in stereo" * nightly()) {
     const fs::path prefix = work.base / "prefix";
     install(work, prefix, "engine");
     const std::string cmake = "'" BINOSPLAT_CMAKE "' ";
@@ -115,8 +114,7 @@ TEST_CASE("a program of somebody else finds the installed engine by CMake and re
     CHECK(symbols.output.find("binosplat::StereoFrame::") == std::string::npos);
 }
 
-TEST_CASE("packages of an untagged source say which, and those of a later commit are newer" * nightly()) {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "packages of an untagged source say which, and those of a later commit are newer" * nightly()) {
     fs::create_directories(work.path / "app");
     fs::copy_file(BINOSPLAT_SOURCE_DIR "/app/package_version.cmake", work.path / "app" / "package_version.cmake");
     work.write("print.cmake",

@@ -26,65 +26,62 @@ struct Sliding : Workplace {
     }
 };
 
-TEST_CASE("a picture shows the first frame, and along a path time goes on with the frames, around and around") {
-    const Sliding work;
-    work.go("render slide" + kCamera + "--out first");
-    CHECK(work.picture("first/left") == work.pictureOfFrame(0, "left"));
-    CHECK(work.report("first")["counters"]["scene_frames_late"] == 0);
-    CHECK(work.report("first")["options"]["scene-rate"] == 30.0);
+TEST_CASE_FIXTURE(Sliding, "a picture shows the first frame, and along a path time goes on with the frames, around and around") {
+    go("render slide" + kCamera + "--out first");
+    CHECK(picture("first/left") == pictureOfFrame(0, "left"));
+    CHECK(report("first")["counters"]["scene_frames_late"] == 0);
+    CHECK(report("first")["options"]["scene-rate"] == 30.0);
 
-    work.go("render slide" + kPath + "--scene-rate 10 --out path");
+    go("render slide" + kPath + "--scene-rate 10 --out path");
     for (int i = 0; i < 5; ++i) {
         CAPTURE(i);
-        CHECK(work.picture(fmt::format("path/frame_{:06}_left", i)) == work.pictureOfFrame(i % kFrames, "left"));
+        CHECK(picture(fmt::format("path/frame_{:06}_left", i)) == pictureOfFrame(i % kFrames, "left"));
     }
-    CHECK(work.report("path")["frames"][3]["counters"]["splats_resident"] == 2000);
+    CHECK(report("path")["frames"][3]["counters"]["splats_resident"] == 2000);
     // Half as fast, from the middle on: time begins where the path does.
-    work.go("render slide" + kPath + "--from 0.2 --scene-rate 5 --out half");
-    for (int i = 0; i < 3; ++i) { CHECK(work.picture(fmt::format("half/frame_{:06}_right", i)) == work.pictureOfFrame(i / 2, "right")); }
+    go("render slide" + kPath + "--from 0.2 --scene-rate 5 --out half");
+    for (int i = 0; i < 3; ++i) { CHECK(picture(fmt::format("half/frame_{:06}_right", i)) == pictureOfFrame(i / 2, "right")); }
     // What lies between.
-    work.go("render slide" + kPath + "--scene-rate 5 --scene-blend --out blend");
-    CHECK(work.picture("blend/frame_000002_left") == work.pictureOfFrame(1, "left"));
-    CHECK(work.picture("blend/frame_000003_left") != work.pictureOfFrame(1, "left"));
-    CHECK(work.picture("blend/frame_000003_left") != work.pictureOfFrame(2, "left"));
+    go("render slide" + kPath + "--scene-rate 5 --scene-blend --out blend");
+    CHECK(picture("blend/frame_000002_left") == pictureOfFrame(1, "left"));
+    CHECK(picture("blend/frame_000003_left") != pictureOfFrame(1, "left"));
+    CHECK(picture("blend/frame_000003_left") != pictureOfFrame(2, "left"));
 }
 
-TEST_CASE("bench measures a moving scene along a motion, and other commands take its first frame") {
-    const Sliding work;
-    work.write("few.toml", "[bench]\nmodes = [\"two-pass\", \"temporal\"]\nscores = [\"psnr\"]\n");
+TEST_CASE_FIXTURE(Sliding, "bench measures a moving scene along a motion, and other commands take its first frame") {
+    write("few.toml", "[bench]\nmodes = [\"two-pass\", \"temporal\"]\nscores = [\"psnr\"]\n");
     const std::string bench = "bench slide --size 64x64 --eye 0.4,-1.6,0.6 --look 0,-1.1,4 --up 0,-1,0 --config few.toml ";
-    work.go(bench + "--motion still.csv --rate 10 --scene-rate 10 --seconds 0.3 --out moved");
-    const std::string csv = work.bytesOf("moved/motion.csv");
+    go(bench + "--motion still.csv --rate 10 --scene-rate 10 --seconds 0.3 --out moved");
+    const std::string csv = bytesOf("moved/motion.csv");
     CHECK(csv.find(",scene_frames_late,moved_share,psnr_moved_db\n") != std::string::npos);
     CHECK(std::count(csv.begin(), csv.end(), '\n') == 1 + 3 * 3);  // with shared, which is always there
-    work.write("few.toml", "[bench]\nmodes = [\"shared\"]\nscores = [\"none\"]\nwarm-up = 0\nrepeats = 1\n");
-    work.go(bench + "--out still");
-    work.go("convert slide first.ply");
-    work.go("convert slide/frame_0001.ply same.ply");
-    CHECK(work.bytesOf("first.ply") == work.bytesOf("same.ply"));
-    CHECK(work.go("info slide").output.find("2000") != std::string::npos);
+    write("few.toml", "[bench]\nmodes = [\"shared\"]\nscores = [\"none\"]\nwarm-up = 0\nrepeats = 1\n");
+    go(bench + "--out still");
+    go("convert slide first.ply");
+    go("convert slide/frame_0001.ply same.ply");
+    CHECK(bytesOf("first.ply") == bytesOf("same.ply"));
+    CHECK(go("info slide").output.find("2000") != std::string::npos);
 }
 
-TEST_CASE("hostile folders end in one line") {
-    const Sliding work;
-    const std::string third = "slide/frame_0003.ply", path = "render slide" + kPath + "--scene-rate 10 --out ";
+TEST_CASE_FIXTURE(Sliding, "hostile folders end in one line") {
+    const std::string third = "slide/frame_0003.ply", along = "render slide" + kPath + "--scene-rate 10 --out ";
     // Nobody who does not come to it is told of a broken file.
-    work.write(third, "ply\nformat ascii 1.0\nelement vertex 3\nend_header\n");
-    work.checkRefused(path + "out", 1, "frame_0003.ply");
-    CHECK_FALSE(work.holds("out"));
-    work.go(path + "begin --seconds 0.1");
+    write(third, "ply\nformat ascii 1.0\nelement vertex 3\nend_header\n");
+    checkRefused(along + "out", 1, "frame_0003.ply");
+    CHECK_FALSE(holds("out"));
+    go(along + "begin --seconds 0.1");
     // Of another format, or another kind of splat.
-    work.write(third, std::string(32, '\x40'));
-    work.checkRefused(path + "out", 1, "frame_0003.ply");
-    fs::remove(work.path / third);
-    CHECK(work.go(path + "out").output.find("1 of 4 numbered files are missing, the first after frame_0002.ply") != std::string::npos);
-    CHECK(work.picture("out/frame_000002_left") == work.pictureOfFrame(1, "left"));
+    write(third, std::string(32, '\x40'));
+    checkRefused(along + "out", 1, "frame_0003.ply");
+    fs::remove(path / third);
+    CHECK(go(along + "out").output.find("1 of 4 numbered files are missing, the first after frame_0002.ply") != std::string::npos);
+    CHECK(picture("out/frame_000002_left") == pictureOfFrame(1, "left"));
     for (const int frame : {1, 2, 4}) {
-        fs::rename(work.path / fmt::format("slide/frame_{:04}.ply", frame), work.path / fmt::format("slide/{}", frame));
+        fs::rename(path / fmt::format("slide/frame_{:04}.ply", frame), path / fmt::format("slide/{}", frame));
     }
-    work.go("render slide" + kCamera + "--out out2");
-    work.checkRefused("render slide" + kCamera + "--splat-budget 100 --out o", 1, "no levels of detail");
-    work.checkRefused("render slide" + kCamera + "--lod 1 --out o", 1, "no levels of detail");
+    go("render slide" + kCamera + "--out out2");
+    checkRefused("render slide" + kCamera + "--splat-budget 100 --out o", 1, "no levels of detail");
+    checkRefused("render slide" + kCamera + "--lod 1 --out o", 1, "no levels of detail");
 }
 
 }  // SUITE(moving_program)

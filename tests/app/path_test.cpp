@@ -25,23 +25,22 @@ struct Way : Workplace {
     [[nodiscard]] Image picture(const std::string& name) const { return readPicture(path / (name + kExtension)); }
 };
 
-TEST_CASE("every pose becomes a frame of both eyes, the same as one that is rendered there") {
-    const Way way;
-    CHECK(way.walk("--mode shared").output.find("3 frames along poses.csv") != std::string::npos);
+TEST_CASE_FIXTURE(Way, "every pose becomes a frame of both eyes, the same as one that is rendered there") {
+    CHECK(walk("--mode shared").output.find("3 frames along poses.csv") != std::string::npos);
     std::set<std::string> expected{"poses.csv", "frames", "frames/report.json"};
     for (const int frame : {0, 1, 2}) {
         for (const char* eye : {"left", "right"}) { expected.insert(fmt::format("frames/frame_{:06}_{}{}", frame, eye, kExtension)); }
     }
-    CHECK(way.files() == expected);
+    CHECK(files() == expected);
     const double turn = kPi / 9.0;
-    way.go(kScene + fmt::format("--mode shared --out alone --eye 0.1,0,0 --look {:.9f},0,{:.9f}", 0.1 - std::sin(turn), std::cos(turn)));
-    way.go(kRender + "--mode shared --out start");
+    go(kScene + fmt::format("--mode shared --out alone --eye 0.1,0,0 --look {:.9f},0,{:.9f}", 0.1 - std::sin(turn), std::cos(turn)));
+    go(kRender + "--mode shared --out start");
     for (const std::string eye : {"left", "right"}) {
         CAPTURE(eye);
-        const auto frame = [&](int number) { return way.picture(fmt::format("frames/frame_{:06}_{}", number, eye)); };
-        const Image start = way.picture("start/" + eye);
+        const auto frame = [&](int number) { return picture(fmt::format("frames/frame_{:06}_{}", number, eye)); };
+        const Image start = picture("start/" + eye);
         CHECK(frame(0).values == start.values);
-        CHECK(compare(frame(1), way.picture("alone/" + eye)).psnrDb() > 50.0);
+        CHECK(compare(frame(1), picture("alone/" + eye)).psnrDb() > 50.0);
         CHECK(compare(frame(1), start).psnrDb() < 30.0);
         CHECK(compare(frame(2), start).psnrDb() > 50.0);
     }
@@ -94,12 +93,11 @@ TEST_CASE("a headset's frusta go along the path, in metres, and a recording in U
     }
 }
 
-TEST_CASE("a rate puts frames between the poses, turns by the great arc, and no frame of another path is mixed with them") {
-    const Way way;
-    way.walk("--mode mono --rate 4");
-    const nlohmann::json frames = way.report().at("frames");
+TEST_CASE_FIXTURE(Way, "a rate puts frames between the poses, turns by the great arc, and no frame of another path is mixed with them") {
+    walk("--mode mono --rate 4");
+    const nlohmann::json frames = report().at("frames");
     REQUIRE(frames.size() == 7);
-    const std::set<std::string> before = way.files();
+    const std::set<std::string> before = files();
     CHECK(before.size() == 2 + 8);
     CHECK(before.contains("frames/frame_000006_mono" + kExtension));
     for (std::size_t i = 0; i < 7; ++i) {
@@ -112,12 +110,12 @@ TEST_CASE("a rate puts frames between the poses, turns by the great arc, and no 
     }
     // The same frames are replaced.
     for (const std::string options : {"--mode mono", "--mode shared --rate 4"}) {
-        way.checkRefused(kRender + "--path poses.csv --out frames " + options, 1, "is a frame of another path");
-        CHECK(way.files() == before);
+        checkRefused(kRender + "--path poses.csv --out frames " + options, 1, "is a frame of another path");
+        CHECK(files() == before);
     }
-    way.write("frames/frame_notes.txt", "mine");
-    way.walk("--mode mono --rate 4");
-    CHECK(way.files().size() == before.size() + 1);
+    write("frames/frame_notes.txt", "mine");
+    walk("--mode mono --rate 4");
+    CHECK(files().size() == before.size() + 1);
 }
 
 TEST_CASE("a path may begin on the way, where the camera then stands, and end before its end") {
@@ -147,14 +145,13 @@ TEST_CASE("a path that cannot be used is one line and one, and leaves nothing") 
     Way().checkRefused(kRender + "--path nowhere.csv --out frames", 1, "nowhere.csv");
 }
 
-TEST_CASE("a signal on the way ends it with nothing written") {
-    const Way way;
+TEST_CASE_FIXTURE(Way, "a signal on the way ends it with nothing written") {
     // While the scene is uploaded, in the first frame, and in later ones.
     for (const int number : {1, 3, 9}) {
-        way.checkNoWay("", 130, "stopped by SIGINT, nothing was written",
-                       fmt::format("VK_ADD_LAYER_PATH='" BINOSPLAT_FAULT_LAYER
-                                   "' VK_INSTANCE_LAYERS=VK_LAYER_BINOSPLAT_faults BINOSPLAT_FAULT=submit:{}:SIGINT",
-                                   number));
+        checkNoWay("", 130, "stopped by SIGINT, nothing was written",
+                   fmt::format("VK_ADD_LAYER_PATH='" BINOSPLAT_FAULT_LAYER
+                               "' VK_INSTANCE_LAYERS=VK_LAYER_BINOSPLAT_faults BINOSPLAT_FAULT=submit:{}:SIGINT",
+                               number));
     }
 }
 

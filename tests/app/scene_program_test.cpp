@@ -11,8 +11,7 @@
 
 SUITE(scene_program) {
 
-TEST_CASE("info says what a scene is made of, and what would take less memory") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "info says what a scene is made of, and what would take less memory") {
     PlyText ply = makePly(0, true);
     for (const char* name : {"scale_0", "scale_1", "scale_2"}) { ply[name].values.assign(3, std::log(0.01)); }
     for (Column& column : ply.columns) { column.values.resize(3000, column.values[0]); }
@@ -98,8 +97,7 @@ TEST_CASE("a scene and its cameras that are moved together give the same picture
 }
 
 #ifdef BINOSPLAT_SOG
-TEST_CASE("the program loads the level that --lod names and says which levels there are") {
-    const Folder folder;
+TEST_CASE_FIXTURE(InFolder, "the program loads the level that --lod names and says which levels there are") {
     const Workplace work;
     const std::string source = writeStreamed(folder, "scene", makeLodMeta());
     const Outcome info = work.go("info '" + source + "'");

@@ -64,22 +64,21 @@ TEST_CASE("a budget is what the splats of a picture keep within, of a path and o
     CHECK(work.counters("whole")["splats_read"] == 16'000);
 }
 
-TEST_CASE("a budget is refused of a scene without levels and beside a level, and a chunk that is missing is one line") {
-    const Streamed work;
-    work.checkRefused("render builtin:fence --splat-budget 100 --out out", 1, "builtin:fence: has no levels of detail");
-    work.checkRefused("render split --lod 1 --splat-budget 100 --out out", 1, "lod 1 is one level, splat-budget chooses among all");
-    work.checkRefused("bench split --orders --splat-budget 100 --out out", 1, "which compare whole scenes");
-    work.checkRefused("render nowhere --splat-budget 100 --out out", 1, "nowhere: no such file");
-    CHECK_FALSE(work.holds("out"));
-    std::filesystem::remove(work.path / "split" / "0_1.sog");
-    const Outcome outcome = work.go("render split" + kCamera + "--splat-budget 16000 --out part");
+TEST_CASE_FIXTURE(Streamed, "a budget is refused of a scene without levels and beside a level, and a chunk that is missing is one line") {
+    checkRefused("render builtin:fence --splat-budget 100 --out out", 1, "builtin:fence: has no levels of detail");
+    checkRefused("render split --lod 1 --splat-budget 100 --out out", 1, "lod 1 is one level, splat-budget chooses among all");
+    checkRefused("bench split --orders --splat-budget 100 --out out", 1, "which compare whole scenes");
+    checkRefused("render nowhere --splat-budget 100 --out out", 1, "nowhere: no such file");
+    CHECK_FALSE(holds("out"));
+    std::filesystem::remove(path / "split" / "0_1.sog");
+    const Outcome outcome = go("render split" + kCamera + "--splat-budget 16000 --out part");
     CHECK(std::count(outcome.errors.begin(), outcome.errors.end(), '\n') == 1);
     CHECK(outcome.errors.find("0_1.sog is not there, expected a chunk of the scene; what is there stays") != std::string::npos);
-    CHECK(work.counters("part")["chunks_resident"] == 16);
+    CHECK(counters("part")["chunks_resident"] == 16);
     // Even of the coarsest level.
-    std::filesystem::remove(work.path / "split" / "3_0.sog");
-    work.go("render split" + kCamera + "--splat-budget 16000 --out less");
-    CHECK(work.counters("less")["chunks_resident"] == 16);
+    std::filesystem::remove(path / "split" / "3_0.sog");
+    go("render split" + kCamera + "--splat-budget 16000 --out less");
+    CHECK(counters("less")["chunks_resident"] == 16);
 }
 
 }  // SUITE(stream_program)

@@ -12,8 +12,7 @@ std::string environmentOf(const Workplace& work) {
     return fmt::format("no_proxy=127.0.0.1 XDG_CACHE_HOME='{0}/caches' XDG_CONFIG_HOME='{0}/config'", work.base.string());
 }
 
-TEST_CASE("render, bench, info, convert and view take an address, and the user's cache keeps what --cache-limit lets it") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "render, bench, info, convert and view take an address, and the user's cache keeps what --cache-limit lets it") {
     writePly(makeBuiltin("builtin:slanted-wall", 0), (work.path / "wall.ply").string());
     const auto done = [&](const std::string& arguments) {
         const Outcome outcome = work.go(arguments, environmentOf(work));
@@ -46,8 +45,7 @@ TEST_CASE("render, bench, info, convert and view take an address, and the user's
     CHECK(contains(done("info " + address), address + ": cannot be reached ("));
 }
 
-TEST_CASE("what is wrong with an address is one line, and nothing is left") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "what is wrong with an address is one line, and nothing is left") {
     const WebServer server({{"/page", std::string("<html></html>")}});
     const std::string missing = server.at("/none.ply"), page = server.at("/page");
     work.checkRefused("render " + missing + " --out out", 1, "binosplat: " + missing, environmentOf(work));

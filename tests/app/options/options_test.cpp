@@ -16,8 +16,7 @@ const fs::path kSource = BINOSPLAT_SOURCE_DIR;
 RunOptions view(const std::string& options) { return parse<ViewOptions>("view a " + options).run; }
 
 void checkRefused(const std::string& line, ExitCode code, const std::string& part) {
-    CAPTURE(line);
-    CAPTURE(part);
+    INFO("line ", line, ", part ", part);
     try {
         parseLine(line);
         FAIL_CHECK("is taken");
@@ -27,8 +26,7 @@ void checkRefused(const std::string& line, ExitCode code, const std::string& par
     }
 }
 
-TEST_CASE("a scene in the place of a command is viewed, any other word is a usage error") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "a scene in the place of a command is viewed, any other word is a usage error") {
     const std::string file = (work.path / "Größe 日本.ply").string();
     work.write("Größe 日本.ply", "not looked into");
     const auto viewed = std::get<ViewOptions>(parseWords({file, "--frames", "3", "--mode", "mono"}));
@@ -144,8 +142,7 @@ TEST_CASE("values may begin with a minus, and a flag may be switched off by what
     CHECK_FALSE(renderOptions("--center-roi=false").stereo.warp.center_rois);
 }
 
-TEST_CASE("errors in a config name file and line") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "errors in a config name file and line") {
     const std::string file = (work.path / "a.toml").string();
     for (const auto& [text, part] : std::vector<std::pair<const char*, const char*>>{
              {"[camera]\n\nnear = 0\n", "a.toml:3: near is 0, must be a number from 1e-06 to 1000000"},
@@ -167,8 +164,7 @@ TEST_CASE("errors in a config name file and line") {
     checkRefused(kRenderOne + "--config none.toml", ExitCode::kBadInput, "none.toml");
 }
 
-TEST_CASE("errors in a file of cameras name the camera and the key") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "errors in a file of cameras name the camera and the key") {
     const std::string file = (work.path / "c.json").string();
     const auto errorWith = [&](const std::string& text, const std::string& options = "") {
         work.write("c.json", text);
@@ -191,8 +187,7 @@ TEST_CASE("errors in a file of cameras name the camera and the key") {
     CHECK(errorWith(good, " --view 1").find("--view is 1, must be 0 to 0") != std::string::npos);
 }
 
-TEST_CASE("the documents of the options are those that the program makes, and every key of the default config is taken") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "the documents of the options are those that the program makes, and every key of the default config is taken") {
     CHECK_MESSAGE(textIn(kSource / "docs/options.md") == documentOf("markdown"), "run `binosplat document markdown > docs/options.md`");
     const std::string text = textIn(kSource / "configs/default.toml");
     CHECK_MESSAGE(text == documentOf("config"), "run `binosplat document config > configs/default.toml`");
@@ -253,8 +248,7 @@ TEST_CASE("bash is told of files for the options that take one, of names for tho
     }
 }
 
-TEST_CASE("frames that follow one another are temporal unless a mode is named, and the command line wins over the config") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "frames that follow one another are temporal unless a mode is named, and the command line wins over the config") {
     const std::string open = " --config " + (kSource / "configs/default.toml").string(),
                       named = " --config " + (work.path / "named.toml").string();
     writeText(work.path / "named.toml",
@@ -280,8 +274,7 @@ TEST_CASE("frames that follow one another are temporal unless a mode is named, a
     CHECK(both.stereo.ipd_m == 0.0);
 }
 
-TEST_CASE("every command that reads a scene has the options of how it is read, which a config may hold, too") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "every command that reads a scene has the options of how it is read, which a config may hold, too") {
     writeText(work.path / "a.toml", "[scene]\nlod = 3\nflatten = true\nantialiased = true\nsh_degree = 1\n");
     const std::string file = "--config " + (work.path / "a.toml").string();
     CHECK(renderOptions("").load == LoadOptions());
@@ -297,8 +290,7 @@ TEST_CASE("every command that reads a scene has the options of how it is read, w
     CHECK_FALSE(view("--center-roi").load.flatten);
 }
 
-TEST_CASE("splats go by depth or by distance: as the command line says, the config, or else the scene") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "splats go by depth or by distance: as the command line says, the config, or else the scene") {
     writeText(work.path / "a.toml", "[stereo]\norder = \"distance\"\n");
     const std::string file = "--config " + (work.path / "a.toml").string();
     const auto orderOf = [](const std::string& options, Order usual) {

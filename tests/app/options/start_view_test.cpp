@@ -89,8 +89,7 @@ TEST_CASE("a file is framed whole: upright and from its front where its y is up,
     CHECK(startView(one, {60.0}).view.eye.z == doctest::Approx(3.0 - 24.0));
 }
 
-TEST_CASE("cameras lie with a scene in its folder, beside it, or where training leaves them, and --view takes those") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "cameras lie with a scene in its folder, beside it, or where training leaves them, and --view takes those") {
     const fs::path garden = work.path / "garden", iteration = garden / "point_cloud/iteration_7000", sog = work.path / "sog";
     const fs::path scene = work.path / "a.ply", beside = work.path / "cameras.json", trained = garden / "cameras.json";
     fs::create_directories(iteration);
@@ -133,8 +132,7 @@ TEST_CASE("cameras lie with a scene in its folder, beside it, or where training 
     CHECK(with("--view 1").cameras_file == trained.string());
 }
 
-TEST_CASE("one stands at the first camera that sees the scene, upright along the mean up of all") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "one stands at the first camera that sees the scene, upright along the mean up of all") {
     const Scene scene = makeBox((work.path / "box.ply").string());
     const auto camera = [](const char* name, const char* position, const char* rotation) {
         return fmt::format(R"({{"img_name": "{}", "position": {}, "rotation": {}, "width": 100, "height": 80, "fx": 80, "fy": 80}})", name,
