@@ -30,58 +30,54 @@ TEST_CASE("a frame that is displayed late has lost periods, one that comes in ti
     for (const double periods : {1.0, 3.0, 1.25, 0.75, 1.0}) { CHECK(pace.after(periods) == doctest::Approx(periods - 1.0)); }
 }
 
-TEST_CASE("what nobody was to see, or what the program itself was too slow for, says nothing of the device") {
-    Pace pace;
-    pace.after(1.0);
-    CHECK(pace.after(1.0, false) == 0.0);
-    CHECK(pace.after(4.0) == 0.0);
-    CHECK(pace.after(2.0, true, kSlow) == doctest::Approx(1.0));
-    CHECK(pace.after(2.0) == 0.0);
-    CHECK(pace.after(2.0) == doctest::Approx(1.0));
+TEST_CASE_FIXTURE(Pace, "what nobody was to see, or what the program itself was too slow for, says nothing of the device") {
+    after(1.0);
+    CHECK(after(1.0, false) == 0.0);
+    CHECK(after(4.0) == 0.0);
+    CHECK(after(2.0, true, kSlow) == doctest::Approx(1.0));
+    CHECK(after(2.0) == 0.0);
+    CHECK(after(2.0) == doctest::Approx(1.0));
 }
 
-TEST_CASE("pauses, another period, a change of the session's state and time that goes back say nothing") {
-    Pace pace;
-    CHECK(pace.after(5.0) == 0.0);
-    CHECK(pace.after(500.0) == 0.0);
+TEST_CASE_FIXTURE(Pace, "pauses, another period, a change of the session's state and time that goes back say nothing") {
+    CHECK(after(5.0) == 0.0);
+    CHECK(after(500.0) == 0.0);
     constexpr XrDuration kOther = kPeriod * 5 / 4;
-    CHECK(pace.after(2.5, true, kQuick, kOther) == 0.0);
-    CHECK(pace.after(2.5, true, kQuick, kOther) == doctest::Approx(1.0));
-    pace.interrupt();
-    CHECK(pace.after(2.5, true, kQuick, kOther) == 0.0);
-    CHECK(pace.after(-3.0, true, kQuick, kOther) == 0.0);
-    CHECK(pace.after(0.0, true, kQuick, 0) == 0.0);
-    CHECK(pace.after(3.0, true, kQuick, 0) == 0.0);
+    CHECK(after(2.5, true, kQuick, kOther) == 0.0);
+    CHECK(after(2.5, true, kQuick, kOther) == doctest::Approx(1.0));
+    interrupt();
+    CHECK(after(2.5, true, kQuick, kOther) == 0.0);
+    CHECK(after(-3.0, true, kQuick, kOther) == 0.0);
+    CHECK(after(0.0, true, kQuick, 0) == 0.0);
+    CHECK(after(3.0, true, kQuick, 0) == 0.0);
 }
 
-TEST_CASE("a stated period of several displays is not the display's: what it leaves out was lost") {
-    Pace pace;
-    pace.after(1.0);
-    CHECK(pace.after(2.0, true, kQuick, 2 * kPeriod) == doctest::Approx(1.0));
-    CHECK(pace.period() == kPeriod);
-    CHECK(pace.after(3.0, true, kQuick, 3 * kPeriod + kPeriod / 100) == doctest::Approx(2.0));
-    CHECK(pace.period() == kPeriod);
-    CHECK(pace.after(1.0) == 0.0);
-    CHECK(pace.after(9.0, true, kQuick, 9 * kPeriod) == doctest::Approx(8.0));
+TEST_CASE_FIXTURE(Pace, "a stated period of several displays is not the display's: what it leaves out was lost") {
+    after(1.0);
+    CHECK(after(2.0, true, kQuick, 2 * kPeriod) == doctest::Approx(1.0));
+    CHECK(period() == kPeriod);
+    CHECK(after(3.0, true, kQuick, 3 * kPeriod + kPeriod / 100) == doctest::Approx(2.0));
+    CHECK(period() == kPeriod);
+    CHECK(after(1.0) == 0.0);
+    CHECK(after(9.0, true, kQuick, 9 * kPeriod) == doctest::Approx(8.0));
     // What is measured at three frames a second.
-    CHECK(pace.after(33.3, true, kQuick, kPeriod * 333 / 10) == 0.0);
-    CHECK(pace.period() == kPeriod);
+    CHECK(after(33.3, true, kQuick, kPeriod * 333 / 10) == 0.0);
+    CHECK(period() == kPeriod);
     // A shorter one, or one that is no multiple, is always the display's.
-    CHECK(pace.after(1.0) == 0.0);
-    CHECK(pace.period() == kPeriod);
-    CHECK(pace.after(1.5, true, kQuick, kPeriod * 3 / 2) == 0.0);
-    CHECK(pace.period() == kPeriod * 3 / 2);
+    CHECK(after(1.0) == 0.0);
+    CHECK(period() == kPeriod);
+    CHECK(after(1.5, true, kQuick, kPeriod * 3 / 2) == 0.0);
+    CHECK(period() == kPeriod * 3 / 2);
 }
 
-TEST_CASE("where the runtime says what the display's period is, it is that") {
-    Pace pace;
-    pace.after(1.0);
-    CHECK(pace.after(2.0, true, kQuick, 2 * kPeriod, kPeriod) == doctest::Approx(1.0));
+TEST_CASE_FIXTURE(Pace, "where the runtime says what the display's period is, it is that") {
+    after(1.0);
+    CHECK(after(2.0, true, kQuick, 2 * kPeriod, kPeriod) == doctest::Approx(1.0));
     // The display is slower now, and what is stated follows a frame later.
-    CHECK(pace.after(1.0, true, kQuick, kPeriod, 2 * kPeriod) == 0.0);
-    CHECK(pace.after(2.0, true, kQuick, 2 * kPeriod, 2 * kPeriod) == 0.0);
-    CHECK(pace.after(4.0, true, kQuick, 2 * kPeriod, 2 * kPeriod) == doctest::Approx(1.0));
-    CHECK(pace.period() == 2 * kPeriod);
+    CHECK(after(1.0, true, kQuick, kPeriod, 2 * kPeriod) == 0.0);
+    CHECK(after(2.0, true, kQuick, 2 * kPeriod, 2 * kPeriod) == 0.0);
+    CHECK(after(4.0, true, kQuick, 2 * kPeriod, 2 * kPeriod) == doctest::Approx(1.0));
+    CHECK(period() == 2 * kPeriod);
 }
 
 }  // SUITE(display_pace)

@@ -35,17 +35,14 @@ std::string room() {
 
 ViewRun look(const Workplace& work, const std::string& keys, const std::string& script, int frames) {
     const std::string config = "[stereo]\nmode = \"predicted\"\nperiphery = \"full\"\nbudget = 0.04\nmove_cost = 0\nfoveation = 8\n";
-    const ViewRun run = runView(work, "look", script,
-                                fmt::format("{}{} --frames {} --load-first --hide-panel --hide-hands", room(),
-                                            withConfig(work, config + "[view]\ntint = true\n" + keys), frames));
-    checkClean(run);
-    return run;
+    return runClean(work, "look", script,
+                    fmt::format("{}{} --frames {} --load-first --hide-panel --hide-hands", room(),
+                                withConfig(work, config + "[view]\ntint = true\n" + keys), frames));
 }
 
 std::size_t viewsOf(const ViewRun& run, std::size_t frame) { return run.layers(frame, "projection").at(0).at("views").size(); }
 
-TEST_CASE("what is rendered again follows the eyes, and goes back to the lens's middle when they are lost") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "what is rendered again follows the eyes, and goes back to the lens's middle when they are lost") {
     // The wearer looks to the left, from 0.55 s on to the right, and from 0.8 s on nobody sees where.
     const ViewRun run = look(work, "eye-tracking = true\n",
                              "rate 20\nsize 384 384\nframes from 6 to 36 every 5\n"
@@ -69,8 +66,7 @@ TEST_CASE("what is rendered again follows the eyes, and goes back to the lens's 
     CHECK_FALSE(run.says("gaze"));
 }
 
-TEST_CASE("where the wearer does not let the viewer see them, or the headset cannot, the eyes are taken to look ahead") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "where the wearer does not let the viewer see them, or the headset cannot, the eyes are taken to look ahead") {
     for (const auto& [keys, line] : {std::pair("", ""), std::pair("eye-tracking = true\n", "eye-tracking refused\n"),
                                      std::pair("eye-tracking = true\n", "extension XR_EXT_eye_gaze_interaction off\n")}) {
         CAPTURE(line);
@@ -93,11 +89,8 @@ TEST_CASE("with foveation a headset that takes insets has one for each eye, with
     const std::string begin = "rate 50\nsize 256 256\ninset 26.565051177 size 128 128\nframes from 9 to 9 every 1\n";
     const auto runInset = [&](const std::string& name, const std::string& script, double foveation, bool wanted) {
         const std::string keys = fmt::format("[stereo]\nfoveation = {}\n{}foveated-inset = {}\n", foveation, kMethodPage, wanted);
-        const ViewRun run =
-            runView(work, name, script,
-                    "builtin:fence --mode two-pass --frames 200 --load-first --hide-panel --hide-hands" + withConfig(work, keys));
-        checkClean(run);
-        return run;
+        return runClean(work, name, script,
+                        "builtin:fence --mode two-pass --frames 200 --load-first --hide-panel --hide-hands" + withConfig(work, keys));
     };
     Acts acts(begin);
     acts.press("right b");

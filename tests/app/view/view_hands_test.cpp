@@ -1,5 +1,5 @@
 // Facts about controllers and hands: what their buttons and sticks do, and what is seen beside the scene: rays, hands, controllers, the way
-// to another place, the vignette, the room.
+// to another place, the vignette.
 #include "tests/app/view/view_acts.h"
 
 SUITE(view_hands) {
@@ -14,20 +14,11 @@ glm::dvec3 stagePlace(const nlohmann::json& quad) { return stagePose(quad).posit
 glm::dvec3 alongOf(const nlohmann::json& quad) { return stagePose(quad).orientation * glm::dvec3(0.0, 1.0, 0.0); }
 double heightOf(const nlohmann::json& quad) { return quad.at("size").at(1).get<double>(); }
 
-std::vector<nlohmann::json> hands(const ViewRun& run, std::size_t frame) { return run.quadsAsWide(frame, 0.3); }
-std::vector<nlohmann::json> knobs(const ViewRun& run, std::size_t frame) { return run.quadsAsWide(frame, 0.055); }
-std::vector<nlohmann::json> handles(const ViewRun& run, std::size_t frame) { return run.quadsAsWide(frame, 0.035); }
-std::vector<nlohmann::json> arc(const ViewRun& run, std::size_t frame) { return run.quadsAsWide(frame, 0.012); }
-std::vector<nlohmann::json> targets(const ViewRun& run, std::size_t frame) { return run.quadsAsWide(frame, 0.5); }
+// What is as wide as a hand, the parts of a controller, a strip of the arc, and the place where one will stand.
+constexpr double kHand = 0.3, kKnob = 0.055, kHandle = 0.035, kArc = 0.012, kTarget = 0.5;
+std::size_t countSeen(const ViewRun& run, double seconds, double width_m) { return run.quadsAsWide(run.frameAt(seconds), width_m).size(); }
 std::vector<nlohmann::json> vignettes(const ViewRun& run, std::size_t frame) {
     return run.quadsWhere(frame, [](const nlohmann::json& quad) { return quad.at("space") == "VIEW"; });
-}
-
-ViewRun runHands(const Workplace& work, const std::string& script, const std::string& arguments) {
-    const ViewRun run = runView(work, "run", script, arguments);
-    checkClean(run);
-    for (const auto& frame : run.frames) { CHECK(frame.at("layers").size() <= 16); }
-    return run;
 }
 
 // What the right hand feels, of so many frames.
@@ -94,7 +85,7 @@ TEST_CASE("every controller and bare hands show the panel, click and are felt; w
     }
     const double bare_end = acts.now_s;
     take("oculus/touch_controller", "aim_activate_ext", "trigger", "right");
-    const ViewRun run = runHands(work, acts.script(), kScene + withConfig(work, kMethodPage));
+    const ViewRun run = runClean(work, "run", acts.script(), kScene + withConfig(work, kMethodPage));
     for (std::size_t i = 0; i < controllers.size(); ++i) {
         CAPTURE(controllers[i]);
         const std::size_t first = run.frameAt(begins[i]);
@@ -143,7 +134,7 @@ TEST_CASE("a grip that shivers holds the panel, one that only touches does not; 
         }
         acts.press("right b");
     }
-    const ViewRun run = runHands(work, acts.script(), kScene);
+    const ViewRun run = runClean(work, "run", acts.script(), kScene);
     const auto lifted = [&](std::size_t i) { return panelOf(run, run.frameAt(looks[i])).middle.y - acts.panel.middle.y; };
     CHECK(lifted(0) == doctest::Approx(0.0));
     checkLifted(run, looks[1]);
@@ -185,7 +176,7 @@ TEST_CASE("rays end at the panel, else fade; hands are seen as their joints are;
     acts.move("controller left", pointingAt(acts.panel, placeOf("Quit"))).wait(0.05).press("left trigger").wait(1.0);
     // There is no room to be seen.
     const ViewRun run =
-        runHands(work, acts.script(), kWithHands + " --background 1,0,0" + withConfig(work, "[view]\npassthrough = true\n"));
+        runClean(work, "run", acts.script(), kWithHands + " --background 1,0,0" + withConfig(work, "[view]\npassthrough = true\n"));
     CHECK(run.endSeconds() < acts.now_s - 0.5);
     CHECK(run.frames.at(run.pictureAt(hidden)).at("blend_mode") == "OPAQUE");
     const Colour corner = colourAt(run.eye(run.pictureAt(hidden), kLeft), {0, 0});
@@ -201,13 +192,13 @@ TEST_CASE("rays end at the panel, else fade; hands are seen as their joints are;
     CHECK(nearest(right_at) < 1e-4);
     CHECK(nearest(acts.panel.middle) < 1e-3);
     CHECK(run.rays(run.frameAt(lost) + 1).size() == 1);
-    CHECK(hands(run, run.frameAt(both)).size() == 2);
-    CHECK(knobs(run, run.frameAt(both)).empty());
-    CHECK(hands(run, run.frameAt(lost) + 1).size() == 1);
+    CHECK(countSeen(run, both, kHand) == 2);
+    CHECK(countSeen(run, both, kKnob) == 0);
+    CHECK(run.quadsAsWide(run.frameAt(lost) + 1, kHand).size() == 1);
     for (const double seconds : {hidden, gone}) { CHECK(run.panels(run.frameAt(seconds)).empty()); }
     for (const double seconds : {hidden, let_go}) { CHECK(run.rays(run.frameAt(seconds)).empty()); }
     CHECK(run.rays(run.frameAt(pulled)).size() == 1);
-    const auto seen = hands(run, run.frameAt(open));
+    const auto seen = run.quadsAsWide(run.frameAt(open), kHand);
     CHECK(std::ranges::count_if(seen, [](const auto& hand) { return glm::distance(stagePlace(hand), {0.1, 1.5, -0.4}) < 0.1; }) == 1);
     // A fist is another picture than a hand that is open. The scene is in its grip, and does not move with it.
     const double likeness = run.likeness(run.pictureAt(open), run.pictureAt(fist));
@@ -237,24 +228,24 @@ TEST_CASE("controllers are drawn where grips are; the wearer teleports to where 
     acts.at("profile khr/simple_controller").move("controller right", lookingAt({0.2, 0.9, -0.35}, {0.2, 0.9, -1.0})).wait(0.05);
     const double by_trigger = acts.hold("right select", 0.2).wait(0.05).look();
     acts.wait(0.1).click(keep, "right select").wait(0.1);
-    const ViewRun run = runHands(work, acts.script(), kWithHands + " --hide-panel" + config);
-    CHECK(knobs(run, run.frameAt(both)).size() == 2);
-    CHECK(handles(run, run.frameAt(both)).size() == 2);
+    const ViewRun run = runClean(work, "run", acts.script(), kWithHands + " --hide-panel" + config);
+    CHECK(countSeen(run, both, kKnob) == 2);
+    CHECK(countSeen(run, both, kHandle) == 2);
     const std::size_t frame = run.frameAt(one) + 1;
-    REQUIRE(knobs(run, frame).size() == 1);
-    REQUIRE(handles(run, frame).size() == 1);
+    REQUIRE(run.quadsAsWide(frame, kKnob).size() == 1);
+    REQUIRE(run.quadsAsWide(frame, kHandle).size() == 1);
     // The handle lies about the grip, along its axis.
-    CHECK(glm::distance(stagePlace(handles(run, frame)[0]), right_at) < 0.02);
-    CHECK(std::abs(alongOf(handles(run, frame)[0]).z) > 0.999);
+    CHECK(glm::distance(stagePlace(run.quadsAsWide(frame, kHandle)[0]), right_at) < 0.02);
+    CHECK(std::abs(alongOf(run.quadsAsWide(frame, kHandle)[0]).z) > 0.999);
     CHECK(run.layers(run.frameAt(none) + 1, "quad").empty());
     CHECK(run.likeness(run.pictureAt(one + 0.01), run.pictureAt(none + 0.01)) < 45.0);
     // It is said beforehand where that will be.
-    CHECK(arc(run, run.frameAt(by_stick)).size() == 6);
+    CHECK(countSeen(run, by_stick, kArc) == 6);
     CHECK(vignettes(run, run.frameAt(by_stick)).empty());
-    CHECK(arc(run, run.frameAt(there)).empty());
-    CHECK(targets(run, run.frameAt(there)).empty());
+    CHECK(countSeen(run, there, kArc) == 0);
+    CHECK(countSeen(run, there, kTarget) == 0);
     const auto targetAt = [&](double seconds) {
-        const auto found = targets(run, run.frameAt(seconds));
+        const auto found = run.quadsAsWide(run.frameAt(seconds), kTarget);
         REQUIRE(found.size() == 1);
         return poseOf(found[0].at("pose")).position;
     };
@@ -320,7 +311,7 @@ TEST_CASE("the wearer is moved by sticks, pads, hands, viewpoints and buttons, a
     keep();  // 12
     acts.click(onScenes("View")).move("head", "position 0.4 1.5 0.3 turn 50 0").click(placeOf("Recentre")).wait(0.1);
     const double recentred = acts.look();
-    const ViewRun run = runHands(work, acts.script(),
+    const ViewRun run = runClean(work, "run", acts.script(),
                                  "a.ply --load-first --mode mono --hide-hands --metres-per-unit 0.5 --eye 0,0,1 --look 0,0,3 --up 0,-1,0" +
                                      withConfig(work, "[view]\npanel-page = \"scenes\"\n"));
     checkOrder(run, {"viewpoint 1 of 2: door", "viewpoint 2 of 2: window", "viewpoint 1 of 2: door", "this viewpoint is kept",
@@ -365,7 +356,7 @@ TEST_CASE("the view's edge is dark while a stick moves the wearer, its middle is
     acts.wait(0.05).click(placeOf("Hands", true)).click(placeOf("Passthrough", true)).click(placeOf("Teleport", true));
     const double end = acts.look();
     // Nothing is to be seen where the wearer looks.
-    const ViewRun run = runHands(work, acts.script(), kWithHands + " --background 1,1,1 --eye 0,0,0 --look 0,0,-9 --up 0,-1,0");
+    const ViewRun run = runClean(work, "run", acts.script(), kWithHands + " --background 1,1,1 --eye 0,0,0 --look 0,0,-9 --up 0,-1,0");
     checkOrder(run, {"vignette = false", "hands = false", "passthrough = true", "locomotion = \"teleport\""});
     for (const double seconds : {before, after, without}) { CHECK(vignettes(run, run.frameAt(seconds)).empty()); }
     CHECK(vignettes(run, run.frameAt(during)).size() == 1);
@@ -376,60 +367,10 @@ TEST_CASE("the view's edge is dark while a stick moves the wearer, its middle is
     for (const double seconds : {after, without}) {
         for (const glm::uvec2 place : {glm::uvec2(1, 1), glm::uvec2(32, 1)}) { CHECK(at(seconds, place) == at(before, place)); }
     }
-    CHECK(hands(run, run.frameAt(before)).size() == 2);
-    CHECK(hands(run, run.frameAt(end)).empty());
+    CHECK(countSeen(run, before, kHand) == 2);
+    CHECK(countSeen(run, end, kHand) == 0);
     CHECK(run.frames.at(run.frameAt(before)).at("blend_mode") == "OPAQUE");
     CHECK(run.frames.at(run.frameAt(end)).at("blend_mode") == "ALPHA_BLEND");
-}
-
-TEST_CASE("the room shows behind the scene where the headset and the wearer let it, in every mode") {
-    const Workplace work;
-    const std::string ahead = kScene + " --eye 0,0,-6 --look 0,0,3 --up 0,-1,0 --background ";
-    const auto begin = [](const std::string& modes, const std::string& room) {
-        return "rate 50\nsize 128 128\nframes every 5\nblend-modes " + modes + "\nroom-colour " + room + "\n";
-    };
-    const std::string both = "opaque alpha-blend", green_room = "0.2 0.9 0.4";
-    // The picture's corner, where the scene is not.
-    const auto isCorner = [](const ViewRun& run, double seconds, int side, const glm::vec3& colour) {
-        const auto [r, g, b] = colourAt(run.eye(run.pictureAt(seconds), side), {0, 0});
-        return glm::length(glm::vec3(r, g, b) - colour) < 0.02f;
-    };
-    const glm::vec3 red(1.0f, 0.0f, 0.0f), green(0.2f, 0.9f, 0.4f);
-
-    Acts acts(begin(both, green_room));
-    const double opaque = acts.look();
-    acts.click(placeOf("Passthrough", true));
-    std::vector<double> looks{acts.look()};
-    acts.click(placeOf("Method", true));
-    for (const char* mode : {"two-pass", "predicted"}) {
-        acts.click(onMethod(mode));
-        looks.push_back(acts.look());
-    }
-    const ViewRun run = runHands(work, acts.script(), ahead + "1,0,0");
-    CHECK(run.frames.at(run.pictureAt(opaque)).at("blend_mode") == "OPAQUE");
-    for (const double seconds : looks) {
-        CAPTURE(seconds);
-        CHECK(run.frames.at(run.pictureAt(seconds)).at("blend_mode") == "ALPHA_BLEND");
-        CHECK(run.layers(run.pictureAt(seconds), "projection").at(0).at("flags") == nlohmann::json::array({"blend_texture_source_alpha"}));
-        for (const int side : {kLeft, kRight}) { CHECK(isCorner(run, seconds, side, green)); }
-    }
-    for (const int side : {kLeft, kRight}) { CHECK(isCorner(run, opaque, side, red)); }
-
-    // Where the scene is, it is as it was: over its own black, and over a room that is black.
-    Acts dark(begin(both, "0 0 0"));
-    const double own = dark.look();
-    dark.press("right b").click(placeOf("Passthrough", true)).press("right b");
-    const double through = dark.look();
-    const ViewRun in_the_dark = runHands(work, dark.script(), ahead + "0,0,0 --hide-panel");
-    CHECK(in_the_dark.layers(in_the_dark.pictureAt(own), "quad").empty());
-    CHECK(in_the_dark.frames.at(in_the_dark.pictureAt(through)).at("blend_mode") == "ALPHA_BLEND");
-    CHECK(in_the_dark.likeness(in_the_dark.pictureAt(own), in_the_dark.pictureAt(through)) > 40.0);
-
-    // A headset that adds light to the room's.
-    const ViewRun additive =
-        runHands(work, begin("additive", green_room) + "at 0.3 exit\n", ahead + "1,0,0" + withConfig(work, "[view]\npassthrough = true\n"));
-    CHECK(additive.frames.at(10).at("blend_mode") == "ADDITIVE");
-    CHECK(isCorner(additive, 0.2, kLeft, green));
 }
 
 }  // SUITE(view_hands)

@@ -67,10 +67,9 @@ TEST_CASE("where nothing fits the least settings of a quality are reached within
         if (*button != '\0') { acts.click(placeOf(button)); }
         looks.push_back(acts.wait(57.0 / 90.0).look(0.02));
     }
-    const ViewRun run = runView(
+    const ViewRun run = runClean(
         work, "slow", acts.script(),
         "builtin:one-splat --load-first --hide-hands --mode temporal" + withConfig(work, "[view]\nresolution-scale = 0.8\n"), kSlow);
-    checkClean(run);
     std::vector<int> widths;
     for (const double seconds : looks) { widths.push_back(run.width(run.frameAt(seconds))); }
     // Of what the wearer set, which is the most there is: 80 and 40 %.
@@ -81,13 +80,11 @@ TEST_CASE("where nothing fits the least settings of a quality are reached within
     CHECK(run.periodNs(8) == 11'111'111);
 }
 
-TEST_CASE("where everything fits nothing is given up, and the headset is asked for the rate that the settings name") {
-    const Workplace work;
-    const ViewRun run = runView(
+TEST_CASE_FIXTURE(AtWork, "where everything fits nothing is given up, and the headset is asked for the rate that the settings name") {
+    const ViewRun run = runClean(
         work, "quick", "rate 90\nsize 200 200\nframes none\n",
         "builtin:one-splat --mode shared --frames 40" + kNothingElse + withConfig(work, "[view]\nquality = \"fast\"\nrefresh-rate = 120\n"),
         kQuick);
-    checkClean(run);
     CHECK(run.width(38) == 200);
     CHECK(run.periodNs(0) == 11'111'111);
     CHECK(run.periodNs(15) == 8'333'333);
@@ -97,14 +94,12 @@ TEST_CASE("no frame makes a kernel, also where the eyes come to look another way
     const Workplace work;
     for (const auto& [mode, lines] : {std::pair("predicted", ""), std::pair("predicted", "visibility-mask on\n"),
                                       std::pair("temporal", "eye left cant 5\n"), std::pair("temporal", "visibility-mask on\n")}) {
-        CAPTURE(mode);
-        CAPTURE(lines);
+        INFO("mode ", mode, ", lines ", lines);
         // From side by side to angles of their own.
         const ViewRun run =
-            runView(work, "ready", fmt::format("rate 90\nsize 96 96\nframes none\n{}at 0.3 eye left angles -50 40 40 -50\n", lines),
-                    fmt::format("builtin:one-splat{}--mode {} --move-cost 0 --frames 60", kNothingElse, mode),
-                    withFaults("BINOSPLAT_FAULT_LIVE=alive.txt"));
-        checkClean(run);
+            runClean(work, "ready", fmt::format("rate 90\nsize 96 96\nframes none\n{}at 0.3 eye left angles -50 40 40 -50\n", lines),
+                     fmt::format("builtin:one-splat{}--mode {} --move-cost 0 --frames 60", kNothingElse, mode),
+                     withFaults("BINOSPLAT_FAULT_LIVE=alive.txt"));
         std::vector<std::string> made;
         std::ifstream counts(work.path / "alive.txt");
         for (std::string line; std::getline(counts, line);) { made.push_back(line.substr(line.rfind(' ') + 1)); }
@@ -117,10 +112,9 @@ TEST_CASE("a load that comes and goes: less budget and resolution at once, and b
     const Workplace work;
     // The head moves before a display of 30 Hz. Of 33 ms: everything fits, then frames take 60 (tests/faults/load.h), then all fits again.
     constexpr int kComes = 40, kGoes = 100, kSecond = 30;
-    const ViewRun run = runView(work, "load", "rate 30\nsize 64 64\nframes none\nhead 0 position 0 1.6 0\nhead 20 position 2 1.6 0\n",
-                                "builtin:slanted-wall --frames 300" + kNothingElse + withConfig(work, "[view]\nquality = \"balanced\"\n"),
-                                withFaults(fmt::format("BINOSPLAT_FAULT_LOAD=0:8,{}:60,{}:8", kComes, kGoes)));
-    checkClean(run);
+    const ViewRun run = runClean(work, "load", "rate 30\nsize 64 64\nframes none\nhead 0 position 0 1.6 0\nhead 20 position 2 1.6 0\n",
+                                 "builtin:slanted-wall --frames 300" + kNothingElse + withConfig(work, "[view]\nquality = \"balanced\"\n"),
+                                 withFaults(fmt::format("BINOSPLAT_FAULT_LOAD=0:8,{}:60,{}:8", kComes, kGoes)));
     // "frame 41: temporal at 100 %, 10 % of both eyes; why"
     const std::vector<std::string> changes = run.lines(" both eyes; ");
     INFO(run.outcome.output);

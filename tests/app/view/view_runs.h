@@ -173,6 +173,15 @@ inline void checkClean(const ViewRun& run) {
     CHECK(run.outcome.output.find("ERROR") == std::string::npos);
 }
 
+// A run that ended so, and showed no more layers than a runtime must take.
+inline ViewRun runClean(const Workplace& work, const std::string& name, const std::string& script, const std::string& arguments,
+                        const std::string& environment = kValidated) {
+    const ViewRun run = runView(work, name, script, arguments, environment);
+    checkClean(run);
+    for (const auto& frame : run.frames) { CHECK(frame.at("layers").size() <= 16); }
+    return run;
+}
+
 // It said one after the other.
 inline void checkOrder(const ViewRun& run, const std::vector<std::string>& said) {
     std::size_t from = 0;

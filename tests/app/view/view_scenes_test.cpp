@@ -1,5 +1,5 @@
-// Facts about what is to be seen: the next scene, scenes that cannot be read, that are streamed or that move, pictures, and which way is
-// up.
+// Facts about what is to be seen: the next scene, scenes that cannot be read, that are streamed or that move, the room behind them,
+// pictures, and which way is up.
 #include "app/options/start_view.h"
 #include "app/view/scenes/scene_up.h"
 #include "tests/app/view/view_acts.h"
@@ -35,10 +35,9 @@ TEST_CASE("another scene comes while this one stays, chosen or the next; one tha
     for (const char* widget : {"room1.ply", "Next scene", "room10.ply"}) {
         acts.point(placeOfScene(widget, folder.string())).wait(0.25).press("right trigger", 0.3).wait(0.4);
     }
-    const ViewRun run = runView(
+    const ViewRun run = runClean(
         work, "choose", acts.script(),
         name + "/room10.ply --load-first --mode mono --hide-hands" + withConfig(work, "[view]\npanel-page = \"scenes\"\n"), kWhileLoading);
-    checkClean(run);
     const std::string bad = (folder / "room1.ply").string(), next = (folder / "room9.ply").string(),
                       first = (folder / "room10.ply").string();
     checkOrder(run, {"shows " + name + "/room10.ply", bad + ":", "shows " + next, "shows " + first});
@@ -49,16 +48,14 @@ TEST_CASE("another scene comes while this one stays, chosen or the next; one tha
 }
 
 #ifdef BINOSPLAT_SOG
-TEST_CASE("a streamed scene is there at once, becomes finer while frames go on, and says what is missing") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "a streamed scene is there at once, becomes finer while frames go on, and says what is missing") {
     splitScene(makeBuiltin("builtin:atelier", 16'000), (work.path / "split").string(),
                {.leaf_splats = 1000, .levels = 4, .chunk_splats = 4000});
     fs::remove(work.path / "split" / "0_2.sog");
-    const ViewRun run = runView(work, "streamed",
-                                "rate 45\nsize 96 96\nframes from 2 to 2\nhead 0 position 0 1.6 0\nhead 1 position 0 1.6 0\n"
-                                "head 1.6 position 0 1.6 0 turn 90 0\nat 4 exit\n",
-                                "split --load-first --mode shared --hide-hands --hide-panel --splat-budget 9000", kWhileLoading);
-    checkClean(run);
+    const ViewRun run = runClean(work, "streamed",
+                                 "rate 45\nsize 96 96\nframes from 2 to 2\nhead 0 position 0 1.6 0\nhead 1 position 0 1.6 0\n"
+                                 "head 1.6 position 0 1.6 0 turn 90 0\nat 4 exit\n",
+                                 "split --load-first --mode shared --hide-hands --hide-panel --splat-budget 9000", kWhileLoading);
     checkOrder(run, {"shows split", "all that is seen is there: "});
     CHECK(run.says("16 levels of leaves, 0.0"));
     CHECK(run.says(" s; frames that waited for it: 0"));
@@ -74,9 +71,8 @@ TEST_CASE("a moving scene plays, rests while a button has it rest, and plays on;
     const Workplace work;
     writeSliding((work.path / "slide").string(), 12, 2000);
     const std::string arguments = "slide --load-first --mode shared --hide-hands --scene-rate 15 ";
-    const ViewRun played = runView(work, "play", "rate 45\nsize 96 96\npress right a 1 1.2\npress left x 2 2.2\nat 3 exit\n",
-                                   arguments + "--hide-panel", kWhileLoading);
-    checkClean(played);
+    const ViewRun played = runClean(work, "play", "rate 45\nsize 96 96\npress right a 1 1.2\npress left x 2 2.2\nat 3 exit\n",
+                                    arguments + "--hide-panel", kWhileLoading);
     INFO(played.outcome.output);
     checkOrder(played, {"a moving scene of 12 frames, 15 a second", "rests at frame", "plays from frame"});
     // It moves, and while it rests nothing does.
@@ -100,8 +96,7 @@ TEST_CASE("a moving scene plays, rests while a button has it rest, and plays on;
     acts.click(placeOfTime("Time", true, PanelPage::kView)).click(placeOfTime("Pause", true));
     for (const char* widget : {"Step on", "Step on", "Step back"}) { acts.click(placeOfTime(widget, false)); }
     acts.click(end).click(placeOfTime("Step on", false)).click(placeOfTime("Play", false));
-    const ViewRun run = runView(work, "panel", acts.script(), arguments);
-    checkClean(run);
+    const ViewRun run = runClean(work, "panel", acts.script(), arguments);
     INFO(run.outcome.output);
     // The one after the last is the first.
     checkOrder(run, {"rests at frame 12 of 12", "rests at frame 1 of 12", "plays from frame 1 of 12"});
@@ -111,13 +106,11 @@ TEST_CASE("a moving scene plays, rests while a button has it rest, and plays on;
     CHECK(run.says("frames that waited for them: 0\n"));
 }
 
-TEST_CASE("a picture of both eyes is a file that is not overwritten, of what the lenses hide as well") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "a picture of both eyes is a file that is not overwritten, of what the lenses hide as well") {
     const auto take = [&](const std::string& name, const std::string& mask) {
         Acts acts("rate 50\nsize 160 160\nframes from 10 to 10\nvisibility-mask " + mask + "\n");
         acts.wait(0.05).click(placeOf("Picture")).click(placeOf("Picture")).point(kBeside).wait(0.1);
-        const ViewRun run = runView(work, name, acts.script(), kWall + " --mode shared");
-        checkClean(run);
+        const ViewRun run = runClean(work, name, acts.script(), kWall + " --mode shared");
         CHECK(run.says("the lenses hide ") == (mask == "on"));
         return run;
     };
@@ -139,8 +132,56 @@ TEST_CASE("a picture of both eyes is a file that is not overwritten, of what the
     }
 }
 
-TEST_CASE("a working directory that was deleted takes no picture, and is no end") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "the room shows behind the scene where the headset and the wearer let it, in every mode") {
+    const std::string ahead = kWall + " --mode mono --eye 0,0,-6 --look 0,0,3 --up 0,-1,0 --background ";
+    const auto begin = [](const std::string& modes, const std::string& room) {
+        return "rate 50\nsize 128 128\nframes every 5\nblend-modes " + modes + "\nroom-colour " + room + "\n";
+    };
+    const std::string both = "opaque alpha-blend", green_room = "0.2 0.9 0.4";
+    // The picture's corner, where the scene is not.
+    const auto isCorner = [](const ViewRun& run, double seconds, int side, const glm::vec3& colour) {
+        const auto [r, g, b] = colourAt(run.eye(run.pictureAt(seconds), side), {0, 0});
+        return glm::length(glm::vec3(r, g, b) - colour) < 0.02f;
+    };
+    const glm::vec3 red(1.0f, 0.0f, 0.0f), green(0.2f, 0.9f, 0.4f);
+
+    Acts acts(begin(both, green_room));
+    const double opaque = acts.look();
+    acts.click(placeOf("Passthrough", true));
+    std::vector<double> looks{acts.look()};
+    acts.click(placeOf("Method", true));
+    for (const char* mode : {"two-pass", "predicted"}) {
+        acts.click(onMethod(mode));
+        looks.push_back(acts.look());
+    }
+    const ViewRun run = runClean(work, "run", acts.script(), ahead + "1,0,0");
+    CHECK(run.frames.at(run.pictureAt(opaque)).at("blend_mode") == "OPAQUE");
+    for (const double seconds : looks) {
+        CAPTURE(seconds);
+        CHECK(run.frames.at(run.pictureAt(seconds)).at("blend_mode") == "ALPHA_BLEND");
+        CHECK(run.layers(run.pictureAt(seconds), "projection").at(0).at("flags") == nlohmann::json::array({"blend_texture_source_alpha"}));
+        for (const int side : {kLeft, kRight}) { CHECK(isCorner(run, seconds, side, green)); }
+    }
+    for (const int side : {kLeft, kRight}) { CHECK(isCorner(run, opaque, side, red)); }
+
+    // Where the scene is, it is as it was: over its own black, and over a room that is black.
+    Acts dark(begin(both, "0 0 0"));
+    const double own = dark.look();
+    dark.press("right b").click(placeOf("Passthrough", true)).press("right b");
+    const double through = dark.look();
+    const ViewRun in_the_dark = runClean(work, "run", dark.script(), ahead + "0,0,0 --hide-panel");
+    CHECK(in_the_dark.layers(in_the_dark.pictureAt(own), "quad").empty());
+    CHECK(in_the_dark.frames.at(in_the_dark.pictureAt(through)).at("blend_mode") == "ALPHA_BLEND");
+    CHECK(in_the_dark.likeness(in_the_dark.pictureAt(own), in_the_dark.pictureAt(through)) > 40.0);
+
+    // A headset that adds light to the room's.
+    const ViewRun additive = runClean(work, "run", begin("additive", green_room) + "at 0.3 exit\n",
+                                      ahead + "1,0,0" + withConfig(work, "[view]\npassthrough = true\n"));
+    CHECK(additive.frames.at(10).at("blend_mode") == "ADDITIVE");
+    CHECK(isCorner(additive, 0.2, kLeft, green));
+}
+
+TEST_CASE_FIXTURE(AtWork, "a working directory that was deleted takes no picture, and is no end") {
     Acts acts("rate 50\nsize 64 64\nframes none\n");
     std::ofstream(work.path / "gone.script") << acts.click(placeOf("Picture")).wait(0.1).script();
     const Outcome outcome = work.runCommand(
@@ -152,8 +193,7 @@ TEST_CASE("a working directory that was deleted takes no picture, and is no end"
     CHECK(outcome.output.find("the picture cannot be written: the working directory is gone") != std::string::npos);
 }
 
-TEST_CASE("up in a trained scene is the up of its cameras, or else of its floor") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "up in a trained scene is the up of its cameras, or else of its floor") {
     // The room of the atelier lies with its floor some 30 degrees aside in the file.
     const fs::path folder = work.path / "trained" / "point_cloud" / "iteration_30000", file = folder / "point_cloud.ply";
     fs::create_directories(folder);

@@ -67,8 +67,7 @@ void checkAtTheBeginning(const ViewRun& run, std::size_t frame) {
 
 glm::dvec3 panelInRoom(const ViewRun& run, std::size_t frame) { return poseOf(run.panels(frame).at(0).at("pose")).position; }
 
-TEST_CASE("in every mode a wall's edge stays straight and in its place, whatever the frusta, and depth goes along") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "in every mode a wall's edge stays straight and in its place, whatever the frusta, and depth goes along") {
     // Asymmetric and canted; then another pose of a head that is tilted, and then other angles.
     const std::string left = "eye left angles -48 36 40 -44", right = "eye right angles -36 48 40 -44";
     Acts acts("rate 50\nsize 208 192\nframes every 5\nipd 0.068\n" + left + "\n" + right + "\neye left cant 8\neye right cant 8\n");
@@ -88,9 +87,8 @@ TEST_CASE("in every mode a wall's edge stays straight and in its place, whatever
         looks.push_back(acts.look());
     }
     const ViewRun run =
-        runView(work, "edge", acts.script(),
-                "builtin:step-edge --load-first --hide-hands --eye 0,0,0 --look 0,0,4 --mode two-pass" + withConfig(work, kMethodPage));
-    checkClean(run);
+        runClean(work, "edge", acts.script(),
+                 "builtin:step-edge --load-first --hide-hands --eye 0,0,0 --look 0,0,4 --mode two-pass" + withConfig(work, kMethodPage));
     CHECK(run.says("the runtime asked for the end"));
     for (std::size_t i = 0; i < looks.size(); ++i) {
         CAPTURE(i);
@@ -106,8 +104,7 @@ TEST_CASE("in every mode a wall's edge stays straight and in its place, whatever
     CHECK(std::abs(in_right.x - in_left.x) > 0.05);
 }
 
-TEST_CASE("the wearer sees what render makes of the same poses and angles") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "the wearer sees what render makes of the same poses and angles") {
     std::ofstream(work.path / "headset.toml") << kHeadset;
     // From (0.05, -0.1, 0.2) of the scene; later a step, a turn of the head and a tilt, in OpenXR's axes, and another mode.
     const std::string start = "--eye 0.05,-0.1,0.2 --look 0.05,-0.1,3 --up 0,-1,0", dominant = " --dominant right --mode ";
@@ -115,20 +112,17 @@ TEST_CASE("the wearer sees what render makes of the same poses and angles") {
     acts.wait(0.2).press("right b").click(onMethod("predicted")).press("right b");
     acts.move("head", "position 0.12 1.52 -0.25 rotation 0.08 -0.15 0.06 0.98").wait(1.1 - acts.now_s);
     const ViewRun run =
-        runView(work, "run", acts.script(),
-                "builtin:fence --load-first --hide-panel --hide-hands " + start + dominant + "two-pass" + withConfig(work, kMethodPage));
-    checkClean(run);
+        runClean(work, "run", acts.script(),
+                 "builtin:fence --load-first --hide-panel --hide-hands " + start + dominant + "two-pass" + withConfig(work, kMethodPage));
     const glm::dvec3 eye(0.05, -0.1, 0.2);
     checkAgreesWithRender(work, run, 30, eye, "--headset headset.toml" + dominant + "two-pass");
     checkAgreesWithRender(work, run, 90, eye, "--headset headset.toml" + dominant + "predicted");
 }
 
-TEST_CASE("two runs with the virtual clock write the same files, and stop after --frames") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "two runs with the virtual clock write the same files, and stop after --frames") {
     const std::string script = "rate 90\nsize 96 96\nframes every 3\nhead 0 position 0 1.6 0\nhead 0.2 position 0.1 1.6 -0.1 turn 10 5\n";
     const std::string arguments = kWall + " --hide-panel --frames 22";
-    const ViewRun first = runView(work, "first", script, arguments), second = runView(work, "second", script, arguments);
-    checkClean(first);
+    const ViewRun first = runClean(work, "first", script, arguments), second = runView(work, "second", script, arguments);
     CHECK(first.frames.size() >= 22);
     CHECK(first.frames.size() <= 26);  // STOPPING takes a few
     CHECK(std::system(("diff -r '" + first.out.string() + "' '" + second.out.string() + "' >/dev/null").c_str()) == 0);
@@ -137,13 +131,12 @@ TEST_CASE("two runs with the virtual clock write the same files, and stop after 
 TEST_CASE("the wearer begins at the scene's own view, upright, wherever the runtime's spaces begin, and again when it recentres") {
     const Workplace work;
     const std::string scene = "builtin:fence --load-first --hide-hands --mode shared";
-    const ViewRun usual = runView(work, "usual",
-                                  kBeginning +
-                                      "head 0 position 0 1.6 0\nhead 0.1 position 0 1.6 0\nhead 0.15 position 0.8 1.4 0.5 turn 70 0\n"
-                                      "head 0.3 position 0.8 1.4 0.5 turn 70 0\nhead 0.35 position 0.8 1.4 0.5 turn -130 25\n"
-                                      "at 0.22 recentre\nat 0.4 recentre\nat 0.5 exit\n",
-                                  scene);
-    checkClean(usual);
+    const ViewRun usual = runClean(work, "usual",
+                                   kBeginning +
+                                       "head 0 position 0 1.6 0\nhead 0.1 position 0 1.6 0\nhead 0.15 position 0.8 1.4 0.5 turn 70 0\n"
+                                       "head 0.3 position 0.8 1.4 0.5 turn 70 0\nhead 0.35 position 0.8 1.4 0.5 turn -130 25\n"
+                                       "at 0.22 recentre\nat 0.4 recentre\nat 0.5 exit\n",
+                                   scene);
     CHECK(usual.says("1.60 m above the floor"));
     CHECK(usual.says("frame 22: the room now begins where the wearer stands, 1.40 m above the floor"));
     for (const std::size_t frame : {5, 10, 22, 23, 25, 45}) { checkAtTheBeginning(usual, frame); }
@@ -154,12 +147,11 @@ TEST_CASE("the wearer begins at the scene's own view, upright, wherever the runt
     CHECK(usual.likeness(5, 45) < kOtherPictureDb);
     CHECK(std::abs(panelInRoom(usual, 5).y - panelInRoom(usual, 45).y) < 1e-5);
     // The first true pose of the head counts: it looks aside, before it was lost, and first its turn alone is known.
-    const ViewRun away = runView(work, "away",
-                                 kBeginning +
-                                     "local position 5 0.3 2 turn 40 0\nhead 0 position 0.4 1.25 -0.3 turn -130 0\n"
-                                     "at -1 head off\nat 0.05 head turn-only\nat 0.12 head on\nat 0.2 exit\n",
-                                 scene);
-    checkClean(away);
+    const ViewRun away = runClean(work, "away",
+                                  kBeginning +
+                                      "local position 5 0.3 2 turn 40 0\nhead 0 position 0.4 1.25 -0.3 turn -130 0\n"
+                                      "at -1 head off\nat 0.05 head turn-only\nat 0.12 head on\nat 0.2 exit\n",
+                                  scene);
     CHECK(away.says("frame 12: the room now begins where the wearer stands, 1.25 m above the floor"));
     for (const std::size_t frame : {10, 15}) {
         checkAtTheBeginning(away, frame);
@@ -169,13 +161,11 @@ TEST_CASE("the wearer begins at the scene's own view, upright, wherever the runt
     CHECK(glm::length(panelInRoom(usual, 5) - panelInRoom(away, 15)) < 1e-5);
 }
 
-TEST_CASE("the near plane is in metres of the wearer, however large the scene is") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "the near plane is in metres of the wearer, however large the scene is") {
     // A metre is four scene units: the fence, a unit ahead, is nearer than 0.3 m.
     const std::string camera = "--eye 0,0,0 --look 0,0,3 --up 0,-1,0 --mode two-pass --metres-per-unit 0.25";
     const ViewRun run =
-        runView(work, "near", kBeginning + "at 0.1 exit\n", "builtin:fence --load-first --hide-panel --hide-hands --near 0.3 " + camera);
-    checkClean(run);
+        runClean(work, "near", kBeginning + "at 0.1 exit\n", "builtin:fence --load-first --hide-panel --hide-hands --near 0.3 " + camera);
     const auto rendered = [&](const std::string& near) {
         REQUIRE(work.run("render builtin:fence --order distance --out expected --size 128x128 --fov-x 90 " + camera + " --near " + near)
                     .exit_code == 0);
@@ -189,8 +179,7 @@ TEST_CASE("the near plane is in metres of the wearer, however large the scene is
     }
 }
 
-TEST_CASE("without a runtime it exits with three and one line that says what was looked for and what to try") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "without a runtime it exits with three and one line that says what was looked for and what to try") {
     const Outcome outcome = work.run("view builtin:fence", "XR_RUNTIME_JSON=/nonexistent/runtime.json");
     INFO(outcome.errors);
     CHECK(outcome.exit_code == 3);
@@ -200,8 +189,7 @@ TEST_CASE("without a runtime it exits with three and one line that says what was
     CHECK(work.isEmpty());
 }
 
-TEST_CASE("bad input is known by its exit code, and named") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "bad input is known by its exit code, and named") {
     std::ofstream(work.path / "scale.toml") << "[view]\nresolution-scale = 9\n";
     std::ofstream(work.path / "quality.toml") << "[view]\nquality = \"best\"\n";
     std::ofstream(work.path / "broken.script") << "size 64 64\nwalk somewhere\n";

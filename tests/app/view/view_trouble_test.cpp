@@ -39,9 +39,8 @@ TEST_CASE("whatever becomes of the session, the head, the hands and the view, it
     const double end = acts.look(0.05);
     acts.at("worn off").wait(0.2);
     const ViewRun run =
-        runView(work, "all", acts.script(),
-                "builtin:one-splat --load-first --mode shared --frames 900" + withConfig(work, "[view]\nvisibility-mask = false\n"));
-    checkClean(run);
+        runClean(work, "all", acts.script(),
+                 "builtin:one-splat --load-first --mode shared --frames 900" + withConfig(work, "[view]\nvisibility-mask = false\n"));
     CHECK(run.says("the runtime asked for the end"));
     CHECK(run.lines("has no headset yet: waiting for it").size() == 1);
     CHECK(run.lines("another one begins").size() == 4);
@@ -74,12 +73,11 @@ TEST_CASE("whatever becomes of the session, the head, the hands and the view, it
 
 TEST_CASE("a headset that lies on the desk at first, and that is unplugged later, is waited for, and the scene goes on with it") {
     const Workplace work;
-    const ViewRun run = runView(work, "unplugged",
-                                "rate 90\nsize 256 256\nframes every 5\nvisibility-mask broken\nno-headset-for 2 after-loss\n"
-                                "at -1 worn off\nat -1 should-render off\nat 0.1 worn on\nat 0.2 should-render on\n"
-                                "at 0.5 lose-session\nat 0.8 exit\n",
-                                kOneEye, kValidated + " BINOSPLAT_VISIBILITY_MASK=0");
-    checkClean(run);
+    const ViewRun run = runClean(work, "unplugged",
+                                 "rate 90\nsize 256 256\nframes every 5\nvisibility-mask broken\nno-headset-for 2 after-loss\n"
+                                 "at -1 worn off\nat -1 should-render off\nat 0.1 worn on\nat 0.2 should-render on\n"
+                                 "at 0.5 lose-session\nat 0.8 exit\n",
+                                 kOneEye, kValidated + " BINOSPLAT_VISIBILITY_MASK=0");
     checkOrder(run, {"the headset is gone: waiting for it", "the headset is there again", "the runtime asked for the end"});
     // Which the panel says as well, below its widgets.
     const auto pixelOf = [](const glm::dvec2& share) {
@@ -119,8 +117,7 @@ TEST_CASE("Ctrl-C ends it as the wearer would, be the headset worn, off, gone or
     }
 }
 
-TEST_CASE("sessions that are lost again and again before they show anything are given up in one line, with three") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "sessions that are lost again and again before they show anything are given up in one line, with three") {
     std::string script = kSmall;
     for (int i = 0; i < 12; ++i) { script += fmt::format("at {} lose-session\n", 0.001 + 0.015 * i); }
     const ViewRun run = runView(work, "again", script, kOneEye, "");
@@ -176,8 +173,7 @@ TEST_CASE("what only decorates and fails is said once and done without, and a fi
                "xrEnumerateDisplayRefreshRatesFB" + lacks + "a choice of refresh rates", ": the room now begins where the wearer stands"});
 }
 
-TEST_CASE("a lost runtime gives one line and exit code 3; without a stage the floor is that of LOCAL_FLOOR") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "a lost runtime gives one line and exit code 3; without a stage the floor is that of LOCAL_FLOOR") {
     const std::string floor = "stage off\nhead 0 position 0.2 1.45 0.1\n";
     for (const char* time : {"0", "0.02", "0.2"}) {
         // Elder validation layers do not know that space.
@@ -194,12 +190,10 @@ TEST_CASE("a lost runtime gives one line and exit code 3; without a stage the fl
     CHECK((refused.says("the room now begins where the wearer stands\n") || refused.says("1.45 m above the floor")));
 }
 
-TEST_CASE("depth that the runtime offers and refuses is left out, once it is known") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "depth that the runtime offers and refuses is left out, once it is known") {
     for (const std::string what : {"images", "layers"}) {
         CAPTURE(what);
-        const ViewRun run = runView(work, "depth", kSmall + "refuse-depth " + what + "\nat 0.1 exit\n", kOneEye);
-        checkClean(run);
+        const ViewRun run = runClean(work, "depth", kSmall + "refuse-depth " + what + "\nat 0.1 exit\n", kOneEye);
         CHECK(countFramesWithLayers(run) > 5);
         for (std::size_t frame = 0; frame < run.frames.size(); ++frame) {
             for (const auto& layer : run.layers(frame, "projection")) { CHECK_FALSE(layer.at("views").at(0).contains("depth")); }
@@ -208,24 +202,20 @@ TEST_CASE("depth that the runtime offers and refuses is left out, once it is kno
     }
 }
 
-TEST_CASE("while a scene loads frames go on, with the room behind it where the wearer wants that, and an exit is obeyed") {
-    const Workplace work;
-    const ViewRun run = runView(
+TEST_CASE_FIXTURE(AtWork, "while a scene loads frames go on, with the room behind it where the wearer wants that, and an exit is obeyed") {
+    const ViewRun run = runClean(
         work, "loading", "rate 90\nsize 32 32\nframes from 3 to 3\nblend-modes alpha-blend opaque\nroom-colour 0.2 0.9 0.4\nat 0.2 exit\n",
         "builtin:atelier --hide-hands" + withConfig(work, "[view]\npassthrough = true\n"));
-    checkClean(run);
     // The background and the panel's progress were there from the first visible frame on.
     CHECK(countFramesWithLayers(run) >= 15);
     CHECK(run.frames.size() < 40);
     CHECK(colourAt(run.eye(3, kLeft), {31, 0})[1] == doctest::Approx(0.9).epsilon(0.01));
     // Before the first picture, too.
-    const ViewRun first = runView(work, "first", kSmall + "at 0 exit\n", kOneEye);
-    checkClean(first);
+    const ViewRun first = runClean(work, "first", kSmall + "at 0 exit\n", kOneEye);
     CHECK(first.frames.size() < 20);
 }
 
-TEST_CASE("whoever leaves while a large scene loads does not wait for the rest of it") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "whoever leaves while a large scene loads does not wait for the rest of it") {
     // Discs that are all alike, in a file of which no block is stored.
     constexpr std::uintmax_t kSplats = 4'000'000;
     std::string header = "ply\nformat binary_little_endian 1.0\n" + fmt::format("element vertex {}\n", kSplats);
@@ -244,8 +234,7 @@ TEST_CASE("whoever leaves while a large scene loads does not wait for the rest o
     CHECK(read < bytes / 2);
 }
 
-TEST_CASE("what the lenses hide is not rendered, and nothing else changes") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "what the lenses hide is not rendered, and nothing else changes") {
     // 13 x 13 tiles of which the corners lie outside the lens; then wider on one side, with another mask.
     std::vector<double> looks;
     double shared = 0.0;
@@ -260,9 +249,7 @@ TEST_CASE("what the lenses hide is not rendered, and nothing else changes") {
             }
             looks.push_back(acts.look());
         }
-        const ViewRun run = runView(work, mask, acts.script(), kWall + " --hide-panel --mode mono" + withConfig(work, kMethodPage));
-        checkClean(run);
-        return run;
+        return runClean(work, mask, acts.script(), kWall + " --hide-panel --mode mono" + withConfig(work, kMethodPage));
     };
     const ViewRun without = runMasked("off"), with = runMasked("on");
     CHECK_FALSE(without.says("the lenses hide"));
@@ -275,8 +262,7 @@ TEST_CASE("what the lenses hide is not rendered, and nothing else changes") {
     for (std::size_t look = 0; look < looks.size(); ++look) {
         const std::size_t frame = with.pictureAt(looks[look]);
         for (const int side : {kLeft, kRight}) {
-            CAPTURE(look);
-            CAPTURE(side);
+            INFO("look ", look, ", side ", side);
             const Image a = without.eye(frame, side), b = with.eye(frame, side);
             const auto isBlack = [](const Colour&, const Colour& after) { return after == Colour{}; };
             const auto isOther = [](const Colour& before, const Colour& after) { return after != Colour{} && after != before; };
@@ -291,8 +277,7 @@ TEST_CASE("what the lenses hide is not rendered, and nothing else changes") {
     }
 }
 
-TEST_CASE("a runtime without the Vulkan extension is refused in one line") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "a runtime without the Vulkan extension is refused in one line") {
     const ViewRun run = runView(work, "refused", kSmall + "extension XR_KHR_vulkan_enable2 off\n", "builtin:slanted-wall", "");
     CHECK(run.outcome.exit_code == 3);
     CHECK(run.outcome.errors.find("XR_KHR_vulkan_enable2") != std::string::npos);

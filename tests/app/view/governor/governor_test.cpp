@@ -128,9 +128,7 @@ TEST_CASE("of a load that does not change it finds what fits within 60 frames, s
     for (const Quality quality : {Quality::kSharp, Quality::kBalanced, Quality::kFast}) {
         for (const double fixed : {0.05, 0.2, 0.4}) {
             for (const double ms : {9.5, 12.0, 20.0, 30.0, 50.0}) {
-                CAPTURE(static_cast<int>(quality));
-                CAPTURE(fixed);
-                CAPTURE(ms);
+                INFO("quality ", static_cast<int>(quality), ", fixed ", fixed, ", ms ", ms);
                 const Run run({.quality = quality, .seconds = 60.0, .ms = constantly(ms), .fixed = fixed});
                 checkCalm(run, {0.0});
                 if (!run.last().beaten) { CHECK(run.longestOver() <= 10); }
@@ -261,8 +259,7 @@ TEST_CASE("where not even the least settings fit, or meet every display but more
 TEST_CASE("displays that are missed although the device says that frames fit: others take their part, and there is less to use") {
     for (const Quality quality : {Quality::kBalanced, Quality::kFast}) {
         for (const double others_ms : {5.0, 6.0, 7.0}) {
-            CAPTURE(static_cast<int>(quality));
-            CAPTURE(others_ms);
+            INFO("quality ", static_cast<int>(quality), ", others_ms ", others_ms);
             const auto lost = [&](double t, double gpu_ms) { return lostBy(gpu_ms, t < 5.0 ? 0.0 : others_ms); };
             const Run run({.quality = quality, .seconds = 40.0, .lost = lost});
             CHECK(run.at(4.9).settings == kAll);

@@ -175,8 +175,7 @@ TEST_CASE("a word's signs are drawn, keep their order among other letters, and a
     CHECK(isThere('A'));
 }
 
-TEST_CASE("without a font that can be used the small built-in one is, and one line says why") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "without a font that can be used the small built-in one is, and one line says why") {
     const std::string whole = vectorFont();
     work.write("text.ttf", "no font at all");
     work.write("short.ttf", whole.substr(0, whole.size() / 2));

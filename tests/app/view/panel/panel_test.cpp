@@ -47,27 +47,26 @@ TEST_CASE("on each page every widget lies on the panel, none on another, 1.5 deg
     }
 }
 
-TEST_CASE("a click reaches what it points at: boxes, buttons, sliders and pages") {
-    PanelSketch sketch;
-    const auto asks = [&](const char* name, auto request) { return sketch.click(name).*request; };
+TEST_CASE_FIXTURE(PanelSketch, "a click reaches what it points at: boxes, buttons, sliders and pages") {
+    const auto asks = [&](const char* name, auto request) { return click(name).*request; };
     using Asked = PanelRequests;
     const std::vector<std::pair<const char*, bool Asked::*>> common{{"Save", &Asked::save}, {"Load", &Asked::load}, {"Quit", &Asked::quit}};
-    sketch.click("Method");
-    CHECK(sketch.settings.page == Page::kMethod);
-    CHECK(sketch.click("paper").places.contains("Centre ROI (paper)"));
-    CHECK(sketch.settings.stereo.mode == Mode::kPaper);
-    sketch.click("Centre ROI (paper)");
-    CHECK(sketch.settings.stereo.warp.center_rois);
-    CHECK(sketch.settings.stereo.foveation_deg == 0.0);
-    sketch.click("Foveation");
-    CHECK(sketch.settings.stereo.foveation_deg > 0.0);
-    sketch.click("Foveation");
-    CHECK(sketch.settings.stereo.foveation_deg == 0.0);
-    sketch.click("budget");
-    CHECK(sketch.settings.stereo.warp.budget == doctest::Approx(0.5).epsilon(0.02));
+    click("Method");
+    CHECK(settings.page == Page::kMethod);
+    CHECK(click("paper").places.contains("Centre ROI (paper)"));
+    CHECK(settings.stereo.mode == Mode::kPaper);
+    click("Centre ROI (paper)");
+    CHECK(settings.stereo.warp.center_rois);
+    CHECK(settings.stereo.foveation_deg == 0.0);
+    click("Foveation");
+    CHECK(settings.stereo.foveation_deg > 0.0);
+    click("Foveation");
+    CHECK(settings.stereo.foveation_deg == 0.0);
+    click("budget");
+    CHECK(settings.stereo.warp.budget == doctest::Approx(0.5).epsilon(0.02));
     for (const auto& [name, request] : common) { CHECK_MESSAGE(asks(name, request), name); }
-    sketch.click("View");
-    CHECK(sketch.settings.page == Page::kView);
+    click("View");
+    CHECK(settings.page == Page::kView);
     for (const auto& [name, request] : common) { CHECK_MESSAGE(asks(name, request), name); }
     for (const auto& [name, request] : std::vector<std::pair<const char*, bool Asked::*>>{{"Level", &Asked::level_scene},
                                                                                           {"Recentre", &Asked::recentre},
@@ -76,8 +75,8 @@ TEST_CASE("a click reaches what it points at: boxes, buttons, sliders and pages"
                                                                                           {"Picture", &Asked::take_picture}}) {
         CHECK_MESSAGE(asks(name, request), name);
     }
-    sketch.click("Scenes");
-    CHECK(sketch.settings.page == Page::kScenes);
+    click("Scenes");
+    CHECK(settings.page == Page::kScenes);
     CHECK(asks("Quit", &Asked::quit));
     CHECK(asks("Next scene", &Asked::scene_step) == 1);
     CHECK(asks("Previous scene", &Asked::scene_step) == -1);
@@ -87,31 +86,30 @@ TEST_CASE("a click reaches what it points at: boxes, buttons, sliders and pages"
     CHECK(asks("Keep this one", &Asked::keep_viewpoint));
 }
 
-TEST_CASE("a scene that moves has a page of its own, with what lets it rest, step, and go to a frame") {
-    PanelSketch sketch;
-    CHECK_FALSE(sketch.draw().places.contains("Time"));
-    sketch.status.time = ShownTime{11, 60, 30.0, true, 0};
-    sketch.click("Time");
-    CHECK(sketch.settings.page == Page::kTime);
-    CHECK(sketch.click("Pause").play);
-    sketch.status.time->plays = false;
-    CHECK(sketch.click("Play").play);
-    CHECK(sketch.click("Step on").frame_step == 1);
-    CHECK(sketch.click("Step back").frame_step == -1);
+TEST_CASE_FIXTURE(PanelSketch, "a scene that moves has a page of its own, with what lets it rest, step, and go to a frame") {
+    CHECK_FALSE(draw().places.contains("Time"));
+    status.time = ShownTime{11, 60, 30.0, true, 0};
+    click("Time");
+    CHECK(settings.page == Page::kTime);
+    CHECK(click("Pause").play);
+    status.time->plays = false;
+    CHECK(click("Play").play);
+    CHECK(click("Step on").frame_step == 1);
+    CHECK(click("Step back").frame_step == -1);
     // The handle's ends are those of the line.
-    glm::dvec2 place = sketch.draw().places.at("frame");
+    glm::dvec2 place = draw().places.at("frame");
     place.x = 0.5 * kPanelPx.x;
-    sketch.draw(&place);
-    const std::optional<std::size_t> middle = sketch.draw(&place, true).frame;
+    draw(&place);
+    const std::optional<std::size_t> middle = draw(&place, true).frame;
     REQUIRE(middle.has_value());
     CHECK(std::abs(static_cast<int>(*middle) - 29) <= 1);
     place.x = kPanelPx.x - 1.0;
-    CHECK(sketch.draw(&place, true).frame == 59);
-    sketch.draw(&place);
+    CHECK(draw(&place, true).frame == 59);
+    draw(&place);
     // The next scene stays as it is.
-    sketch.status.time.reset();
-    sketch.draw();
-    CHECK(sketch.settings.page == Page::kView);
+    status.time.reset();
+    draw();
+    CHECK(settings.page == Page::kView);
 }
 
 TEST_CASE("the time of a scene that moves goes on while it plays, rests, steps around, and goes to a frame") {
@@ -138,33 +136,32 @@ TEST_CASE("the time of a scene that moves goes on while it plays, rests, steps a
     CHECK_FALSE(clock.plays());
 }
 
-TEST_CASE("a picture of a scene lies in the font's texture as it is, and letters stay there") {
-    PanelSketch sketch;
+TEST_CASE_FIXTURE(PanelSketch, "a picture of a scene lies in the font's texture as it is, and letters stay there") {
     ScenePicture picture{"red", "a.png", {}};
     for (std::size_t i = 0; i < std::size_t{kScenePicturePx.x} * kScenePicturePx.y; ++i) {
         picture.rgba.insert(picture.rgba.end(), {200, 10, 20, 255});
     }
-    CHECK(sketch.bringLetters("", {picture}));
-    CHECK_FALSE(sketch.bringLetters("", {picture}));
-    REQUIRE(sketch.font->pictures().contains("red"));
-    const PictureCorners& corners = sketch.font->pictures().at("red");
+    CHECK(bringLetters("", {picture}));
+    CHECK_FALSE(bringLetters("", {picture}));
+    REQUIRE(font->pictures().contains("red"));
+    const PictureCorners& corners = font->pictures().at("red");
     const FontTexture texture = fontTexture();
     const auto inTexels = [&](const auto& at) { return glm::dvec2(at.x, at.y) * glm::dvec2(texture.size_px); };
     const glm::dvec2 low = inTexels(corners.low), high = inTexels(corners.high);
     CHECK(glm::uvec2(glm::round(high - low)) == kScenePicturePx);
     CHECK(texture.at(glm::uvec2(0.5 * (low + high))) == std::array<unsigned char, 4>{200, 10, 20, 255});
     CHECK(isThere('A'));
-    sketch.draw();
+    draw();
     // A later picture of the same scene takes its place; those of others stay.
     ScenePicture other = picture, later = picture;
     other.key = "other";
     other.file = "b.png";
     later.key = "later";
-    CHECK(sketch.bringLetters("", {other}));
-    CHECK(sketch.bringLetters("", {later}));
-    CHECK(sketch.font->pictures().size() == 2);
-    CHECK(sketch.font->pictures().contains("later"));
-    CHECK(sketch.font->pictures().contains("other"));
+    CHECK(bringLetters("", {other}));
+    CHECK(bringLetters("", {later}));
+    CHECK(font->pictures().size() == 2);
+    CHECK(font->pictures().contains("later"));
+    CHECK(font->pictures().contains("other"));
 }
 
 TEST_CASE("size and height are changed while their buttons are held, and what moves and what is behind is chosen by name") {
@@ -205,35 +202,34 @@ TEST_CASE("size and height are changed while their buttons are held, and what mo
     }
 }
 
-TEST_CASE("the panel has the names and ranges of the table of options") {
-    PanelSketch sketch;
-    sketch.settings.page = Page::kMethod;
+TEST_CASE_FIXTURE(PanelSketch, "the panel has the names and ranges of the table of options") {
+    settings.page = Page::kMethod;
     const auto isChosen = [&](const auto& row, const auto& owner, std::string_view name) { return textOf(row.field.value(owner)) == name; };
     for (const char* key : {"mode", "dominant", "depth"}) {
         const OptionRow<RunOptions>& row = *findRunRow(key);
         CHECK(row.field.choices.size() >= 2);
         for (const std::string_view name : row.field.choices) {
-            sketch.click(std::string(name));
+            click(std::string(name));
             RunOptions options;
-            options.stereo = sketch.settings.stereo;
+            options.stereo = settings.stereo;
             CHECK_MESSAGE(isChosen(row, options, name), name);
         }
     }
     const OptionRow<ViewSettings>& quality = *findViewRow("quality");
     for (const std::string_view name : quality.field.choices) {
-        sketch.click(std::string(name));
-        CHECK_MESSAGE(isChosen(quality, sketch.settings, name), name);
+        click(std::string(name));
+        CHECK_MESSAGE(isChosen(quality, settings, name), name);
     }
     const auto slideAllTo = [&](double to_px) {
         for (const char* name : {"margin (paper)", "budget", "resolution"}) {
-            glm::dvec2 place = sketch.draw().places.at(name);
-            sketch.draw(&place);
-            sketch.draw(&place, true);
+            glm::dvec2 place = draw().places.at(name);
+            draw(&place);
+            draw(&place, true);
             place.x = to_px;
-            sketch.draw(&place, true);
-            sketch.draw(&place);
+            draw(&place, true);
+            draw(&place);
         }
-        return std::tuple(sketch.settings.stereo.warp.margin_px, sketch.settings.stereo.warp.budget, sketch.settings.resolution_scale);
+        return std::tuple(settings.stereo.warp.margin_px, settings.stereo.warp.budget, settings.resolution_scale);
     };
     const OptionField<ViewSettings>& scale = findViewRow("resolution-scale")->field;
     CHECK(slideAllTo(0.0) == std::tuple(0u, 0.0, *scale.least));
@@ -333,8 +329,7 @@ TEST_CASE("no folder is read while the panel is drawn: it says that it reads unt
     sketch.draw();
 }
 
-TEST_CASE("names of any bytes and of any length are shown, and a long message is wrapped within the panel") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "names of any bytes and of any length are shown, and a long message is wrapped within the panel") {
     const std::string longest = std::string(240, 'w') + ".ply";
     for (const std::string& name : {std::string("\xce\xa9\xd0\x96\xc3\xa4.ply"), std::string("line\nbreak.ply"), std::string("%s%n.ply"),
                                     std::string("\xff\xfe.ply"), longest}) {
@@ -359,19 +354,18 @@ TEST_CASE("names of any bytes and of any length are shown, and a long message is
     }
 }
 
-TEST_CASE("the rates that the headset offers can be chosen, and left to it; where it offers none there is no row") {
-    PanelSketch sketch;
-    CHECK_FALSE(sketch.draw().places.contains("Automatic"));
-    sketch.status.refresh_rates = {72.0, 89.9988, 144.0};
-    sketch.settings.refresh_rate = 72.0;
+TEST_CASE_FIXTURE(PanelSketch, "the rates that the headset offers can be chosen, and left to it; where it offers none there is no row") {
+    CHECK_FALSE(draw().places.contains("Automatic"));
+    status.refresh_rates = {72.0, 89.9988, 144.0};
+    settings.refresh_rate = 72.0;
     for (const auto& [name, rate] : {std::pair("90 Hz", 89.9988), std::pair("144 Hz", 144.0), std::pair("Automatic", 0.0)}) {
-        sketch.click(name);
-        CHECK(sketch.settings.refresh_rate == rate);
+        click(name);
+        CHECK(settings.refresh_rate == rate);
     }
     // What is above stays where it is.
-    const WidgetPlaces with = sketch.draw().places;
-    sketch.status.refresh_rates.clear();
-    for (const auto& [name, place] : sketch.draw().places) { CHECK(with.at(name) == place); }
+    const WidgetPlaces with = draw().places;
+    status.refresh_rates.clear();
+    for (const auto& [name, place] : draw().places) { CHECK(with.at(name) == place); }
 }
 
 }  // SUITE(panel)

@@ -14,9 +14,7 @@ SUITE(placement) {
 constexpr double kPi = 3.14159265358979323846;
 
 void checkNear(const glm::dvec3& a, const glm::dvec3& b, double tolerance = 1e-9) {
-    CAPTURE(a.x);
-    CAPTURE(a.y);
-    CAPTURE(a.z);
+    INFO("a.x ", a.x, ", a.y ", a.y, ", a.z ", a.z);
     CHECK(glm::length(a - b) <= tolerance);
 }
 
@@ -66,8 +64,7 @@ TEST_CASE("a levelled scene stands upright about the wearer, as large and turned
     CHECK(std::abs(glm::dot(again.orientation, level.orientation)) == doctest::Approx(1.0));
 }
 
-TEST_CASE("settings of a scene lie in the user's folder, by the file's place and size") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "settings of a scene lie in the user's folder, by the file's place and size") {
     const std::filesystem::path folder = work.path;
     std::filesystem::create_directories(folder / "elsewhere");
     setenv("XDG_CONFIG_HOME", "/somewhere", 1);
@@ -104,8 +101,7 @@ TEST_CASE("similarities compose") {
     checkNear(transform(compose(kSome, other), point), transform(kSome, transform(other, point)));
 }
 
-TEST_CASE("a wearer starts where the options put the eye or their camera is, upright, metres as long as they say") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "a wearer starts where the options put the eye or their camera is, upright, metres as long as they say") {
     const std::string cameras = (work.path / "c.json").string();
     const auto startWith = [&](const std::string& options) {
         const CameraOptions camera = parse<ViewOptions>("view box.ply " + options).run.camera;

@@ -45,8 +45,7 @@ TEST_CASE("numbers in names count as numbers, capitals do not count, and every t
                                            "a10", "a00010c", "room2.ply", "Room10.ply", "z",  "\xc3\xa4", "\xd0\x96"};
     for (std::size_t i = 0; i < ordered.size(); ++i) {
         for (std::size_t j = 0; j < ordered.size(); ++j) {
-            CAPTURE(ordered[i]);
-            CAPTURE(ordered[j]);
+            INFO("ordered[i] ", ordered[i], ", ordered[j] ", ordered[j]);
             CHECK(comesBefore(ordered[i], ordered[j]) == (i < j));
         }
     }
@@ -56,43 +55,41 @@ TEST_CASE("numbers in names count as numbers, capitals do not count, and every t
     CHECK(comesBefore("a1", "a01") != comesBefore("a01", "a1"));
 }
 
-TEST_CASE("a folder is listed with its folders and scenes, and without what is hidden or something else") {
-    const Home work;
+TEST_CASE_FIXTURE(Home, "a folder is listed with its folders and scenes, and without what is hidden or something else") {
     for (const char* name : {"room10.ply", "room2.PLY", "a.spz", ".hidden.ply", "notes.txt", "\xd0\x91\xd1\x8e\xd1\x81\xd1\x82.splat"}) {
-        work.add(name);
+        add(name);
     }
-    for (const char* name : {"zoo", "Attic", ".git", "statue", "folder.ply"}) { fs::create_directory(work.path / name); }
-    work.add("statue/meta.json");
-    fs::create_directories(work.path / "trained/point_cloud/iteration_7");
-    work.add("trained/point_cloud/iteration_7/point_cloud.ply");
-    fs::create_directories(work.path / "untrained/point_cloud/iteration_7");
-    const SceneList list = listFolder(work.path.string());
+    for (const char* name : {"zoo", "Attic", ".git", "statue", "folder.ply"}) { fs::create_directory(path / name); }
+    add("statue/meta.json");
+    fs::create_directories(path / "trained/point_cloud/iteration_7");
+    add("trained/point_cloud/iteration_7/point_cloud.ply");
+    fs::create_directories(path / "untrained/point_cloud/iteration_7");
+    const SceneList list = listFolder(path.string());
     CHECK(list.trouble.empty());
-    CHECK(list.title == work.path.string());
-    CHECK(list.above == work.base.string());
+    CHECK(list.title == path.string());
+    CHECK(list.above == base.string());
     CHECK(namesOf(list) == std::vector<std::string>{"Attic/", "folder.ply/", "untrained/", "zoo/", "a.spz", "room2.PLY", "room10.ply",
                                                     "statue", "trained", "\xd0\x91\xd1\x8e\xd1\x81\xd1\x82.splat"});
     for (const SceneEntry& entry : list.entries) { CHECK(entry.trouble.empty()); }
-    CHECK(entryOf(list, "zoo").place == work.at("zoo"));
+    CHECK(entryOf(list, "zoo").place == at("zoo"));
     // The viewer's next scene goes the same way.
-    CHECK(sceneBeside(work.at("room2.PLY"), 1) == work.at("room10.ply"));
-    CHECK(sceneBeside(work.at("room10.ply"), 1) == work.at("statue"));
+    CHECK(sceneBeside(at("room2.PLY"), 1) == at("room10.ply"));
+    CHECK(sceneBeside(at("room10.ply"), 1) == at("statue"));
 }
 
-TEST_CASE("what cannot be opened is listed with the reason, and nothing waits for a pipe") {
-    const Home work;
-    REQUIRE(mkfifo((work.path / "pipe.ply").c_str(), 0600) == 0);
-    fs::create_symlink("nowhere.ply", work.path / "gone.ply");
-    fs::create_symlink("loop.ply", work.path / "loop.ply");
-    work.add("good.ply");
-    const SceneList list = listFolder(work.path.string());
+TEST_CASE_FIXTURE(Home, "what cannot be opened is listed with the reason, and nothing waits for a pipe") {
+    REQUIRE(mkfifo((path / "pipe.ply").c_str(), 0600) == 0);
+    fs::create_symlink("nowhere.ply", path / "gone.ply");
+    fs::create_symlink("loop.ply", path / "loop.ply");
+    add("good.ply");
+    const SceneList list = listFolder(path.string());
     CHECK_FALSE(entryOf(list, "pipe.ply").trouble.empty());
     CHECK(entryOf(list, "gone.ply").trouble == "is not there");
     CHECK_FALSE(entryOf(list, "loop.ply").trouble.empty());
     CHECK(entryOf(list, "good.ply").trouble.empty());
-    CHECK_FALSE(listFolder(work.at("nowhere")).trouble.empty());
-    CHECK_FALSE(listFolder(work.at("good.ply")).trouble.empty());
-    CHECK(listFolder(work.at("nowhere")).above == work.path.string());
+    CHECK_FALSE(listFolder(at("nowhere")).trouble.empty());
+    CHECK_FALSE(listFolder(at("good.ply")).trouble.empty());
+    CHECK(listFolder(at("nowhere")).above == path.string());
 }
 
 TEST_CASE("the way up ends at the top, and built-in scenes have a place of their own") {
@@ -234,15 +231,14 @@ TEST_CASE("a scene is described in words: how much, of what kind, how large") {
     CHECK(factsOf(scene, notes, "x").kind == "2D Gaussians (discs)");
 }
 
-TEST_CASE("a folder of many numbered scenes is one that moves; of a few it is one to look into") {
-    const Home work;
-    for (int number = 1; number <= 23; ++number) { work.add(fmt::format("frame_{}.ply", number)); }
-    for (int number = 1; number <= 60; ++number) { work.add(fmt::format("note_{}.txt", number)); }
-    CHECK_FALSE(looksLikeScene(work.path));
-    for (int number = 24; number <= 45; ++number) { work.add(fmt::format("frame_{}.ply", number)); }
-    CHECK(looksLikeScene(work.path));
-    for (const char* name : {"a.PLY", "a.ply.gz", "a.zip", "a.sog"}) { CHECK(looksLikeScene(work.path / name)); }
-    for (const char* name : {"a.gz", "a.txt.gz", "a.txt", "ply"}) { CHECK_FALSE(looksLikeScene(work.path / name)); }
+TEST_CASE_FIXTURE(Home, "a folder of many numbered scenes is one that moves; of a few it is one to look into") {
+    for (int number = 1; number <= 23; ++number) { add(fmt::format("frame_{}.ply", number)); }
+    for (int number = 1; number <= 60; ++number) { add(fmt::format("note_{}.txt", number)); }
+    CHECK_FALSE(looksLikeScene(path));
+    for (int number = 24; number <= 45; ++number) { add(fmt::format("frame_{}.ply", number)); }
+    CHECK(looksLikeScene(path));
+    for (const char* name : {"a.PLY", "a.ply.gz", "a.zip", "a.sog"}) { CHECK(looksLikeScene(path / name)); }
+    for (const char* name : {"a.gz", "a.txt.gz", "a.txt", "ply"}) { CHECK_FALSE(looksLikeScene(path / name)); }
 }
 
 TEST_CASE("a folder with one scene in it is that scene, as it is on the command line, unless there is something else to look into") {
@@ -295,14 +291,13 @@ TEST_CASE("a place is saved and asked for in the coordinates of the scene's file
     CHECK(state.sceneFromRoom().scale == 2.0);
 }
 
-TEST_CASE("viewpoints are the cameras beside the scene, and then those that were kept") {
-    const Home work;
-    const std::string scene = work.at("a.ply");
-    work.add("a.ply");
+TEST_CASE_FIXTURE(Home, "viewpoints are the cameras beside the scene, and then those that were kept") {
+    const std::string scene = at("a.ply");
+    add("a.ply");
     CHECK(findViewpoints({}, scene, {}).empty());
     keepViewpoint(scene, {{0, 0, 1}, {0, 0, 2}, {0, -1, 0}, 60.0});
     keepViewpoint(scene, {{0, 0, 3}, {1, 0, 3}, {0, -1, 0}, 60.0});
-    work.write("cameras.json", R"([{"img_name": "door", "width": 8, "height": 8, "fx": 8, "fy": 8, "position": [5, 0, 0],
+    write("cameras.json", R"([{"img_name": "door", "width": 8, "height": 8, "fx": 8, "fy": 8, "position": [5, 0, 0],
                                     "rotation": [[1,0,0],[0,1,0],[0,0,1]]}])");
     // Lines that are no view: one that looks along its up, and one that is broken off.
     std::ofstream(viewFileStem(scene).string() + ".viewpoints.txt", std::ios::app) << "0 0 1 0 0 2 0 0 1\n0 0 1 0\n";
@@ -320,12 +315,11 @@ TEST_CASE("viewpoints are the cameras beside the scene, and then those that were
     CHECK(there[0].view.eye == glm::dvec3(1, 0, 2));
     CHECK(there[2].view.eye == glm::dvec3(-4, 0, 5));
     CHECK(there[2].view.look == glm::dvec3(-3, 0, 5));
-    CHECK(findViewpoints(far, scene, work.path / "cameras.json")[0].view.eye == glm::dvec3(1, 0, 2));
+    CHECK(findViewpoints(far, scene, path / "cameras.json")[0].view.eye == glm::dvec3(1, 0, 2));
 }
 
-TEST_CASE("a scene that was shown has a small picture and a line, and favourites come first") {
-    const Home work;
-    for (const char* name : {"a.ply", "b.ply", "c.ply"}) { work.add(name); }
+TEST_CASE_FIXTURE(Home, "a scene that was shown has a small picture and a line, and favourites come first") {
+    for (const char* name : {"a.ply", "b.ply", "c.ply"}) { add(name); }
     Image wide{{400, 100}, 4, {}};
     for (int y = 0; y < 100; ++y) {
         for (int x = 0; x < 400; ++x) { wide.values.insert(wide.values.end(), {x < 200 ? 0.0f : 1.0f, 0.5f, 0.0f, 1.0f}); }
@@ -335,9 +329,9 @@ TEST_CASE("a scene that was shown has a small picture and a line, and favourites
     CHECK(small.values.size() == small.pixelCount() * 3);
     CHECK(small.values[0] == 0.0f);
     CHECK(small.values[small.values.size() - 3] == 1.0f);
-    keepSeenScene(work.at("b.ply"), small, "7 splats, discs");
-    toggleFavourite(work.at("c.ply"));
-    SceneList list = listFolder(work.path.string());
+    keepSeenScene(at("b.ply"), small, "7 splats, discs");
+    toggleFavourite(at("c.ply"));
+    SceneList list = listFolder(path.string());
     describeScenes(list);
     REQUIRE(list.entries.size() == 3);
     CHECK(list.entries[0].name == "c.ply");
@@ -346,7 +340,7 @@ TEST_CASE("a scene that was shown has a small picture and a line, and favourites
     CHECK(list.entries[1].about == "0.0 KiB");
     CHECK(list.entries[2].about == "7 splats, discs");
     CHECK(list.entries[2].picture.rgba.size() == std::size_t{4} * kScenePicturePx.x * kScenePicturePx.y);
-    toggleFavourite(work.at("c.ply"));
+    toggleFavourite(at("c.ply"));
     CHECK(favouriteScenes().empty());
 }
 

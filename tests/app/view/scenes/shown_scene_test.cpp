@@ -6,7 +6,7 @@
 #include "app/view/panel/panel_style.h"
 #include "app/view/settings/view_files.h"
 #include "engine/scene/procedural.h"
-#include "tests/engine/gpu/gpu_fixture.h"
+#include "tests/engine/gpu/device_image.h"
 #include "tests/run_program.h"
 
 #ifdef BINOSPLAT_SOG
@@ -219,7 +219,6 @@ TEST_CASE_FIXTURE(Shown,
 
 TEST_CASE_FIXTURE(Gpu, "the panel has the same colours where the runtime has no sRGB images, as light") {
     const auto drawn = [&](vk::Format format) {
-        using Usage = vk::ImageUsageFlagBits;
         Canvas canvas(context(), kPanelPx, format);
         ViewSettings settings;
         SceneChooser chooser;
@@ -228,27 +227,12 @@ TEST_CASE_FIXTURE(Gpu, "the panel has the same colours where the runtime has no 
         canvas.begin({}, 0.01);
         static_cast<void>(drawPanel(kPanelPx, settings, chooser, status));
         canvas.end();
-        const vk::raii::Image image(
-            context().device(),
-            vk::ImageCreateInfo({}, vk::ImageType::e2D, format, {kPanelPx.x, kPanelPx.y, 1}, 1, 1, vk::SampleCountFlagBits::e1,
-                                vk::ImageTiling::eOptimal, Usage::eTransferDst | Usage::eTransferSrc | Usage::eColorAttachment));
-        const auto needs = image.getMemoryRequirements();
-        const vk::raii::DeviceMemory memory(context().device(),
-                                            vk::MemoryAllocateInfo(needs.size, context().memoryType(needs.memoryTypeBits, {}, {})));
-        image.bindMemory(*memory, 0);
+        const test::DeviceImage image(context(), kPanelPx, format);
         const Buffer bytes = allocate<std::uint32_t>("panel", std::size_t{kPanelPx.x} * kPanelPx.y);
         run([&](Commands& commands) {
             canvas.record(commands);
-            canvas.copyTo(commands, *image);
-            const vk::ImageMemoryBarrier barrier(vk::AccessFlagBits::eMemoryWrite, vk::AccessFlagBits::eTransferRead,
-                                                 vk::ImageLayout::eColorAttachmentOptimal, vk::ImageLayout::eTransferSrcOptimal,
-                                                 VK_QUEUE_FAMILY_IGNORED, VK_QUEUE_FAMILY_IGNORED, *image,
-                                                 {vk::ImageAspectFlagBits::eColor, 0, 1, 0, 1});
-            commands.buffer().pipelineBarrier(vk::PipelineStageFlagBits::eAllCommands, vk::PipelineStageFlagBits::eTransfer, {}, {}, {},
-                                              barrier);
-            commands.buffer().copyImageToBuffer(
-                *image, vk::ImageLayout::eTransferSrcOptimal, bytes.handle(),
-                vk::BufferImageCopy(0, 0, 0, {vk::ImageAspectFlagBits::eColor, 0, 0, 1}, {}, {kPanelPx.x, kPanelPx.y, 1}));
+            canvas.copyTo(commands, *image.image);
+            image.copyLevel(commands, 0, kPanelPx, bytes, 0);
         });
         return readBack<std::uint32_t>(bytes, std::size_t{kPanelPx.x} * kPanelPx.y);
     };

@@ -1,7 +1,4 @@
-// Facts about the wearer without a headset: who points, where a throw lands, what the vignette covers, how hands are drawn, where the
-// eyes are taken to look.
-#include "app/view/room/hand_picture.h"
-#include "app/view/room/vignette.h"
+// Facts about the wearer without a headset: who points, where a throw lands, how sticks move and turn, where the eyes are taken to look.
 #include "app/view/wearer/gaze_follower.h"
 #include "app/view/wearer/teleport.h"
 #include "app/view/wearer/wearer_controls.h"
@@ -67,31 +64,6 @@ ViewSettings teleporting(bool panel) {
     return settings;
 }
 
-// Both eyes at the middle, each seeing so far to every side.
-std::array<xr::EyeView, 2> eyesThatSee(float angle_rad) {
-    const xr::EyeView eye{{{0, 0, 0, 1}, {0, 0, 0}}, {-angle_rad, angle_rad, angle_rad, -angle_rad}};
-    return {eye, eye};
-}
-
-double alphaAt(const TexelPicture& picture, std::uint32_t x, std::uint32_t y) {
-    return static_cast<double>(picture.texels.at(std::size_t{y} * picture.size_px.x + x) >> 24) / 255.0;
-}
-
-// A flat hand, fingers along -y, whose palm is at `palm`.
-xr::HandJoints flatHand(const glm::dvec3& palm) {
-    xr::HandJoints joints{};
-    for (auto& joint : joints) { joint = {palm, 0.01}; }
-    joints[XR_HAND_JOINT_WRIST_EXT].place = palm + glm::dvec3(0.0, 0.06, 0.0);
-    for (std::size_t finger = 0; finger < 5; ++finger) {
-        const std::size_t first = finger == 0 ? 2 : 6 + 5 * (finger - 1), count = finger == 0 ? 4 : 5;
-        for (std::size_t i = 0; i < count; ++i) {
-            joints[first + i].place =
-                palm + glm::dvec3(0.02 * (static_cast<double>(finger) - 2.0), 0.03 - 0.03 * static_cast<double>(i), 0.0);
-        }
-    }
-    return joints;
-}
-
 constexpr double kStep = 0.01;
 const double kLensClear = glm::radians(15.0);
 
@@ -104,77 +76,70 @@ const std::array<Pose, 2> kEyes{Pose{glm::angleAxis(glm::radians(-5.0), glm::dve
                                 Pose{{1, 0, 0, 0}, {0.03, 0.0, 0.0}}};
 const glm::dvec3 kAside = glm::normalize(glm::dvec3(0.3, -0.2, 1.0));
 
-TEST_CASE("both hands point, and the one that clicked last is the pointer until the other one clicks or it misses") {
-    Pointing pointing;
-    auto& [panel, hands] = pointing;
+TEST_CASE_FIXTURE(Pointing, "both hands point, and the one that clicked last is the pointer until the other one clicks or it misses") {
     hands = {pointingAt(panel, {-0.2, 0.0}), pointingAt(panel, {0.2, 0.0})};
-    CHECK(pointing.at() == doctest::Approx(600));
-    CHECK(pointing.rays() == 2);
+    CHECK(at() == doctest::Approx(600));
+    CHECK(rays() == 2);
     CHECK(panel.pulses(kLeft));
     CHECK(panel.pulses(kRight));
     hands[kLeft].clicks = true;
-    CHECK(pointing.at() == doctest::Approx(200));
+    CHECK(at() == doctest::Approx(200));
     CHECK(panel.pointer().pressed);
     CHECK(panel.pulses(kLeft));
     CHECK_FALSE(panel.pulses(kRight));
     hands[kLeft].clicks = false;
-    CHECK(pointing.at() == doctest::Approx(200));
+    CHECK(at() == doctest::Approx(200));
     const xr::Hand left = std::exchange(hands[kLeft], pointingAway());
-    CHECK(pointing.at() == doctest::Approx(600));
+    CHECK(at() == doctest::Approx(600));
     hands[kLeft] = left;
-    CHECK(pointing.at() == doctest::Approx(200));
+    CHECK(at() == doctest::Approx(200));
     hands[kRight].clicks = true;
-    CHECK(pointing.at() == doctest::Approx(600));
+    CHECK(at() == doctest::Approx(600));
 }
 
-TEST_CASE("a trigger that was pulled beside the panel does not click when the ray comes over it") {
-    Pointing pointing;
-    auto& [panel, hands] = pointing;
+TEST_CASE_FIXTURE(Pointing, "a trigger that was pulled beside the panel does not click when the ray comes over it") {
     hands[kRight] = pointingAway();
     hands[kRight].clicks = true;
-    CHECK(pointing.at() < 0.0);
+    CHECK(at() < 0.0);
     CHECK(panel.clicksElsewhere(kRight));
     hands[kRight] = pointingAt(panel, {0.0, 0.0}, true);
-    CHECK(pointing.at() == doctest::Approx(400));
+    CHECK(at() == doctest::Approx(400));
     CHECK_FALSE(panel.pointer().pressed);
     CHECK(panel.clicksElsewhere(kRight));
     for (const bool clicks : {false, true}) {
         hands[kRight].clicks = clicks;
-        pointing.at();
+        at();
     }
     CHECK(panel.pointer().pressed);
     CHECK_FALSE(panel.clicksElsewhere(kRight));
 }
 
-TEST_CASE("without a panel a hand shows its ray only while its trigger is pulled") {
-    Pointing pointing;
-    auto& [panel, hands] = pointing;
+TEST_CASE_FIXTURE(Pointing, "without a panel a hand shows its ray only while its trigger is pulled") {
     hands.fill(pointingAt(panel, {0.0, 0.0}));
-    CHECK(pointing.at(false) < 0.0);
-    CHECK(pointing.rays() == 0);
+    CHECK(at(false) < 0.0);
+    CHECK(rays() == 0);
     hands[kLeft].clicks = true;
-    pointing.at(false);
-    const auto rays = panel.rays(glm::dvec3(0.1, -0.2, 0.0), std::nullopt);
-    REQUIRE(rays.size() == 1);
-    CHECK(rays[0].sprite == Sprite::kFadingRay);
-    CHECK(pointing.rays(kLeft) == 0);
+    at(false);
+    const auto seen = panel.rays(glm::dvec3(0.1, -0.2, 0.0), std::nullopt);
+    REQUIRE(seen.size() == 1);
+    CHECK(seen[0].sprite == Sprite::kFadingRay);
+    CHECK(rays(kLeft) == 0);
 }
 
-TEST_CASE("a ray meets the panel where it points, from the front alone, and a strip joins its ends and shows its face to the eye") {
-    Pointing pointing;
-    auto& [panel, hands] = pointing;
+TEST_CASE_FIXTURE(Pointing,
+                  "a ray meets the panel where it points, from the front alone, and a strip joins its ends and shows its face to the eye") {
     // A quarter to the right and downwards of the panel's middle.
     hands[kRight] = pointingAt(panel, {0.2, 0.1});
-    CHECK(pointing.at() == doctest::Approx(600));
+    CHECK(at() == doctest::Approx(600));
     CHECK(panel.pointer().place_px->y == doctest::Approx(300));
     CHECK_FALSE(panel.pointer().pressed);
-    const auto rays = panel.rays(glm::dvec3(0.0), std::nullopt);
-    REQUIRE(rays.size() == 1);
-    CHECK(rays[0].sprite == Sprite::kRay);
-    CHECK(rays[0].strip.size_m.y == doctest::Approx(0.5));
-    CHECK(glm::distance(rays[0].strip.room_from_strip.position, transform(panel.roomFromPanel(), {0.2, 0.1, -0.25})) < 1e-9);
+    const auto seen = panel.rays(glm::dvec3(0.0), std::nullopt);
+    REQUIRE(seen.size() == 1);
+    CHECK(seen[0].sprite == Sprite::kRay);
+    CHECK(seen[0].strip.size_m.y == doctest::Approx(0.5));
+    CHECK(glm::distance(seen[0].strip.room_from_strip.position, transform(panel.roomFromPanel(), {0.2, 0.1, -0.25})) < 1e-9);
     hands[kRight].aim = compose(panel.roomFromPanel(), {glm::dquat(0, 0, 1, 0), {0.2, 0.1, 0.5}});  // behind it, towards it
-    CHECK(pointing.at() < 0.0);
+    CHECK(at() < 0.0);
     // It fades before it is there.
     const auto behind = panel.rays(glm::dvec3(0.0), std::nullopt);
     REQUIRE(behind.size() == 1);
@@ -256,8 +221,7 @@ TEST_CASE("who teleports stands where the throw lands, once the stick is let go,
 TEST_CASE("the stick of the hand that points at the panel scrolls there, the other hand's moves the wearer, and a throw goes on over it") {
     for (const int pointing : {kLeft, kRight}) {
         for (const bool teleports : {false, true}) {
-            CAPTURE(pointing);
-            CAPTURE(teleports);
+            INFO("pointing ", pointing, ", teleports ", teleports);
             Wearer wearer(teleports ? teleporting(true) : ViewSettings());
             auto& [panel, controls, state, now] = wearer;
             now.hands[static_cast<std::size_t>(pointing)] = pointingAt(panel, {0.1, 0.1});
@@ -326,97 +290,16 @@ TEST_CASE("a stick that is pressed in goes to the next viewpoint once, the left 
     CHECK(steps(true, true) == 1);
 }
 
-TEST_CASE("a trigger that was pressed while nobody looked counts once it was let go") {
-    xr::Hold hold;
-    for (const double value : {1.0, 0.4}) { CHECK_FALSE(hold.update(value)); }
-    CHECK_FALSE(hold.update(0.2));
-    for (const double value : {0.6, 0.4}) { CHECK(hold.update(value)); }
-    CHECK_FALSE(hold.update(0.2));
-    CHECK(hold.update(0.6));
-    // Nor what the controller did that could not be seen.
-    CHECK_FALSE(hold.update(std::nullopt));
-    CHECK_FALSE(hold.update(0.6));
-    CHECK_FALSE(hold.update(0.0));
-    CHECK(hold.update(0.6));
-    hold.forget();
-    CHECK_FALSE(hold.update(0.6));
-}
-
-TEST_CASE("the vignette closes while the wearer moves, covers all that the eyes see, and is gone afterwards") {
-    Vignette vignette;
-    for (const float angle_rad : {0.6f, 0.8f, 1.1f}) {
-        const auto eyes = eyesThatSee(angle_rad);
-        CHECK_FALSE(vignette.widthMetres(eyes).has_value());
-        double width_m = 1e9;
-        for (int i = 0; i < 5; ++i) {
-            vignette.update(true, 0.05);
-            const double next_m = vignette.widthMetres(eyes).value();
-            CHECK(next_m <= width_m);
-            width_m = next_m;
-        }
-        const double seen_m = 2.0 * kVignetteMetres * std::tan(static_cast<double>(angle_rad));
-        CHECK(width_m >= seen_m);
-        // Its clear part lies within what is seen.
-        CHECK(kVignetteClear * width_m < seen_m);
-        for (int i = 0; i < 10; ++i) { vignette.update(false, 0.05); }
-        CHECK_FALSE(vignette.widthMetres(eyes).has_value());
-    }
-}
-
-TEST_CASE("a hand is drawn where its joints are, and nowhere else") {
-    const glm::dvec3 eye(0.0), palm(0.1, 0.2, 0.6);
-    const xr::HandJoints joints = flatHand(palm);
-    const Strip place = handPicturePlace(joints, eye);
-    const TexelPicture picture = drawHand(joints, place, eye, {false, false});
-    REQUIRE(picture.texels.size() == std::size_t{kHandPicturePx.x} * kHandPicturePx.y);
-    // The palm is in the middle; each joint shows where its line of sight meets the picture.
-    CHECK(alphaAt(picture, kHandPicturePx.x / 2, kHandPicturePx.y / 2) == 1.0);
-    for (const xr::HandJoint& joint : joints) {
-        const glm::dvec3 from = transform(inverse(place.room_from_strip), eye), to = transform(inverse(place.room_from_strip), joint.place);
-        const glm::dvec3 hit = from + (to - from) * (from.z / (from.z - to.z));
-        const glm::dvec2 at = (glm::dvec2(hit) / place.size_m + 0.5) * glm::dvec2(kHandPicturePx);
-        CHECK(alphaAt(picture, static_cast<std::uint32_t>(at.x), static_cast<std::uint32_t>(at.y)) == 1.0);
-    }
-    for (const std::uint32_t border : {0u, kHandPicturePx.x - 1}) {
-        CHECK(alphaAt(picture, border, kHandPicturePx.y / 2) == 0.0);
-        CHECK(alphaAt(picture, kHandPicturePx.x / 2, border) == 0.0);
-    }
-}
-
-TEST_CASE("pictures are multiplied by alpha, in the order and the encoding of their image") {
-    CHECK(texelOf({1.0, 0.0, 0.0}, 1.0, {false, true}) == 0xff0000ffu);
-    CHECK(texelOf({1.0, 0.0, 0.0}, 1.0, {true, true}) == 0xffff0000u);
-    CHECK(texelOf({1.0, 1.0, 1.0}, 0.5, {false, true}) == 0x80808080u);
-    // Half the light is the byte 188 of sRGB.
-    CHECK(texelOf({1.0, 1.0, 1.0}, 0.5, {false, false}) == 0x80bcbcbcu);
-    const TexelPicture sheet = drawSprites({false, false});
-    const auto alpha = [&](Sprite sprite, const glm::dvec2& share) {
-        const auto [from_px, size_px] = placeOf(sprite);
-        const glm::uvec2 at = from_px + glm::uvec2(share * glm::dvec2(size_px));
-        return alphaAt(sheet, at.x, at.y);
-    };
-    CHECK(alpha(Sprite::kRay, {0.5, 0.99}) == 1.0);
-    CHECK(alpha(Sprite::kFadingRay, {0.5, 0.0}) == 1.0);
-    CHECK(alpha(Sprite::kFadingRay, {0.5, 0.99}) < 0.05);
-    CHECK(alpha(Sprite::kVignette, {0.5, 0.5}) == 0.0);
-    CHECK(alpha(Sprite::kVignette, {0.0, 0.5}) > 0.9);
-    CHECK(alpha(Sprite::kKnob, {0.0, 0.0}) == 0.0);
-    CHECK(alpha(Sprite::kKnob, {0.5, 0.5}) == 1.0);
-}
-
-TEST_CASE("an eye that nobody sees looks at the middle of its lens") {
+TEST_CASE(
+    "an eye that nobody sees looks at the middle of its lens, one that is seen where it is seen to, in its own axes, with less clear") {
     GazeFollower follower;
+    std::array<std::optional<Gaze>, 2> gazes;
     for (int i = 0; i < 100; ++i) {
-        const auto gazes = follower.update(std::nullopt, kEyes, kLensClear, kStep);
+        gazes = follower.update(std::nullopt, kEyes, kLensClear, kStep);
         REQUIRE(gazes[kLeft]);
         CHECK(gazes[kLeft]->direction == glm::dvec3(0.0, 0.0, 1.0));
         CHECK(gazes[kRight]->clear_rad == kLensClear);
     }
-}
-
-TEST_CASE("an eye that is seen looks where it is seen to, in its own axes, and less about it is clear") {
-    GazeFollower follower;
-    std::array<std::optional<Gaze>, 2> gazes;
     for (int i = 0; i < 20; ++i) { gazes = follower.update(kAside, kEyes, kLensClear, kStep); }
     CHECK(angleBetween(gazes[kRight]->direction, kAside) < 1e-6);
     CHECK(angleBetween(kEyes[kLeft].orientation * gazes[kLeft]->direction, kAside) < 1e-6);

@@ -1,0 +1,95 @@
+// Facts about what hangs in the room without a headset: what the vignette covers, and how hands and other pictures are drawn.
+#include "app/view/room/hand_picture.h"
+#include "app/view/room/vignette.h"
+#include "tests/suite.h"
+
+SUITE(room) {
+
+// Both eyes at the middle, each seeing so far to every side.
+std::array<xr::EyeView, 2> eyesThatSee(float angle_rad) {
+    const xr::EyeView eye{{{0, 0, 0, 1}, {0, 0, 0}}, {-angle_rad, angle_rad, angle_rad, -angle_rad}};
+    return {eye, eye};
+}
+
+double alphaAt(const TexelPicture& picture, std::uint32_t x, std::uint32_t y) {
+    return static_cast<double>(picture.texels.at(std::size_t{y} * picture.size_px.x + x) >> 24) / 255.0;
+}
+
+// A flat hand, fingers along -y, whose palm is at `palm`.
+xr::HandJoints flatHand(const glm::dvec3& palm) {
+    xr::HandJoints joints{};
+    for (auto& joint : joints) { joint = {palm, 0.01}; }
+    joints[XR_HAND_JOINT_WRIST_EXT].place = palm + glm::dvec3(0.0, 0.06, 0.0);
+    for (std::size_t finger = 0; finger < 5; ++finger) {
+        const std::size_t first = finger == 0 ? 2 : 6 + 5 * (finger - 1), count = finger == 0 ? 4 : 5;
+        for (std::size_t i = 0; i < count; ++i) {
+            joints[first + i].place =
+                palm + glm::dvec3(0.02 * (static_cast<double>(finger) - 2.0), 0.03 - 0.03 * static_cast<double>(i), 0.0);
+        }
+    }
+    return joints;
+}
+
+TEST_CASE("the vignette closes while the wearer moves, covers all that the eyes see, and is gone afterwards") {
+    Vignette vignette;
+    for (const float angle_rad : {0.6f, 0.8f, 1.1f}) {
+        const auto eyes = eyesThatSee(angle_rad);
+        CHECK_FALSE(vignette.widthMetres(eyes).has_value());
+        double width_m = 1e9;
+        for (int i = 0; i < 5; ++i) {
+            vignette.update(true, 0.05);
+            const double next_m = vignette.widthMetres(eyes).value();
+            CHECK(next_m <= width_m);
+            width_m = next_m;
+        }
+        const double seen_m = 2.0 * kVignetteMetres * std::tan(static_cast<double>(angle_rad));
+        CHECK(width_m >= seen_m);
+        // Its clear part lies within what is seen.
+        CHECK(kVignetteClear * width_m < seen_m);
+        for (int i = 0; i < 10; ++i) { vignette.update(false, 0.05); }
+        CHECK_FALSE(vignette.widthMetres(eyes).has_value());
+    }
+}
+
+TEST_CASE("a hand is drawn where its joints are, and nowhere else") {
+    const glm::dvec3 eye(0.0), palm(0.1, 0.2, 0.6);
+    const xr::HandJoints joints = flatHand(palm);
+    const Strip place = handPicturePlace(joints, eye);
+    const TexelPicture picture = drawHand(joints, place, eye, {false, false});
+    REQUIRE(picture.texels.size() == std::size_t{kHandPicturePx.x} * kHandPicturePx.y);
+    // The palm is in the middle; each joint shows where its line of sight meets the picture.
+    CHECK(alphaAt(picture, kHandPicturePx.x / 2, kHandPicturePx.y / 2) == 1.0);
+    for (const xr::HandJoint& joint : joints) {
+        const glm::dvec3 from = transform(inverse(place.room_from_strip), eye), to = transform(inverse(place.room_from_strip), joint.place);
+        const glm::dvec3 hit = from + (to - from) * (from.z / (from.z - to.z));
+        const glm::dvec2 at = (glm::dvec2(hit) / place.size_m + 0.5) * glm::dvec2(kHandPicturePx);
+        CHECK(alphaAt(picture, static_cast<std::uint32_t>(at.x), static_cast<std::uint32_t>(at.y)) == 1.0);
+    }
+    for (const std::uint32_t border : {0u, kHandPicturePx.x - 1}) {
+        CHECK(alphaAt(picture, border, kHandPicturePx.y / 2) == 0.0);
+        CHECK(alphaAt(picture, kHandPicturePx.x / 2, border) == 0.0);
+    }
+}
+
+TEST_CASE("pictures are multiplied by alpha, in the order and the encoding of their image") {
+    CHECK(texelOf({1.0, 0.0, 0.0}, 1.0, {false, true}) == 0xff0000ffu);
+    CHECK(texelOf({1.0, 0.0, 0.0}, 1.0, {true, true}) == 0xffff0000u);
+    CHECK(texelOf({1.0, 1.0, 1.0}, 0.5, {false, true}) == 0x80808080u);
+    // Half the light is the byte 188 of sRGB.
+    CHECK(texelOf({1.0, 1.0, 1.0}, 0.5, {false, false}) == 0x80bcbcbcu);
+    const TexelPicture sheet = drawSprites({false, false});
+    const auto alpha = [&](Sprite sprite, const glm::dvec2& share) {
+        const auto [from_px, size_px] = placeOf(sprite);
+        const glm::uvec2 at = from_px + glm::uvec2(share * glm::dvec2(size_px));
+        return alphaAt(sheet, at.x, at.y);
+    };
+    CHECK(alpha(Sprite::kRay, {0.5, 0.99}) == 1.0);
+    CHECK(alpha(Sprite::kFadingRay, {0.5, 0.0}) == 1.0);
+    CHECK(alpha(Sprite::kFadingRay, {0.5, 0.99}) < 0.05);
+    CHECK(alpha(Sprite::kVignette, {0.5, 0.5}) == 0.0);
+    CHECK(alpha(Sprite::kVignette, {0.0, 0.5}) > 0.9);
+    CHECK(alpha(Sprite::kKnob, {0.0, 0.0}) == 0.0);
+    CHECK(alpha(Sprite::kKnob, {0.5, 0.5}) == 1.0);
+}
+
+}  // SUITE(room)
