@@ -17,7 +17,10 @@ TEST_CASE("what is clicked on the panel is so, beside it nothing is clicked, and
     // A step ahead.
     acts.push("left thumbstick", {0.0, 1.0}, 0.1).wait(0.15).click({1.2, 0.3}).click({-0.2, 0.3});
     const double beside = acts.look(0.05);
-    acts.click(onMethod("right")).click(onMethod("Save")).click(onMethod("left")).click(onMethod("Load")).wait(0.1);
+    // Files are written and read beside the frames, which in lock-step come as fast as they can: within so many frames they are there.
+    constexpr double kFilesSeconds = 100 / 50.0;
+    acts.click(onMethod("right")).click(onMethod("Save")).wait(kFilesSeconds);
+    acts.click(onMethod("left")).click(onMethod("Load")).wait(kFilesSeconds);
     acts.click(onMethod("margin (paper)")).click(onMethod("budget"));
     // The resolution changes once the trigger is let go.
     const double held = acts.point(onMethod("resolution")).hold("right trigger", 0.1).wait(0.05).look(0.1);
@@ -27,9 +30,8 @@ TEST_CASE("what is clicked on the panel is so, beside it nothing is clicked, and
     const double other_rate = acts.wait(0.05).look(0.05);
     acts.click(placeOf("Quit")).wait(0.5);
     // What the command line says of the simulated headset counts before the environment.
-    const ViewRun run = runView(work, "click", acts.script(), kScene + withConfig(work, kMethodPage),
-                                kValidated + " BINOSPLAT_SHADERS= SIMULATED_OPENXR_OUT=elsewhere SIMULATED_OPENXR_SCRIPT=nowhere.script");
-    checkClean(run);
+    const ViewRun run = runClean(work, "click", acts.script(), kScene + withConfig(work, kMethodPage),
+                                 kValidated + " BINOSPLAT_SHADERS= SIMULATED_OPENXR_OUT=elsewhere SIMULATED_OPENXR_SCRIPT=nowhere.script");
     CHECK_FALSE(fs::exists(work.path / "elsewhere"));
     CHECK(run.endSeconds() < acts.now_s - 0.3);
     CHECK_FALSE(run.says("shaders"));
@@ -67,13 +69,11 @@ TEST_CASE("what is clicked on the panel is so, beside it nothing is clicked, and
     CHECK(options.at("dominant") == "right");
     // The wearer stands there again, unless told where to.
     const auto look = [&](const std::string& name, const std::string& arguments) {
-        return runView(work, name, "rate 50\nsize 96 96\nframes every 5\nat 0.15 exit\n", kWall + " --hide-panel " + arguments);
+        return runClean(work, name, "rate 50\nsize 96 96\nframes every 5\nat 0.15 exit\n", kWall + " --hide-panel " + arguments);
     };
     const std::string as_then = "--mode mono --dominant right";
     const ViewRun there = look("there", as_then), named = look("named", "--config '" + file.string() + "'"),
                   before = look("before", as_then + " --eye 0,0,0 --look 0,0,3 --up 0,-1,0");
-    checkClean(there);
-    checkClean(named);
     CHECK(there.says("the wearer stands where this scene was saved"));
     CHECK_FALSE(before.says("where this scene was saved"));
     CHECK(compare(there.eye(5, kLeft), named.eye(5, kLeft)).psnrDb() > 60.0);
@@ -84,20 +84,17 @@ TEST_CASE("what is clicked on the panel is so, beside it nothing is clicked, and
     reload.click(onMethod("Shaders", true)).wait(0.1);
     const std::string method_page = withConfig(work, kMethodPage);
     const ViewRun other =
-        runView(work, "other", reload.script(), kOneSplat + " --mode mono" + method_page, kValidated + " BINOSPLAT_SHADERS=nowhere");
-    checkClean(other);
+        runClean(work, "other", reload.script(), kOneSplat + " --mode mono" + method_page, kValidated + " BINOSPLAT_SHADERS=nowhere");
     CHECK_FALSE(other.says("where this scene was saved"));
     CHECK(other.says("shaders stay as they were: nowhere/sort/cull_pages.comp is not there"));
     std::ofstream(file) << "[view]\nnonsense = 1\n";
     REQUIRE(work.runCommand("mkdir -p pipe/sort && mkfifo pipe/sort/cull_pages.comp").exit_code == 0);
-    const ViewRun broken = runView(work, "broken", reload.script(), kScene + method_page + " --shaders pipe");
-    checkClean(broken);
+    const ViewRun broken = runClean(work, "broken", reload.script(), kScene + method_page + " --shaders pipe");
     CHECK(broken.says("slanted-wall.view.toml:2"));
     CHECK(broken.says("shaders stay as they were: pipe/sort/cull_pages.comp is not a file"));
 }
 
-TEST_CASE("a rate that the headset lacks, or that it refuses, is said, and is no end") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "a rate that the headset lacks, or that it refuses, is said, and is no end") {
     Acts acts("rate 90 fixed\nsize 64 64\nframes none\n");
     acts.click(placeOf("120 Hz", true)).wait(0.1);
     // The wearer's own changes, long after the end, are on the list as well.
@@ -110,8 +107,7 @@ TEST_CASE("a rate that the headset lacks, or that it refuses, is said, and is no
     CHECK(run.periodNs(run.frames.size() - 1) == 11'111'111);
 }
 
-TEST_CASE("shaders are reloaded by a button, all or none, with a verdict") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "shaders are reloaded by a button, all or none, with a verdict") {
     // As they are; then one line is broken; then it draws nothing.
     fs::copy(kSources, work.path / "edited", fs::copy_options::recursive);
     const fs::path present = fs::path("edited") / "present" / "present.comp";
@@ -131,9 +127,8 @@ TEST_CASE("shaders are reloaded by a button, all or none, with a verdict") {
         acts.click(onMethod("Shaders", true));
         looks.push_back(acts.look());
     }
-    const ViewRun run = runView(work, "reload", acts.script(), kScene + " --shaders edited" + withConfig(work, kMethodPage),
-                                kValidated + " PATH=\"$PWD/tools:$PATH\"");
-    checkClean(run);
+    const ViewRun run = runClean(work, "reload", acts.script(), kScene + " --shaders edited" + withConfig(work, kMethodPage),
+                                 kValidated + " PATH=\"$PWD/tools:$PATH\"");
     std::size_t count = 0;
     for (const auto& file : fs::recursive_directory_iterator(kSources)) { count += file.path().extension() == ".comp" ? 1 : 0; }
     checkOrder(run, {fmt::format("{} shaders reloaded in ", count), "shaders stay as they were: " + present.string() + ":", "nonsense",
@@ -147,25 +142,20 @@ TEST_CASE("shaders are reloaded by a button, all or none, with a verdict") {
     }
 }
 
-TEST_CASE("every shader is compiled from its source as the build does it" * nightly()) {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "every shader is compiled from its source as the build does it" * nightly()) {
     Acts acts(kBlind);
     acts.click(onMethod("Shaders", true)).wait(0.1);
     const ViewRun run =
-        runView(work, "all", acts.script(), kScene + " --shaders '" + kSources + "'" + withConfig(work, kMethodPage), kValidated);
-    checkClean(run);
+        runClean(work, "all", acts.script(), kScene + " --shaders '" + kSources + "'" + withConfig(work, kMethodPage), kValidated);
     CHECK(run.says(" shaders reloaded in "));
 }
 
-TEST_CASE("a resolution that the device has no memory for is refused on the panel, and what was shown before stays") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "a resolution that the device has no memory for is refused on the panel, and what was shown before stays") {
     const std::string config = withConfig(work, kMethodPage + "resolution-scale = 0.25\n");
     const auto choose = [&](const std::string& name, const std::string& headset, const std::string& arguments) {
         Acts acts("rate 50\n" + headset);
         acts.wait(0.1).press("right b").click(onMethod("resolution")).press("right b").wait(0.2);
-        const ViewRun run = runView(work, name, acts.script(), arguments + config);
-        checkClean(run);
-        return run;
+        return runClean(work, name, acts.script(), arguments + config);
     };
     const ViewRun run = choose("full", "size 1024 1024\nframes from 12 to 36 every 24\n", kWall + " --hide-panel --memory-limit 16");
     CHECK(run.says("does not fit: "));
@@ -199,10 +189,9 @@ TEST_CASE(
     const double walked = acts.click(onMethod("right")).press("right b").wait(0.2).look();
     // Near enough to the bars that holes open inside the picture.
     const ViewRun run =
-        runView(work, "walk", acts.script(),
-                "builtin:fence --load-first --hide-panel --hide-hands --mode paper --margin 0 --eye 0,0,0.5 --look 0,0,3 --up 0,-1,0" +
-                    withConfig(work, kMethodPage));
-    checkClean(run);
+        runClean(work, "walk", acts.script(),
+                 "builtin:fence --load-first --hide-panel --hide-hands --mode paper --margin 0 --eye 0,0,0.5 --look 0,0,3 --up 0,-1,0" +
+                     withConfig(work, kMethodPage));
     checkOrder(run, {"tint = true", "center-roi = true", "tint = false", "mode = \"predicted\"", "dominant = \"right\"",
                      "the runtime asked for the end"});
     // What is greener than the picture beside it.
@@ -228,8 +217,7 @@ TEST_CASE(
     CHECK(run.loggedEye(run.frameAt(walked), 0).position.z < -0.05);
 }
 
-TEST_CASE("a runtime with no more than OpenXR 1.0 and Vulkan shows every method, takes clicks and knows no floor") {
-    const Workplace work;
+TEST_CASE_FIXTURE(AtWork, "a runtime with no more than OpenXR 1.0 and Vulkan shows every method, takes clicks and knows no floor") {
     std::string begin = "rate 50\nsize 96 96\nframes every 4\nstage off\nprofile khr/simple_controller\n";
     for (const simulated::Extension& extension : simulated::kExtensions) {
         const std::string name = extension.name;
@@ -247,9 +235,8 @@ TEST_CASE("a runtime with no more than OpenXR 1.0 and Vulkan shows every method,
     acts.click(onMethod("View"), "right select").click(placeOf("Teleport"), "right select");
     acts.move("controller right", lookingAt({0.2, 1.2, -0.35}, {0.2, 1.2, -1.0})).wait(0.05);
     const double aiming = acts.hold("right select", 0.2).wait(0.05).look();
-    const ViewRun run = runView(work, "core", acts.script(),
-                                "builtin:fence --load-first --eye 0,0,0 --look 0,0,3 --up 0,-1,0" + withConfig(work, kMethodPage));
-    checkClean(run);
+    const ViewRun run = runClean(work, "core", acts.script(),
+                                 "builtin:fence --load-first --eye 0,0,0 --look 0,0,3 --up 0,-1,0" + withConfig(work, kMethodPage));
     checkOrder(run, said);
     const std::size_t frame = run.pictureAt(shared);
     CHECK_FALSE(run.view(frame).contains("depth"));
