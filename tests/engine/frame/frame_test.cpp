@@ -1,11 +1,9 @@
 // Facts about whole frames against the twin: pictures, depth and moments of real, built-in and analytic scenes.
 #include "engine/picture/image_io.h"
 #include "engine/reference/reach.h"
-#include "engine/scene/spz.h"
 #include "engine/srgb.h"
 #include "tests/engine/frame/frame_runs.h"
 #include "tests/engine/passes/pass_stages.h"
-#include "tests/engine/scene/ply_files.h"
 #include "tests/shared_data.h"
 
 SUITE(frame) {
@@ -149,23 +147,18 @@ TEST_CASE_FIXTURE(Gpu, "real scenes are rendered as the twin renders them" * tes
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "the atelier is rendered as the twin renders it") {
-    checkAgainstTwin(*this, test::viewBuiltin("builtin:atelier", {256, 256}, 20000), makeSettings({0.1, 0.2, 0.3}), 80.0);
+TEST_CASE_FIXTURE(Gpu, "the atelier and clouds of discs and of 3D Gaussians, dimmed or not, are rendered as the twin renders them") {
+    const glm::dvec3 background(0.1, 0.2, 0.3);
+    checkAgainstTwin(*this, test::viewBuiltin("builtin:atelier", {256, 256}, 20000), makeSettings(background), 80.0);
+    checkAgainstTwin(*this, test::viewCloud({320, 240}), makeSettings(), 80.0);  // measured: 84.0
+    for (const bool antialiased : {false, true}) {
+        checkAgainstTwin(*this, test::viewGaussians({320, 240}, antialiased), makeSettings(background), 78.0);  // measured: 81.7
+    }
 }
 
 TEST_CASE_FIXTURE(Gpu, "the atelier of many splats is rendered as the twin renders it, in large" * test::nightly()) {
     // Measured: 86.5.
     checkAgainstTwin(*this, test::viewBuiltin("builtin:atelier", {768, 768}, 200000), makeSettings({0.1, 0.2, 0.3}), 80.0);
-}
-
-TEST_CASE_FIXTURE(Gpu, "a cloud about the eye is rendered as the twin renders it") {
-    checkAgainstTwin(*this, test::viewCloud({320, 240}), makeSettings(), 80.0);  // measured: 84.0
-}
-
-TEST_CASE_FIXTURE(Gpu, "a cloud of 3D Gaussians is rendered as the twin renders it, dimmed or not") {
-    for (const bool antialiased : {false, true}) {
-        checkAgainstTwin(*this, test::viewGaussians({320, 240}, antialiased), makeSettings({0.1, 0.2, 0.3}), 78.0);  // measured: 81.7
-    }
 }
 
 TEST_CASE_FIXTURE(Gpu, "colours of light are blended as light, over the light of the background, and then encoded") {
@@ -235,15 +228,6 @@ TEST_CASE_FIXTURE(Gpu, "a flat 3D Gaussian that faces the eye is its disc with t
     const Image picture = pictureOf(flat);
     CHECK(compare(picture, pictureOf(test::makeScene(wide)), 4).psnrDb() >= 120.0);  // measured: 151
     CHECK(compare(picture, pictureOf(test::makeScene(narrow)), 4).psnrDb() < 50.0);
-}
-
-TEST_CASE("that a scene asks for antialiasing goes through SPZ") {
-    const test::Folder folder;
-    for (const bool antialiased : {false, true}) {
-        const std::string name = folder.file(antialiased ? "yes.spz" : "no.spz");
-        writeSpz(test::viewGaussians({32, 32}, antialiased).scene, name);
-        CHECK(loadScene(name).antialiased == antialiased);
-    }
 }
 
 #ifdef BINOSPLAT_SOG  // which reads SOG

@@ -160,6 +160,12 @@ TEST_CASE_FIXTURE(InFolder, "writing and reading back keeps every attribute with
     }
     writeSpz({}, folder.file("a.spz"));
     CHECK(loadScene(folder.file("a.spz")).size() == 0);
+    for (const bool antialiased : {false, true}) {
+        Scene gaussians = randomScene(0, 10, true);
+        gaussians.antialiased = antialiased;
+        writeSpz(gaussians, folder.file("a.spz"));
+        CHECK(loadScene(folder.file("a.spz")).antialiased == antialiased);
+    }
 }
 
 TEST_CASE_FIXTURE(InFolder, "large scenes get fewer fractional bits, and those beyond the format none") {
