@@ -263,13 +263,16 @@ TEST_CASE("controllers are drawn where grips are; the wearer teleports to where 
 TEST_CASE("the wearer is moved by sticks, pads, hands, viewpoints and buttons, as far as they say and by nothing else; places are kept") {
     const Workplace work;
     REQUIRE(work.run("scene one-splat --out a.ply").exit_code == 0);
-    const std::string camera = R"("width": 8, "height": 8, "rotation": [[1,0,0],[0,1,0],[0,0,1]], "fx": 8, "fy": 8)";
-    std::ofstream(work.path / "cameras.json") << R"([{"img_name": "door", "position": [0, 0, 0], )" << camera
-                                              << R"(}, {"img_name": "window", "position": [0.5, 0, 0], )" << camera << "}]";
+    std::string cameras;
+    for (const char* its : {R"("door", "position": [0,0,0])", R"("window", "position": [0.5,0,0])", R"("stairs", "position": [0,0,0.5])"}) {
+        cameras +=
+            R"(, {"width": 8, "height": 8, "rotation": [[1,0,0],[0,1,0],[0,0,1]], "fx": 8, "fy": 8, "img_name": )" + std::string(its) + "}";
+    }
+    work.write("cameras.json", "[" + cameras.substr(1) + "]");
     const auto onScenes = [](const std::string& name) { return placeOf(name, false, PanelPage::kScenes); };
     Acts acts("rate 50\nsize 64 64\nframes none\n");
     const auto keep = [&] { acts.click(onScenes("Keep this one")).wait(0.05); };
-    acts.click(onScenes("Next viewpoint")).press("right thumbstick").press("left thumbstick");
+    acts.click(onScenes("Next viewpoint")).hold("right thumbstick", 0.08).wait(0.12).press("left thumbstick");
     keep();  // 0: where the camera was
     // A hand holds the scene while the room begins elsewhere, and again where it was.
     acts.move("head", "position 0.5 1.6 0.4 turn 40 0").hold("left squeeze", 0.18).wait(0.1).at("recentre").wait(0.15);
@@ -314,7 +317,7 @@ TEST_CASE("the wearer is moved by sticks, pads, hands, viewpoints and buttons, a
     const ViewRun run = runClean(work, "run", acts.script(),
                                  "a.ply --load-first --mode mono --hide-hands --metres-per-unit 0.5 --eye 0,0,1 --look 0,0,3 --up 0,-1,0" +
                                      withConfig(work, "[view]\npanel-page = \"scenes\"\n"));
-    checkOrder(run, {"viewpoint 1 of 2: door", "viewpoint 2 of 2: window", "viewpoint 1 of 2: door", "this viewpoint is kept",
+    checkOrder(run, {"viewpoint 1 of 3: door", "viewpoint 2 of 3: window", "viewpoint 1 of 3: door", "this viewpoint is kept",
                      "the room now begins where the wearer stands, 1.50 m above the floor"});
     const auto kept = keptPlaces(work);
     REQUIRE(kept.size() == 13);

@@ -1,15 +1,9 @@
-// Facts about what hangs in the room without a headset: what the vignette covers, and how hands and other pictures are drawn.
+// Facts about what hangs in the room: how hands and other pictures are drawn.
 #include "app/view/room/hand_picture.h"
-#include "app/view/room/vignette.h"
+#include "app/view/room/sprites.h"
 #include "tests/suite.h"
 
 SUITE(room) {
-
-// Both eyes at the middle, each seeing so far to every side.
-std::array<xr::EyeView, 2> eyesThatSee(float angle_rad) {
-    const xr::EyeView eye{{{0, 0, 0, 1}, {0, 0, 0}}, {-angle_rad, angle_rad, angle_rad, -angle_rad}};
-    return {eye, eye};
-}
 
 double alphaAt(const TexelPicture& picture, std::uint32_t x, std::uint32_t y) {
     return static_cast<double>(picture.texels.at(std::size_t{y} * picture.size_px.x + x) >> 24) / 255.0;
@@ -28,27 +22,6 @@ xr::HandJoints flatHand(const glm::dvec3& palm) {
         }
     }
     return joints;
-}
-
-TEST_CASE("the vignette closes while the wearer moves, covers all that the eyes see, and is gone afterwards") {
-    Vignette vignette;
-    for (const float angle_rad : {0.6f, 0.8f, 1.1f}) {
-        const auto eyes = eyesThatSee(angle_rad);
-        CHECK_FALSE(vignette.widthMetres(eyes).has_value());
-        double width_m = 1e9;
-        for (int i = 0; i < 5; ++i) {
-            vignette.update(true, 0.05);
-            const double next_m = vignette.widthMetres(eyes).value();
-            CHECK(next_m <= width_m);
-            width_m = next_m;
-        }
-        const double seen_m = 2.0 * kVignetteMetres * std::tan(static_cast<double>(angle_rad));
-        CHECK(width_m >= seen_m);
-        // Its clear part lies within what is seen.
-        CHECK(kVignetteClear * width_m < seen_m);
-        for (int i = 0; i < 10; ++i) { vignette.update(false, 0.05); }
-        CHECK_FALSE(vignette.widthMetres(eyes).has_value());
-    }
 }
 
 TEST_CASE("a hand is drawn where its joints are, and nowhere else") {
