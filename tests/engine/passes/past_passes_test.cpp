@@ -23,45 +23,6 @@ const ViewedScene& evenFence() {
     return view;
 }
 
-struct Differences {
-    std::size_t pixels = 0, other_depths = 0, other_spreads = 0, quarters = 0, other_grown = 0, tiles = 0, other_tiles = 0,
-                other_errors = 0, other_growth = 0;
-    double grown = 0.0, twin_grown = 0.0, squares = 0.0;
-};
-
-// Of what the device made of `before`, nothing of which was rendered again, and what the twin makes of it.
-void compareWarped(Differences& differences, const EyeOnDevice& made, reference::Past twin) {
-    for (std::size_t i = 0; i < twin.rgba.size(); ++i) {
-        const glm::dvec4 off = made.past.rgba[i] - twin.rgba[i];
-        differences.squares += glm::dot(off, off) / 4.0;
-        const auto &a = made.past.pixels[i], &b = twin.pixels[i];
-        // A block's depths change by the ratio of its middle's.
-        const bool same = a.has_value() == b.has_value() && (!a || test::isNear(a->inverse_depth, b->inverse_depth, 1e-3, 1e-6));
-        differences.other_depths += same ? 0 : 1;
-        differences.other_spreads += a && b && a->spread != b->spread ? 1 : 0;
-    }
-    differences.pixels += twin.rgba.size();
-    for (std::size_t t = 0; t < twin.tiles.size(); ++t) {
-        const reference::PastTile &a = made.past.tiles[t], &b = twin.tiles[t];
-        for (std::size_t q = 0; q < 4; ++q) {
-            differences.other_growth += test::isNear(a.growth[q], b.growth[q], 1e-5, 1e-8) ? 0 : 1;
-            // A pixel's error is cut off to steps.
-            differences.other_grown += test::isNear(a.grown[q], b.grown[q], 0.02, 66.0 / kErrorSteps) ? 0 : 1;
-            differences.grown += a.grown[q];
-            differences.twin_grown += b.grown[q];
-        }
-        differences.other_tiles += a.cost == b.cost && a.age == b.age ? 0 : 1;
-    }
-    reference::growErrors(twin.tiles);
-    for (std::size_t t = 0; t < twin.tiles.size(); ++t) {
-        for (std::size_t q = 0; q < 4; ++q) {
-            differences.other_errors += test::isNear(made.past.tiles[t].errors[q], twin.tiles[t].errors[q], 0.02, 6e-4) ? 0 : 1;
-        }
-    }
-    differences.tiles += twin.tiles.size();
-    differences.quarters += 4 * twin.tiles.size();
-}
-
 // D of a pixel is its alpha over its inverse depth, 0 where that is infinitely far.
 std::size_t countOtherDepths(const Image& depths, const reference::Past& past) {
     std::size_t other = 0;
@@ -109,7 +70,7 @@ void checkWarped(Gpu& gpu, const Way& way) {
     PastWalk walk(gpu, way.view, settings);
     walk.go(0.0, 0.0);
     std::array<EyeOnDevice, 2> before{walk.read(kLeft), walk.read(kRight)};
-    Differences all;
+    WarpDifferences all;
     std::size_t one_by_one = 0, blocks = 0;
     for (const double step : {1.0, 2.0, 10.0}) {  // the last so far that blocks of a cell come from two
         walk.go(step, 0.0);
@@ -235,22 +196,22 @@ TEST_CASE_FIXTURE(Gpu, "a frame's choice is the twin's, and tiles that were rend
             walk.go(step, step == kFrames ? 0.3 : 0.0);
             only_warps.go(step, 0.0);
         }
-        std::vector<std::vector<TileKind>> kinds;
-        std::vector<std::vector<std::optional<std::uint32_t>>> prices;
-        std::vector<std::vector<std::uint64_t>> costs;
+        std::array<std::vector<TileKind>, 2> kinds;
+        std::array<std::vector<std::optional<std::uint32_t>>, 2> prices;
+        std::array<std::vector<std::uint64_t>, 2> costs;
         std::uint64_t picture_cost = 0;
         std::array<EyeOnDevice, 2> made{walk.read(kLeft), walk.read(kRight)}, warped{only_warps.read(kLeft), only_warps.read(kRight)};
         for (std::size_t e = 0; e < 2; ++e) {
             std::vector<double> errors;
-            costs.emplace_back(made[e].costs.begin(), made[e].costs.end());
+            costs[e].assign(made[e].costs.begin(), made[e].costs.end());
             for (std::size_t t = 0; t < costs[e].size(); ++t) {
                 errors.push_back(made[e].errors[t] / kErrorSteps);
                 picture_cost += costs[e][t];
                 CHECK(costs[e][t] == reference::costOf(warped[e].past.tiles[t]));
                 CHECK(test::isNear(errors[t], reference::worthOf(warped[e].past.tiles[t]), 1e-5, 1.0 / kErrorSteps));
             }
-            kinds.emplace_back(costs[e].size(), TileKind::kNone);
-            prices.push_back(reference::price(kinds[e], errors, costs[e]));
+            kinds[e].assign(costs[e].size(), TileKind::kNone);
+            prices[e] = reference::price(kinds[e], errors, costs[e]);
         }
         reference::selectTogether(
             std::array{reference::PricedTiles{kinds[0], prices[0], costs[0]}, reference::PricedTiles{kinds[1], prices[1], costs[1]}},

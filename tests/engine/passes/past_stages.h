@@ -106,4 +106,44 @@ private:
     std::array<Eye, 2> eyes_;
 };
 
+// How far what the device warped is from what the twin did.
+struct WarpDifferences {
+    std::size_t pixels = 0, other_depths = 0, other_spreads = 0, tiles = 0, other_tiles = 0;
+    std::size_t quarters = 0, other_grown = 0, other_errors = 0, other_growth = 0;
+    double grown = 0.0, twin_grown = 0.0, squares = 0.0;
+};
+
+// Of what the device made of `before`, nothing of which was rendered again, and what the twin makes of it.
+inline void compareWarped(WarpDifferences& differences, const EyeOnDevice& made, reference::Past twin) {
+    for (std::size_t i = 0; i < twin.rgba.size(); ++i) {
+        const glm::dvec4 off = made.past.rgba[i] - twin.rgba[i];
+        differences.squares += glm::dot(off, off) / 4.0;
+        const auto &a = made.past.pixels[i], &b = twin.pixels[i];
+        // A block's depths change by the ratio of its middle's.
+        const bool same = a.has_value() == b.has_value() && (!a || isNear(a->inverse_depth, b->inverse_depth, 1e-3, 1e-6));
+        differences.other_depths += same ? 0 : 1;
+        differences.other_spreads += a && b && a->spread != b->spread ? 1 : 0;
+    }
+    differences.pixels += twin.rgba.size();
+    for (std::size_t t = 0; t < twin.tiles.size(); ++t) {
+        const reference::PastTile &a = made.past.tiles[t], &b = twin.tiles[t];
+        for (std::size_t q = 0; q < 4; ++q) {
+            differences.other_growth += isNear(a.growth[q], b.growth[q], 1e-5, 1e-8) ? 0 : 1;
+            // A pixel's error is cut off to steps.
+            differences.other_grown += isNear(a.grown[q], b.grown[q], 0.02, 66.0 / kErrorSteps) ? 0 : 1;
+            differences.grown += a.grown[q];
+            differences.twin_grown += b.grown[q];
+        }
+        differences.other_tiles += a.cost == b.cost && a.age == b.age ? 0 : 1;
+    }
+    reference::growErrors(twin.tiles);
+    for (std::size_t t = 0; t < twin.tiles.size(); ++t) {
+        for (std::size_t q = 0; q < 4; ++q) {
+            differences.other_errors += isNear(made.past.tiles[t].errors[q], twin.tiles[t].errors[q], 0.02, 6e-4) ? 0 : 1;
+        }
+    }
+    differences.tiles += twin.tiles.size();
+    differences.quarters += 4 * twin.tiles.size();
+}
+
 }  // namespace binosplat::test
