@@ -6,6 +6,7 @@
 #include "engine/picture/image.h"
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 namespace binosplat {
@@ -29,8 +30,24 @@ struct VisibleErrors {
     [[nodiscard]] double badShare() const;
 };
 
+// R, G and B as a display shows them.
+Image asShown(const Image& picture);
+
 // By Side. Throws Error unless a picture has the size of its full render.
 VisibleErrors findVisibleErrors(const std::array<Image, 2>& pictures, const std::array<Image, 2>& full);
+
+// How one eye sees pictures that are not those that were rendered: LensView.
+struct Sight {
+    std::vector<std::uint32_t> rendered_tiles;  // by pixels: which tile of the rendered picture this is; kNoTile: nothing is shown
+    std::vector<double> shares;                 // of each tile of this picture, by rows: how much of the square of an error the eye sees
+
+    static constexpr std::uint32_t kNoTile = 0xffffffffu;
+};
+// The same of what each eye sees of the errors, by the model that `price` has of an eye: squares count by the tile's share, and not at all
+// if this is less than 1 and less than kLeastSeenError is left of the tile's; gradients, steps and octaves count by its root, that of an
+// octave by the smaller one of both eyes. Tiles with pixels that show nothing are left out, and so are such pixels. `seam` is across the
+// borders of the rendered tiles, compared within each tile of this picture. Pictures are as shown (asShown), and not rounded again.
+VisibleErrors findSeenErrors(const std::array<Image, 2>& pictures, const std::array<Image, 2>& full, const std::array<Sight, 2>& sights);
 
 // The mean square of this share of tiles, the worst ones, at least one; 0 if there are none.
 double worstTiles(std::vector<float> tile_squares, double share);
