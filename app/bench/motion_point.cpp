@@ -49,6 +49,20 @@ double meanChange(const Image& a, const Image& b) {
     return sum / static_cast<double>(difference.values.size());
 }
 
+// Empty unless the method bounds the errors of tiles that it keeps.
+std::optional<BoundedTiles> boundedTilesOf(const VisibleErrors& visible, StereoFrame& frame, const BenchMethod& method) {
+    const double bound_db = method.stereo.warp.error_bound_db;
+    if (!hasPast(method.stereo.mode) || !(bound_db > 0.0) || method.resolution < 1.0) { return std::nullopt; }
+    const std::span<const float> squares(visible.tile_squares);
+    const std::size_t of_one = squares.size() / 2;
+    BoundedTiles both;
+    for (const int eye : {kLeft, kRight}) {
+        both += findBoundedTiles(squares.subspan(static_cast<std::size_t>(eye) * of_one, of_one), frame.readTileKinds(eye),
+                                 frame.picture(eye).size_px, bound_db);
+    }
+    return both;
+}
+
 // For the pixels of both eyes in which `now` differs from `still`.
 struct Moved {
     double share = 0.0;
@@ -110,15 +124,22 @@ void MotionPoint::rememberStill(const Cameras& cameras) {
     }
 }
 
+MotionPoint::FullRender MotionPoint::renderFull(const Cameras& cameras) {
+    const MethodFrames::Rendered both = frames_.render(cameras, camera_, shared_);
+    FullRender full{{both.readPicture(kLeft), both.readPicture(kRight)}, {}, std::max(pairsOf(both.result), 1.0)};
+    if (!camera_.headset.empty()) {
+        if (!lens_) { lens_.emplace(cameras); }
+        full.seen = lens_->show(full.eyes);
+    }
+    return full;
+}
+
 void MotionPoint::play(const Cameras& cameras, std::size_t number, double time_s, std::vector<MotionFrame>& result) {
     std::map<std::optional<Order>, FullRender> full_by_order;
     for (MethodHistory& sequence : sequences_) {
         shared_.stereo.order = sequence.method.stereo.order;
         FullRender& full = full_by_order[shared_.stereo.order];
-        if (full.pairs == 0.0) {
-            const MethodFrames::Rendered both = frames_.render(cameras, camera_, shared_);
-            full = {{both.readPicture(kLeft), both.readPicture(kRight)}, std::max(pairsOf(both.result), 1.0)};
-        }
+        if (full.pairs == 0.0) { full = renderFull(cameras); }
         const FullRender& before = full_before_[shared_.stereo.order];
         const MethodFrames::Rendered rendered = frames_.render(cameras, camera_, sequence.method, false, true);
         MotionFrame row;
@@ -144,6 +165,8 @@ void MotionPoint::play(const Cameras& cameras, std::size_t number, double time_s
         if (!row.exact) {
             row.pixels_warped = pixelsWarped(rendered.result);
             row.visible = findVisibleErrors(pictures, full.eyes);
+            if (lens_) { row.seen = lens_->find(lens_->show(pictures), full.seen); }
+            row.bounded = boundedTilesOf(row.visible, *rendered.frame, sequence.method);
             if (const auto still = still_.find(shared_.stereo.order); still != still_.end()) {
                 const Moved moved = compareMoved(pictures, full.eyes, still->second);
                 row.moved_share = moved.share;

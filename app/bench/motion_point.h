@@ -3,6 +3,7 @@
 
 #include "app/bench/bench_point.h"
 #include "app/bench/motion_results.h"
+#include "app/bench/seen_through_lens.h"
 
 #include <array>
 #include <map>
@@ -34,15 +35,19 @@ private:
 
     // Both eyes in full, and their pairs of tile and splat.
     struct FullRender {
-        std::array<Image, 2> eyes;
+        std::array<Image, 2> eyes, seen;  // `seen`: through the lenses of a named headset
         double pairs = 0.0;
     };
+
+    // Renders the eyes at these cameras in full, in the order of shared_.
+    FullRender renderFull(const Cameras& cameras);
 
     CameraOptions camera_;
     BenchMethod shared_;
     MethodFrames frames_;
     std::string name_;
     std::vector<MethodHistory> sequences_;
+    std::optional<SeenThroughLens> lens_;  // from the first frame on, if there is a headset: its eyes move as one
     std::map<std::optional<Order>, FullRender> full_before_;
     std::map<std::optional<Order>, std::array<Image, 2>> still_;
 };

@@ -79,13 +79,14 @@ std::vector<double> flickerOf(const Sequence& sequence) {
 struct Visible {
     double bad = 0.0, worst_bad = 0.0, worst_tiles = 0.0, edge = 0.0, seam = 0.0, rival = 0.0;
 };
-Visible visibleOf(const Sequence& sequence) {
+using VisibleOf = std::function<const VisibleErrors*(const MotionFrame&)>;
+Visible visibleOf(const Sequence& sequence, const VisibleOf& errorsOf) {
     const std::vector<const MotionFrame*> frames = steadyFrames(sequence);
     const auto count = static_cast<double>(frames.size());
     Visible all;
     std::vector<float> squares;
     for (const MotionFrame* frame : frames) {
-        const VisibleErrors& visible = frame->visible;
+        const VisibleErrors& visible = *errorsOf(*frame);
         const double bad = visible.badShare();
         all.bad += bad / count;
         all.worst_bad = std::max(all.worst_bad, bad);
@@ -95,6 +96,31 @@ Visible visibleOf(const Sequence& sequence) {
         squares.insert(squares.end(), visible.tile_squares.begin(), visible.tile_squares.end());
     }
     all.worst_tiles = worstTiles(std::move(squares), kWorstTiles);
+    return all;
+}
+
+Visible visibleOf(const Sequence& sequence) {
+    return visibleOf(sequence, [](const MotionFrame& frame) { return &frame.visible; });
+}
+// Through a headset's lenses.
+std::optional<Visible> seenOf(const Sequence& sequence) {
+    if (!sequence.frames[0]->seen) { return std::nullopt; }
+    return visibleOf(sequence, [](const MotionFrame& frame) { return &*frame.seen; });
+}
+
+// Over the steady frames: of the tiles that were not rendered, the share that is far under the bound, and the worst frame's.
+struct UnderBound {
+    BoundedTiles tiles;
+    double worst_share = 0.0;
+};
+std::optional<UnderBound> underBoundOf(const Sequence& sequence) {
+    std::optional<UnderBound> all;
+    for (const MotionFrame* frame : steadyFrames(sequence)) {
+        if (!frame->bounded) { continue; }
+        if (!all) { all.emplace(); }
+        all->tiles += *frame->bounded;
+        all->worst_share = std::max(all->worst_share, frame->bounded->underShare());
+    }
     return all;
 }
 
@@ -141,6 +167,24 @@ Json psnrJson(double mean_square) { return mean_square > 0.0 ? Json(psnrOf(mean_
 
 std::string psnrText(double mean_square) { return mean_square > 0.0 ? fmt::format("{:.2f}", psnrOf(mean_square)) : "equal"; }
 
+void addVisible(Json& json, const Visible& visible) {
+    json["bad_share"] = {{"mean", visible.bad}, {"worst", visible.worst_bad}};
+    json["worst_tiles_db"] = psnrJson(visible.worst_tiles);
+    json["edge"] = visible.edge;
+    json["seam"] = visible.seam;
+    json["rival"] = visible.rival;
+}
+
+std::string visibleText(const Visible& visible) {
+    return fmt::format(" {:>7.2f} {:>7.2f} {:>8} {:>6.2f} {:>7.3f} {:>6.3f}", 100.0 * visible.bad, 100.0 * visible.worst_bad,
+                       psnrText(visible.worst_tiles), 100.0 * visible.edge, 255.0 * visible.seam, visible.rival);
+}
+
+std::string visibleCells(const VisibleErrors& visible) {
+    return fmt::format(",{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}", visible.badShare(), psnrOf(worstTiles(visible.tile_squares, kWorstTiles)),
+                       visible.edge, visible.seam, visible.rival);
+}
+
 }  // namespace
 
 std::string motionCsv(const MotionRun& run) {
@@ -153,16 +197,18 @@ std::string motionCsv(const MotionRun& run) {
     const bool is_streamed = std::ranges::any_of(run.frames, [](const MotionFrame& frame) { return frame.streaming.has_value(); });
     if (is_streamed) { csv += ",splats_read,splats_resident,chunks_resident,frames_waited_for_loading,scene_frames_late"; }
     const bool moves = std::ranges::any_of(run.frames, [](const MotionFrame& frame) { return frame.moved_square.has_value(); });
-    csv += moves ? ",moved_share,psnr_moved_db\n" : "\n";
+    if (moves) { csv += ",moved_share,psnr_moved_db"; }
+    const bool is_bounded = std::ranges::any_of(run.frames, [](const MotionFrame& frame) { return frame.bounded.has_value(); });
+    if (is_bounded) { csv += ",tiles_kept,tiles_under_bound"; }
+    const bool is_seen = std::ranges::any_of(run.frames, [](const MotionFrame& frame) { return frame.seen.has_value(); });
+    csv += is_seen ? ",seen_bad_share,seen_worst_tiles_db,seen_edge,seen_seam,seen_rival\n" : "\n";
     for (const MotionFrame& frame : run.frames) {
         csv += fmt::format("{},{},{},{},{},{:.6f},{:.6g}", csvCell(run.device), csvCell(run.motion), csvCell(frame.point),
                            csvCell(frame.method), nameOf(frame.mode), frame.time_s, frame.total_ms);
         for (const char* stage : kStages) { csv += fmt::format(",{:.6g}", stageMs(frame, stage)); }
         csv += fmt::format(",{:.6g},{:.6g},{:.6g},{:.6g}", frame.worseSquare(), psnrOf(frame.worseSquare()), frame.worseFlicker(),
                            frame.full_change);
-        const VisibleErrors& visible = frame.visible;
-        csv += fmt::format(",{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}", visible.badShare(), psnrOf(worstTiles(visible.tile_squares, kWorstTiles)),
-                           visible.edge, visible.seam, visible.rival);
+        csv += visibleCells(frame.visible);
         const auto& [left, right] = frame.mean_square;
         csv += fmt::format(",{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{}", psnrOf(left), psnrOf(right), left, right,
                            frame.flicker[0], frame.flicker[1], frame.work_rendered, frame.pixels_warped);
@@ -175,6 +221,8 @@ std::string motionCsv(const MotionRun& run) {
             csv += fmt::format(",{:.6g},{}", frame.moved_share,
                                frame.moved_square ? fmt::format("{:.6g}", psnrOf(*frame.moved_square)) : std::string());
         }
+        if (is_bounded) { csv += frame.bounded ? fmt::format(",{},{}", frame.bounded->kept, frame.bounded->under) : ",,"; }
+        if (is_seen) { csv += visibleCells(frame.seen.value_or(VisibleErrors())); }
         csv += '\n';
     }
     return csv;
@@ -205,12 +253,14 @@ std::string motionJson(const MotionRun& run) {
                 json["moved_share"] = statisticsJson(valuesOf(steadyFrames(sequence), &MotionFrame::moved_share));
             }
             json["flicker"] = statisticsJson(flickerOf(sequence));
-            const Visible visible = visibleOf(sequence);
-            json["bad_share"] = {{"mean", visible.bad}, {"worst", visible.worst_bad}};
-            json["worst_tiles_db"] = psnrJson(visible.worst_tiles);
-            json["edge"] = visible.edge;
-            json["seam"] = visible.seam;
-            json["rival"] = visible.rival;
+            addVisible(json, visibleOf(sequence));
+            if (const std::optional<Visible> seen = seenOf(sequence)) { addVisible(json["seen"], *seen); }
+            if (const std::optional<UnderBound> under = underBoundOf(sequence)) {
+                json["under_bound"] = {{"share", under->tiles.underShare()},
+                                       {"worst", under->worst_share},
+                                       {"tiles_kept", under->tiles.kept},
+                                       {"tiles_under", under->tiles.under}};
+            }
         }
         json["work_rendered"] = statisticsJson(valuesOf(sequence.frames, &MotionFrame::work_rendered));
         json["full_change"] = statisticsJson(valuesOf(sequence.frames, &MotionFrame::full_change));
@@ -241,16 +291,20 @@ std::string motionTable(const MotionRun& run) {
         table += fmt::format("  {:<28} {:>10.3f} {:>10.3f} {:>10.3f} {:>6.3f}", sequence.method, median(times), percentile(times, 0.95),
                              std::ranges::max(times), median(valuesOf(sequence.frames, &MotionFrame::work_rendered)));
         if (isLossy(sequence)) {
-            const Visible visible = visibleOf(sequence);
-            table += fmt::format(" {:>8} {:>8} {:>8} {:>10.6f} {:>7.2f} {:>7.2f} {:>8} {:>6.2f} {:>7.3f} {:>6.3f}",
-                                 psnrText(runSquare(sequence)), psnrText(percentile(errors, 0.95)), psnrText(std::ranges::max(errors)),
-                                 median(flicker), 100.0 * visible.bad, 100.0 * visible.worst_bad, psnrText(visible.worst_tiles),
-                                 100.0 * visible.edge, 255.0 * visible.seam, visible.rival);
+            table += fmt::format(" {:>8} {:>8} {:>8} {:>10.6f}{}", psnrText(runSquare(sequence)), psnrText(percentile(errors, 0.95)),
+                                 psnrText(std::ranges::max(errors)), median(flicker), visibleText(visibleOf(sequence)));
             if (const std::vector<double> moved = movedSquares(sequence); !moved.empty()) {
                 table += fmt::format(" {:>9} {:>8}", psnrText(movedRunSquare(sequence)), psnrText(std::ranges::max(moved)));
             }
         }
         table += "\n";
+        if (const std::optional<Visible> seen = isLossy(sequence) ? seenOf(sequence) : std::nullopt) {
+            table += fmt::format("  {:<28}{:78}{}\n", "    seen through the lenses", "", visibleText(*seen));
+        }
+        if (const std::optional<UnderBound> under = underBoundOf(sequence)) {
+            table += fmt::format("    of the tiles that it did not render, {:.3f} % are more than {:.0f} dB under its bound; worst frame {:.3f} %\n",
+                                 100.0 * under->tiles.underShare(), kMuchUnder_db, 100.0 * under->worst_share);
+        }
     }
     return table;
 }

@@ -56,6 +56,11 @@ Eye halfOf(const Eye& eye) {
     return half;
 }
 
+double seenShare(double pixel_sr, double angle_rad, double clear_rad) {
+    const double finest_rad = glm::radians(1.0 / 48.0) + 0.022 * std::max(angle_rad - clear_rad, 0.0);
+    return std::min(1.0, 2.0 * 2.0 * pixel_sr / (finest_rad * finest_rad));
+}
+
 std::vector<double> findSharesThere(const Eye& eye, const Gaze& gaze) {
     const glm::ivec2 tiles = gridOf(eye);
     const Intrinsics& lens = eye.intrinsics;
@@ -66,8 +71,7 @@ std::vector<double> findSharesThere(const Eye& eye, const Gaze& gaze) {
             const double tan_x = (place_px.x - lens.cx) / lens.fx, tan_y = (place_px.y - lens.cy) / lens.fy;
             const double cosine = 1.0 / std::sqrt(1.0 + tan_x * tan_x + tan_y * tan_y);
             const double pixel_sr = cosine * cosine * cosine / (lens.fx * lens.fy);
-            const double finest_rad = glm::radians(1.0 / 48.0) + 0.022 * std::max(angleTo(eye, gaze, place_px) - gaze.clear_rad, 0.0);
-            shares.push_back(std::min(1.0, 2.0 * 2.0 * pixel_sr / (finest_rad * finest_rad)));
+            shares.push_back(seenShare(pixel_sr, angleTo(eye, gaze, place_px), gaze.clear_rad));
         }
     }
     return shares;

@@ -11,9 +11,10 @@ namespace binosplat::reference {
 // The same view with pixels of twice the width and height, as many as cover the picture; splats have the low-pass of the smaller ones.
 Eye halfOf(const Eye& eye);
 
-// periphery: of an error that is spread over everything each tile may show, the share that the eye sees: as findSeenShares, but by the
-// solid angle of a pixel at the tile's middle. Where it is at most a quarter, the finest cycle that the eye resolves has four pixels,
-// or two samples of half the size: then the tile lies beyond.
+// periphery: of the square of an error that is spread over everything that pixels of this solid angle may show, the share that the eye
+// sees: as findSeenShares, at this angle from where it looks, and `clear_rad` around that everything. By tiles, at their middles. Where it
+// is at most a quarter, the finest cycle that the eye resolves has four pixels, or two samples of half the size: then the tile lies beyond.
+double seenShare(double pixel_sr, double angle_rad, double clear_rad);
 std::vector<double> findSharesThere(const Eye& eye, const Gaze& gaze);
 std::vector<std::uint8_t> findBeyond(const Eye& eye, const Gaze& gaze);
 // Also periphery, first run: the tiles of the half-size picture that hold a sample from which a tile beyond is made, if that is seen.

@@ -1,0 +1,33 @@
+// What a wearer of a named headset notices of two eyes' pictures: through its lenses, where an eye sees less and less towards their
+// borders.
+#pragma once
+
+#include "app/options/camera_options.h"
+#include "engine/picture/lens_view.h"
+#include "engine/picture/visible_errors.h"
+
+#include <array>
+
+namespace binosplat {
+
+// Eyes turn so far from a lens's centre before the head follows: within this, they see everything.
+inline constexpr double kEyesTurn_deg = 15.0;
+
+class SeenThroughLens {
+public:
+    explicit SeenThroughLens(const Cameras& cameras);
+
+    // Both eyes' pictures as shown, of the cameras' size, through the lenses.
+    [[nodiscard]] std::array<Image, 2> show(const std::array<Image, 2>& pictures) const;
+    // Of pictures from show(). An eye is taken to resolve as `price` and `periphery` have it (reference::seenShare), and to look anywhere
+    // within kEyesTurn_deg of its lens's centre, whatever foveation a method has.
+    [[nodiscard]] VisibleErrors find(const std::array<Image, 2>& pictures, const std::array<Image, 2>& full) const {
+        return findSeenErrors(pictures, full, sights_);
+    }
+
+private:
+    LensView lens_;
+    std::array<Sight, 2> sights_;
+};
+
+}  // namespace binosplat
