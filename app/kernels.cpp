@@ -6,7 +6,6 @@
 #include "engine/error.h"
 #include "engine/passes/passes.h"
 #include "engine/passes/past_passes.h"
-#include "engine/passes/periphery.h"
 #include "engine/passes/present.h"
 #include "engine/passes/warp_passes.h"
 #include "engine/setup/output_files.h"
@@ -26,7 +25,6 @@ KernelTable allKernels(const Context& context) {
     KernelTable table = passKernels(context);
     append(table, warpKernels(context));
     append(table, pastKernels(context.isSoftware()));
-    append(table, peripheryKernels());
     append(table, presentKernels());
     return table;
 }

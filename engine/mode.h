@@ -38,8 +38,6 @@ enum class TileChoice {
     kNone,       // none: reprojection and interpolation alone
     kPaper,      // edge ROIs, and centre ROIs if asked for
     kPredicted,  // what is cheap to render, and those of the greatest expected error for their cost
-    kHalf,       // of a picture of half the size: what an eye's other tiles may be made from
-    kSharp,      // those where the eye looks, and those elsewhere that it would see to be made from half the size
     kPast,       // those of the greatest expected error for their cost and for each frame that they have waited, of both eyes together
 };
 

@@ -5,7 +5,7 @@
 #include "app/options/modes.h"
 #include "app/report/report.h"
 #include "app/terminal/interrupt.h"
-#include "engine/reference/periphery.h"
+#include "engine/reference/coarse.h"
 #include "engine/reference/reference.h"
 
 #include <algorithm>

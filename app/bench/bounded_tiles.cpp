@@ -2,7 +2,6 @@
 #include "app/bench/bounded_tiles.h"
 
 #include "engine/passes/frame_buffers.h"
-#include "shaders/shared/types.h"
 
 #include <cassert>
 #include <cmath>

@@ -302,8 +302,9 @@ std::string motionTable(const MotionRun& run) {
             table += fmt::format("  {:<28}{:78}{}\n", "    seen through the lenses", "", visibleText(*seen));
         }
         if (const std::optional<UnderBound> under = underBoundOf(sequence)) {
-            table += fmt::format("    of the tiles that it did not render, {:.3f} % are more than {:.0f} dB under its bound; worst frame {:.3f} %\n",
-                                 100.0 * under->tiles.underShare(), kMuchUnder_db, 100.0 * under->worst_share);
+            table += fmt::format(
+                "    of the tiles that it did not render, {:.3f} % are more than {:.0f} dB under its bound; worst frame {:.3f} %\n",
+                100.0 * under->tiles.underShare(), kMuchUnder_db, 100.0 * under->worst_share);
         }
     }
     return table;

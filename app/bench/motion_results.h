@@ -33,7 +33,7 @@ struct MotionFrame {
     std::array<double, 2> flicker{};
     double full_change = 0.0;  // of the full renders, mean of both eyes
     VisibleErrors visible;
-    std::optional<VisibleErrors> seen;  // through the lenses, if there is a headset: SeenThroughLens
+    std::optional<VisibleErrors> seen;    // through the lenses, if there is a headset: SeenThroughLens
     std::optional<BoundedTiles> bounded;  // of both eyes, if the method has an error bound
     // The pixels that the scene's motion has changed since the previous frame, seen from this pose (kLeastMoved): their share in both
     // pictures, and their mean squared error, if there are any.
@@ -57,8 +57,8 @@ struct MotionRun {
 
 std::string motionCsv(const MotionRun& run);
 // Medians, 95th and 99th percentiles and worst frames by point and method; for the error the PSNR that as many frames reach in both eyes,
-// and the run's, from both eyes' mean square; and what shows of them (engine/picture/visible_errors.h), with a headset also through its lenses. Errors are of all frames after the
-// tenth, or of all if there are no more.
+// and the run's, from both eyes' mean square; and what shows of them (engine/picture/visible_errors.h), with a headset also through its
+// lenses. Errors are of all frames after the tenth, or of all if there are no more.
 std::string motionJson(const MotionRun& run);
 std::string motionTable(const MotionRun& run);
 std::string motionPlot(const MotionRun& run);

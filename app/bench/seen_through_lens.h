@@ -19,7 +19,7 @@ public:
 
     // Both eyes' pictures as shown, of the cameras' size, through the lenses.
     [[nodiscard]] std::array<Image, 2> show(const std::array<Image, 2>& pictures) const;
-    // Of pictures from show(). An eye is taken to resolve as `price` and `periphery` have it (reference::seenShare), and to look anywhere
+    // Of pictures from show(). An eye is taken to resolve as `price` and `tile_ranges` have it (reference::seenShare), and to look anywhere
     // within kEyesTurn_deg of its lens's centre, whatever foveation a method has.
     [[nodiscard]] VisibleErrors find(const std::array<Image, 2>& pictures, const std::array<Image, 2>& full) const {
         return findSeenErrors(pictures, full, sights_);

@@ -24,7 +24,7 @@ SceneRenderer::SceneRenderer(const xr::Instance& instance, const Context& contex
                              vk::Format format)
     : instance_(instance), options_(options), log_(log), format_(format), presenter_(context, format), has_gpu_(!context.isSoftware()) {
     if (const std::optional<xr::InsetSizes> inset = xr::findInset(instance)) { context_px_ = inset->context_px; }
-    presenter_.makeKernels(instance.canSeeThrough());
+    presenter_.makeKernels();
 }
 
 glm::uvec2 SceneRenderer::sizePx(double scale) const {
@@ -62,10 +62,10 @@ void SceneRenderer::makeImages(ConnectedHeadset& headset, glm::uvec2 size_px, gl
 }
 
 void SceneRenderer::govern(ConnectedHeadset& headset, const ViewSettings& settings) {
-    // With two pictures per eye, both eyes are rendered whatever the budget.
+    // With coarse tiles both eyes are rendered whatever the budget.
     const StereoOptions& stereo = settings.stereo;
-    const bool in_two = stereo.mode == Mode::kPredicted && stereo.half_periphery && stereo.foveation_deg > 0.0 && !headset.inset;
-    governor_.wish(settings.quality, in_two ? Mode::kShared : stereo.mode, {stereo.warp.budget, settings.resolution_scale});
+    const bool coarse = stereo.mode == Mode::kPredicted && stereo.half_periphery && stereo.foveation_deg > 0.0 && !headset.inset;
+    governor_.wish(settings.quality, coarse ? Mode::kShared : stereo.mode, {stereo.warp.budget, settings.resolution_scale});
     fitImages(headset, settings);
     if (governor_.settings() != std::exchange(governed_, governor_.settings())) { ++governed_count_; }
     const double scale = governor_.settings().resolution_scale;
@@ -75,7 +75,7 @@ void SceneRenderer::govern(ConnectedHeadset& headset, const ViewSettings& settin
 
 ShownRate SceneRenderer::rate() const {
     ShownRate rate{met_.metHz(), met_.displayHz(), met_.late(), governor_.settings().resolution_scale, {}, governor_.isBeaten()};
-    const bool renders_both = frame_.mode == Mode::kPredicted && isInTwo(frame_, 2);
+    const bool renders_both = frame_.mode == Mode::kPredicted && hasCoarseTiles(frame_, 2);
     if (hasBudget(frame_.mode) && !renders_both) { rate.budget = governor_.settings().budget; }
     return rate;
 }

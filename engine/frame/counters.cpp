@@ -22,11 +22,11 @@ std::map<std::string, std::uint64_t> FrameCounters::named() const {
         names["pages_resident"] = pages->resident;
         names["pages_seen"] = pages->seen;
     }
-    if (periphery) {
-        names["tile_pairs_half_size"] = periphery->tile_pairs;
-        names["tiles_half_size"] = periphery->half_tiles;
-        names["tiles_full_size"] = periphery->sharp_tiles;
-        names["periphery_bytes"] = periphery->bytes;
+    if (coarse) {
+        names["tiles_coarse"] = coarse->tiles;
+        names["tiles_tried_as_coarse"] = coarse->tiles_tried;
+        names["tile_pairs_as_samples"] = coarse->pairs;
+        names["tile_pairs_in_full"] = coarse->sharp_pairs;
     }
     if (warped) {
         if (warped->pixels) {

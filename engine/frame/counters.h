@@ -44,11 +44,11 @@ struct FrameCounters {
         std::uint64_t resident = 0, seen = 0;
     };
     std::optional<Pages> pages;
-    // An eye in two pictures: pairs and bytes of the smaller one, and how many tiles of each are rendered.
-    struct Periphery {
-        std::uint64_t tile_pairs = 0, half_tiles = 0, sharp_tiles = 0, bytes = 0;
+    // If tiles may be coarse: those that are, those that were tried so, and the pairs that were blended as samples and in full.
+    struct Coarse {
+        std::uint64_t tiles = 0, tiles_tried = 0, pairs = 0, sharp_pairs = 0;
     };
-    std::optional<Periphery> periphery;
+    std::optional<Coarse> coarse;
     std::optional<WarpedCounters> warped;
     // Of StereoFrame::renderAhead, since its frame was made.
     struct Ahead {

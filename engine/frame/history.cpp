@@ -36,7 +36,7 @@ FrameShape shapeOf(std::span<const Eye> eyes, const FrameSettings& settings) {
                      .keep_moments = settings.keep_moments,
                      .keep_classes = settings.keep_classes,
                      .center_rois = settings.stereo.center_rois,
-                     .half_periphery = isInTwo(settings, eyes.size())};
+                     .half_periphery = hasCoarseTiles(settings, eyes.size())};
     for (std::size_t e = 0; e < eyes.size(); ++e) { shape.sizes_px[e] = eyes[e].size_px; }
     return shape;
 }

@@ -22,14 +22,11 @@ void keepForWarp(Kept& source, const Warp& warp) {
 
 }  // namespace
 
-// Pictures that two eyes with a past take turns in: the pasts, one that is being made, and one more in case sizes change.
-constexpr int kPastPictures = 4;
-
 // A picture that is nobody's past, nor the spare one.
 int fourthPicture(const Pasts& pasts) {
     int picture = 0;
     while (picture == pasts.spare || picture == pasts.of_eyes[0]->picture || picture == pasts.of_eyes[1]->picture) { ++picture; }
-    assert(picture < kPastPictures);
+    assert(picture < static_cast<int>(kFramePictures));
     return picture;
 }
 
@@ -40,46 +37,22 @@ void makeFromPast(TargetPlan& target, const Past& past, const FrameSettings& set
     target.gaze = settings.gazes[eye];
 }
 
-bool isInTwo(const FrameSettings& settings, std::size_t eyes) {
+bool hasCoarseTiles(const FrameSettings& settings, std::size_t eyes) {
     const bool may = settings.mode == Mode::kMono || settings.mode == Mode::kPredicted || hasPast(settings.mode);
     const auto gazes = std::span(settings.gazes).first(eyes);
     return settings.half_periphery && may && !settings.keep_moments &&
            std::ranges::all_of(gazes, [](const auto& gaze) { return gaze.has_value(); });
 }
 
-// Each eye has a second target of half the size.
-void splitTargets(FramePlan& plan, const FrameSettings& settings) {
-    plan.targets.reserve(2 * plan.eyes);
-    for (std::size_t e = 0; e < plan.eyes; ++e) {
-        const int half = static_cast<int>(plan.targets.size());
-        plan.targets[e].gaze = settings.gazes[e];
-        TargetPlan coarse = plan.targets[e];
-        plan.targets[e].half = half;
-        coarse.eye = halfOf(coarse.eye);
-        coarse.list = half;
-        coarse.picture += kFirstHalfPicture;
-        if (coarse.past) { coarse.past = Past{halfOf(coarse.past->eye), coarse.past->picture + static_cast<int>(kFirstHalfPicture)}; }
-        plan.targets.push_back(coarse);
-    }
-}
-
-// The chosen tiles of the targets of one eye, or of two, the first in this order first, from one list. An eye's two pictures have a list
-// each: most splats touch tiles of only one of them, and projecting costs more than culling.
-void renderChosen(FramePlan& plan, std::span<const int> order, ListPlan list, bool at_once) {
-    const auto targetAt = [&](std::size_t i) -> TargetPlan& { return plan.targets[static_cast<std::size_t>(order[i])]; };
-    const int first = *std::ranges::min_element(order);
-    for (std::size_t i = 0; i < order.size(); ++i) { targetAt(i).list = first; }
-    list.eyes.first = list.eyes.list = first;
-    list.eyes.count = static_cast<int>(order.size());
-    list.eyes.order_eye = order[0];
+// The chosen tiles of both eyes, the first in this order first, from one list.
+void renderChosen(FramePlan& plan, const std::array<int, 2>& order, ListPlan list) {
     list.of_chosen = true;
-    if (order.size() == 1) { list.role = targetAt(0).role; }
     const auto makeList = [&](const ListPlan& made) {
         plan.steps.push_back({Step::Kind::kList, static_cast<int>(plan.lists.size())});
         plan.lists.push_back(made);
     };
     // A patch is too little work for a GPU: stage by stage it gets that of both eyes, if they have the same order and tiles.
-    if (at_once && plan.shares_order && targetAt(0).eye.size_px == targetAt(1).eye.size_px) {
+    if (plan.shares_order && plan.targets[0].eye.size_px == plan.targets[1].eye.size_px) {
         list.eyes.shares = 2;
         makeList(list);
         plan.steps.push_back({Step::Kind::kRenderAll, order[0]});
@@ -87,38 +60,11 @@ void renderChosen(FramePlan& plan, std::span<const int> order, ListPlan list, bo
     }
     makeList(list);
     plan.steps.push_back({Step::Kind::kRender, order[0]});
-    if (order.size() == 1) { return; }
-    if (!plan.shares_order) { makeList({.eyes = {.order_eye = order[1], .list = first}, .role = targetAt(1).role, .culls = false}); }
+    if (!plan.shares_order) {
+        makeList(
+            {.eyes = {.order_eye = order[1], .list = 0}, .role = plan.targets[static_cast<std::size_t>(order[1])].role, .culls = false});
+    }
     plan.steps.push_back({Step::Kind::kRender, order[1]});
-}
-
-// Eyes in two pictures each, the smaller ones first: their content tells where they suffice.
-void renderInTwo(FramePlan& plan, std::span<const int> eyes, const ListPlan& list) {
-    std::vector<int> halves;
-    for (const int eye : eyes) {
-        TargetPlan& sharp = plan.targets[static_cast<std::size_t>(eye)];
-        halves.push_back(*sharp.half);
-        sharp.choice = TileChoice::kSharp;
-        plan.targets[static_cast<std::size_t>(*sharp.half)].choice = TileChoice::kHalf;
-        plan.steps.push_back({Step::Kind::kHalfTiles, eye});
-    }
-    renderChosen(plan, halves, list, false);
-    for (const int eye : eyes) { plan.steps.push_back({Step::Kind::kOwnTiles, eye}); }
-    renderChosen(plan, eyes, list, false);
-    for (const int eye : eyes) { plan.steps.push_back({Step::Kind::kFill, eye}); }
-}
-
-// An eye's targets from their pasts, the smaller first if there are two: its content tells where it suffices.
-void makeInTwo(FramePlan& plan, int eye) {
-    const TargetPlan& target = plan.targets[static_cast<std::size_t>(eye)];
-    if (!target.half) {
-        plan.steps.push_back({Step::Kind::kPast, eye});
-        return;
-    }
-    for (const Step step : {Step{Step::Kind::kHalfTiles, eye}, Step{Step::Kind::kPast, *target.half}, Step{Step::Kind::kOwnTiles, eye},
-                            Step{Step::Kind::kPast, eye}}) {
-        plan.steps.push_back(step);
-    }
 }
 
 // Both eyes from their pasts; the tiles that are rendered again are chosen before anything is culled.
@@ -134,20 +80,15 @@ void planTemporal(FramePlan& plan, const FrameSettings& settings, std::span<cons
         const bool fits = target.past->eye.size_px == eyes[static_cast<std::size_t>(order[1])].size_px;
         picture = fits ? target.past->picture : fourthPicture(pasts);
     }
-    const bool in_two = isInTwo(settings, eyes.size());
-    if (in_two) { splitTargets(plan, settings); }
-    for (const int e : order) { makeInTwo(plan, e); }
+    for (const int e : order) { plan.steps.push_back({Step::Kind::kPast, e}); }
     plan.budget = settings.stereo.budget;
     plan.error_bound_db = settings.stereo.error_bound_db;
     plan.steps.push_back({Step::Kind::kChoose, 0});
-    renderChosen(plan, order, list, true);
-    if (!in_two) { return; }
-    renderChosen(plan, std::array{*plan.targets[order[0]].half, *plan.targets[order[1]].half}, list, true);
-    for (const int e : order) { plan.steps.push_back({Step::Kind::kFill, e}); }
+    renderChosen(plan, order, list);
 }
 
 // One eye in full, taking turns, and the other from its past.
-void planAlternate(FramePlan& plan, const FrameSettings& settings, const Pasts& pasts, const ListPlan& list) {
+void planAlternate(FramePlan& plan, const Pasts& pasts, const ListPlan& list) {
     const int full = pasts.turn, other = 1 - full;
     TargetPlan &rendered = plan.targets[full], &warped = plan.targets[other];
     rendered.picture = pasts.of_eyes[static_cast<std::size_t>(full)]->picture;
@@ -155,16 +96,10 @@ void planAlternate(FramePlan& plan, const FrameSettings& settings, const Pasts& 
     warped.picture = pasts.spare;
     warped.choice = TileChoice::kNone;
     warped.kept.past = false;
-    if (isInTwo(settings, plan.eyes)) {
-        splitTargets(plan, settings);
-        renderInTwo(plan, std::array{full}, list);
-    } else {
-        plan.steps.push_back({Step::Kind::kList, 0});
-        plan.lists.push_back(list);
-        plan.steps.push_back({Step::Kind::kRender, full});
-    }
-    makeInTwo(plan, other);
-    if (plan.targets[static_cast<std::size_t>(other)].half) { plan.steps.push_back({Step::Kind::kFill, other}); }
+    plan.steps.push_back({Step::Kind::kList, 0});
+    plan.lists.push_back(list);
+    plan.steps.push_back({Step::Kind::kRender, full});
+    plan.steps.push_back({Step::Kind::kPast, other});
 }
 
 StereoSettings stereoSettingsOf(const FrameSettings& settings) {
@@ -211,10 +146,11 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
     const bool keeps_past = hasPast(settings.mode) && settings.keep_past;
     const bool has_past = keeps_past && pasts.of_eyes[0] && pasts.of_eyes[1];
     // If none is kept `temporal` falls back to `predicted`; without one, as after a jump, both eyes are exact, since later pictures are
-    // made from them.
-    const Mode mode = settings.mode == Mode::kTemporal && !keeps_past ? Mode::kPredicted
-                      : hasPast(settings.mode) && !has_past           ? Mode::kShared
-                                                                      : settings.mode;
+    // made from them. And if each eye is cheap to render, making one from the other saves a tenth of the time for 15 to 30 dB.
+    const bool coarse = hasCoarseTiles(settings, eyes.size()), predicts = choiceOf(settings.mode) == TileChoice::kPredicted && !keeps_past;
+    const Mode mode = predicts                              ? coarse ? Mode::kShared : Mode::kPredicted
+                      : hasPast(settings.mode) && !has_past ? Mode::kShared
+                                                            : settings.mode;
     const bool one_eye = mode == Mode::kMono;
     assert(eyes.size() == (one_eye ? 1u : 2u));
     check(!reprojects(mode) || eyes[0].size_px == eyes[1].size_px,
@@ -239,7 +175,9 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
                                          .half_floats = settings.half_floats,
                                          .past = keeps_past},
                                 .picture = e,
-                                .from_past_later = keeps_past && settings.mode == Mode::kTemporal});
+                                .from_past_later = keeps_past && settings.mode == Mode::kTemporal,
+                                .coarse = coarse});
+        if (coarse) { plan.targets.back().gaze = settings.gazes[static_cast<std::size_t>(e)]; }
     }
     plan.keeps_past = keeps_past;
     if (keeps_past && !has_past) { plan.spare_picture = static_cast<int>(eyes.size()); }
@@ -258,7 +196,7 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
     if (mode == Mode::kAlternate) {
         const int full = pasts.turn;
         planAlternate(
-            plan, settings, pasts,
+            plan, pasts,
             {.eyes = {.first = full, .count = 1, .order_eye = full, .list = full, .middle = middle}, .role = plan.targets[full].role});
         return plan;
     }
@@ -272,16 +210,6 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
         return plan;
     }
 
-    if (isInTwo(settings, eyes.size())) {
-        // Both eyes: if each is cheap to render, making one from the other saves a tenth of the time for 15 to 30 dB.
-        splitTargets(plan, settings);
-        if (one_eye) {
-            renderInTwo(plan, std::array{first}, both);
-        } else {
-            renderInTwo(plan, std::array{first, second}, both);
-        }
-        return plan;
-    }
     if (apart) {
         listOf(first);
     } else {

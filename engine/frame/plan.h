@@ -4,7 +4,6 @@
 #include "engine/frame/settings.h"
 #include "engine/passes/eye_relation.h"
 #include "engine/passes/passes.h"
-#include "engine/passes/periphery.h"
 
 #include <optional>
 #include <span>
@@ -12,8 +11,8 @@
 
 namespace binosplat {
 
-// Pictures of a room: those that eyes with a past take turns in, and as many of half the size.
-inline constexpr std::size_t kFramePictures = 8, kFirstHalfPicture = 4;
+// Pictures of a room: two eyes with a past take turns in their pasts, one that is being made, and one more in case sizes change.
+inline constexpr std::size_t kFramePictures = 4;
 
 // A list of visible splats, front to back.
 struct ListPlan {
@@ -53,11 +52,11 @@ struct TargetPlan {
     TileChoice choice = TileChoice::kAll;  // of the tiles that are rendered
     std::optional<Warp> warp = {};
     std::optional<Past> past = {};  // what it is made from instead: its eye's last picture
-    std::optional<Gaze> gaze = {};  // for the choice among what the past has left
+    std::optional<Gaze> gaze = {};  // for the choice among what the past has left, and of coarse tiles
     int picture = 0;                // the room's picture that it becomes
     bool keeps_classes = false;
     bool from_past_later = false;  // frames after this one make it from a past: what that takes is kept
-    std::optional<int> half = {};  // kSharp: the target of half the size that the other tiles are filled from
+    bool coarse = false;           // tiles that the eye does not see sharply may be
 };
 
 struct Step {
@@ -65,9 +64,6 @@ struct Step {
         kList,       // makes FramePlan::lists[index]
         kWarp,       // warps pixels into FramePlan::targets[index] and chooses its tiles
         kPast,       // makes FramePlan::targets[index] from its past
-        kHalfTiles,  // chooses the tiles that are needed of the half-size picture of FramePlan::targets[index]
-        kOwnTiles,   // chooses those of the target itself, once that picture is there
-        kFill,       // and fills the rest of it
         kChoose,     // chooses the tiles of all targets that have one
         kRender,     // renders the chosen tiles
         kRenderAll,  // renders the chosen tiles of all targets at the same time; their list and pairs need room for each
@@ -78,7 +74,7 @@ struct Step {
 
 struct FramePlan {
     std::vector<ListPlan> lists = {};
-    std::vector<TargetPlan> targets = {};  // one for each eye, in the eyes' order; then those of half the size
+    std::vector<TargetPlan> targets = {};  // one for each eye, in the eyes' order
     std::size_t eyes = 0;
     std::vector<Step> steps = {};
     bool shares_order = false;  // one order of the splats serves all eyes
@@ -96,13 +92,15 @@ struct FramePlan {
     // How many pictures are rendered at the same time.
     [[nodiscard]] int shares() const;
     // True if nothing is in the target's picture until its pairs are sorted. The frames after a past need their lists in one piece.
-    [[nodiscard]] bool isSortedInPicture(const TargetPlan& target) const { return target.choice == TileChoice::kAll && !keeps_past; }
+    [[nodiscard]] bool isSortedInPicture(const TargetPlan& target) const {
+        return target.choice == TileChoice::kAll && !keeps_past && !target.coarse;
+    }
     // The first target that is made from another.
     [[nodiscard]] std::optional<int> warpedTarget() const;
 };
 
-// True if each eye has two pictures: that is wanted, and it is known where all of them look. The references are always in full.
-[[nodiscard]] bool isInTwo(const FrameSettings& settings, std::size_t eyes);
+// True if tiles may be coarse: that is wanted, and it is known where all eyes look. The references are always in full.
+[[nodiscard]] bool hasCoarseTiles(const FrameSettings& settings, std::size_t eyes);
 
 // The only place that knows what a mode does. Throws Error if eyes that are made from one another have different sizes. `may_move`: warping
 // paid in the frame before, or nobody knows. `pasts`: what the frames before have left; their pictures may have other sizes.

@@ -9,31 +9,31 @@
 namespace binosplat {
 
 FrameKernels::FrameKernels(const Context& context, std::uint32_t threads_per_cell)
-    : passes(context, threads_per_cell), warp_passes(context), past_passes(context), periphery_passes(context) {}
+    : passes(context, threads_per_cell), warp_passes(context), past_passes(context) {}
 
 void FrameKernels::rebuild() {
     passes.rebuildKernels();
     warp_passes.rebuildKernels();
     past_passes.rebuildKernels();
-    periphery_passes.rebuildKernels();
 }
 
 void FrameKernels::take(FrameKernels& from) {
     passes.takeKernels(from.passes);
     warp_passes.takeKernels(from.warp_passes);
     past_passes.takeKernels(from.past_passes);
-    periphery_passes.takeKernels(from.periphery_passes);
 }
 
-std::size_t FrameKernels::count() const {
-    return passes.kernelCount() + warp_passes.kernelCount() + past_passes.kernelCount() + periphery_passes.kernelCount();
-}
+std::size_t FrameKernels::count() const { return passes.kernelCount() + warp_passes.kernelCount() + past_passes.kernelCount(); }
 
 void FrameRecorder::begin(Commands& commands, const FramePlan& plan) const {
     FrameState state{};
     for (std::size_t t = 0; t < plan.targets.size(); ++t) {
         const TargetPlan& target = plan.targets[t];
         state.views[t] = viewOf(target.eye, plan.near);
+        if (target.coarse) {
+            state.targets[t].counters.may_be_coarse = 1;
+            state.targets[t].counters.gaze = eyeGazeOf(target.gaze.value(), target.eye.intrinsics);
+        }
         if (target.past) {
             state.targets[t].past = pastViewOf(target.eye, target.past->eye, plan.near, glm::vec3(plan.background));
             state.targets[t].past_blocks = {.per_group = {.x = 0, .y = 1, .z = 1}, .count = 0};
@@ -65,7 +65,7 @@ void FrameRecorder::record(Commands& commands, const FramePlan& plan) const {
         switch (step.kind) {
             case Step::Kind::kList: {
                 const ListPlan& list = plan.lists[static_cast<std::size_t>(step.index)];
-                const EyesOfList eyes = eyesOf(plan, list);
+                const EyesOfList eyes = eyesOf(list);
                 if (list.culls) { passes.recordCull(commands, scene, room.lists(), eyes, list.role); }
                 passes.recordOrder(commands, scene, room.lists(), eyes, list.role);
                 break;
@@ -78,15 +78,6 @@ void FrameRecorder::record(Commands& commands, const FramePlan& plan) const {
                 break;
             case Step::Kind::kChoose:
                 recordChoice(commands, plan);
-                break;
-            case Step::Kind::kHalfTiles:
-                periphery_passes.recordHalfChoice(commands, peripheryOf(plan, step.index));
-                break;
-            case Step::Kind::kOwnTiles:
-                periphery_passes.recordChoice(commands, peripheryOf(plan, step.index));
-                break;
-            case Step::Kind::kFill:
-                periphery_passes.recordFill(commands, peripheryOf(plan, step.index));
                 break;
             case Step::Kind::kRender:
                 recordPicture(commands, plan, step.index);
@@ -130,11 +121,6 @@ MovingWords FrameRecorder::wordsOf(const FramePlan& plan, int warped) const {
 
 PastInputs FrameRecorder::pastOf(const FramePlan& plan, int index) const {
     const TargetPlan& target = plan.targets[static_cast<std::size_t>(index)];
-    const int eyes = static_cast<int>(plan.eyes);
-    const bool is_half = index >= eyes;
-    const auto some_tiles = is_half       ? room.periphery(index - eyes).ofHalf().list
-                            : target.half ? room.periphery(index).own().list
-                                          : gpu::DeviceAddress<gpu::uint>{};
     return {.buffers = room.lists(),
             .warp = room.warp(index),
             .index = index,
@@ -142,7 +128,6 @@ PastInputs FrameRecorder::pastOf(const FramePlan& plan, int index) const {
             .source = room.picture(target.past->picture),
             .target = room.picture(target.picture),
             .shown = room.shown(index).mask(),
-            .some_tiles = some_tiles,
             .lens = target.eye.intrinsics,
             .gaze = target.gaze,
             .area = static_cast<float>(1.0 / (target.eye.own_pixel_px * target.eye.own_pixel_px))};
@@ -182,29 +167,11 @@ void FrameRecorder::recordChanged(Commands& commands, const FramePlan& plan, std
     }
 }
 
-PeripheryInputs FrameRecorder::peripheryOf(const FramePlan& plan, int index) const {
-    const TargetPlan& target = plan.targets[static_cast<std::size_t>(index)];
-    const auto kindsOf = [&](int t) { return target.past ? room.warp(t).tileKinds() : gpu::DeviceAddress<gpu::uint>{}; };
-    return {.buffers = room.lists(),
-            .tiles = room.periphery(index),
-            .index = index,
-            .half_index = *target.half,
-            .role = target.role,
-            .target = room.picture(target.picture),
-            .half = room.picture(plan.targets[static_cast<std::size_t>(*target.half)].picture),
-            .shown = room.shown(index),
-            .background = glm::vec3(plan.background),
-            .lens = target.eye.intrinsics,
-            .gaze = *target.gaze,
-            .kinds = kindsOf(index),
-            .half_kinds = kindsOf(*target.half)};
-}
-
-EyesOfList FrameRecorder::eyesOf(const FramePlan& plan, const ListPlan& list) const {
+EyesOfList FrameRecorder::eyesOf(const ListPlan& list) const {
     EyesOfList eyes = list.eyes;
     if (list.of_chosen) {
-        eyes.first_mask = chosenTiles(plan, eyes.first).mask;
-        eyes.last_mask = chosenTiles(plan, eyes.first + eyes.count - 1).mask;
+        eyes.first_mask = chosenTiles(eyes.first).mask;
+        eyes.last_mask = chosenTiles(eyes.first + eyes.count - 1).mask;
     }
     return eyes;
 }
@@ -215,15 +182,12 @@ void FrameRecorder::recordPicture(Commands& commands, const FramePlan& plan, int
     if (planned.choice == TileChoice::kAll) {
         passes.recordEye(commands, scene, room.lists(), target, planned.role);
     } else {
-        const Passes::Patch patch{target, chosenTiles(plan, index)};
+        const Passes::Patch patch{target, chosenTiles(index)};
         passes.recordTiles(commands, scene, room.lists(), std::span(&patch, 1), planned.role);
     }
 }
 
-TileMask FrameRecorder::chosenTiles(const FramePlan& plan, int index) const {
-    const TileChoice choice = plan.targets[static_cast<std::size_t>(index)].choice;
-    if (choice == TileChoice::kSharp) { return room.periphery(index).own(); }
-    if (choice == TileChoice::kHalf) { return room.periphery(index - static_cast<int>(plan.eyes)).ofHalf(); }
+TileMask FrameRecorder::chosenTiles(int index) const {
     const WarpBuffers& warp = room.warp(index);
     return {warp.tileMask(), warp.tileList(), warp.tilesWithPairs()};
 }
@@ -233,7 +197,7 @@ void FrameRecorder::recordPatches(Commands& commands, const FramePlan& plan, int
     for (int t = 0; t < static_cast<int>(plan.targets.size()); ++t) {
         if (plan.targets[static_cast<std::size_t>(t)].list != plan.targets[static_cast<std::size_t>(first)].list) { continue; }
         const int share = static_cast<int>(patches.size());
-        Passes::Patch& patch = patches.emplace_back(Passes::Patch{targetOf(plan, t), chosenTiles(plan, t)});
+        Passes::Patch& patch = patches.emplace_back(Passes::Patch{targetOf(plan, t), chosenTiles(t)});
         patch.target.share = share;
         patch.target.shares = plan.shares();
         patch.target.pairs = room.lists().pairs.arrays(share, plan.shares());
@@ -255,6 +219,7 @@ Target FrameRecorder::targetOf(const FramePlan& plan, int index) const {
                   .background = glm::vec3(plan.background),
                   .kept = planned.kept,
                   .is_made = planned.past.has_value(),
+                  .coarse = planned.coarse,
                   .moments = planned.kept.moments ? room.moments().address<gpu::vec2>() : gpu::DeviceAddress<gpu::vec2>{},
                   .shown = room.shown(index).mask()};
     if (planned.kept.past) {

@@ -17,7 +17,6 @@ struct FrameKernels {
     Passes passes;
     WarpPasses warp_passes;
     PastPasses past_passes;
-    PeripheryPasses periphery_passes;
 };
 
 // Everything that recording works with.
@@ -25,7 +24,6 @@ struct FrameRecorder {
     Passes& passes;
     WarpPasses& warp_passes;
     PastPasses& past_passes;
-    PeripheryPasses& periphery_passes;
     const GpuScene& scene;
     FrameRoom& room;
     // If the recording is going to be submitted, and so brings the scene's changes: those that the pasts know, see GpuScene.
@@ -46,11 +44,10 @@ private:
     void recordChanged(Commands& commands, const FramePlan& plan, std::span<const PastInputs> pictures) const;
     [[nodiscard]] MovingWords wordsOf(const FramePlan& plan, int warped) const;
     [[nodiscard]] PastInputs pastOf(const FramePlan& plan, int index) const;
-    [[nodiscard]] PeripheryInputs peripheryOf(const FramePlan& plan, int index) const;
-    [[nodiscard]] EyesOfList eyesOf(const FramePlan& plan, const ListPlan& list) const;
+    [[nodiscard]] EyesOfList eyesOf(const ListPlan& list) const;
     void recordPicture(Commands& commands, const FramePlan& plan, int index) const;
     void recordPatches(Commands& commands, const FramePlan& plan, int first) const;
-    [[nodiscard]] TileMask chosenTiles(const FramePlan& plan, int index) const;
+    [[nodiscard]] TileMask chosenTiles(int index) const;
     [[nodiscard]] Target targetOf(const FramePlan& plan, int index) const;
 };
 

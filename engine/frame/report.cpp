@@ -67,8 +67,7 @@ void countPast(const FrameFacts& frame, FrameResult& result) {
         counters.bytes += buffers.bytes();
         work.full += state.warp_counters.picture_cost;
         work.patched += state.warp_counters.chosen_cost;
-        const bool in_two = frame.plan.targets.size() > frame.plan.eyes;
-        shown += in_two ? state.wanted_tiles.count : buffers.tileCount() - frame.room.shown(static_cast<int>(t)).hiddenCount();
+        shown += buffers.tileCount() - frame.room.shown(static_cast<int>(t)).hiddenCount();
     }
     counters.tiles_shown = shown;
     result.tiles_rendered = shown > 0 ? static_cast<double>(counters.tiles_patched) / static_cast<double>(shown) : 0.0;
@@ -79,26 +78,16 @@ void countPast(const FrameFacts& frame, FrameResult& result) {
 }
 
 // Of all eyes together.
-void countPeriphery(const FrameFacts& frame, std::size_t eye, FrameResult& result) {
-    const TargetPlan& target = frame.plan.targets[eye];
-    const auto half = static_cast<std::size_t>(*target.half);
-    const Picture& picture = frame.room.picture(frame.plan.targets[half].picture);
-    const auto tilesOf = [&](std::size_t t) {
-        const TargetState& state = frame.state.targets[t];
-        return target.past ? state.wanted_tiles.count : state.chosen_tiles.count;
-    };
-    if (!result.counters.periphery) { result.counters.periphery.emplace(); }
-    FrameCounters::Periphery& its = *result.counters.periphery;
-    its.tile_pairs += frame.state.targets[half].pairs.count;
-    its.half_tiles += tilesOf(half);
-    its.sharp_tiles += tilesOf(eye);
-    its.bytes += picture.colours.bytes() + picture.depths.bytes() + picture.words.bytes() + picture.tiles.bytes() +
-                 frame.room.periphery(static_cast<int>(eye)).buffer().bytes();
+void countCoarse(const gpu::EyeCounters& eye, FrameCounters& counters) {
+    if (!counters.coarse) { counters.coarse.emplace(); }
+    counters.coarse->tiles += eye.coarse_kept;
+    counters.coarse->tiles_tried += eye.coarse_tiles;
+    counters.coarse->pairs += eye.coarse_pairs;
+    counters.coarse->sharp_pairs += eye.sharp_pairs;
 }
 
 bool seesNothing(const FrameCounters& counters) {
     if (std::ranges::any_of(counters.targets, [](const TargetCounters& target) { return target.tile_pairs > 0; })) { return false; }
-    if (counters.periphery && counters.periphery->tile_pairs > 0) { return false; }
     // Pictures that are made from their pasts may need no splat: then their tiles know the cost of making them. An empty tile counts for
     // kTilePairs.
     std::uint64_t tiles = 0;
@@ -146,8 +135,8 @@ void explainLeftOut(const FrameFacts& frame, FrameResult& result) {
         leaveOut(shown.hideAny(), fmt::format("{} of the {} tiles of the {} eye: its lens never shows them", shown.hiddenCount(),
                                               std::uint64_t{tiles.x} * tiles.y, e == kLeft ? "left" : "right"));
     }
-    const bool two_full = two && plan.targets[0].half && !plan.targets[0].past && !plan.targets[1].past;
-    leaveOut(two_full, "reprojection: both eyes are rendered, in two pictures each");
+    const bool two_full = two && plan.targets[0].coarse && !plan.targets[0].past && !plan.targets[1].past;
+    leaveOut(two_full, "reprojection: both eyes are rendered, coarsely where they do not see sharply");
     for (std::size_t t = 0; t < plan.targets.size(); ++t) {
         if (plan.targets[t].warp) { explainWarp(frame, t, result); }
     }
@@ -186,7 +175,7 @@ FrameResult reportFrame(const FrameFacts& frame, std::uint64_t mark) {
         its.pixels = std::uint64_t{size_px.x} * size_px.y;
         its.pixel_bytes = picture.colours.bytes() + picture.depths.bytes() + picture.words.bytes() + picture.tiles.bytes();
         if (target.warp) { countWarp(frame, t, result); }
-        if (target.half) { countPeriphery(frame, t, result); }
+        if (target.coarse) { countCoarse(state.counters, counters); }
     }
     if (std::ranges::any_of(frame.plan.targets, [](const TargetPlan& target) { return target.past.has_value(); })) {
         countPast(frame, result);

@@ -116,36 +116,23 @@ void FrameRoom::fitPictures(const FramePlan& plan, const std::array<std::span<co
         // A past stays as it is.
         if (plan.targets[t].past) { is_used[static_cast<std::size_t>(plan.targets[t].past->picture)] = true; }
     }
-    const bool in_two = plan.targets.size() > plan.eyes;
-    if (plan.spare_picture) {
-        is_used[static_cast<std::size_t>(*plan.spare_picture)] = true;
-        is_used[static_cast<std::size_t>(*plan.spare_picture) + kFirstHalfPicture] = in_two;
-    }
+    if (plan.spare_picture) { is_used[static_cast<std::size_t>(*plan.spare_picture)] = true; }
     for (std::size_t p = 0; p < pictures_.size(); ++p) {
         if (!is_used[p]) { fitPicture(pictures_[p], {0, 0}, {}); }
     }
     // The pasts of both eyes have room for what either leaves, since they change places.
-    for (std::size_t t = 0; t < plan.targets.size(); ++t) {
-        const TargetPlan& target = plan.targets[t];
+    bool coarse = false;
+    for (const TargetPlan& target : plan.targets) {
+        coarse = coarse || target.coarse;
         Kept kept = target.kept;
         kept.past = kept.past || plan.keeps_past;
-        if (plan.spare_picture) {
-            const std::size_t spare = static_cast<std::size_t>(*plan.spare_picture) + (t < plan.eyes ? 0 : kFirstHalfPicture);
-            fitPicture(pictures_[spare], target.eye.size_px, kept);
-        }
+        if (plan.spare_picture) { fitPicture(pictures_[static_cast<std::size_t>(*plan.spare_picture)], target.eye.size_px, kept); }
         fitPicture(pictures_[static_cast<std::size_t>(target.picture)], target.eye.size_px, kept);
     }
     resize(moments_, "inverse depth moments", moments_bytes);
-    resize(lists_.tile_ranges, "tile ranges",
-           static_cast<std::uint64_t>(std::max(plan.shares(), plan.shares_ahead)) * most_tiles * sizeof(gpu::uvec2));
+    const auto shares = static_cast<std::uint64_t>(std::max(plan.shares(), plan.shares_ahead));
+    resize(lists_.tile_ranges, "tile ranges", most_tiles * std::max(shares * sizeof(gpu::uvec2), coarse ? sizeof(gpu::uvec3) : 0));
     fitWarps(plan);
-    for (std::size_t e = 0; e < peripheries_.size(); ++e) {
-        const glm::uvec2 size_px = e < plan.eyes && plan.targets[e].half ? plan.targets[e].eye.size_px : glm::uvec2(0);
-        if (peripheries_[e].sizePx() == size_px) { continue; }
-        if (peripheries_[e].sizePx().x > 0) { wait_for_frames_(); }
-        peripheries_[e] = {};
-        peripheries_[e] = PeripheryBuffers(context_, size_px);
-    }
 }
 
 void FrameRoom::fitLists() {

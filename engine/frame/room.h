@@ -59,8 +59,6 @@ public:
     [[nodiscard]] const Buffer& moments() const { return moments_; }  // I and J of the target that keeps them
     [[nodiscard]] const WarpBuffers& warp(int target) const { return warps_[static_cast<std::size_t>(target)]; }
     [[nodiscard]] const ShownTiles& shown(int target) const { return shown_[static_cast<std::size_t>(target)]; }
-    // For the eye's two pictures.
-    [[nodiscard]] const PeripheryBuffers& periphery(int eye) const { return peripheries_[static_cast<std::size_t>(eye)]; }
     // For the scene's changes, of all pictures of a frame: made when it is first needed.
     [[nodiscard]] const Buffer& changedRects();
     // To be called before the passes of a frame.
@@ -90,7 +88,6 @@ private:
     Buffer moments_;
     std::array<WarpBuffers, kMostTargets> warps_;  // of those that are made from others
     std::vector<ShownTiles> shown_;
-    std::array<PeripheryBuffers, 2> peripheries_;  // by eye
     Buffer changed_rects_;
     bool first_frame_ = true;
     bool room_ahead_fits_ = true;  // in the device's memory

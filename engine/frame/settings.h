@@ -38,8 +38,8 @@ struct FrameSettings {
     std::array<std::span<const std::uint8_t>, 2> hidden_tiles = {};
     // kPredicted, by eye: where it looks; empty: nobody knows. Only what it sees of the affiliated eye's errors counts.
     std::array<std::optional<Gaze>, 2> gazes = {};
-    // kMono, kPredicted, kAlternate, kTemporal: if it is known where the eyes look (`gazes`), each has a picture of half the size for
-    // the rest, and tiles of its own size only where it would see the difference. Not if moments are kept.
+    // kMono, kPredicted, kAlternate, kTemporal: if it is known where the eyes look (`gazes`), tiles elsewhere are coarse, except where they
+    // would see the difference. Not if moments are kept.
     bool half_periphery = false;
     // kAlternate, kTemporal: more frames follow, which are made from this one; it may be made from the one before, if that was asked for
     // with keep_past, too.

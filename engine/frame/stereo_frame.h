@@ -110,7 +110,6 @@ private:
         return {kernels_.passes,
                 kernels_.warp_passes,
                 kernels_.past_passes,
-                kernels_.periphery_passes,
                 *scene_,
                 room_,
                 drops ? std::nullopt : std::optional(changes_known_)};

@@ -12,8 +12,8 @@
 
 namespace binosplat {
 
-// The most pictures and lists of visible splats in a frame: two eyes, and room for a second picture of each.
-inline constexpr std::size_t kMostTargets = 4;
+// The most pictures and lists of visible splats in a frame.
+inline constexpr std::size_t kMostTargets = 2;
 
 // Pictures whose splats are projected, binned and blended at the same time, each with its share of the lists' room.
 inline constexpr int kMostAtOnce = 2;
@@ -28,7 +28,6 @@ struct TargetState {
     gpu::PastBlockList past_blocks;
     gpu::ListState chosen_tiles;    // if it is made from either: those that are rendered
     gpu::ListState chosen_visible;  // its visible splats, or none if there is no such tile
-    gpu::ListState wanted_tiles;    // of one of an eye's two pictures from their pasts: those that are not made from the other
 };
 
 // What the device gets at the start of a frame, and what it reports at the end.
@@ -128,7 +127,7 @@ struct FrameBuffers {
     VisibleBuffers visible;
     PairBuffers pairs;
     Buffer scratch;      // sums of workgroups or histograms of the list at hand
-    Buffer tile_ranges;  // uvec2 a tile
+    Buffer tile_ranges;  // uvec2 a tile; then, if tiles may be coarse, a list of those with pairs
 
     [[nodiscard]] FrameCapacity capacity() const { return {visible.capacity(), pairs.capacity()}; }
     [[nodiscard]] gpu::DeviceAddress<gpu::EyeView> eyes() const { return state.address<gpu::EyeView>(offsetof(FrameState, views)); }

@@ -19,17 +19,19 @@ std::uint32_t threadsPerCell(const Context& context, std::uint32_t wanted) {
     return std::clamp(wanted != 0 ? wanted : context.subgroupSize(), 8u, most);
 }
 
-RasterizeKernel rasterizeKernel(std::uint32_t threads_per_cell, const Kept& kept, std::uint32_t splat_shape, bool masked) {
+// With coarse tiles there is one kernel for all that a picture may keep.
+RasterizeKernel rasterizeKernel(std::uint32_t threads_per_cell, const Kept& kept, std::uint32_t splat_shape, bool masked, bool coarse) {
     const bool moves_by_depth = kept.moving && kept.depth_choice != gpu::kDepthInverse;
     return {.threads_per_cell = threads_per_cell,
-            .depth = (kept.depth || moves_by_depth) && !kept.past,  // a past has it from its words
+            .depth = (kept.depth || moves_by_depth || coarse) && !kept.past,  // a past has it from its words
             .moments = kept.moments || kept.moving || kept.past,
             .half_colours = kept.half_floats,
             .splat_kind = splat_shape,
             .local_size_x = gpu::kCellsPerTile * threads_per_cell,
             .even_rows = kept.even_rows,
             .masked = masked,
-            .past = kept.past};
+            .past = kept.past,
+            .coarse = coarse};
 }
 
 // A workgroup for each block of kCullBlock splats: of the whole scene, or of its visible pages.
@@ -53,21 +55,21 @@ KernelTable passKernels(const Context& context, std::uint32_t wanted_threads_per
     append(table, everyVariant<ProjectKernel>());
     append(table, everyVariant<BinKernel>());
     append(table, everyVariant<BinLargeKernel>());
-    append(table,
-           everyVariant<TileRangesKernel>([](const TileRangesKernel& k) { return k.masked == 1 || (k.half_colours == 0 && k.past == 0); }));
+    append(table, everyVariant<TileRangesKernel>([](const TileRangesKernel& k) { return k.masked == 1 || k.half_colours == 0; }));
     const std::uint32_t threads = threadsPerCell(context, wanted_threads_per_cell);
     for (std::uint32_t choices = 0; choices < 8; ++choices) {
         const Kept plain{.depth = (choices & 1) != 0, .half_floats = (choices & 2) != 0};
         Kept moving = plain, even_rows = plain, past = plain;
         moving.moving = even_rows.moving = even_rows.even_rows = past.past = true;
-        const auto add = [&](const Kept& kept, bool masked) {
-            table.push_back(variantOf(rasterizeKernel(threads, kept, choices >> 2, masked)));
+        const auto add = [&](const Kept& kept, bool masked, bool coarse = false) {
+            table.push_back(variantOf(rasterizeKernel(threads, kept, choices >> 2, masked, coarse)));
         };
         for (const Kept& kept : {plain, moving, even_rows}) { add(kept, false); }
         add(plain, true);
         if (plain.depth) { continue; }  // a past's depths follow from its words
         add(past, false);
         add(past, true);
+        for (const Kept& kept : {plain, past}) { add(kept, true, true); }
     }
     return table;
 }
@@ -183,6 +185,12 @@ struct Passes::EyePart {
     [[nodiscard]] auto splats() const { return buffers.visible.splats().at(firstSplat()); }
     [[nodiscard]] auto tileSets() const { return buffers.visible.tileSets().at(firstSplat()); }
     [[nodiscard]] auto tileCounts() const { return buffers.visible.tileCounts().at(firstSplat()); }
+    // The device lists the tiles that have pairs.
+    [[nodiscard]] bool listsFull() const { return lists_tiles || target.coarse; }
+    // Behind the ranges of all tiles, unless some were chosen.
+    [[nodiscard]] auto fullTiles() const {
+        return lists_tiles ? tiles.full : buffers.tile_ranges.address<gpu::uint>(tileCount() * sizeof(gpu::uvec2));
+    }
     [[nodiscard]] std::uint64_t tileCount() const { return std::uint64_t{target.size_tiles.x} * target.size_tiles.y; }
     [[nodiscard]] auto ranges() const {
         return buffers.tile_ranges.address<gpu::uvec2>().at(tileCount() * static_cast<std::uint64_t>(target.share));
@@ -301,10 +309,9 @@ void Passes::recordTileRanges(const EyePart& part, const KeyValues& sorted) {
                                      .ranges = part.ranges(),
                                      .tile_list = part.tiles.list,
                                      .masked_tiles = part.buffers.state.address<gpu::ListState>(part.chosenTiles()),
-                                     .full_tiles = part.tiles.full,
+                                     .full_tiles = part.fullTiles(),
                                      .counters = part.counters(),
                                      .colours = target.picture->colours.address<gpu::vec4>(),
-                                     .half_colours = target.picture->colours.address<gpu::uvec2>(),
                                      .depths = target.kept.depth ? target.picture->depths.address<float>() : gpu::DeviceAddress<float>{},
                                      .moving = target.moving,
                                      .past_tiles = target.picture->tiles.address<gpu::PastTile>(),
@@ -312,12 +319,12 @@ void Passes::recordTileRanges(const EyePart& part, const KeyValues& sorted) {
                                      .background = target.background,
                                      .size_px = target.size_px,
                                      .is_made = target.is_made ? 1u : 0u};
+    const Kernel& kernel =
+        kernels_.get(part.listsFull() ? TileRangesKernel{.masked = true, .half_colours = target.kept.half_floats} : TileRangesKernel{});
     if (part.lists_tiles) {
-        part.commands.dispatchIndirect(
-            kernels_.get(TileRangesKernel{.masked = true, .half_colours = target.kept.half_floats, .past = target.kept.past}), ranges,
-            part.buffers.state, part.chosenTiles() + offsetof(gpu::ListState, per_item));
+        part.commands.dispatchIndirect(kernel, ranges, part.buffers.state, part.chosenTiles() + offsetof(gpu::ListState, per_item));
     } else {
-        part.commands.dispatchOver(kernels_.get(TileRangesKernel{}), ranges, std::uint64_t{target.size_tiles.x} * target.size_tiles.y);
+        part.commands.dispatchOver(kernel, ranges, part.tileCount());
     }
 }
 
@@ -333,16 +340,18 @@ void Passes::recordRasterized(const EyePart& part, const KeyValues& sorted) {
                                        .moments = target.moments,
                                        .moving = target.moving,
                                        .arrivals = target.arrivals,
-                                       .full_tiles = part.tiles.full,
+                                       .full_tiles = part.fullTiles(),
                                        .counters = part.counters(),
                                        .background = is_light ? glm::vec3(lightOf(glm::dvec3(target.background))) : target.background,
                                        .eye = part.eye(),
                                        .row_words = target.row_words,
                                        .depth_choice = target.kept.depth_choice,
                                        .is_light = is_light,
+                                       .is_made = target.is_made ? 1u : 0u,
                                        .past_tiles = target.picture->tiles.address<gpu::PastTile>()};
-    const Kernel& kernel = kernels_.get(rasterizeKernel(threads_per_cell_, target.kept, part.scene.splatShape(), part.lists_tiles));
-    if (part.lists_tiles) {
+    const Kernel& kernel =
+        kernels_.get(rasterizeKernel(threads_per_cell_, target.kept, part.scene.splatShape(), part.listsFull(), target.coarse));
+    if (part.listsFull()) {
         part.commands.dispatchIndirect(kernel, rasterize, part.buffers.state,
                                        part.counterBytes() + offsetof(gpu::EyeCounters, per_full_tile));
     } else {  // hidden tiles have no pairs, and so become background

@@ -46,6 +46,7 @@ struct Target {
     glm::vec3 background{0.0f};
     Kept kept;
     bool is_made = false;                                      // from a past: tiles whose lists have no room stay
+    bool coarse = false;                                       // tiles that its eye does not see sharply may be
     gpu::DeviceAddress<gpu::vec2> moments = {};                // if they are kept
     gpu::DeviceAddress<gpu::uint> moving = {}, arrivals = {};  // if the picture is warped
     gpu::uint row_words = 0;                                   // of `moving` and `arrivals`

@@ -59,28 +59,17 @@ void PastPasses::recordWarp(Commands& commands, const PastInputs& in) {
         .tile_mask = in.warp.tileMask(),
         .price_bins = in.warp.bins(),
         .shown_mask = in.shown,
-        .tile_list = in.some_tiles,
-        .listed_tiles = listAt(in, offsetof(TargetState, wanted_tiles)),
         .blocks = in.warp.pastBlocks(),
         .block_list = in.buffers.state.address<gpu::PastBlockList>(blocks)};
     const glm::uvec2 size_px = in.target.size_px;
     const WarpPastKernel kernel{.half_colours = in.target.half_floats,
                                 .hidden_tiles = in.shown.value != 0,
-                                .some_tiles = in.some_tiles.value != 0,
                                 .whole_blocks = size_px.x % gpu::kPastColumns == 0,
                                 .by_address = by_address_};
-    if (in.some_tiles.value != 0) {
-        const std::uint64_t wanted = FrameBuffers::targetField(in.index, offsetof(TargetState, wanted_tiles));
-        commands.dispatchIndirect(kernels_.get(kernel), pass, in.buffers.state, wanted + offsetof(gpu::ListState, per_item));
-    } else {
-        commands.dispatch(kernels_.get(kernel), pass, groupsOver(size_px.x, gpu::kPastTiles * gpu::kTileSize),
-                          groupsOver(size_px.y, gpu::kTileSize));
-    }
+    commands.dispatch(kernels_.get(kernel), pass, groupsOver(size_px.x, gpu::kPastTiles * gpu::kTileSize),
+                      groupsOver(size_px.y, gpu::kTileSize));
     commands.beginPass({in.role, WarpPixelsKernel::kStage, WarpPixelsKernel::kShader});
-    const WarpPixelsKernel pixels{.half_colours = kernel.half_colours,
-                                  .hidden_tiles = kernel.hidden_tiles,
-                                  .some_tiles = kernel.some_tiles,
-                                  .by_address = by_address_};
+    const WarpPixelsKernel pixels{.half_colours = kernel.half_colours, .hidden_tiles = kernel.hidden_tiles, .by_address = by_address_};
     commands.dispatchIndirect(kernels_.get(pixels), pass, in.buffers.state, blocks + offsetof(gpu::PastBlockList, per_group));
 }
 

@@ -23,8 +23,6 @@ struct PastInputs {
     const Picture& source;
     const Picture& target;
     gpu::DeviceAddress<gpu::uint> shown;  // mask of the tiles that the lens shows; null: all
-    // If only some tiles are made: these, and how many (TargetState::wanted_tiles); the kinds of all tiles are then complete.
-    gpu::DeviceAddress<gpu::uint> some_tiles;
     const Intrinsics& lens;
     std::optional<Gaze> gaze;  // empty: all tiles count alike
     float area = 1.0f;         // of a pixel, in pixels of the eye's own picture

@@ -23,13 +23,7 @@ Presenter::Presenter(const Context& context, vk::Format format)
     check(takes(format), "pictures leave as 8-bit RGBA or BGRA, not as {}", vk::to_string(format));
 }
 
-const Kernel& Presenter::kernel(bool half_floats, bool see_through) {
-    return kernels_.get(PresentKernel{.half_colours = half_floats, .light = linear_ || see_through});
-}
-
-void Presenter::makeKernels(bool can_see_through) {
-    for (const bool see_through : {false, can_see_through}) { kernel(true, see_through); }
-}
+void Presenter::makeKernels() { kernels_.get(PresentKernel{.half_colours = true}); }
 
 void Presenter::makeRoom(glm::uvec2 size_px, bool with_depth) {
     const std::uint64_t pixel_count = std::uint64_t{size_px.x} * size_px.y;
@@ -61,7 +55,8 @@ void Presenter::record(Commands& commands, const PresentedEye& eye, double near)
     pass.linear = linear_ ? 1 : 0;
     pass.see_through = eye.see_through ? 1 : 0;
     commands.beginPass({Role::kNone, PresentKernel::kStage, PresentKernel::kShader});
-    commands.dispatch(kernel(eye.picture->half_floats, eye.see_through), pass, (eye.size_px.x + 15) / 16, (eye.size_px.y + 7) / 8);
+    commands.dispatch(kernels_.get(PresentKernel{.half_colours = eye.picture->half_floats}), pass, (eye.size_px.x + 15) / 16,
+                      (eye.size_px.y + 7) / 8);
     commands.copyToImage(pixels_, eye.colour, eye.size_px, vk::ImageAspectFlagBits::eColor);
     if (with_depth) { commands.copyToImage(depths_, eye.depth, eye.size_px, vk::ImageAspectFlagBits::eDepth); }
 }

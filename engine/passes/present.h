@@ -26,8 +26,8 @@ public:
 
     [[nodiscard]] static bool takes(vk::Format colour_format);
 
-    // Makes those for half floats before they are needed.
-    void makeKernels(bool can_see_through);
+    // Makes the kernel for half floats before it is needed.
+    void makeKernels();
     // For pictures of that size, while nothing that was recorded is under way. Throws Error if there is no memory for it.
     void makeRoom(glm::uvec2 size_px, bool with_depth);
     // Records it, making room first. `near` in scene units.
@@ -38,8 +38,6 @@ public:
     [[nodiscard]] const Buffer& pixels() const { return pixels_; }
 
 private:
-    const Kernel& kernel(bool half_floats, bool see_through);
-
     const Context& context_;
     KernelCache kernels_;
     bool blue_first_, linear_;

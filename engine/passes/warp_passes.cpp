@@ -141,11 +141,9 @@ void WarpRecorder::weigh() {
                               .shown_mask = in_.source_shown.mask(),
                               .visible = visible(),
                               .masked_tiles = listAt(field(offsetof(TargetState, chosen_tiles))),
-                              .counters = counters()};
-    dispatch(
-        WeighKernel{
-            .rectified = in_.rectified, .hidden_tiles = hidesSource(), .kinds_given = in_.target_shown.hideAny(), .may_move = in_.may_move},
-        pass, tileGroups());
+                              .counters = counters(),
+                              .kinds_given = in_.target_shown.hideAny()};
+    dispatch(WeighKernel{.rectified = in_.rectified}, pass, tileGroups());
 }
 
 // Timed with the next pass.
@@ -178,7 +176,7 @@ void WarpRecorder::findEdgeRois() {
                                   .tile_kinds = in_.warp.tileKinds(),
                                   .shown_mask = in_.source_shown.mask(),
                                   .counters = counters()};
-    dispatch(EdgeRoisKernel{.rectified = in_.rectified, .hidden_tiles = hidesSource()}, edges, tileGroups());
+    dispatch(EdgeRoisKernel{.rectified = in_.rectified}, edges, tileGroups());
 }
 
 void WarpRecorder::reproject() {
@@ -186,7 +184,7 @@ void WarpRecorder::reproject() {
     begin<ReprojectKernel>();
     const gpu::ReprojectPass pass{
         .warp = view(), .moving = in_.words.moving, .arrivals = in_.words.arrivals, .shown_mask = in_.source_shown.mask()};
-    dispatchByCounter(ReprojectKernel{.rectified = in_.rectified, .hidden_tiles = hidesSource(), .forward = copiesColours()}, pass,
+    dispatchByCounter(ReprojectKernel{.rectified = in_.rectified, .forward = copiesColours()}, pass,
                       offsetof(gpu::WarpCounters, per_pixel_block));
 }
 

@@ -38,6 +38,13 @@ inline bool blend(PixelState& pixel, const ProjectedSplat& splat, const Hit& hit
     return true;
 }
 
+// The pixel's colour before the background, and its alpha.
+inline glm::dvec4 shownOf(const PixelState& pixel, const Settings& settings) {
+    const glm::dvec3 background = settings.is_light ? lightOf(settings.background) : settings.background,
+                     blended = pixel.colour + pixel.transmittance * background;
+    return {settings.is_light ? encodedOf(blended) : blended, pixel.weight};
+}
+
 inline Picture makePicture(glm::uvec2 size_px, const Settings& settings) {
     Picture picture;
     picture.size_px = size_px;
@@ -69,9 +76,7 @@ struct Tile {
             for (int x = begin_px.x; x < end_px.x; ++x) {
                 const PixelState& pixel = at(x, y);
                 const std::size_t place = static_cast<std::size_t>(y) * picture.size_px.x + static_cast<std::size_t>(x);
-                const glm::dvec3 background = settings.is_light ? lightOf(settings.background) : settings.background,
-                                 blended = pixel.colour + pixel.transmittance * background;
-                picture.rgba[place] = glm::dvec4(settings.is_light ? encodedOf(blended) : blended, pixel.weight);
+                picture.rgba[place] = shownOf(pixel, settings);
                 picture.depth[place] = pixel.depth;
                 if (settings.inverse_depth_moments) {
                     picture.inverse_depth[place] = pixel.inverse_depth;

@@ -15,12 +15,13 @@ namespace binosplat::reference {
 
 // What later pictures must know of a tile of the one they are made from.
 struct PastTile {
-    std::uint64_t cost = 0;             // in pairs, when it was last rendered
-    std::uint32_t age = 0;              // frames since then
+    std::uint64_t cost = 0;  // in pairs, when it was last rendered
+    std::uint32_t age = 0;   // frames since then
     // By quarters, row by row:
     std::array<double, 4> growth = {};  // of the error's amplitude per frame, as measured then; 0: nothing is known
     std::array<double, 4> errors = {};  // amplitudes of the expected error
     std::array<double, 4> grown = {};   // squared errors that this frame's warp is expected to add to a quarter, summed over its pixels
+    double lost = 0.0;                  // of a coarse tile: the amplitude of what it lacks
 };
 
 // A picture of an eye, and what later ones need to know of it.
@@ -68,6 +69,9 @@ void markChanged(std::span<PastTile> tiles, glm::uvec2 size_px, std::span<const 
 // price: adds the error expected of this frame's warp to the errors of tiles. What is blurred already is blurred more, so that
 // it adds up as an amplitude. Half of it is the growth that was measured, if there is one and most of the quarter was seen.
 void growErrors(std::span<PastTile> tiles);
+// Also price: what a coarse tile lacks counts as an error of all its quarters as soon as a hundredth would be seen in each pixel. `share`:
+// of an error, what the eye sees (findSharesThere).
+PastTile withLoss(const PastTile& tile, double share);
 // Also price: the worth of rendering a tile: the squared error of all its pixels, times the frames since it was rendered. For an
 // error that grows by the frame that is the area under its growth, which rendering it saves (Whittle's index).
 double worthOf(const PastTile& tile);

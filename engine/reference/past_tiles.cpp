@@ -25,6 +25,14 @@ void growErrors(std::span<PastTile> tiles) {
     }
 }
 
+PastTile withLoss(const PastTile& tile, double share) {
+    PastTile seen = tile;
+    if (share * kChannels * kTilePixels * tile.lost * tile.lost >= 0.01 * 0.01 * kTilePixels) {
+        for (double& error : seen.errors) { error += tile.lost; }
+    }
+    return seen;
+}
+
 void markChanged(std::span<PastTile> tiles, glm::uvec2 size_px, std::span<const ChangedRect> rects) {
     const std::size_t columns = tileGrid(size_px).x;
     std::vector<std::array<double, 4>> more(tiles.size());

@@ -165,7 +165,7 @@ private:
         const double guess = view_.look(view_.place(middle_px, 0.0).place_px).inverse_depth;
         const glm::dvec2 from_px = glm::clamp(view_.place(middle_px, guess).place_px, glm::dvec2(0.0), glm::dvec2(view_.last));
         const PastTile& before = tileOf(past_, from_px);
-        return {before.cost, before.age + 1, {}, {}, {}};
+        return {before.cost, before.age + 1, {}, {}, {}, before.lost};
     }
     static const PastTile& tileOf(const Past& past, const glm::dvec2& place_px) {
         const glm::uvec2 at = glm::uvec2(place_px) / unsigned{kTileSize};

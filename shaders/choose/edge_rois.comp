@@ -12,7 +12,6 @@
 
 layout(local_size_x = kWarpGroup) in;
 layout(push_constant, scalar) uniform Push { EdgeRoisPass pass; };
-layout(constant_id = 1) const bool kHiddenTiles = false;  // parts of the source were not rendered
 
 const uint kBinsPerThread = kDepthBins / kWarpGroup;
 // One pixel in two hundred may be nearer, and one farther, than the bounds: specks and fringes of mixed depth are no surface.
@@ -98,7 +97,7 @@ void main() [[subgroup_uniform_control_flow]] {
     if (tile < tiles && pass.tile_kinds.at[tile] != kTileHidden) {
         const uvec2 at = uvec2(tile % warp.size_tiles.x, tile / warp.size_tiles.x);
         const bool beyond = (high_borders.x > 0 && at.x >= high_tiles.x) || (high_borders.y > 0 && at.y >= high_tiles.y);
-        edge = any(lessThan(at, low_tiles)) || beyond || (kHiddenTiles && isUnseen(warp, pass.shown_mask, true, tile, false));
+        edge = any(lessThan(at, low_tiles)) || beyond || (isThere(uvec2(pass.shown_mask)) && isUnseen(warp, pass.shown_mask, tile, false));
         pass.tile_kinds.at[tile] = edge ? kTileEdge : 0;
     }
     const uint edge_tiles = subgroupAdd(edge ? 1 : 0);

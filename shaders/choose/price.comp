@@ -36,6 +36,14 @@ PastTile withGrowth(PastTile tile) {
     return tile;
 }
 
+// What a coarse tile lacks is an error once the eye would notice it.
+PastTile withLoss(PastTile tile, uvec2 at) {
+    const float share = kFoveated ? seenShareThere(pass.gaze, at) : 1;
+    const bool is_seen = share * 3 * float(kTileSize * kTileSize) * tile.lost * tile.lost >= kLeastSeenError;
+    tile.errors += is_seen ? tile.lost : 0;
+    return tile;
+}
+
 // The bin of a tile under a bound: by two bins in one, those above it before the others and those that nobody saw before before all.
 uint binUnderBound(uint bin, PastTile tile, float share) {
     // Errors of pixels that were seen may be greater than those of others, and count as these.
@@ -48,10 +56,12 @@ uint binUnderBound(uint bin, PastTile tile, float share) {
 
 // A tile's price word: the bin of its error, and its cost. Adds the cost to the price list.
 uint priceOf(uint tile, uvec2 size_tiles) {
+    const uvec2 at = uvec2(tile % size_tiles.x, tile / size_tiles.x);
     PastTile its;
     if (kPast) {
         its = withGrowth(pass.past_tiles.at[tile]);
         pass.past_tiles.at[tile].errors = its.errors;
+        its = withLoss(its, at);
         const bool hidden = pass.tile_kinds.at[tile] == kTileHidden;
         pass.tile_errors.at[tile] = hidden ? 0 : errorOfPast(its);
         const uint cost = hidden ? 0 : min(its.cost, kMaxTileCost - kTilePairs) + kTilePairs;
@@ -61,7 +71,7 @@ uint priceOf(uint tile, uvec2 size_tiles) {
     // Sums saturate there (newcomers); resample adds far less than that.
     const uint error = min(pass.tile_errors.at[tile], 0x7fffffffu);
     const float worth = pass.area * float(error);
-    const float share = kFoveated ? seenShare(pass.gaze, uvec2(tile % size_tiles.x, tile / size_tiles.x)) : 1;
+    const float share = kFoveated ? seenShare(pass.gaze, at) : 1;
     if (kFoveated && share <= kCoarseShare) { pass.tile_errors.at[tile] = kSeenCoarsely; }
     if (pass.tile_kinds.at[tile] != 0 || error == 0) { return 0; }
     const uint cost = pass.tile_costs.at[tile];

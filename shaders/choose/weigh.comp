@@ -15,9 +15,9 @@
 
 layout(local_size_x = kWarpGroup) in;
 layout(push_constant, scalar) uniform Push { WeighPass pass; };
-layout(constant_id = 1) const bool kHiddenTiles = false;  // parts of the source were not rendered
-layout(constant_id = 2) const bool kKindsGiven = true;    // tile_kinds says which tiles no lens shows; otherwise all are shown
-layout(constant_id = 3) const bool kMayMove = true;       // the source's pixels can be warped
+
+// True if the source's pixels can be warped.
+bool mayMove() { return isThere(uvec2(pass.moving)); }
 
 // The pixel in the middle of a tile; of an even row, since odd ones may have no depths.
 uvec2 middleOf(WarpView warp, uint tile) {
@@ -39,7 +39,7 @@ uint pairsNear(WarpView warp, uvec2 middle, uint moving) {
 // Without depths it is less certain where tiles come from: to be taken up again, warping must then save clearly more, or frames would
 // alternate.
 bool movingPays(WarpView warp, uint all_saved, uint picture_cost, uint tiles) {
-    const uint saved = kMayMove ? all_saved : all_saved - all_saved / kResumePart;
+    const uint saved = mayMove() ? all_saved : all_saved - all_saved / kResumePart;
     const float budget = warp.budget * float(picture_cost);
     const uint mending = budget < 4e9 ? uint(budget) : 4000000000u;
     // What is left for the shared part, times kMoveSharedPart, against the cost of warping all tiles: in 64 bits.
@@ -56,17 +56,17 @@ void main() [[subgroup_uniform_control_flow]] {
     uint cost = 0, saved = 0;
     bool moves = false;
     if (tile < tiles) {
-        const bool hidden = kKindsGiven && pass.tile_kinds.at[tile] == kTileHidden;
+        const bool hidden = pass.kinds_given != 0 && pass.tile_kinds.at[tile] == kTileHidden;
         if (!hidden) {
             const uvec2 middle = middleOf(warp, tile);
-            const uint moving = kMayMove ? pass.moving.at[middle.y * warp.row_words + middle.x] : 0;
-            const uint pairs = kMayMove ? pairsNear(warp, middle, moving) : pass.ranges.at[tile].y - pass.ranges.at[tile].x;
-            const bool unseen = isUnseen(warp, pass.shown_mask, kHiddenTiles, tile, true);
+            const uint moving = mayMove() ? pass.moving.at[middle.y * warp.row_words + middle.x] : 0;
+            const uint pairs = mayMove() ? pairsNear(warp, middle, moving) : pass.ranges.at[tile].y - pass.ranges.at[tile].x;
+            const bool unseen = isUnseen(warp, pass.shown_mask, tile, true);
             cost = min(pairs, kMaxTileCost - kTilePairs) + kTilePairs;
             moves = !unseen && pairs > warp.move_cost;
             saved = moves ? pairs - warp.move_cost : 0;
             pass.tile_depths.at[tile] = moving;
-            pass.tile_kinds.at[tile] = !kMayMove ? kTileCheap : unseen ? kTileEdge : moves ? 0 : kTileCheap;
+            pass.tile_kinds.at[tile] = !mayMove() ? kTileCheap : unseen ? kTileEdge : moves ? 0 : kTileCheap;
         }
         pass.tile_costs.at[tile] = cost;
         pass.tile_errors.at[tile] = 0;
@@ -88,7 +88,7 @@ void main() [[subgroup_uniform_control_flow]] {
     const DispatchSize rows = DispatchSize((warp.size_px.y + warp.rows_apart - 1) / warp.rows_apart, 1, 1);
     const bool pays = movingPays(warp, all_saved, picture_cost, shown);
     pass.counters.at[0].pays = pays ? 1 : 0;
-    if (pays && kMayMove) {
+    if (pays && mayMove()) {
         pass.counters.at[0].moves = 1;
         pass.counters.at[0].per_pixel_block = DispatchSize(warp.size_tiles.x, 2 * warp.size_tiles.y, 1);
         pass.counters.at[0].per_row = rows;
@@ -101,7 +101,7 @@ void main() [[subgroup_uniform_control_flow]] {
         pass.counters.at[0].per_row = shown < tiles ? rows : DispatchSize(0, 0, 0);
         pass.counters.at[0].per_visible = DispatchSize(0, 0, 0);
     }
-    if (!kMayMove) {
+    if (!mayMove()) {
         pass.counters.at[0].cheap_tiles = shown;
         pass.counters.at[0].chosen_cost = picture_cost;
         pass.masked_tiles.at[0].count = shown;

@@ -1,5 +1,5 @@
 // For shaders that make a picture from a past one, block by block or pixel by pixel, and say what kind of pictures these are: kHalfColours,
-// kHiddenTiles, kSomeTiles, kByAddress; after their push constants, lib/tile_mask.glsl, lib/picture.glsl, lib/moving_pixel.glsl, lib/move_pixel.glsl.
+// kHiddenTiles, kByAddress; after their push constants, lib/tile_mask.glsl, lib/picture.glsl, lib/moving_pixel.glsl, lib/move_pixel.glsl.
 
 const uvec2 kBlock = uvec2(kPastColumns, kPastRows);
 
@@ -63,7 +63,7 @@ vec2 uncertainMove(vec2 disparity_px, float spread) {
 }
 
 bool isHidden(PastView view, uvec2 pixel) {
-    return kHiddenTiles && !kSomeTiles && !isInMask(pass.shown_mask, view.size_tiles, pixel / kTileSize);
+    return kHiddenTiles && !isInMask(pass.shown_mask, view.size_tiles, pixel / kTileSize);
 }
 
 vec4 sourceAt(uint i) {

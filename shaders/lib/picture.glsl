@@ -1,7 +1,6 @@
 // Pixels of a picture, as floats or as half floats. For shaders that say which: kHalfColours.
 
-// Of an address: that it is not null.
-bool isThere(uvec2 address) { return any(notEqual(address, uvec2(0))); }
+#include "lib/address.glsl"
 
 uvec2 packHalves(vec4 colour) {
     const vec4 finite = clamp(colour, vec4(-65504), vec4(65504));  // what half floats reach

@@ -1,4 +1,6 @@
-// Tiles of the target that the source's picture cannot fill, wherever the scene stands.
+// Tiles of the target that the source's picture cannot fill, wherever the scene stands. `shown_mask` is null where nothing is hidden.
+
+#include "lib/address.glsl"
 
 bool isHiddenAt(WarpView warp, Uints shown_mask, vec2 place_px) {
     const uvec2 tile = pixelAt(warp.size_px, place_px) / kTileSize;
@@ -8,10 +10,11 @@ bool isHiddenAt(WarpView warp, Uints shown_mask, vec2 place_px) {
 // True if a corner of the tile lies more than a gap outside the source even if everything is infinitely far (only rendering can fill so
 // much of a headset's eye, whose view is wider outwards than inwards), or where the source's lens hides what it would need. The paper's
 // borders cover the first case but not the second: `beyond_counts` is false there.
-bool isUnseen(WarpView warp, Uints shown_mask, bool any_hidden, uint tile, bool beyond_counts) {
+bool isUnseen(WarpView warp, Uints shown_mask, uint tile, bool beyond_counts) {
     const uvec2 first = uvec2(tile % warp.size_tiles.x, tile / warp.size_tiles.x) * kTileSize;
     const uvec2 last = min(first + kTileSize, warp.size_px) - 1;
     const vec2 low = vec2(-float(warp.gap_px)), high = vec2(warp.size_px) - low;
+    const bool any_hidden = isThere(uvec2(shown_mask));
     bool unseen = false;
     for (uint corner = 0; corner < 4; ++corner) {
         const vec2 at = vec2((corner & 1) == 0 ? first.x : last.x, corner < 2 ? first.y : last.y) + 0.5;

@@ -5,7 +5,6 @@
 #include "passes.h"
 
 layout(constant_id = 0) const bool kHalfColours = false;
-layout(constant_id = 1) const bool kLight = true;  // the image's bytes count as light, or its alpha does
 layout(local_size_x = 16, local_size_y = 8) in;
 
 #include "lib/picture.glsl"
@@ -48,7 +47,7 @@ void main() {
     const vec4 pixel = colourAt(pass.colours, pass.half_colours, i);
     vec3 colour = clampToDisplay(pixel.rgb);
     // Colours were multiplied by alpha as display-encoded values, but headsets blend light: alpha is divided out and multiplied back in.
-    const bool see_through = kLight && pass.see_through != 0, linear = kLight && pass.linear != 0;
+    const bool see_through = pass.see_through != 0, linear = pass.linear != 0;
     const float alpha = see_through ? (pixel.a > 0 ? min(pixel.a, 1) : 0) : 1;
     if (see_through) { colour = alpha > 0 ? clampToDisplay(pixel.rgb / alpha) : vec3(0); }
     if (isThere(uvec2(pass.tile_kinds))) { colour = tint(colour, at, (pass.size_px.x + kTileSize - 1) / kTileSize); }

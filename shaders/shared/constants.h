@@ -146,15 +146,14 @@ BINOSPLAT_CONSTANT float kLeastSeenError = 0.0256f;
 // averages the rows above and below. price writes kSeenCoarsely in place of the tile's error: it is greater than any error.
 BINOSPLAT_CONSTANT float kCoarseShare = 0.25f;
 BINOSPLAT_CONSTANT uint kSeenCoarsely = 0xffffffffu;
-// A tile that is made from a half-size picture is expected to have lost this fraction of the second differences of its 8x8 samples there,
-// squared and summed over both axes and all channels. Measured on 2DGS scenes as headsets show them: docs/tried.md.
-BINOSPLAT_CONSTANT float kHalfLoss = 0.3f;
-// The cost of rendering a tile, relative to that of the half-size tile it lies in: four of them have two and a half times its pairs.
-BINOSPLAT_CONSTANT float kOwnCost = 0.6f;
-// Threads that examine such a tile, each one row of its 8x8 half-size samples.
-BINOSPLAT_CONSTANT uint kHalfTileRows = kTileSize / 2;
-// Adjacent tiles that a workgroup of fill_periphery fills.
-BINOSPLAT_CONSTANT uint kFillTiles = 8;
+// A coarse tile is blended as 8x8 samples. The outermost ones stand in the middles of its outermost pixels, so that none must be
+// extrapolated and that tiles fit each other; the others lie evenly between them.
+BINOSPLAT_CONSTANT float kSamplesApart = float(kTileSize - 1) / float(kCellSize - 1);
+// Splats of such a tile that are loaded at a time.
+BINOSPLAT_CONSTANT uint kCoarseBatch = kBatchSize / kCellsPerTile;
+// It is expected to have lost this fraction of the second differences of its samples, squared and summed over both axes and all channels.
+// Measured on 2DGS scenes as headsets show them: docs/tried.md.
+BINOSPLAT_CONSTANT float kCoarseLoss = 0.3f;
 // The spread of a moving pixel's inverse depth is stored in 31 steps of half an octave, the first at 2^-13 of the inverse depth.
 BINOSPLAT_CONSTANT uint kSpreadCodes = 31;
 BINOSPLAT_CONSTANT float kLeastSpreadLog2 = -13.0f;

@@ -96,16 +96,15 @@ struct TileRangesPass {
     Uints tiles;
     ListStates pairs;         // also counts finished workgroups
     UVec2s ranges;            // out: begin and end, equal where a tile has no pairs
-    Uints tile_list;          // under a mask: the tiles to render
+    Uints tile_list;          // under a mask: the tiles to render; null: all of them
     ListStates masked_tiles;  // under a mask: how many
-    Uints full_tiles;         // out under a mask: the tiles with pairs
+    Uints full_tiles;         // out under a mask: the tiles with pairs; coarse ones from the end backwards
     EyeCounterss counters;    // out under a mask: how many have pairs
-    FloatColours colours;     // out under a mask, for tiles without pairs: one of the two
-    HalfColours half_colours;
-    Floats depths;         // the same, unless null
-    Uints moving;          // the same: infinitely far
-    PastTiles past_tiles;  // the same
-    ListStates visible;    // under a mask: the splats of the pairs
+    FloatColours colours;     // out under a mask, for tiles without pairs; of half floats this is their address, too
+    Floats depths;            // the same, unless null
+    Uints moving;             // the same if the picture is going to be a past: infinitely far
+    PastTiles past_tiles;     // the same; otherwise null
+    ListStates visible;       // under a mask: the splats of the pairs
     vec3 background;
     uvec2 size_px;
     uint is_made;  // 1: every tile shows a picture warped from a past, which stays where lists had no room
@@ -129,14 +128,15 @@ struct RasterizePass {
     uint row_words;        // of `moving` and `arrivals`
     uint depth_choice;     // the depth that a pixel is warped by: kDepthInverse, or one of those that D tells
     uint is_light;         // 1: colours and background are light, to be encoded once they are blended
-    PastTiles past_tiles;  // out if the picture is going to be a past; under a mask in, too
+    uint is_made;          // as in TileRangesPass
+    PastTiles past_tiles;  // out if the picture is going to be a past; in, too, if it is made
 };
 
 // weigh: predicted: which tiles are cheaper to render than to warp, and whether warping anything pays.
 struct WeighPass {
     WarpViews warp;
-    UVec2s ranges;  // of the source's pairs
-    Uints moving;
+    UVec2s ranges;      // of the source's pairs
+    Uints moving;       // null: the source's pixels cannot be warped
     Uints tile_kinds;   // out, except where it is kTileHidden
     Uints tile_costs;   // out: in pairs
     Uints tile_errors;  // out: zeros
@@ -147,6 +147,7 @@ struct WeighPass {
     ListStates visible;
     ListStates masked_tiles;  // counts finished workgroups; empty so far
     WarpCounterss counters;
+    uint kinds_given;  // 1: tile_kinds says which tiles no lens shows; otherwise all are shown
 };
 
 // depth_bounds: paper: how often each depth occurs in the source.
@@ -209,9 +210,7 @@ struct WarpPastPass {
     Uints tile_mask;      // out: zeros
     Uints price_bins;     // out: zeros
     Uints shown_mask;     // if parts are hidden: the shown tiles; otherwise null
-    Uints tile_list;      // if only some tiles are made: these; tile_kinds is then complete already
-    ListStates listed_tiles;
-    PastBlocks blocks;  // from warp_past to warp_pixels: the blocks whose pixels are made one by one
+    PastBlocks blocks;    // from warp_past to warp_pixels: the blocks whose pixels are made one by one
     PastBlockLists block_list;
 };
 
@@ -282,40 +281,6 @@ struct SelectPass {
     ListStates masked_visible;  // out: as long as `visible`, or empty if no tile is masked
     WarpCounterss counters;
     WarpCounterss budget;  // as in PricePass
-};
-
-// periphery: which tiles of an eye's picture are rendered at half its size or, once these are there, at its own.
-struct PeripheryPass {
-    FloatColours colours;  // of the half-size picture, once it exists: one of the two
-    HalfColours half_colours;
-    Uints shown_mask;         // if the eye has hidden tiles: the shown ones; otherwise null
-    Uints tile_list;          // out, in no order: of the half-size picture or of the eye's
-    Uints tile_mask;          // in: zeros; out
-    Uints tile_kinds;         // out if the picture is made from a past: kTileHidden for tiles that are not needed
-    Uints tile_losses;        // out, for the eye's tiles beyond the clear angle: the loss expected at half size, in kErrorSteps
-    ListStates chosen_tiles;  // counts finished workgroups; out
-    uvec2 size_px;            // of the eye's picture
-    EyeGaze gaze;
-};
-
-// fill_periphery: fills the tiles that are not rendered at the eye's own size from the half-size picture.
-struct FillPeripheryPass {
-    FloatColours source;
-    HalfColours half_source;
-    Floats source_depths;  // D, if it is wanted
-    FloatColours target;   // out
-    HalfColours half_target;
-    Floats depths;     // out if wanted
-    Uints tile_mask;   // of the tiles rendered at the eye's own size
-    Uints shown_mask;  // as in PeripheryPass
-    // If later pictures are made from this one: what they must know of it.
-    Uints source_words;
-    Uints words;  // out
-    PastTiles source_tiles;
-    PastTiles tiles;  // out
-    Uints tile_losses;
-    vec3 background;  // of hidden tiles
-    uvec2 size_px;
 };
 
 // A stable radix sort of (key, value), up to 8 bits per round, reduce then scan: assumes neither forward progress between workgroups

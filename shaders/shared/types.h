@@ -155,12 +155,13 @@ BINOSPLAT_ARRAY_OF(PastView, PastViews);
 
 // What later pictures must know of a tile of the one they are made from.
 struct PastTile {
-    uint cost;     // in pairs, when it was last rendered
-    uint age;      // frames since then
+    uint cost;  // in pairs, when it was last rendered
+    uint age;   // frames since then
     // By quarters, row by row:
-    vec4 growth;   // of the error's amplitude per frame, as measured then
-    vec4 errors;   // the amplitude of the expected error (root of the mean square over pixels and channels)
-    uvec4 grown;   // until tiles are chosen: squared errors that the quarters are expected to take on in this frame, summed, in kErrorSteps
+    vec4 growth;  // of the error's amplitude per frame, as measured then
+    vec4 errors;  // the amplitude of the expected error (root of the mean square over pixels and channels)
+    uvec4 grown;  // until tiles are chosen: squared errors that the quarters are expected to take on in this frame, summed, in kErrorSteps
+    float lost;   // of a coarse tile: the amplitude of what it lacks, which its eye did not see then
 };
 BINOSPLAT_ARRAY_OF(PastTile, PastTiles);
 
@@ -237,11 +238,17 @@ struct PixelBox {
 };
 BINOSPLAT_ARRAY_OF(PixelBox, PixelBoxes);
 
-// Counters that belong to no list: for the report, and for dispatches.
+// Counters that belong to no list: for the report, and for dispatches. And where the eye looks, if that decides on coarse tiles.
 struct EyeCounters {
     uint large_splats;  // splats that bin left to bin_large
     uint full_tiles;    // under a mask: tiles with pairs
+    uint coarse_tiles;  // tiles with pairs that are coarse, or are tried so
     DispatchSize per_full_tile;
+    uint coarse_kept;    // of these, the ones that stay so
+    uint coarse_pairs;   // that are blended as samples
+    uint sharp_pairs;    // where tiles may be coarse: those that are blended in full
+    uint may_be_coarse;  // 1: what the eye does not see sharply is
+    EyeGaze gaze;
 };
 BINOSPLAT_ARRAY_OF(EyeCounters, EyeCounterss);
 

@@ -1,6 +1,9 @@
 // rasterize: blending, front to back, a workgroup per tile. A tile's splats come to shared memory a batch at a time, each with a bit
 // for every cell of 8x8 pixels that it meets; the threads of a cell (one subgroup, where its width allows) then walk over
 // their own splats alone. A thread blends several pixels of a column, so that what it reads from shared memory serves them all.
+//
+// Where an eye does not see sharply, each cell blends a tile of its own as 8x8 samples. The tile is filled from these or, if the eye would
+// see what that loses, blended again by all of the workgroup.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_buffer_reference_uvec2 : require
@@ -10,6 +13,7 @@
 #include "passes.h"
 #include "lib/group.glsl"
 #include "lib/moving_pixel.glsl"
+#include "lib/gaze.glsl"
 
 layout(constant_id = 0) const uint kThreadsPerCell = 32;  // 8, 16, 32 or 64
 layout(constant_id = 1) const bool kDepth = true;     // D is summed
@@ -19,7 +23,8 @@ layout(constant_id = 4) const uint kSplatKind = kDiscs;  // dimmed or not makes 
 layout(local_size_x_id = 5) in;  // kCellsPerTile * kThreadsPerCell
 layout(constant_id = 6) const bool kEvenRows = false;  // an odd row is going to be warped like the even one above it
 layout(constant_id = 7) const bool kMasked = false;    // only the tiles of pass.full_tiles
-layout(constant_id = 8) const bool kPast = false;      // the picture is going to be a past; under a mask it is made from one
+layout(constant_id = 8) const bool kPast = false;      // the picture is going to be a past
+layout(constant_id = 9) const bool kCoarse = false;    // some tiles of the list may be coarse
 
 #include "lib/splat.glsl"
 #include "lib/outline.glsl"
@@ -41,7 +46,9 @@ shared vec4 batch_depth[kBatchSize + 1];      // 1/z there, its slopes, -log2(op
 shared uvec2 batch_colour[kBatchSize + 1];
 shared uint cell_splats[kCellsPerTile][kBatchSize / 32];  // four words: blendBatch holds them in registers
 shared uint threads_done;
-shared uint squares[kCellsPerTile];  // of the differences between what is rendered and what was there before, in kErrorSteps
+shared uint squares[kCellsPerTile];  // of the differences between what is rendered and what was there before, in kErrorSteps; by coarse tile
+
+#include "lib/coarse_tile.glsl"
 
 // The cells of the tile that the splat meets, a bit each.
 uint cellsOf(ProjectedSplat splat, uvec2 tile_px, float low_pass) {
@@ -59,7 +66,9 @@ uint cellsOf(ProjectedSplat splat, uvec2 tile_px, float low_pass) {
     return cells;
 }
 
-void loadSplat(uint slot, uint lanes_in_subgroup, uint rank, vec2 middle_px, uvec2 tile_px, float low_pass) {
+void loadSplat(uint slot, uint lanes_in_subgroup, uint rank, uvec2 tile_px, bool is_coarse) {
+    const vec2 middle_px = vec2(pass.eyes.at[pass.eye].size_px) * 0.5;
+    const float low_pass = pass.eyes.at[pass.eye].low_pass;
     const ProjectedSplat splat = pass.splats.at[rank];
     const bool has_reference = kSplatKind != kDiscs || hasReference(splat);
     const float scale = sqrt(kLog2PerRho);
@@ -69,6 +78,7 @@ void loadSplat(uint slot, uint lanes_in_subgroup, uint rank, vec2 middle_px, uve
     batch_plane[slot] = vec4(scale * splat.plane_from_pixel, kSplatKind == kDiscs && has_reference ? kLog2PerRho * low_pass : 0);
     batch_depth[slot] = vec4(splat.inverse_depth, splat.perspective, negativeLog2Opacity(splat));
     batch_colour[slot] = splat.colour;
+    if (is_coarse) { return; }  // its cell meets them all
     // A subgroup's slots are consecutive, so that one lane can set the bits of all that are here; either 32 divides the slot of lane 0, or
     // the subgroup's width divides 32.
     const uint cells = cellsOf(splat, tile_px, low_pass), first_slot = slot - gl_SubgroupInvocationID;
@@ -84,13 +94,19 @@ void loadSplat(uint slot, uint lanes_in_subgroup, uint rank, vec2 middle_px, uve
     }
 }
 
-void loadBatch(uint begin, uint splats, uint lanes, vec2 middle_px, uvec2 tile_px, float low_pass) {
-    uint slot = gl_SubgroupID * lanes + gl_SubgroupInvocationID;
-    if (slot >= splats) { return; }
+// The thread's cell, and its place there.
+uint cellIndex() { return gl_LocalInvocationIndex / kThreadsPerCell; }
+uint indexInCell() { return gl_LocalInvocationIndex % kThreadsPerCell; }
+
+// Loads splats to the slots from first_slot on: all of the workgroup, or each cell those of its coarse tile.
+void loadBatch(uint lanes, uint begin, uint first_slot, uint splats, uvec2 tile_px, bool is_coarse) {
+    if (is_coarse && indexInCell() == 0) { cell_splats[cellIndex()][0] = splats < 32 ? (1u << splats) - 1 : 0xffffffffu; }
+    uint i = is_coarse ? indexInCell() : gl_SubgroupID * lanes + gl_SubgroupInvocationID;
+    if (i >= splats) { return; }
     [[dont_unroll]] do {
-        loadSplat(slot, lanes, pass.ranks.at[begin + slot], middle_px, tile_px, low_pass);
-        slot += kThreads;
-    } while (slot < splats);
+        loadSplat(first_slot + i, lanes, pass.ranks.at[begin + i], tile_px, is_coarse);
+        i += is_coarse ? kThreadsPerCell : kThreads;
+    } while (i < splats);
 }
 
 // The sums of the thread's pixels so far.
@@ -100,8 +116,8 @@ vec2 moments[kPixels];
 float transmittance[kPixels];  // negated once the pixel takes no more light
 bool any_open;
 
-// `first_px`: the middle of the thread's first pixel, relative to the tile.
-void blend(uint slot, vec2 first_px, uint max_inverse_depth_bits) {
+// `first_px`: the middle of the thread's first pixel, relative to the tile; the others lie `apart` below each other.
+void blend(uint slot, vec2 first_px, float apart, uint max_inverse_depth_bits) {
     const vec4 reference = batch_reference[slot];
     const vec4 plane = batch_plane[slot];
     const vec4 depth_form = batch_depth[slot];
@@ -117,7 +133,7 @@ void blend(uint slot, vec2 first_px, uint max_inverse_depth_bits) {
     float most_open = 0;
     // Without branches: pixels that the splat does not reach blend it with weight 0.
     [[unroll]] for (uint p = 0; p < kPixels; ++p) {
-        const float dy = d.y + float(p);
+        const float dy = d.y + (kCoarse ? float(p) * apart : float(p));
         const float u_p = u + plane.y * dy;
         const float v_p = reference.w + plane.z * dy;
         float q_p = q + depth_form.z * dy;
@@ -151,18 +167,18 @@ void blend(uint slot, vec2 first_px, uint max_inverse_depth_bits) {
 
 // Blends the splats of the batch that meet the cell, in one loop: with a loop over bits inside one over words, NVIDIA's compilers
 // use a fifth more registers, and every pixel's sums would be carried through both. A word without bits blends the splat of no opacity.
-void blendBatch(uint splats, uint cell, vec2 first_px, uint max_inverse_depth_bits) {
-    uint first_slot = 0, bits = cell_splats[cell][0];
+void blendBatch(uint first_slot, uint end_slot, uint cell, vec2 first_px, float apart, uint max_inverse_depth_bits) {
+    uint bits = cell_splats[cell][0];
     uvec3 next = uvec3(cell_splats[cell][1], cell_splats[cell][2], cell_splats[cell][3]);
     [[dont_unroll]] do {
-        blend(bits != 0 ? first_slot + uint(findLSB(bits)) : kNoSplat, first_px, max_inverse_depth_bits);
+        blend(bits != 0 ? first_slot + uint(findLSB(bits)) : kNoSplat, first_px, apart, max_inverse_depth_bits);
         bits &= bits - 1;
         if (bits == 0) {
             bits = next.x;
             next = uvec3(next.yz, 0);
             first_slot += 32;
         }
-    } while (any_open && first_slot < splats);
+    } while (any_open && first_slot < end_slot);
 }
 
 // The pixel as it is going to be warped: at the depth that stands for it, infinitely far where nothing was blended.
@@ -177,57 +193,55 @@ uint toMove(float alpha, float depth_sum, vec2 inverse_depth_sums) {
     return movingPixel(inverse_depth, kLanded, spreadCode(variance / (inverse_depth * inverse_depth)));
 }
 
-// Writes what a picture that is made from this one must know of the tile. Every thread must call it; `error` is what its pixels turned out
-// to have had.
-void leaveTile(uint tile, uint cost, float error) {
-    if (kMasked) {
-        atomicAdd(squares[gl_LocalInvocationIndex / kThreadsPerCell], uint(error * kErrorSteps));
-        barrier();
-    }
-    if (gl_LocalInvocationIndex != 0) { return; }
-    const vec4 sums = kMasked ? vec4(squares[0], squares[1], squares[2], squares[3]) : vec4(0);
-    const vec4 amplitude = sqrt(sums / (kErrorSteps * 3 * kCellSize * kCellSize));
-    const uint age = kMasked ? pass.past_tiles.at[tile].age : 0;  // 0: nothing was there
-    const vec4 growth = age > 0 ? amplitude / float(age) : vec4(0);
-    pass.past_tiles.at[tile] = PastTile(cost, 0, growth, vec4(0), uvec4(0));
+// Adds the difference between a pixel and what was there before.
+void addError(inout float error, vec3 shown, HalfColours half_colours, uint at) {
+    const vec3 off = shown - colourAt(pass.colours, half_colours, at).rgb;
+    error += min(dot(off, off), kMaxPixelError);
 }
 
-void main() [[subgroup_uniform_control_flow]] {
-    const EyeView eye = pass.eyes.at[pass.eye];
-    const uvec2 size_px = eye.size_px;
-    const uint max_inverse_depth_bits = floatBitsToUint(eye.max_inverse_depth);
-    const uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
-    const uint full_tiles = kMasked ? pass.counters.at[0].full_tiles : 0;
-    if (kMasked && group >= full_tiles) { return; }
-    const uint tile = kMasked ? pass.full_tiles.at[spread(group, full_tiles)]
-                              : spread(gl_WorkGroupID.y, gl_NumWorkGroups.y) * gl_NumWorkGroups.x + gl_WorkGroupID.x;
-    const uvec2 tile_px = uvec2(tile % eye.size_tiles.x, tile / eye.size_tiles.x) * kTileSize;
-    const uint cell = gl_LocalInvocationIndex / kThreadsPerCell;
-    const uint in_cell = gl_LocalInvocationIndex % kThreadsPerCell;
-    const uvec2 first_pixel = tile_px + kCellSize * uvec2(cell & 1, cell >> 1) + uvec2(in_cell % kCellSize, in_cell / kCellSize * kPixels);
-    const vec2 first_px = vec2(first_pixel - tile_px) + 0.5;  // relative to the tile
-    const uvec2 range = pass.ranges.at[tile];
+bool isMade() { return kMasked && (!kCoarse || pass.is_made != 0); }
 
+// Writes what a picture that is made from this one must know of the tile; `sums` is what its quarters turned out to have had, and
+// `lost` the amplitude that it lacks.
+void leaveTile(uint tile, uint cost, vec4 sums, float lost) {
+    const vec4 amplitude = isMade() ? sqrt(sums / (kErrorSteps * 3 * kCellSize * kCellSize)) : vec4(0);
+    const uint age = isMade() ? pass.past_tiles.at[tile].age : 0;  // 0: nothing was there
+    const vec4 growth = age > 0 ? amplitude / float(age) : vec4(0);
+    pass.past_tiles.at[tile] = PastTile(cost, 0, growth, vec4(0), uvec4(0), lost);
+}
+
+// Blends the tile or, if they are coarse, each cell its own: the sums of the thread's pixels. `first_px`: of the first of these.
+void blendTile(uint lanes, uvec2 range, uvec2 tile_px, vec2 first_px, bool is_coarse) {
+    const float apart = is_coarse ? kSamplesApart : 1;
+    const uint max_inverse_depth_bits = floatBitsToUint(pass.eyes.at[pass.eye].max_inverse_depth);
+    const uvec2 size_px = pass.eyes.at[pass.eye].size_px;
     any_open = false;
     [[unroll]] for (uint p = 0; p < kPixels; ++p) {
         colour[p] = vec3(0);
         depth[p] = 0;
         moments[p] = vec2(0);
-        const bool inside = first_pixel.x < size_px.x && first_pixel.y + p < size_px.y;
-        transmittance[p] = inside ? 1 : -1;
-        any_open = any_open || inside;
+        const bool inside = tile_px.x + uint(first_px.x) < size_px.x && tile_px.y + uint(first_px.y) + p < size_px.y;
+        const bool open = is_coarse ? range.x < range.y : inside;
+        transmittance[p] = open ? 1 : -1;
+        any_open = any_open || open;
     }
-    const uint lanes = laneCount();
+    if (kCoarse) { barrier(); }  // of the tile before
     if (gl_LocalInvocationIndex == 0) {
         threads_done = 0;
-        if (kPast) { squares = uint[](0, 0, 0, 0); }
+        if (kCoarse) { most_pairs = 0; }
         batch_reference[kNoSplat] = vec4(0);
         batch_plane[kNoSplat] = vec4(0);
         batch_depth[kNoSplat] = vec4(1, 0, 0, 1e30);
         batch_colour[kNoSplat] = uvec2(0);
     }
+    if (kPast && gl_LocalInvocationIndex < kCellsPerTile) { squares[gl_LocalInvocationIndex] = 0; }
+    if (kCoarse) {
+        barrier();
+        if (indexInCell() == 0) { atomicMax(most_pairs, range.y - range.x); }
+    }
     bool counted = false;
     uint begin = range.x;  // an empty tile goes over a batch of nothing
+    bool goes_on = false;
     [[dont_unroll]] do {
         barrier();
         if (!any_open && !counted) {
@@ -239,13 +253,24 @@ void main() [[subgroup_uniform_control_flow]] {
         }
         barrier();
         if (threads_done == kThreads) { break; }
-        const uint splats = min(range.y - begin, kBatchSize);
-        loadBatch(begin, splats, lanes, vec2(size_px) * 0.5, tile_px, eye.low_pass);
+        const uint slots = is_coarse ? kCoarseBatch : kBatchSize, first_slot = is_coarse ? cellIndex() * kCoarseBatch : 0;
+        const uint splats = min(range.y - min(begin, range.y), slots);
+        loadBatch(lanes, begin, first_slot, splats, tile_px, is_coarse);
         barrier();
-        blendBatch(splats, cell, first_px, max_inverse_depth_bits);
-        begin += kBatchSize;
-    } while (begin < range.y);
+        blendBatch(first_slot, first_slot + splats, cellIndex(), first_px, apart, max_inverse_depth_bits);
+        begin += slots;
+        goes_on = kCoarse ? begin - range.x < most_pairs : begin < range.y;
+    } while (goes_on);
+}
 
+vec3 shownOf(vec3 sum, float left) {
+    const vec3 blended = sum + left * pass.background;
+    return pass.is_light != 0 ? encode(blended) : blended;
+}
+
+// Writes the tile's pixels.
+void putTile(uint tile, uvec2 range, uvec2 first_pixel) {
+    const uvec2 size_px = pass.eyes.at[pass.eye].size_px;
     const bool clears_arrivals = isThere(uvec2(pass.arrivals)), keeps_moments = kMoments && !kEvenRows && !kPast && isThere(uvec2(pass.moments)),
                moves = kEvenRows || kPast || (kMoments && isThere(uvec2(pass.moving)));
     HalfColours half_colours = HalfColours(uvec2(pass.colours));
@@ -255,12 +280,8 @@ void main() [[subgroup_uniform_control_flow]] {
         if (pixel.x < size_px.x && pixel.y < size_px.y) {
             const uint at = pixel.y * size_px.x + pixel.x;
             const float left = abs(transmittance[p]);
-            const vec3 blended = colour[p] + left * pass.background;
-            const vec3 shown = pass.is_light != 0 ? encode(blended) : blended;
-            if (kPast && kMasked) {
-                const vec3 off = shown - colourAt(pass.colours, half_colours, at).rgb;
-                error += min(dot(off, off), kMaxPixelError);
-            }
+            const vec3 shown = shownOf(colour[p], left);
+            if (kPast && isMade()) { addError(error, shown, half_colours, at); }
             putColour(pass.colours, half_colours, at, vec4(shown, 1 - left));
             if (kDepth && isThere(uvec2(pass.depths))) { pass.depths.at[at] = depth[p]; }
             if (keeps_moments) { pass.moments.at[at] = moments[p]; }
@@ -270,5 +291,104 @@ void main() [[subgroup_uniform_control_flow]] {
             }
         }
     }
-    if (kPast) { leaveTile(tile, range.y - range.x, error); }
+    if (!kPast) { return; }
+    if (kMasked) {
+        atomicAdd(squares[cellIndex()], uint(error * kErrorSteps));
+        barrier();
+    }
+    if (gl_LocalInvocationIndex == 0) { leaveTile(tile, range.y - range.x, vec4(squares[0], squares[1], squares[2], squares[3]), 0); }
+}
+
+// Fills each cell's coarse tile from the samples that were blended, unless the eye would see what it lacks: a bit for each of these.
+uint fillTiles(uint tile, uvec2 tile_px, uvec2 range) {
+    const bool is_there = range.x < range.y;
+    barrier();  // batches are still being blended
+    if (gl_LocalInvocationIndex < kCellsPerTile) { cell_details[gl_LocalInvocationIndex] = 0; }
+    if (gl_LocalInvocationIndex == 0) { sharp_cells = 0; }
+    const ivec2 first = ivec2(indexInCell() % kCellSize, indexInCell() / kCellSize * kPixels);
+    [[unroll]] for (uint p = 0; p < kPixels; ++p) {
+        const float left = abs(transmittance[p]);
+        putSample(cellIndex(), first + ivec2(0, p), vec4(shownOf(colour[p], left), 1 - left), left < 1 ? depth[p] / (1 - left) : 0,
+                  kPast ? toMove(1 - left, depth[p], moments[p]) : 0);
+    }
+    barrier();
+    float details = 0;
+    [[unroll]] for (uint p = 0; p < kPixels; ++p) { details += detailAt(cellIndex(), first + ivec2(0, p)); }
+    if (is_there) { atomicAdd(cell_details[cellIndex()], uint(details * kErrorSteps)); }
+    barrier();
+    const float lost = kCoarseLoss * float(cell_details[cellIndex()]);
+    if (indexInCell() == 0 && is_there) {
+        const bool is_seen = seenShareThere(pass.counters.at[0].gaze, tile_px / kTileSize) * lost >= kLeastSeenError * kErrorSteps;
+        if (is_seen) { atomicOr(sharp_cells, 1u << cellIndex()); }
+        atomicAdd(pass.counters.at[0].coarse_kept, is_seen ? 0 : 1);
+        atomicAdd(pass.counters.at[0].coarse_pairs, range.y - range.x);
+    }
+    barrier();
+    const uint sharp = sharp_cells;
+    const bool is_filled = is_there && (sharp & (1u << cellIndex())) == 0;
+    float error = 0;
+    if (is_filled) {
+        HalfColours half_colours = HalfColours(uvec2(pass.colours));
+        for (uint task = indexInCell(); task < 2 * kTileSize; task += kThreadsPerCell) {
+            const int x = int(task % kTileSize);
+            const bool is_lower = task >= kTileSize;
+            Column column = beginColumn(cellIndex(), x, is_lower);
+            int p = 0;
+            [[dont_unroll]] do {
+                const vec4 filled = fillPixel(column, p);
+                const int y = mirrored(p, int(kTileSize) - 1, is_lower);
+                const ivec2 nearest = ivec2(x, y) / 2;
+                const uvec2 pixel = tile_px + uvec2(x, y);
+                const uint at = pixel.y * pass.eyes.at[pass.eye].size_px.x + pixel.x;
+                if (kPast && isMade()) { addError(error, filled.rgb, half_colours, at); }
+                putColour(pass.colours, half_colours, at, filled);
+                if (kDepth && isThere(uvec2(pass.depths))) { pass.depths.at[at] = filled.a * sampleDepth(cellIndex(), nearest); }
+                if (kPast) { pass.moving.at[pixel.y * pass.row_words + pixel.x] = sampleWord(cellIndex(), nearest); }
+                ++p;
+            } while (p < kHalfTile);
+        }
+    }
+    if (kPast) {
+        if (is_filled) { atomicAdd(squares[cellIndex()], uint(error * kErrorSteps)); }
+        barrier();
+        if (is_filled && indexInCell() == 0) {
+            const vec4 sums = vec4(float(squares[cellIndex()]) / kCellsPerTile);
+            leaveTile(tile, (range.y - range.x) / kCellsPerTile, sums, sqrt(lost / (kErrorSteps * 3 * kTileSize * kTileSize)));
+        }
+    }
+    return sharp;
+}
+
+uint coarseTileAt(uint place, uvec2 size_tiles) { return pass.full_tiles.at[size_tiles.x * size_tiles.y - 1 - place]; }
+
+void main() [[subgroup_uniform_control_flow]] {
+    const uint lanes = laneCount();
+    const uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+    const uint full_tiles = kMasked ? pass.counters.at[0].full_tiles : 0, coarse_tiles = kCoarse ? pass.counters.at[0].coarse_tiles : 0;
+    const uint coarse_groups = (coarse_tiles + kCellsPerTile - 1) / kCellsPerTile;  // the first ones, since they may take longest
+    if (kMasked && group >= coarse_groups + full_tiles) { return; }
+    const uvec2 size_tiles = pass.eyes.at[pass.eye].size_tiles;
+    bool is_coarse = kCoarse && group < coarse_groups;
+    const uint place = group * kCellsPerTile + cellIndex();
+    uint tile = is_coarse  ? coarseTileAt(min(place, coarse_tiles - 1), size_tiles)
+                : kMasked ? pass.full_tiles.at[spread(group - coarse_groups, full_tiles)]
+                          : spread(gl_WorkGroupID.y, gl_NumWorkGroups.y) * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+    uint again = 0;  // cells whose coarse tile is to be blended in full
+    [[dont_unroll]] do {
+        const uvec2 tile_px = uvec2(tile % size_tiles.x, tile / size_tiles.x) * kTileSize;
+        const uvec2 range = is_coarse && place >= coarse_tiles ? uvec2(0) : pass.ranges.at[tile];
+        const uvec2 in_cell = uvec2(indexInCell() % kCellSize, indexInCell() / kCellSize * kPixels);
+        const uvec2 first_pixel = tile_px + kCellSize * uvec2(cellIndex() & 1, cellIndex() >> 1) + in_cell;
+        blendTile(lanes, range, tile_px, is_coarse ? kSamplesApart * vec2(in_cell) + 0.5 : vec2(first_pixel - tile_px) + 0.5, is_coarse);
+        if (is_coarse) {
+            again = fillTiles(tile, tile_px, range);
+        } else {
+            putTile(tile, range, first_pixel);
+            if (kCoarse && gl_LocalInvocationIndex == 0) { atomicAdd(pass.counters.at[0].sharp_pairs, range.y - range.x); }
+        }
+        if (!kCoarse || again == 0) { break; }
+        tile = coarseTileAt(group * kCellsPerTile + uint(findLSB(again)), size_tiles);
+        again &= again - 1;
+        is_coarse = false;
+    } while (true);
 }

@@ -8,12 +8,12 @@
 #include "lib/group.glsl"
 #include "lib/list.glsl"
 #include "lib/last_group.glsl"
+#include "lib/gaze.glsl"
 
 layout(local_size_x = kGroupSize) in;
 layout(push_constant, scalar) uniform Push { TileRangesPass pass; };
 layout(constant_id = 0) const bool kMasked = false;  // only the tiles of pass.tile_list
 layout(constant_id = 1) const bool kHalfColours = false;
-layout(constant_id = 2) const bool kPast = false;  // the picture is going to be a past
 
 #include "lib/picture.glsl"
 #include "lib/moving_pixel.glsl"
@@ -44,45 +44,63 @@ bool findPairs(uint tile) {
     return begin < end;
 }
 
+// True if the picture is going to be a past.
+bool leavesPast() { return isThere(uvec2(pass.past_tiles)); }
+
+uvec2 sizeTiles() { return (pass.size_px + kTileSize - 1) / kTileSize; }
+
+// True if samples of the tile may do: an eye does not see it sharply, and it lies within the picture.
+bool mayBeCoarse(uint tile) {
+    const uint columns = sizeTiles().x;
+    const uvec2 at = uvec2(tile % columns, tile / columns);
+    return all(lessThanEqual((at + 1) * kTileSize, pass.size_px)) && seenShareThere(pass.counters.at[0].gaze, at) <= kCoarseShare;
+}
+
 // Every thread of the workgroup must call it.
-void listFull(bool full, uint tile) {
-    const uvec4 lanes = subgroupBallot(full);
+void listFull(bool full, bool coarse, uint tile) {
+    const uvec4 lanes = subgroupBallot(full && !coarse);
     uint place = 0;
     if (subgroupElect()) { place = atomicAdd(pass.counters.at[0].full_tiles, subgroupBallotBitCount(lanes)); }
     place = subgroupBroadcastFirst(place) + subgroupBallotExclusiveBitCount(lanes);
-    if (full) { pass.full_tiles.at[place] = tile; }
+    if (full && !coarse) { pass.full_tiles.at[place] = tile; }
+    const uvec4 coarse_lanes = subgroupBallot(full && coarse);
+    if (coarse_lanes == uvec4(0)) { return; }
+    if (subgroupElect()) { place = atomicAdd(pass.counters.at[0].coarse_tiles, subgroupBallotBitCount(coarse_lanes)); }
+    place = subgroupBroadcastFirst(place) + subgroupBallotExclusiveBitCount(coarse_lanes);
+    if (full && coarse) { pass.full_tiles.at[sizeTiles().x * sizeTiles().y - 1 - place] = tile; }
 }
 
 void clear(uint tile, uint pixel_of_tile) {
-    const uint columns = (pass.size_px.x + kTileSize - 1) / kTileSize;
+    const uint columns = sizeTiles().x;
     const uvec2 pixel = uvec2(tile % columns, tile / columns) * kTileSize + uvec2(pixel_of_tile % kTileSize, pixel_of_tile / kTileSize);
     if (any(greaterThanEqual(pixel, pass.size_px))) { return; }
     const uint at = pixel.y * pass.size_px.x + pixel.x;
-    putColour(pass.colours, pass.half_colours, at, vec4(pass.background, 0));
-    if (any(notEqual(uvec2(pass.depths), uvec2(0)))) { pass.depths.at[at] = 0; }
-    if (kPast) { pass.moving.at[at] = movingPixel(0, kLanded, 0); }
+    putColour(pass.colours, HalfColours(uvec2(pass.colours)), at, vec4(pass.background, 0));
+    if (isThere(uvec2(pass.depths))) { pass.depths.at[at] = 0; }
+    if (leavesPast()) { pass.moving.at[at] = movingPixel(0, kLanded, 0); }
 }
 
 void main() [[subgroup_uniform_control_flow]] {
     const uint item = groupIndex() * kGroupSize + threadIndex();
+    const uint tiles = sizeTiles().x * sizeTiles().y;
     if (!kMasked) {
-        const uvec2 size_tiles = (pass.size_px + kTileSize - 1) / kTileSize;
-        if (item < size_tiles.x * size_tiles.y) { findPairs(item); }
+        if (item < tiles) { findPairs(item); }
         return;
     }
     if (gl_LocalInvocationIndex == 0) { empty_count = 0; }
     barrier();
     // If pairs had no room, what the past made stays.
-    const bool is_void = kPast && pass.is_made != 0 && (pass.pairs.at[0].needed != pass.pairs.at[0].count || pass.visible.at[0].needed != pass.visible.at[0].count);
-    const bool listed = item < pass.masked_tiles.at[0].count && !is_void;
-    const uint tile = listed ? pass.tile_list.at[item] : 0;
+    const bool is_void = pass.is_made != 0 && (pass.pairs.at[0].needed != pass.pairs.at[0].count || pass.visible.at[0].needed != pass.visible.at[0].count);
+    const bool of_list = isThere(uvec2(pass.tile_list));
+    const bool listed = item < (of_list ? pass.masked_tiles.at[0].count : tiles) && !is_void;
+    const uint tile = !listed ? 0 : of_list ? pass.tile_list.at[item] : item;
     bool full = false;
     if (listed) {
         full = findPairs(tile);
         if (!full) { empty_tiles[atomicAdd(empty_count, 1)] = tile; }
-        if (kPast && !full) { pass.past_tiles.at[tile] = PastTile(0, 0, vec4(0), vec4(0), uvec4(0)); }
+        if (leavesPast() && !full) { pass.past_tiles.at[tile] = PastTile(0, 0, vec4(0), vec4(0), uvec4(0), 0); }
     }
-    listFull(full, tile);
+    listFull(full, full && pass.counters.at[0].may_be_coarse != 0 && mayBeCoarse(tile), tile);
     barrier();
     uint cleared = gl_LocalInvocationIndex;
     if (cleared < empty_count * kTilePixels) {
@@ -92,5 +110,6 @@ void main() [[subgroup_uniform_control_flow]] {
         } while (cleared < empty_count * kTilePixels);
     }
     if (!isLastGroup(pass.pairs) || gl_LocalInvocationIndex != 0) { return; }
-    pass.counters.at[0].per_full_tile = dispatchOver(atomicOr(pass.counters.at[0].full_tiles, 0), 1);
+    const uint coarse_groups = groupsOver(atomicOr(pass.counters.at[0].coarse_tiles, 0), kCellsPerTile);
+    pass.counters.at[0].per_full_tile = dispatchOver(coarse_groups + atomicOr(pass.counters.at[0].full_tiles, 0), 1);
 }

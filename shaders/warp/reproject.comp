@@ -16,12 +16,11 @@
 
 layout(local_size_x = 16, local_size_y = 8) in;
 layout(push_constant, scalar) uniform Push { ReprojectPass pass; };
-layout(constant_id = 1) const bool kHiddenTiles = false;  // parts of the source were not rendered
-layout(constant_id = 2) const bool kForward = false;      // colours are going to be copied
+layout(constant_id = 1) const bool kForward = false;  // colours are going to be copied
 
 #include "lib/reproject.glsl"
 
-bool hidesTiles() { return kHiddenTiles; }
+bool hidesTiles() { return isThere(uvec2(pass.shown_mask)); }
 bool copiesColours() { return kForward; }
 
 void put(WarpView warp, ivec2 at, uint arrival) {

@@ -9,9 +9,8 @@
 
 layout(constant_id = 0) const bool kHalfColours = false;
 layout(constant_id = 1) const bool kHiddenTiles = false;  // a lens hides parts
-layout(constant_id = 2) const bool kSomeTiles = false;    // only those of a list
-layout(constant_id = 3) const bool kWholeBlocks = false;  // the picture's width is a multiple of a block's
-layout(constant_id = 4) const bool kByAddress = false;    // lib/past.glsl; of software devices
+layout(constant_id = 2) const bool kWholeBlocks = false;  // the picture's width is a multiple of a block's
+layout(constant_id = 3) const bool kByAddress = false;    // lib/past.glsl; of software devices
 
 layout(local_size_x = kPastGroup) in;
 layout(push_constant, scalar) uniform Push { WarpPastPass pass; };
@@ -218,21 +217,15 @@ uint pixelGroups(uint blocks) {
     return min(pixels / kGroupSize + uint(pixels % kGroupSize != 0), kMaxGroupsX);
 }
 
-// The workgroup's tile `i`: of adjacent ones, or of the list; outside the picture if there are no more.
-uvec2 tileOfRegion(PastView view, uint i) {
-    if (!kSomeTiles) { return uvec2(gl_WorkGroupID.x * kPastTiles + i, gl_WorkGroupID.y); }
-    const uint place = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * kPastTiles + i;
-    if (place >= pass.listed_tiles.at[0].count) { return view.size_tiles; }
-    const uint tile = pass.tile_list.at[place];
-    return uvec2(tile % view.size_tiles.x, tile / view.size_tiles.x);
-}
+// The workgroup's tile `i`: outside the picture if there are no more.
+uvec2 tileOfRegion(uint i) { return uvec2(gl_WorkGroupID.x * kPastTiles + i, gl_WorkGroupID.y); }
 
 void main() {
     const PastView view = pass.view.at[0];
     const ivec2 last = ivec2(view.past_size_px) - 1;
     const uint thread = gl_LocalInvocationIndex;
     const uvec2 block = uvec2(thread % kRegionBlocks, thread / kRegionBlocks);
-    const uvec2 own_tile = tileOfRegion(view, block.x / kTileBlocks);
+    const uvec2 own_tile = tileOfRegion(block.x / kTileBlocks);
     const uvec2 first = own_tile * kTileSize + uvec2(block.x % kTileBlocks, block.y) * kBlock;
     const uvec2 in_cells = block * kBlock / kCellSize;
     const uint cell = in_cells.y * kRegionCells.x + in_cells.x;
@@ -289,14 +282,14 @@ void main() {
     barrier();
     if (is_listed) { pass.blocks.at[listed_first + in_list] = PastBlock(first.y / kBlock.y << 16 | first.x / kBlock.x, depths); }
     if (thread >= kPastTiles) { return; }
-    const uvec2 tile = tileOfRegion(view, thread);
+    const uvec2 tile = tileOfRegion(thread);
     if (any(greaterThanEqual(tile, view.size_tiles))) { return; }
     // The tile's cost and age are those of where its middle comes from.
     const vec2 middle_px = min(vec2(tile * kTileSize) + 0.5 * float(kTileSize), vec2(view.size_px));
     const float guess = look(view, movePixelAnywhere(view.past_from_now, middle_px, 0).xy, middle_px).inverse_depth;
     const uvec2 from = pixelAt(view.past_size_px, movePixelAnywhere(view.past_from_now, middle_px, guess).xy) / kTileSize;
     const PastTile before = pass.source_tiles.at[from.y * view.past_size_tiles.x + from.x];
-    PastTile now = PastTile(before.cost, before.age + 1, vec4(0), vec4(0), uvec4(0));
+    PastTile now = PastTile(before.cost, before.age + 1, vec4(0), vec4(0), uvec4(0), before.lost);
     [[unroll]] for (uint q = 0; q < 4; ++q) {
         const uint its_cell = (q >> 1) * kRegionCells.x + thread * (kTileSize / kCellSize) + (q & 1);
         // A quarter has two blocks, side by side, if the picture does not end between them.
@@ -307,5 +300,5 @@ void main() {
     }
     const uint at = tile.y * view.size_tiles.x + tile.x;
     pass.tiles.at[at] = now;
-    if (!kSomeTiles) { pass.tile_kinds.at[at] = isHidden(view, tile * kTileSize) ? kTileHidden : 0; }
+    pass.tile_kinds.at[at] = isHidden(view, tile * kTileSize) ? kTileHidden : 0;
 }

@@ -10,8 +10,7 @@
 
 layout(constant_id = 0) const bool kHalfColours = false;
 layout(constant_id = 1) const bool kHiddenTiles = false;  // a lens hides parts
-layout(constant_id = 2) const bool kSomeTiles = false;
-layout(constant_id = 3) const bool kByAddress = false;    // lib/past.glsl; of software devices
+layout(constant_id = 2) const bool kByAddress = false;    // lib/past.glsl; of software devices
 
 layout(local_size_x = kGroupSize) in;
 layout(push_constant, scalar) uniform Push { WarpPastPass pass; };

@@ -1,7 +1,7 @@
 // Pictures that must not change, kept as PNG files in golden/: the twin's of a few scenes, and the last pair of a walk whose frames are
 // made from the ones before.
 #include "engine/picture/image_io.h"
-#include "engine/reference/periphery.h"
+#include "engine/reference/coarse.h"
 #include "engine/stream/moving_scene.h"
 #include "tests/engine/frame/frame_runs.h"
 #include "tests/engine/scene/ply_files.h"
@@ -73,8 +73,8 @@ TEST_CASE_FIXTURE(Gpu, "the golden pictures are what twin and device render, in 
         Image twin;
         if (settings.half_periphery) {
             settings.gazes[0] = aside;
-            const auto made = reference::renderPeriphery(view.scene, view.eye, {aside.direction, aside.clear_rad}, {});
-            CHECK(std::ranges::count(made.own_tiles, 0) > 20);
+            const auto made = reference::renderCoarse(view.scene, view.eye, {aside.direction, aside.clear_rad}, {});
+            CHECK(std::ranges::count(made.coarse, 1) > 20);
             twin = test::toImage(made.picture);
             CHECK(compare(twin, in_full).psnrDb() < kLeastDb);
         } else {

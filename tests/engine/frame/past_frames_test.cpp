@@ -1,4 +1,4 @@
-// Facts about frames that are made from the ones before, in one picture an eye or in two: what they equal where nothing moves, and what
+// Facts about frames that are made from the ones before, in full and with coarse tiles: what they equal where nothing moves, and what
 // they cost. Pass by pass: past_passes_test.cpp.
 #include "tests/engine/frame/frame_runs.h"
 
@@ -14,8 +14,8 @@ FrameSettings makeSettings(Mode mode, double budget = 0.2) {
 
 ViewedScene viewAtelier() { return test::viewBuiltin("builtin:atelier", {208, 176}, 20000); }
 
-// With half the resolution where the eyes do not look: so few pixels show less than an eye resolves but far from there.
-FrameSettings inTwo(Mode mode) {
+// With coarse tiles where the eyes do not look: so few pixels show less than an eye resolves but far from there.
+FrameSettings withCoarse(Mode mode) {
     FrameSettings settings = makeSettings(mode);
     settings.keep_past = mode != Mode::kMono;
     settings.half_periphery = true;
@@ -53,11 +53,11 @@ public:
         full_->render(eyes_, makeSettings(Mode::kShared));
         return test::picturesOf(*full_);
     }
-    // Of each eye by itself, in two pictures without a past.
+    // Of each eye by itself, without a past.
     std::array<Image, 2> alone() {
         std::array<Image, 2> pictures;
         for (std::size_t e = 0; e < 2; ++e) {
-            full_->render({&eyes_[e], 1}, inTwo(Mode::kMono));
+            full_->render({&eyes_[e], 1}, withCoarse(Mode::kMono));
             pictures[e] = full_->readPicture(0);
         }
         return pictures;
@@ -233,12 +233,12 @@ TEST_CASE_FIXTURE(Gpu, "alternate renders one eye in full, in turn, and the othe
     CHECK(turns == std::array{3, 3});
 }
 
-TEST_CASE_FIXTURE(Gpu, "in two pictures, both eyes are as alone without a past") {
+TEST_CASE_FIXTURE(Gpu, "with coarse tiles, both eyes are as alone without a past") {
     for (const Mode mode : {Mode::kPredicted, Mode::kAlternate, Mode::kTemporal}) {
         CAPTURE(nameOf(mode));
-        Walk walk(context(), inTwo(mode), viewRoom());
+        Walk walk(context(), withCoarse(mode), viewRoom());
         const FrameResult result = walk.go(0.0);
-        CHECK(countOf(result, "tiles_half_size") > 50);
+        CHECK(countOf(result, "tiles_coarse") > 50);
         const auto shown = walk.shown(), alone = walk.alone();
         CHECK(shown[kLeft].values == alone[kLeft].values);
         CHECK(compare(shown[kRight], alone[kRight]).psnrDb() > 80.0);  // in the left eye's order, which rounding may make another one
@@ -247,18 +247,18 @@ TEST_CASE_FIXTURE(Gpu, "in two pictures, both eyes are as alone without a past")
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "in two pictures, a head that stands still comes to see what it sees without a past, for next to no work") {
-    Walk walk(context(), inTwo(Mode::kTemporal), viewRoom());
+TEST_CASE_FIXTURE(Gpu, "with coarse tiles, a head that stands still comes to see what it sees without a past, for next to no work") {
+    Walk walk(context(), withCoarse(Mode::kTemporal), viewRoom());
     for (int frame = 0; frame < 4; ++frame) { walk.go(frame); }
     for (int frame = 0; frame < 30; ++frame) { walk.go(4.0); }
     CHECK(walk.go(4.0).work_rendered < 0.005);  // what nobody notices has its turn now and then
     CHECK(test::psnrDb(walk.shown(), walk.alone()) > 50.0);
 }
 
-TEST_CASE_FIXTURE(Gpu, "in two pictures, a walk keeps its quality within the budget") {
+TEST_CASE_FIXTURE(Gpu, "with coarse tiles, a walk keeps its quality within the budget") {
     for (const Mode mode : {Mode::kAlternate, Mode::kTemporal}) {
         CAPTURE(nameOf(mode));
-        Walk walk(context(), inTwo(mode), viewRoom());
+        Walk walk(context(), withCoarse(mode), viewRoom());
         walk.go(0.0);
         for (int frame = 1; frame <= 12; ++frame) {
             const FrameResult result = walk.go(frame);

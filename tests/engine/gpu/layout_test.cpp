@@ -2,7 +2,6 @@
 // held against offsetof and sizeof. Also what shaders do with their constants, and with structs of addresses.
 #include "engine/passes/passes.h"
 #include "engine/passes/past_passes.h"
-#include "engine/passes/periphery.h"
 #include "engine/passes/present.h"
 #include "engine/passes/warp_passes.h"
 #include "shaders/embedded_shaders.h"
@@ -40,7 +39,7 @@ std::vector<Layout> hostLayouts() {
         LAYOUT(WarpView, target_from_source, source_from_target, size_px, size_tiles, row_words, rows_apart, gap_px, margin_px,
                edge_samples, tight_edges, move_cost, budget, hole_error, newcomer_error, error_bound),
         LAYOUT(PastView, past_from_now, now_from_past, size_px, size_tiles, past_size_px, past_size_tiles, nearest, background),
-        LAYOUT(PastTile, cost, age, growth, errors, grown),
+        LAYOUT(PastTile, cost, age, growth, errors, grown, lost),
         LAYOUT(ChangedRect, begin_px, end_px, error),
         LAYOUT(PastBlock, place, inverse_depths),
         LAYOUT(PastBlockList, per_group, count),
@@ -50,7 +49,8 @@ std::vector<Layout> hostLayouts() {
                waiting_tiles, borders_px, per_pixel_block, per_row, per_visible, component_groups),
         LAYOUT(EyeGaze, direction, clear_rad, pixel_cycle, focal_px, principal_px),
         LAYOUT(PixelBox, x0, y0, x1, y1),
-        LAYOUT(EyeCounters, large_splats, full_tiles, per_full_tile),
+        LAYOUT(EyeCounters, large_splats, full_tiles, coarse_tiles, per_full_tile, coarse_kept, coarse_pairs, sharp_pairs, may_be_coarse,
+               gaze),
         LAYOUT(CullPagesPass, pages, eyes, page_bits, word_offsets, page_list, visible_pages, page_count, first_eye, eye_count),
         LAYOUT(CullPass, chunks, eyes, page_list, visible_pages, visible_bits, group_counts, visible, splat_count, chunk_bits, first_eye,
                eye_count, capacity, first_tile_mask, last_tile_mask),
@@ -60,17 +60,17 @@ std::vector<Layout> hostLayouts() {
                chunk_bits, eye, capacity),
         LAYOUT(BinPass, splats, tile_sets, tile_counts, group_sums, visible, pairs, tiles, ranks, large_splats, large_begins, counters,
                tile_mask, size_tiles, low_pass),
-        LAYOUT(TileRangesPass, tiles, pairs, ranges, tile_list, masked_tiles, full_tiles, counters, colours, half_colours, depths, moving,
-               past_tiles, visible, background, size_px, is_made),
+        LAYOUT(TileRangesPass, tiles, pairs, ranges, tile_list, masked_tiles, full_tiles, counters, colours, depths, moving, past_tiles,
+               visible, background, size_px, is_made),
         LAYOUT(RasterizePass, eyes, splats, ranks, ranges, colours, depths, moments, moving, arrivals, full_tiles, counters, background,
-               eye, row_words, depth_choice, is_light, past_tiles),
+               eye, row_words, depth_choice, is_light, is_made, past_tiles),
         LAYOUT(WeighPass, warp, ranges, moving, tile_kinds, tile_costs, tile_errors, tile_depths, tile_mask, price_bins, shown_mask,
-               visible, masked_tiles, counters),
+               visible, masked_tiles, counters, kinds_given),
         LAYOUT(DepthBoundsPass, warp, colours, half_colours, moving, bins),
         LAYOUT(EdgeRoisPass, warp, bins, tile_kinds, shown_mask, counters),
         LAYOUT(ReprojectPass, warp, moving, arrivals, shown_mask),
         LAYOUT(WarpPastPass, view, source, source_words, source_tiles, target, target_words, tiles, tile_kinds, tile_mask, price_bins,
-               shown_mask, tile_list, listed_tiles, blocks, block_list),
+               shown_mask, blocks, block_list),
         LAYOUT(NewcomersPass, chunks, eyes, warp, tile_depths, order, visible, source_counts, tile_kinds, tile_errors, counters, chunk_bits,
                eye),
         LAYOUT(ResamplePass, warp, source, half_source, moving, target, half_target, depths, tile_kinds, tile_errors, pixel_classes,
@@ -81,10 +81,6 @@ std::vector<Layout> hostLayouts() {
                is_last, area, most_cost, gaze),
         LAYOUT(SelectPass, warp, tile_kinds, tile_prices, tile_list, tile_mask, tile_costs, visible, masked_tiles, masked_visible, counters,
                budget),
-        LAYOUT(PeripheryPass, colours, half_colours, shown_mask, tile_list, tile_mask, tile_kinds, tile_losses, chosen_tiles, size_px,
-               gaze),
-        LAYOUT(FillPeripheryPass, source, half_source, source_depths, target, half_target, depths, tile_mask, shown_mask, source_words,
-               words, source_tiles, tiles, tile_losses, background, size_px),
         LAYOUT(SortCountPass, keys, histograms, run_sums, digit_begins, list, shift, digits),
         LAYOUT(SortScatterPass, keys_in, values_in, keys_out, values_out, histograms, run_sums, digit_begins, list, shift, digits),
         LAYOUT(PresentPass, colours, half_colours, depths, words, tile_kinds, pixel_classes, pixels, device_depths, size_px, near,
@@ -152,7 +148,6 @@ TEST_CASE_FIXTURE(Gpu, "every kernel reads each constant that it is compiled for
     KernelTable table = passKernels(context());
     append(table, warpKernels(context()));
     append(table, pastKernels(context().isSoftware()));
-    append(table, peripheryKernels());
     append(table, presentKernels());
     std::set<std::string> made;
     for (const KernelVariant& variant : table) { made.insert(variant.shader); }

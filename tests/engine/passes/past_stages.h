@@ -11,7 +11,7 @@ namespace binosplat::test {
 inline constexpr double kErrorSteps = 0x1p20;
 
 inline reference::PastTile tileOf(const gpu::PastTile& tile) {
-    reference::PastTile twin{tile.cost, tile.age, {}, {}, {}};
+    reference::PastTile twin{tile.cost, tile.age, {}, {}, {}, static_cast<double>(tile.lost)};
     for (int q = 0; q < 4; ++q) {
         twin.growth[static_cast<std::size_t>(q)] = static_cast<double>(tile.growth[q]);
         twin.errors[static_cast<std::size_t>(q)] = static_cast<double>(tile.errors[q]);

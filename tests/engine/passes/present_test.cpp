@@ -44,7 +44,7 @@ Presented runPresent(Gpu& gpu, const Shown& shown, const reference::Presentation
     pass.blue_first = how.blue_first ? 1 : 0;
     pass.linear = how.linear ? 1 : 0;
     pass.see_through = how.see_through ? 1 : 0;
-    const Kernel& kernel = gpu.kernel(PresentKernel{.half_colours = shown.halves, .light = how.linear || how.see_through});
+    const Kernel& kernel = gpu.kernel(PresentKernel{.half_colours = shown.halves});
     gpu.run([&](Commands& commands) { commands.dispatch(kernel, pass, (shown.size_px.x + 15) / 16, (shown.size_px.y + 7) / 8); });
     return {gpu.readBack<std::uint32_t>(pixels, count), gpu.readBack<float>(depths, with_depth ? count : 0)};
 }

@@ -62,20 +62,21 @@ public:
                      lists = gpu_.upload("lists", std::vector{makeList(visible_count), gpu::ListState{}});
         gpu_.upload(counters_, std::vector{gpu::WarpCounters{}});
         fill({&tile_errors_, &tile_depths_, &tile_mask_, &bins_}, kUnwritten);
-        dispatch(WeighKernel{.rectified = rectified(), .hidden_tiles = hidden_tiles, .kinds_given = 1, .may_move = may_move},
+        dispatch(WeighKernel{.rectified = rectified()},
                  gpu::WeighPass{.warp = view(),
                                 .ranges = range_buffer.address<gpu::uvec2>(),
-                                .moving = moving(),
+                                .moving = may_move ? moving() : gpu::DeviceAddress<gpu::uint>{},
                                 .tile_kinds = words(tile_kinds_),
                                 .tile_costs = words(tile_costs_),
                                 .tile_errors = words(tile_errors_),
                                 .tile_depths = words(tile_depths_),
                                 .tile_mask = words(tile_mask_),
                                 .price_bins = words(bins_),
-                                .shown_mask = words(shown_mask_),
+                                .shown_mask = shownMask(hidden_tiles),
                                 .visible = lists.address<gpu::ListState>(),
                                 .masked_tiles = lists.address<gpu::ListState>(sizeof(gpu::ListState)),
-                                .counters = counters()},
+                                .counters = counters(),
+                                .kinds_given = 1},
                  tileGroups());
     }
     void boundDepths() {
@@ -88,17 +89,17 @@ public:
                  {groupsOver(view_.size_tiles.x, gpu::kBoundsTiles), view_.size_tiles.y});
     }
     void findEdgeRois(bool hidden_tiles = false) {
-        dispatch(EdgeRoisKernel{.rectified = rectified(), .hidden_tiles = hidden_tiles},
+        dispatch(EdgeRoisKernel{.rectified = rectified()},
                  gpu::EdgeRoisPass{.warp = view(),
                                    .bins = words(bins_),
                                    .tile_kinds = words(tile_kinds_),
-                                   .shown_mask = words(shown_mask_),
+                                   .shown_mask = shownMask(hidden_tiles),
                                    .counters = counters()},
                  tileGroups());
     }
     void reproject(bool hidden_tiles = false, bool forward = false) {
-        dispatch(ReprojectKernel{.rectified = rectified(), .hidden_tiles = hidden_tiles, .forward = forward},
-                 gpu::ReprojectPass{.warp = view(), .moving = moving(), .arrivals = arrivals(), .shown_mask = words(shown_mask_)},
+        dispatch(ReprojectKernel{.rectified = rectified(), .forward = forward},
+                 gpu::ReprojectPass{.warp = view(), .moving = moving(), .arrivals = arrivals(), .shown_mask = shownMask(hidden_tiles)},
                  pixelGroups());
     }
     // Splats in `order` as `scene` holds them, with what the dominant eye's project counted of each; eye 1 is the affiliated one.
@@ -157,7 +158,7 @@ public:
                                    .tile_errors = parts.errors || parts.odd ? words(tile_errors_) : gpu::DeviceAddress<gpu::uint>{},
                                    .pixel_classes = words(classes_),
                                    .counters = counters(),
-                                   .shown_mask = parts.hidden_tiles ? words(shown_mask_) : gpu::DeviceAddress<gpu::uint>{},
+                                   .shown_mask = shownMask(parts.hidden_tiles),
                                    .background = parts.background,
                                    .first_row = parts.odd ? 1u : 0u,
                                    .copies_colours = parts.forward ? 1u : 0u,
@@ -313,6 +314,11 @@ private:
     Rows rows_;
     gpu::WarpView view_;
     Buffer view_buffer_, counters_, colours_, affiliated_, depths_, classes_;
+    // Where the dominant eye's lens hides parts; null: nowhere.
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> shownMask(bool hidden_tiles) const {
+        return hidden_tiles ? words(shown_mask_) : gpu::DeviceAddress<gpu::uint>{};
+    }
+
     Buffer tile_kinds_, tile_costs_, tile_errors_, tile_depths_, tile_mask_, shown_mask_, bins_, boxes_;
     Buffer moving_, arrivals_;  // where rows are their own
     std::uint32_t box_capacity_;

@@ -42,7 +42,6 @@ Ranges rangesOnDevice(Gpu& gpu, const std::vector<std::uint32_t>& sorted_tiles, 
     pass.full_tiles = full.address<gpu::uint>();
     pass.counters = counters.address<gpu::EyeCounters>();
     pass.colours = colours.address<gpu::vec4>();
-    pass.half_colours = colours.address<gpu::uvec2>();
     pass.depths = depths.address<float>();
     pass.background = kBackground;
     pass.size_px = size_px;

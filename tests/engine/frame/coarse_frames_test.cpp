@@ -1,0 +1,267 @@
+// Facts about frames whose tiles are coarse where the eye would not see more: against the twin, and against the same frames in full.
+#include "engine/reference/coarse.h"
+#include "tests/engine/passes/past_stages.h"
+
+SUITE(coarse_frames) {
+
+using Tiles = std::vector<std::uint8_t>;
+
+FrameSettings settingsFor(const Gaze& gaze) {
+    FrameSettings settings;
+    settings.mode = Mode::kMono;
+    settings.gazes[0] = gaze;
+    settings.half_periphery = true;
+    return settings;
+}
+
+FrameSettings inFull(FrameSettings settings) {
+    settings.half_periphery = false;
+    return settings;
+}
+
+// A headset's wide view of a room.
+ViewedScene viewRoom(glm::uvec2 size_px, std::uint64_t splats) {
+    ViewedScene view = test::viewBuiltin("builtin:atelier", size_px, splats);
+    view.eye.intrinsics = intrinsicsFromAngles({-0.9, 0.8, 0.75, -0.85}, size_px);
+    return view;
+}
+
+// The squared error of each tile, over its pixels and their channels.
+std::vector<double> tileErrors(const Image& a, const Image& b) {
+    const std::size_t columns = tilesOf(a.size_px).x;
+    std::vector<double> errors(columns * tilesOf(a.size_px).y, 0.0);
+    for (std::size_t i = 0; i < a.pixelCount(); ++i) {
+        const std::size_t tile = i / a.size_px.x / 16 * columns + i % a.size_px.x / 16;
+        for (std::size_t c = 0; c < 3; ++c) { errors[tile] += std::pow(static_cast<double>(a.values[4 * i + c]) - b.values[4 * i + c], 2); }
+    }
+    return errors;
+}
+
+Tiles someHidden(const Eye& eye) {
+    const glm::uvec2 tiles = tilesOf(eye.size_px);
+    Tiles hidden(std::size_t{tiles.x} * tiles.y, 0);
+    for (std::size_t t = 0; t < hidden.size(); ++t) { hidden[t] = t % tiles.x + t / tiles.x < 6 ? 1 : 0; }
+    return hidden;
+}
+
+// How far a picture is from the twin's, tile by tile: all but `flips` of them alike.
+void checkAgainstTwin(const Image& made, const reference::Picture& twin, std::ptrdiff_t flips) {
+    const auto errors = tileErrors(made, test::toImage(twin));
+    CHECK(std::ranges::count_if(errors, [](double error) { return error > 256 * 3 * 1e-8; }) <= flips);
+    CHECK(*std::ranges::max_element(errors) < 256 * 3 * 1e-4);
+}
+
+std::uint64_t differenceOf(std::uint64_t a, std::uint64_t b) { return std::max(a, b) - std::min(a, b); }
+
+// What the tiles are, and depths, are the twin's as well; `flips`: tiles in which a splat is at a threshold.
+void checkTiles(StereoFrame& frame, const FrameResult& result, const reference::CoarsePicture& twin, std::ptrdiff_t flips) {
+    checkAgainstTwin(frame.readPicture(0), twin.picture, flips);
+    const auto coarse = static_cast<std::uint64_t>(std::ranges::count(twin.coarse, 1)),
+               tried = static_cast<std::uint64_t>(std::ranges::count(twin.tried, 1));
+    CHECK(differenceOf(countOf(result, "tiles_coarse"), coarse) <= 2);
+    CHECK(differenceOf(countOf(result, "tiles_tried_as_coarse"), tried) <= 2);
+    const Image depth = frame.readDominantDepth();
+    std::size_t off = 0;
+    for (std::size_t i = 0; i < depth.values.size(); ++i) {
+        off += std::abs(static_cast<double>(depth.values[i]) - twin.picture.depth[i]) > 1e-3 * (1.0 + twin.picture.depth[i]) ? 1 : 0;
+    }
+    CHECK(off <= depth.values.size() / 100);
+}
+
+reference::CoarsePicture twinOf(const ViewedScene& view, const FrameSettings& settings) {
+    reference::Settings twin_settings;
+    twin_settings.background = settings.background;
+    const Gaze& gaze = settings.gazes[0].value();
+    return reference::renderCoarse(view.scene, view.eye, {gaze.direction, gaze.clear_rad}, twin_settings, settings.hidden_tiles[0]);
+}
+
+// So few pixels show less than an eye resolves but far from where it looks.
+const Gaze kAside{{-3.0, 1.0, -2.0}, 0.0};
+
+TEST_CASE_FIXTURE(
+    Gpu, "a picture with coarse tiles is the twin's, of discs and of Gaussians, also in odd sizes and behind a lens that hides parts") {
+    for (const ViewedScene& view :
+         {viewRoom({381, 279}, 20000), test::viewGaussians({143, 97}, false), test::viewGaussians({96, 80}, true)}) {
+        KeptFrame frame(context(), view.scene);
+        for (const Tiles& hidden : {Tiles{}, someHidden(view.eye)}) {
+            CAPTURE(view.name);
+            CAPTURE(hidden.empty());
+            FrameSettings settings = settingsFor(view.scene.isGaussian3d() ? kAside : Gaze{{-0.5, 0.2, 1.0}, 0.15});
+            settings.hidden_tiles[0] = hidden;
+            settings.background = glm::dvec3(0.1, 0.2, 0.3);
+            const FrameResult result = frame.render({&view.eye, 1}, settings);
+            const auto twin = twinOf(view, settings);
+            CHECK(countOf(result, "tiles_coarse") > 0);
+            const auto tiles = static_cast<std::ptrdiff_t>(twin.coarse.size());
+            checkTiles(frame, result, twin, view.scene.isGaussian3d() ? tiles / 8 : tiles / 50);
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu, "however many threads blend a cell, and however many tiles there are, coarse tiles are the twin's") {
+    std::uint64_t in_full = 0, coarse = 0;
+    int run = 0;
+    for (const glm::uvec2& size_px : std::vector<glm::uvec2>{{15, 16}, {16, 16}, {17, 33}, {31, 32}, {33, 48}, {80, 16}, {176, 144}}) {
+        const ViewedScene view = viewRoom(size_px, 20000);
+        const FrameSettings settings = settingsFor(kAside);
+        const auto twin = twinOf(view, settings);
+        for (const std::uint32_t threads : {8u, 16u, 32u, 64u}) {
+            if (size_px.x < 176 && run++ % 3 != 0) { continue; }
+            CAPTURE(size_px.x);
+            CAPTURE(threads);
+            KeptFrame frame(context(), view.scene, {.threads_per_cell = threads});
+            const FrameResult result = frame.render({&view.eye, 1}, settings);
+            checkTiles(frame, result, twin, static_cast<std::ptrdiff_t>(twin.coarse.size() / 25));
+            coarse += countOf(result, "tiles_coarse");
+            in_full += countOf(result, "tiles_tried_as_coarse") - countOf(result, "tiles_coarse");
+        }
+    }
+    CHECK(coarse > 80);
+    CHECK(in_full > 10);
+}
+
+// Of a frame that others are made from: words and tiles.
+TEST_CASE_FIXTURE(Gpu, "a coarse tile leaves its samples' depths, a quarter of its pairs, and what it is expected to lack") {
+    const ViewedScene view = viewRoom({176, 144}, 20000);
+    const std::array<Eye, 2> eyes{view.eye, view.eye};
+    for (const bool halves : {false, true}) {
+        FrameSettings settings = settingsFor(kAside);
+        settings.mode = Mode::kTemporal;
+        settings.keep_past = true;
+        settings.half_floats = halves;
+        settings.gazes[1] = settings.gazes[0];
+        KeptFrame frame(context(), view.scene);
+        frame.render(eyes, settings);
+        reference::Settings twin_settings;
+        twin_settings.inverse_depth_moments = true;
+        const auto twin = reference::renderCoarse(view.scene, view.eye, {kAside.direction, kAside.clear_rad}, twin_settings);
+        const test::EyeOnDevice eye = test::readEye(*this, frame, 0, view.eye);
+        std::size_t coarse = 0, off = 0, pixels = 0;
+        for (std::size_t t = 0; t < twin.coarse.size(); ++t) {
+            const reference::PastTile& tile = eye.past.tiles[t];
+            CHECK(tile.age == 0);
+            CHECK(tile.errors == std::array<double, 4>{});
+            if (twin.coarse[t] == 0 || tile.lost == 0.0) { continue; }
+            ++coarse;
+            CHECK(tile.lost == doctest::Approx(std::sqrt(twin.losses[t] / (3.0 * 256.0))).epsilon(0.02));
+        }
+        for (std::size_t i = 0; i < eye.past.pixels.size(); ++i) {
+            const double alpha = twin.picture.rgba[i].a, inverse_depth = alpha > 0.0 ? twin.picture.inverse_depth[i] / alpha : 0.0;
+            if (twin.coarse[test::tileOf(i, view.eye.size_px)] == 0) { continue; }
+            ++pixels;
+            const double made = eye.past.pixels[i] ? eye.past.pixels[i]->inverse_depth : 0.0;
+            off += std::abs(made - inverse_depth) > 1e-3 * inverse_depth ? 1 : 0;
+        }
+        CHECK(coarse > 20);
+        CHECK(off <= pixels / 100);
+        // The same view in full says how many pairs each tile has.
+        FrameSettings full = inFull(settings);
+        full.mode = Mode::kTemporal;
+        KeptFrame other(context(), view.scene);
+        other.render(eyes, full);
+        const test::EyeOnDevice in_full = test::readEye(*this, other, 0, view.eye);
+        for (std::size_t t = 0; t < twin.coarse.size(); ++t) {
+            const std::uint64_t pairs = in_full.past.tiles[t].cost;
+            const bool is_coarse = eye.past.tiles[t].lost > 0.0 || twin.coarse[t] != 0;  // a flat one loses nothing
+            CHECK(eye.past.tiles[t].cost == (is_coarse ? pairs / 4 : pairs));
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu,
+                  "what a coarse tile lacks counts as soon as it would be seen, and so an eye that turns to such tiles sees them in full") {
+    const reference::PastTile lacks{100, 1, {}, {0.1, 0.2, 0.3, 0.4}, {}, 0.02};  // of a squared error of 0.3072
+    CHECK(reference::withLoss(lacks, 0.08).errors == lacks.errors);
+    CHECK(reference::withLoss(lacks, 0.09).errors[3] == doctest::Approx(0.42));
+    const ViewedScene view = viewRoom({176, 144}, 20000);
+    const std::array<Eye, 2> eyes{view.eye, view.eye};
+    FrameSettings settings = settingsFor(kAside);
+    settings.mode = Mode::kTemporal;
+    settings.keep_past = true;
+    settings.gazes[1] = settings.gazes[0];
+    KeptFrame frame(context(), view.scene);
+    CHECK(countOf(frame.render(eyes, settings), "tiles_coarse") > 40);
+    const Image aside = frame.readPicture(0);
+    settings.gazes[0] = settings.gazes[1] = Gaze{{0.0, 0.0, 1.0}, 1.6};
+    for (int i = 0; i < 20; ++i) { frame.render(eyes, settings); }
+    const Image made = frame.readPicture(0);
+    CHECK(frame.render(eyes, settings).work_rendered == 0.0);
+    const auto other = StereoFrame::beside(frame);
+    other->render(eyes, inFull(settings));
+    CHECK(compare(other->readPicture(0), aside).psnrDb() < 55.0);
+    // A tile of which nothing was expected to be lost may stay.
+    CHECK(compare(other->readPicture(0), made).psnrDb() > 65.0);
+}
+
+TEST_CASE_FIXTURE(Gpu, "where an eye looks its picture is the one in full, and what it sees of the rest is too little to be noticed") {
+    const ViewedScene view = viewRoom({512, 448}, 60000);
+    KeptFrame frame(context(), view.scene);
+    for (const Gaze& gaze : {Gaze{{0.4, 0.0, 1.0}, 0.0}, Gaze{{-0.7, 0.3, 1.0}, 0.1}}) {
+        CAPTURE(gaze.direction.x);
+        const FrameResult full = frame.render({&view.eye, 1}, inFull(settingsFor(gaze)));
+        const Image whole = frame.readPicture(0);
+        const FrameResult half = frame.render({&view.eye, 1}, settingsFor(gaze));
+        const std::vector<double> errors = tileErrors(whole, frame.readPicture(0));
+        const reference::Gaze its_gaze{gaze.direction, gaze.clear_rad};
+        const Tiles beyond = reference::findBeyond(view.eye, its_gaze);
+        const std::vector<double> shares = reference::findSharesThere(view.eye, its_gaze);
+        std::size_t coarse = 0, noticed = 0, of_beyond = 0;
+        for (std::size_t t = 0; t < errors.size(); ++t) {
+            if (beyond[t] == 0) { CHECK(errors[t] == 0.0); }
+            of_beyond += beyond[t];
+            coarse += errors[t] > 0.0 ? 1 : 0;
+            noticed += shares[t] * errors[t] >= static_cast<double>(gpu::kLeastSeenError) ? 1 : 0;
+        }
+        CHECK(100 * noticed <= coarse);
+        CHECK(3 * coarse > of_beyond);
+        CHECK(countOf(half, "tile_pairs") == countOf(full, "tile_pairs"));
+        CHECK(4 * countOf(half, "tile_pairs_in_full") + countOf(half, "tile_pairs_as_samples") < 4 * countOf(full, "tile_pairs"));
+        CHECK(countOf(half, "tiles_coarse") >= coarse);
+        CHECK(countOf(half, "commands") == countOf(full, "commands"));
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu, "an eye that may look everywhere, or of which nothing is known, sees all in full, byte for byte") {
+    const ViewedScene view = viewRoom({200, 160}, 20000);
+    KeptFrame frame(context(), view.scene);
+    const FrameSettings clear = settingsFor({{0.0, 0.0, 1.0}, 1.6});
+    const FrameResult full = frame.render({&view.eye, 1}, inFull(clear));
+    const Image whole = frame.readPicture(0), depth = frame.readDominantDepth();
+    const FrameResult made = frame.render({&view.eye, 1}, clear);
+    CHECK(frame.readPicture(0).values == whole.values);
+    CHECK(frame.readDominantDepth().values == depth.values);
+    CHECK(countOf(made, "tiles_tried_as_coarse") == 0);
+    CHECK(countOf(made, "tile_pairs_as_samples") == 0);
+    CHECK(countOf(made, "tile_pairs_in_full") == countOf(full, "tile_pairs"));
+    FrameSettings unknown = clear;
+    unknown.gazes = {};
+    const FrameResult plain = frame.render({&view.eye, 1}, unknown);
+    CHECK(frame.readPicture(0).values == whole.values);
+    CHECK_FALSE(plain.counters.named().contains("tiles_coarse"));
+    // Whoever wants moments has them.
+    FrameSettings moments = settingsFor({{0.0, 0.0, 1.0}, 0.1});
+    moments.keep_moments = true;
+    const FrameResult with_moments = frame.render({&view.eye, 1}, moments);
+    CHECK_FALSE(with_moments.counters.named().contains("tiles_coarse"));
+    CHECK(frame.readPicture(0).values == whole.values);
+}
+
+TEST_CASE_FIXTURE(Gpu, "lists that are too short grow, and coarse tiles take a word a tile that other frames give back") {
+    const ViewedScene view = viewRoom({240, 200}, 20000);
+    const FrameSettings settings = settingsFor({{0.0, 0.0, 1.0}, 0.2});
+    KeptFrame short_of(context(), view.scene, {.first_capacity = {256, 256}});
+    const auto roomy = StereoFrame::beside(short_of);
+    const FrameResult result = roomy->render({&view.eye, 1}, settings);
+    const std::uint64_t with_coarse = context().memoryUse().current_bytes;
+    const FrameResult grown = short_of.render({&view.eye, 1}, settings);
+    CHECK(short_of.readPicture(0).values == roomy->readPicture(0).values);
+    for (const char* name : {"tile_pairs", "tiles_coarse", "tile_pairs_as_samples", "tile_pairs_in_full"}) {
+        CHECK(countOf(grown, name) == countOf(result, name));
+    }
+    const std::uint64_t with_both = context().memoryUse().current_bytes;
+    CHECK(with_both > with_coarse);
+    roomy->render({&view.eye, 1}, inFull(settings));
+    CHECK(context().memoryUse().current_bytes < with_both);
+}
+
+}  // SUITE(coarse_frames)
