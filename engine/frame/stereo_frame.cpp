@@ -112,7 +112,10 @@ std::optional<FrameResult> StereoFrame::renderAhead(std::span<const Eye> eyes, c
     Flight &before_last = flight(), &last = flights_[1 - turn_];
     std::optional<FrameResult> result = land(before_last);
     // Lists have room for patches while there is a past, and for whole pictures after it.
-    const bool loses_past = pasts_.of_eyes[0] && settings.keep_past && !pastsFor(eyes, settings).of_eyes[0];
+    const bool has_past = pasts_.of_eyes[0] && settings.keep_past;
+    const bool was_warped = std::ranges::any_of(plan_.targets, [](const TargetPlan& target) { return target.past.has_value(); });
+    const bool loses_past =
+        has_past && (!pastsFor(eyes, settings).of_eyes[0] || (was_warped && changedShare(eyes, settings) > kMostChanged));
     bool waits = room_.isFirstFrame() || loses_past || isUnlikeLast(eyes, settings) || FrameRoom::isCutShort(state_);
     // Lists fill up gradually: room is made before it runs short, while nothing uses them.
     const bool is_short = result && room_.fitsAhead() && !room_.hasRoom(plan_, stateAhead(), kRoomAhead);

@@ -254,4 +254,28 @@ TEST_CASE_FIXTURE(Gpu, "frames under way have room for what changes, whether it 
     CHECK(shownBy(ahead) == shownBy(waited));
 }
 
+TEST_CASE_FIXTURE(
+    Gpu, "a frame that most of the scene's change makes a full one waits for room, however much more it needs than the patch before") {
+    const Folder folder;
+    writeFilm(folder.file("film"), 3, [](int frame) {
+        Scene scene = shakenAtelier(0, 2);
+        for (glm::vec2& scale : scene.scales) { scale *= frame == 2 ? 4.0f : 1.0f; }
+        return scene;
+    });
+    MovingScene moving(context(), SceneSeries(folder.file("film")), {.rate_hz = kRate, .memory_bytes = 1});
+    KeptFrame ahead(context(), moving.scene()), full(context(), moving.scene());
+    const std::array<Eye, 2> eyes = stereoPair(eyeOf(*builtinView("atelier"), {192, 144}), 0.063);
+    for (int step = 0; step < 8; ++step) {
+        moving.setTime(timeOf(step < 6 ? 0.25 * step : 2.0));
+        moving.settle({});
+        (void)ahead.renderAhead(eyes, settingsOf(Mode::kTemporal, true));
+    }
+    const std::optional<FrameResult> last = ahead.finish();
+    REQUIRE(last.has_value());
+    REQUIRE(last->counters.ahead.has_value());
+    CHECK(last->counters.ahead->frames_cut_short == 0);
+    (void)full.render(eyes, settingsOf(Mode::kShared));
+    CHECK(compare(ahead.readPicture(kLeft), full.readPicture(kLeft), 3).psnrDb() > 40.0);
+}
+
 }  // SUITE(moving_scene)
