@@ -20,7 +20,7 @@ PixelOrigin originOfTile(std::uint32_t kind) {
             return PixelOrigin::kPredictedRoi;
         case gpu::kTileCheap:
             return PixelOrigin::kCheap;
-        case gpu::kTileHidden:  // nobody sees it, or it is made from a picture of half the size
+        case gpu::kTileHidden:  // nobody sees it
             return PixelOrigin::kReprojected;
         default:
             fail("tile kind is {}, must be 0 to {}", kind, gpu::kTileCheap);

@@ -31,11 +31,10 @@ Moved moveSource(WarpView warp, uvec2 pixel) {
         if (pixel.x + 1 < warp.size_px.x) { front = max(front, pass.moving.at[at + 1]); }
     }
     const float inverse_depth = front == 0 ? 0 : inverseDepthOf(front);
-    const vec3 moved = movePixel(warp.target_from_source, vec2(pixel) + 0.5, inverse_depth);
-    const vec2 move_px = kRectified ? vec2(0) : moveOfPixel(warp.target_from_source, vec2(pixel) + 0.5, inverse_depth).xy;
+    const vec3 move = moveBetweenEyes(warp.target_from_source, vec2(pixel) + 0.5, inverse_depth);
     const bool seen = !hidesTiles() || !isNearHidden(warp, pixel);
     const uint spread = copiesColours() ? parityOf(pixel) : moving & kSpreadBits;
-    return Moved(moved.xy, move_px, inverse_depth / moved.z, spread, seen && moving != 0 && moved.z > 0);
+    return Moved(vec2(pixel) + 0.5 + move.xy, move.xy, inverse_depth / move.z, spread, seen && moving != 0 && move.z > 0);
 }
 
 // Too far out to reach the picture even where the surface is stretched.

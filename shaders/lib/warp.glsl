@@ -5,11 +5,13 @@
 // Pixels move along their row alone and keep their depth; see EyeRelation.
 layout(constant_id = 0) const bool kRectified = false;
 
-// Third component: depth there over depth here; not positive behind the other eye.
+// By how much; third component: depth there over depth here; not positive behind the other eye.
+vec3 moveBetweenEyes(PixelMap map, vec2 pixel_px, float inverse_depth) {
+    if (kRectified) { return vec3(dot(map.excess_x, vec3(pixel_px, 1)) + map.shift.x * inverse_depth, 0, 1); }
+    return moveOfPixel(map, pixel_px, inverse_depth);
+}
 vec3 movePixel(PixelMap map, vec2 pixel_px, float inverse_depth) {
-    const vec3 at = vec3(pixel_px, 1);
-    if (kRectified) { return vec3(pixel_px.x + (dot(map.excess_x, at) + map.shift.x * inverse_depth), pixel_px.y, 1); }
-    return movePixelAnywhere(map, pixel_px, inverse_depth);
+    return moveBetweenEyes(map, pixel_px, inverse_depth) + vec3(pixel_px, 0);
 }
 
 // By how many pixels the other eye's view is shifted per unit of inverse depth, as a vector.
