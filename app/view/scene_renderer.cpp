@@ -65,7 +65,8 @@ void SceneRenderer::govern(ConnectedHeadset& headset, const ViewSettings& settin
     // With coarse tiles both eyes are rendered whatever the budget.
     const StereoOptions& stereo = settings.stereo;
     const bool coarse = stereo.mode == Mode::kPredicted && stereo.half_periphery && stereo.foveation_deg > 0.0 && !headset.inset;
-    governor_.wish(settings.quality, coarse ? Mode::kShared : stereo.mode, {stereo.warp.budget, settings.resolution_scale});
+    governor_.wish(settings.quality, coarse ? Mode::kShared : stereo.mode,
+                   {stereo.warp.budget, settings.resolution_scale, stereo.warp.error_bound_db});
     fitImages(headset, settings);
     if (governor_.settings() != std::exchange(governed_, governor_.settings())) { ++governed_count_; }
     const double scale = governor_.settings().resolution_scale;
@@ -74,9 +75,14 @@ void SceneRenderer::govern(ConnectedHeadset& headset, const ViewSettings& settin
 }
 
 ShownRate SceneRenderer::rate() const {
-    ShownRate rate{met_.metHz(), met_.displayHz(), met_.late(), governor_.settings().resolution_scale, {}, governor_.isBeaten()};
+    ShownRate rate{met_.metHz(), met_.displayHz(), met_.late(), governor_.settings().resolution_scale, {}, {}, governor_.isBeaten()};
     const bool renders_both = frame_.mode == Mode::kPredicted && hasCoarseTiles(frame_, 2);
-    if (hasBudget(frame_.mode) && !renders_both) { rate.budget = governor_.settings().budget; }
+    const GovernedSettings& chosen = governor_.settings();
+    if (chosen.error_bound_db > 0.0 && frame_.mode == Mode::kTemporal) {
+        rate.bound_db = chosen.error_bound_db;
+    } else if (hasBudget(frame_.mode) && !renders_both) {
+        rate.budget = chosen.budget;
+    }
     return rate;
 }
 
@@ -99,6 +105,7 @@ FrameSettings SceneRenderer::settingsOfFrame(ConnectedHeadset& headset, const Vi
                                              const FrameViews& views) {
     StereoOptions stereo = settings.stereo;
     stereo.warp.budget = governor_.settings().budget;
+    stereo.warp.error_bound_db = governor_.settings().error_bound_db;
     if (headset.inset) { stereo.half_periphery = false; }  // the runtime overlays the inset
     FrameSettings frame = frameSettings(options_.camera, stereo, kWearersOrder);
     // In the wearer's metres, however large the scene is.
@@ -201,7 +208,9 @@ void SceneRenderer::render(ConnectedHeadset& headset, ShownScene& shown, const V
                        .period_ms = headset.session.periodMs(),
                        .is_old = !is_of_now,
                        .lost_periods = headset.session.lostPeriods(),
-                       .work = last_.work_rendered});
+                       .work = last_.work_rendered,
+                       .warp_error = last_.warp_error,
+                       .half_loss = last_.half_loss});
     sayGoverned();
     sayHidden(one_eye);
     sayCutShort();

@@ -29,12 +29,20 @@ constexpr std::size_t kBlameFrames = 20;
 constexpr const char* kOthersMiss = "displays are missed whatever is drawn";
 constexpr double kSameLost = 0.25;
 
-struct Least {
-    double budget, scale;
+// What a step must better the picture by, in terms of its squared error.
+constexpr double kBetter = 0.8, kMoreDb = 2.0;
+// For a picture that is so much better, frames may take nearly all that they may take.
+constexpr double kMuchBetter = 0.5, kBoldly = 0.89;
+
+struct Limits {
+    double budget, scale;  // the least ones
+    double bound_db;       // the most
 };
 
-Least leastOf(Quality quality) {
-    return quality == Quality::kSharp ? Least{0.2, 0.8} : quality == Quality::kBalanced ? Least{0.1, 0.6} : Least{0.05, 0.4};
+Limits limitsOf(Quality quality) {
+    return quality == Quality::kSharp      ? Limits{0.2, 0.8, 34.0}
+           : quality == Quality::kBalanced ? Limits{0.1, 0.6, 30.0}
+                                           : Limits{0.05, 0.4, 27.0};
 }
 
 // The cost of a frame regardless of the budget, in units of the cost of all work: by docs/results/motion.md `temporal` takes 0.22 of
@@ -73,6 +81,8 @@ void Governor::wish(Quality quality, Mode mode, const GovernedSettings& own) {
 
 void Governor::forget() {
     settings_ = own_;
+    if (turnsKnobs()) { settings_.error_bound_db = limitsOf(quality_).bound_db; }
+    model_.forget();
     clearRecent();
     settling_ = kSettlingFrames;
     downs_ = 0;
@@ -113,13 +123,26 @@ void Governor::leaveMissesAlone() {
 double Governor::scaleFor(double ratio) const {
     const double tenths_now = std::round(10.0 * settings_.resolution_scale / own_.resolution_scale);
     const double tenths = std::floor(tenths_now * std::pow(ratio, 1.0 / (ratio < 1.0 ? kPowerDown : kPowerUp)) + 1e-6);
-    return std::round(10.0 * own_.resolution_scale * std::clamp(tenths, 10.0 * leastOf(quality_).scale, 10.0)) / 100.0;
+    return std::round(10.0 * own_.resolution_scale * std::clamp(tenths, 10.0 * limitsOf(quality_).scale, 10.0)) / 100.0;
+}
+
+GovernedSettings Governor::bestWithin(double most_ms) const {
+    const Limits limits = limitsOf(quality_);
+    const Knobs best = model_.best(most_ms, {limits.scale, own_.resolution_scale, limits.bound_db});
+    return {settings_.budget, best.scale, best.bound_db};
+}
+
+bool Governor::isBetter(const GovernedSettings& to) const {
+    const double enough_db = std::min(settings_.error_bound_db + kMoreDb, limitsOf(quality_).bound_db);
+    const bool is_more = to != settings_ && to.resolution_scale >= settings_.resolution_scale && to.error_bound_db >= enough_db;
+    return is_more || model_.expectedError({to.resolution_scale, to.error_bound_db}) < kBetter * model_.expectedError(knobs());
 }
 
 GovernedSettings Governor::lowered(double ratio, double work) const {
+    if (turnsKnobs()) { return bestWithin(ratio * model_.expectedMs(knobs())); }
     GovernedSettings to = settings_;
     if (hasBudget(mode_)) {
-        const double taken = std::min(work, to.budget) + fixedWork(mode_), least = std::min(leastOf(quality_).budget, to.budget);
+        const double taken = std::min(work, to.budget) + fixedWork(mode_), least = std::min(limitsOf(quality_).budget, to.budget);
         to.budget = std::clamp(inHundredths(taken * ratio - fixedWork(mode_)), least, to.budget);
         ratio *= taken / (std::min(work, to.budget) + fixedWork(mode_));
     }
@@ -154,6 +177,7 @@ void Governor::measure(const GovernedFrame& frame) {
     }
     keep(recent_ms_, frame.gpu_ms);
     keep(recent_work_, frame.work);
+    if (turnsKnobs()) { model_.add(knobs(), {frame.gpu_ms, frame.work, frame.warp_error, frame.half_loss}); }
     misses_.add(frame.lost_periods, now_s_);
     if (!misses_.areLeftAlone() && why_ == kOthersMiss) { why_.clear(); }
 
@@ -193,6 +217,15 @@ void Governor::giveBack(double now_ms) {
     if (now_ms > kTarget * period_ms_) {
         const GovernedSettings to = lowered(kCalmly * roomMs() / now_ms, work);
         if (to != settings_) { return stepDown(to, fmt::format("{:.1f} of {:.1f} ms left too little room", now_ms, period_ms_)); }
+    } else if (now_s_ - lowered_s_ >= wait_s_ && turnsKnobs()) {
+        const GovernedSettings calm = bestWithin(kCalmly * roomMs()), bold = bestWithin(kBoldly * roomMs());
+        const bool is_bold =
+            model_.expectedError({bold.resolution_scale, bold.error_bound_db}) < kMuchBetter * model_.expectedError(knobs());
+        if (is_bold || isBetter(calm)) {
+            const GovernedSettings& to = is_bold ? bold : calm;
+            is_raised_ = model_.expectedMs({to.resolution_scale, to.error_bound_db}) > model_.expectedMs(knobs());
+            return step(to, fmt::format("better for the same time, {:.1f} of {:.1f} ms", now_ms, period_ms_));
+        }
     } else if (now_s_ - lowered_s_ >= wait_s_) {
         // A still head leaves nothing to re-render: once it moves, frames take what the budget allows.
         const double spent_ms = hasBudget(mode_)
@@ -226,7 +259,9 @@ void Governor::step(const GovernedSettings& to, const std::string& why) {
 
 std::string Governor::describeSettings() const {
     std::string text = fmt::format("{} at {}", nameOf(mode_), percent(settings_.resolution_scale));
-    if (hasBudget(mode_)) {
+    if (turnsKnobs()) {
+        text += fmt::format(", errors within {:.0f} dB", settings_.error_bound_db);
+    } else if (hasBudget(mode_)) {
         text += fmt::format(", {} of {}", percent(settings_.budget), mode_ == Mode::kTemporal ? "both eyes" : "an eye");
     }
     return text;

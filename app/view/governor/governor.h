@@ -2,6 +2,7 @@
 // runtime's period, as measured. Pure: no clock, no device; a frame goes in, the next frame's settings come out.
 #pragma once
 
+#include "app/view/governor/knobs.h"
 #include "app/view/governor/missed_displays.h"
 #include "engine/mode.h"
 
@@ -11,7 +12,8 @@
 
 namespace binosplat {
 
-// How little work and resolution may become. kOff: nothing is governed, the settings stay as the wearer made them.
+// The bound of the errors that are left to be seen (34, 30, 27 dB), and how little work and resolution may become. kOff: nothing is
+// governed, the settings stay as the wearer made them.
 enum class Quality { kOff, kSharp, kBalanced, kFast };
 inline constexpr const char* kQualityNames[] = {"off", "sharp", "balanced", "fast"};
 
@@ -19,6 +21,7 @@ inline constexpr const char* kQualityNames[] = {"off", "sharp", "balanced", "fas
 struct GovernedSettings {
     double budget = 0.0;            // for modes that have one, see hasBudget: the share of work that is rendered again
     double resolution_scale = 1.0;  // each way
+    double error_bound_db = 0.0;    // of `temporal`, which has it in place of a lower budget; 0: none
     bool operator==(const GovernedSettings&) const = default;
 };
 
@@ -29,7 +32,8 @@ struct GovernedFrame {
     bool is_old = false;     // drawn with earlier settings: it says nothing about the present ones, but time has passed
     // Periods beyond its own that passed before the frame was displayed, by the runtime's times: independent of the device's.
     double lost_periods = 0.0;
-    double work = 1.0;  // the share that was rendered again: less than the budget if there was less to re-render
+    double work = 1.0;                         // the share that was rendered again: less than the budget if there was less to re-render
+    double warp_error = 0.0, half_loss = 0.0;  // see KnobFrame
 };
 
 // True if a share of work is rendered again: of one eye's (kPredicted), of both eyes' (kTemporal).
@@ -67,6 +71,12 @@ private:
     [[nodiscard]] GovernedSettings lowered(double ratio, double work) const;
     // The reverse; the budget rises only if it is spent.
     [[nodiscard]] GovernedSettings raised(double ratio) const;
+    // `temporal`: resolution and bound as the model would have them, for frames of at most so long.
+    [[nodiscard]] GovernedSettings bestWithin(double most_ms) const;
+    // True if they are worth a change: clearly less is off, or both knobs are higher.
+    [[nodiscard]] bool isBetter(const GovernedSettings& to) const;
+    [[nodiscard]] bool turnsKnobs() const { return mode_ == Mode::kTemporal && quality_ != Quality::kOff; }
+    [[nodiscard]] Knobs knobs() const { return {settings_.resolution_scale, settings_.error_bound_db}; }
     // Reactions to frames that took too long, and to those that did not.
     void makeItFit(double now_ms, std::size_t frames);
     void giveBack(double now_ms);
@@ -88,6 +98,7 @@ private:
     std::string why_, sentence_;
     bool beaten_ = false;
     MissedDisplays misses_;
+    KnobModel model_;
     struct Before {
         GovernedSettings settings;
         double lost = 0.0;  // per frame

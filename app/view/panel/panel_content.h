@@ -32,6 +32,7 @@ struct ShownRate {
     int late = 0;                           // of these frames
     double resolution = 1.0;                // each way, of what the headset recommends
     std::optional<double> budget;           // the most that is rendered again, if the method has a budget
+    std::optional<double> bound_db;         // in place of it: the errors that are left
     bool is_beaten = false;                 // the rate cannot be held even with the least settings
 };
 

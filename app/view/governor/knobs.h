@@ -1,0 +1,70 @@
+// What a step of resolution or of the error bound saves of time and costs in errors, learned from frames of `temporal`. Pure: no clock, no
+// device. Errors are mean squares over pixels and channels, of values 0 to 1.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+namespace binosplat {
+
+struct Knobs {
+    double scale = 1.0;     // of the resolution, each way
+    double bound_db = 0.0;  // every tile expected to be off by more is rendered
+    bool operator==(const Knobs&) const = default;
+};
+
+// A frame that was rendered with such knobs.
+struct KnobFrame {
+    double ms = 0.0;
+    double work = 0.0;        // the share of both eyes' pairs that was rendered
+    double warp_error = 0.0;  // of the tiles that were not, as expected; 0 if not known
+    double half_loss = 0.0;   // what half of the resolution would lose, as measured on a few tiles; 0 if not known
+};
+
+// The limits of a choice: resolution in tenths of `whole`, bounds in whole dB.
+struct KnobLimits {
+    double least_scale = 0.4, whole = 1.0, most_bound_db = 30.0;
+};
+
+class KnobModel {
+public:
+    // A lower bound is for those who have no resolution left to give.
+    static constexpr double kLeastBoundDb = 26.0, kLastBoundDb = 20.0;
+
+    void forget() { *this = {}; }
+    void add(const Knobs& knobs, const KnobFrame& frame);
+
+    [[nodiscard]] bool knows() const { return !visits_.empty(); }
+    // What a frame with such knobs is expected to take and to be off by, while the head moves as it did lately.
+    [[nodiscard]] double expectedMs(const Knobs& knobs) const;
+    [[nodiscard]] double expectedError(const Knobs& knobs) const;
+    // Of the knobs within the limits whose frames take at most so long, those of the least error; if there are none, the quickest.
+    [[nodiscard]] Knobs best(double most_ms, const KnobLimits& limits) const;
+
+private:
+    // A frame's time is the sum of these, each times a share of its own: 1, pixels, work, pixels that are rendered.
+    using Terms = std::array<double, 4>;
+    // A pair of knobs that was in use, with the means of its frames.
+    struct Visit {
+        Knobs knobs;
+        double ms = 0.0, work = 0.0;
+        int frames = 0;
+    };
+    [[nodiscard]] double workAt(double bound_db) const;
+    [[nodiscard]] static Terms termsOf(double scale, double work);
+    [[nodiscard]] static double sumOf(const Terms& terms, const Terms& shares);
+    // Takes all visits for slower, or quicker, where frames at the same knobs and work are.
+    void noteChange(const KnobFrame& frame);
+    void fit();
+
+    std::vector<Visit> visits_;  // the present one last
+    double work_ = 0.0;          // of the present bound, while the head moves
+    double warp_error_ = 0.0;    // likewise
+    double loss_ = 0.0;          // of the resolution r: loss_ * (1/r^2 - 1)
+    Terms shares_{};             // as fitted to the visits
+    int changed_ = 0;            // frames in a row that took so many times as long as expected
+    double changed_ratio_ = 1.0;
+};
+
+}  // namespace binosplat

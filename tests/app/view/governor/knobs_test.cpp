@@ -1,0 +1,128 @@
+// Facts about the choice between resolution and bound, on devices and in scenes that are made up: what a frame takes and what it is off by
+// are functions of both knobs, other ones than the model believes in.
+#include "app/view/governor/governor.h"
+#include "tests/suite.h"
+
+SUITE(knobs) {
+
+constexpr double kPeriodMs = 1000.0 / 90.0;
+
+// Shares of the time of a full pair: 1, pixels, work, pixels that are rendered.
+struct Device {
+    const char* waits_for;
+    double ms, one, pixels, work, both;
+};
+// A resolution r loses loss (1 / r^power - 1); a bound of 28 dB leaves an error and takes a share of the work, which change by the dB.
+struct Place {
+    const char* name;
+    double loss, power, error, db_per_db, work, work_per_db;
+};
+using Over = std::function<double(double time_s)>;
+struct Change {
+    const char* of;
+    Over cost, motion;
+};
+
+double workAt(const Place& place, double bound_db, double motion) {
+    return std::min(place.work * motion * std::exp(place.work_per_db * (bound_db - 28.0)), 1.0);
+}
+double warpErrorAt(const Place& place, double bound_db, double motion) {
+    return place.error * motion * std::pow(10.0, -0.1 * place.db_per_db * (bound_db - 28.0));
+}
+double lossAt(const Place& place, double scale) { return place.loss * (std::pow(scale, -place.power) - 1.0); }
+double msAt(const Device& device, double scale, double work) {
+    const double pixels = scale * scale;
+    return device.ms * (device.one + device.pixels * pixels + work * (device.work + device.both * pixels));
+}
+
+struct Minute {
+    double late = 0.0, error = 0.0;  // shares of frames; mean square
+    int changes_at_last = 0;         // in the last half
+    bool beaten = false;
+
+    // With the governor, or with a fixed pair of knobs, whose frames are late if they leave less than a tenth of the period.
+    Minute(const Device& device, const Place& place, const Change& change, const std::optional<Knobs>& fixed = {}) {
+        Governor governor;
+        std::mt19937 random(1);
+        std::optional<GovernedSettings> before;
+        int frames = 0;
+        for (double time_s = 0.0; time_s < 60.0; ++frames) {
+            governor.wish(Quality::kBalanced, Mode::kTemporal, {1.0, 1.0});
+            const GovernedSettings now = fixed ? GovernedSettings{1.0, fixed->scale, fixed->bound_db} : governor.settings();
+            const double motion = change.motion(time_s), scale = now.resolution_scale;
+            const double work = workAt(place, now.error_bound_db, motion), warp_error = warpErrorAt(place, now.error_bound_db, motion);
+            const double ms = msAt(device, scale, work) * change.cost(time_s) * drawBetween(random, 0.95, 1.05);
+            const double lost = fixed ? 0.0 : std::max(std::ceil(ms / kPeriodMs) - 1.0, 0.0);
+            if (!fixed) {
+                governor.measure({ms, kPeriodMs, false, lost, work, warp_error * drawBetween(random, 0.9, 1.1),
+                                  lossAt(place, scale / 2.0) - lossAt(place, scale)});
+            }
+            changes_at_last += before && *before != now && time_s > 30.0;
+            before = now;
+            late += ms > (fixed ? 0.9 : 1.0) * kPeriodMs;
+            error += warp_error + lossAt(place, scale);
+            time_s += 1e-3 * kPeriodMs * (1.0 + lost);
+        }
+        late /= frames;
+        error /= frames;
+        beaten = governor.isBeaten();
+    }
+};
+
+constexpr std::array<Device, 3> kDevices{
+    {{"pixels", 20.0, 0.05, 0.2, 0.0, 0.75}, {"splats", 14.0, 0.3, 0.02, 0.65, 0.03}, {"both", 24.0, 0.15, 0.1, 0.25, 0.5}}};
+constexpr std::array<Place, 3> kPlaces{{{"smooth", 3e-5, 4.0, 3e-5, 0.8, 0.3, 0.04},
+                                        {"sharp", 8e-4, 2.0, 9e-5, 0.5, 0.38, 0.075},
+                                        {"between", 2e-4, 3.0, 4e-5, 0.6, 0.25, 0.06}}};
+
+TEST_CASE("it is within a tenth of the best fixed pair of knobs, with at most 2 % of frames late, whatever changes, and comes to rest") {
+    const Over same = [](double) { return 1.0; };
+    const std::array<Change, 4> changes{{{"nothing", same, same},
+                                         {"the scene's cost", [](double t) { return t < 20.0 || t > 40.0 ? 1.0 : 1.25; }, same},
+                                         {"the device's clock", [](double t) { return t < 25.0 ? 1.0 : 1.2; }, same},
+                                         {"the head's motion", same, [](double t) { return std::fmod(t, 12.0) < 6.0 ? 1.0 : 0.3; }}}};
+    for (const Device& device : kDevices) {
+        for (const Place& place : kPlaces) {
+            for (const Change& change : changes) {
+                INFO("waits for ", std::string(device.waits_for), ", ", std::string(place.name), ", changes: ", std::string(change.of));
+                const Minute governed(device, place, change);
+                double least = 1.0;
+                for (double tenths = 6.0; tenths <= 10.0; ++tenths) {
+                    for (double bound_db = tenths > 6.0 ? 26.0 : 20.0; bound_db <= 30.0; ++bound_db) {
+                        const Minute fixed(device, place, change, Knobs{0.1 * tenths, bound_db});
+                        if (fixed.late <= 0.02) { least = std::min(least, fixed.error); }
+                    }
+                }
+                CHECK(governed.late <= 0.02);
+                CHECK(std::sqrt(governed.error / least) <= 1.1);
+                if (change.of == std::string("nothing")) { CHECK(governed.changes_at_last <= 2); }
+            }
+        }
+    }
+}
+
+TEST_CASE("where nothing fits it ends at the least resolution, and only there under 26 dB") {
+    const Over same = [](double) { return 1.0; };
+    const Minute slow({"all", 90.0, 0.3, 0.2, 0.2, 0.3}, kPlaces[0], {"nothing", same, same});
+    CHECK(slow.beaten);
+    CHECK(slow.changes_at_last == 0);
+    KnobModel model;
+    model.add({1.0, 30.0}, {20.0, 0.3, 1e-4, 1e-3});
+    for (double most_ms = 1.0; most_ms < 20.0; ++most_ms) {
+        const Knobs best = model.best(most_ms, {.least_scale = 0.6, .whole = 1.0, .most_bound_db = 30.0});
+        if (best.bound_db < KnobModel::kLeastBoundDb) { CHECK(best.scale == doctest::Approx(0.6)); }
+    }
+}
+
+TEST_CASE("of two scenes that take as long a smooth one gives resolution, and a sharp one its bound") {
+    KnobModel smooth, sharp;
+    smooth.add({1.0, 30.0}, {14.0, 0.35, 1e-4, 1e-5});
+    sharp.add({1.0, 30.0}, {14.0, 0.35, 1e-5, 1e-2});
+    const KnobLimits limits{.least_scale = 0.4, .whole = 1.0, .most_bound_db = 30.0};
+    CHECK(smooth.best(12.7, limits).scale < 1.0);
+    CHECK(smooth.best(12.7, limits).bound_db == 30.0);
+    CHECK(sharp.best(12.7, limits).scale == 1.0);
+    CHECK(sharp.best(12.7, limits).bound_db < 30.0);
+}
+
+}  // SUITE(knobs)
