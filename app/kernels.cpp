@@ -1,8 +1,7 @@
-// `binosplat kernels`: the driver's statistics of every kernel in every specialization that a mode uses. Makes only pipelines, so that it
-// also runs on drivers without their GPU.
+// `binosplat kernels`: the driver's statistics of every kernel in every specialization that a mode uses, or of some, as they are made.
+// Makes only pipelines, so that it also runs on drivers without their GPU.
 #include "app/commands.h"
 #include "app/terminal/interrupt.h"
-#include "app/terminal/progress.h"
 #include "engine/error.h"
 #include "engine/passes/passes.h"
 #include "engine/passes/past_passes.h"
@@ -13,6 +12,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <cstdio>
+#include <regex>
 #include <utility>
 
 namespace binosplat {
@@ -29,12 +30,21 @@ KernelTable allKernels(const Context& context) {
     return table;
 }
 
-std::string lineOfKernel(const KernelVariant& variant, const Json& statistics) {
+std::string nameOf(const KernelVariant& variant) {
     std::string text = variant.shader;
     for (const auto& [name, value] : variant.constants) { text += fmt::format(" {}={}", name, value); }
-    text += "\n";
-    for (const auto& [name, value] : statistics.items()) { text += fmt::format("    {:<40} {}\n", name, value.dump()); }
     return text;
+}
+
+KernelTable chosenKernels(const Context& context, const std::string& filter) {
+    KernelTable table = allKernels(context);
+    try {
+        const std::regex pattern(filter);
+        std::erase_if(table, [&](const KernelVariant& variant) { return !std::regex_search(nameOf(variant), pattern); });
+    } catch (const std::regex_error&) { table.clear(); }
+    check(!table.empty(), "--filter is {}, must be a regular expression that fits a kernel's line, such as \"^rasterize .*kMasked=1\"",
+          filter);
+    return table;
 }
 
 }  // namespace
@@ -45,25 +55,23 @@ void runKernels(const KernelsOptions& options) {
     const Context context({.device = options.device, .device_extensions = {VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME}});
     const bool has_statistics = context.hasKernelStatistics();
     Json kernels = Json::array();
-    std::string text;
-    std::optional<ProgressLine> progress("kernels");
-    const KernelTable variants = allKernels(context);
     // Lives until the next one is made: RADV frees its code memory once no kernel is left in it, and would allocate another 8 MiB for the
     // next kernel.
     Kernel last;
-    for (const KernelVariant& variant : variants) {
+    for (const KernelVariant& variant : chosenKernels(context, options.filter)) {
+        stopIfInterrupted();
         Kernel kernel(context, variant, has_statistics ? Kernel::Keep::kStatistics : Kernel::Keep::kNothing);
         Json constants = Json::object(), statistics = Json::object();
         for (const auto& [name, value] : variant.constants) { constants[name] = value; }
         for (const auto& [name, value] : has_statistics ? kernel.statistics(context) : KernelStatistics{}) {
             std::visit([&, &key = name](const auto& number) { statistics[key] = number; }, value);
         }
-        text += lineOfKernel(variant, statistics);
+        fmt::print("{}\n", nameOf(variant));
+        for (const auto& [name, value] : statistics.items()) { fmt::print("    {:<40} {}\n", name, value.dump()); }
+        std::fflush(stdout);
         kernels.push_back({{"shader", variant.shader}, {"constants", constants}, {"statistics", statistics}});
-        progress->show(static_cast<double>(kernels.size()) / static_cast<double>(variants.size()));
         last = std::move(kernel);
     }
-    progress.reset();
     context.requireNoValidationMessages();
     stopIfInterrupted();
     if (files) {
@@ -71,7 +79,7 @@ void runKernels(const KernelsOptions& options) {
         writeText(files->staging() / "kernels.json", all.dump(2) + "\n");
         files->publish();
     }
-    fmt::print("{}{} kernels on {}{}\n", text, kernels.size(), context.deviceName(),
+    fmt::print("{} kernels on {}{}\n", kernels.size(), context.deviceName(),
                has_statistics ? "" : ", which gives no statistics (VK_KHR_pipeline_executable_properties)");
 }
 

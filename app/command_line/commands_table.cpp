@@ -139,7 +139,7 @@ Options makeCompare(const Settings& line) {
 
 Options makeStability(const Settings& line) { return readRows(stabilityRows(), line, StabilityOptions{{}, runOptions(line).device}); }
 
-Options makeKernels(const Settings& line) { return readRows(kernelsRows(), line, KernelsOptions{{}, runOptions(line).device}); }
+Options makeKernels(const Settings& line) { return readRows(kernelsRows(), line, KernelsOptions{{}, runOptions(line).device, {}}); }
 
 Options makeDocument(const Settings& line) { return HelpText{documentOf(wordOf(line, "KIND"))}; }
 

@@ -267,6 +267,8 @@ std::span<const OptionRow<StabilityOptions>> stabilityRows() {
 std::span<const OptionRow<KernelsOptions>> kernelsRows() {
     static const std::vector<OptionRow<KernelsOptions>> rows{
         {{"out", "", kKernels, "DIR", "directory for kernels.json"}, field::file<&KernelsOptions::out>()},
+        {{"filter", "", kKernels, "REGEX", "only kernels whose line, name and constants, it fits", "all"},
+         field::text<&KernelsOptions::filter>()},
     };
     return rows;
 }

@@ -139,6 +139,7 @@ struct StabilityOptions {
 struct KernelsOptions {
     std::filesystem::path out;  // empty: printed only
     std::string device;
+    std::string filter;  // a regular expression; empty: all kernels
 };
 
 struct HelpText {

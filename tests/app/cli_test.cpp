@@ -28,6 +28,7 @@ TEST_CASE_FIXTURE(AtWork, "errors end the program with one line and the code of 
     work.checkRefused("stability --out out --device nobody-has-this", 3, "nobody-has-this");
     work.checkRefused("kernels", 3, "Vulkan", kNoDriver);
     work.checkRefused("kernels --device nobody", 3, "nobody");
+    for (const char* filter : {"'('", "nothing"}) { work.checkRefused(fmt::format("kernels --filter {}", filter), 1, "--filter is "); }
 #ifdef BINOSPLAT_OPENXR
     // What can be known before there is a headset comes first.
     const std::string no_runtime = "XR_RUNTIME_JSON=/nonexistent/runtime.json";
@@ -213,6 +214,10 @@ TEST_CASE_FIXTURE(AtWork, "every command has a help") {
     for (const char* command : {"", "render ", "bench ", "view ", "info ", "scene ", "convert ", "compare "}) {
         CHECK(!work.go(fmt::format("{}--help", command)).output.empty());
     }
+}
+
+TEST_CASE_FIXTURE(AtWork, "kernels that a filter fits are built and listed") {
+    CHECK(work.go("kernels --filter '^present .*s=1'").output.starts_with("present kHalfColours=1\n1 kernels on "));
 }
 
 TEST_CASE_FIXTURE(AtWork, "every kernel, one for each variant of every shader, is built and listed" * nightly()) {
