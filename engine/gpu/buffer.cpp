@@ -1,7 +1,7 @@
 // Allocating buffers, and keeping the count of device memory.
 #include "engine/gpu/buffer.h"
 
-#include "engine/error.h"
+#include "engine/gpu/device_error.h"
 
 #include <algorithm>
 
@@ -31,11 +31,15 @@ Buffer::Buffer(const Context& context, const std::string& name, std::uint64_t by
     const vk::Device device = *context.device();
     const auto mebibytes = [](std::uint64_t count) { return static_cast<double>(count) / 1048576.0; };
     const std::string what = fmt::format("{}: {} needs {:.1f} MiB of device memory", context.deviceName(), name, mebibytes(bytes));
-    check(bytes <= context.maxAllocationBytes(), "{}, one allocation holds at most {:.1f} MiB", what,
-          mebibytes(context.maxAllocationBytes()));
+    const auto refuse = [](const std::string& message) { throw DeviceError(DeviceError::Kind::kMemory, message); };
+    const std::uint64_t most_bytes = context.maxAllocationBytes();
+    if (bytes > most_bytes) { refuse(fmt::format("{}, one allocation holds at most {:.1f} MiB", what, mebibytes(most_bytes))); }
     const std::uint64_t used_bytes = context.memoryUse().current_bytes, limit_bytes = context.memoryLimitBytes();
     const bool fits = kind != MemoryKind::kDevice || limit_bytes == 0 || used_bytes + bytes <= limit_bytes;
-    check(fits, "{} beside {:.1f} MiB in use, the limit is {:.1f} MiB (memory-limit)", what, mebibytes(used_bytes), mebibytes(limit_bytes));
+    if (!fits) {
+        refuse(fmt::format("{} beside {:.1f} MiB in use, the limit is {:.1f} MiB (memory-limit)", what, mebibytes(used_bytes),
+                           mebibytes(limit_bytes)));
+    }
     try {
         const auto usage =
             Usage::eStorageBuffer | Usage::eShaderDeviceAddress | Usage::eIndirectBuffer | Usage::eTransferSrc | Usage::eTransferDst;
@@ -52,8 +56,8 @@ Buffer::Buffer(const Context& context, const std::string& name, std::uint64_t by
         buffer_.bindMemory(*memory_, 0);
         allocated_bytes_ = needs.size;
     } catch (const vk::OutOfDeviceMemoryError&) {
-        fail("{}, which is more than it has free", what);
-    } catch (const vk::OutOfHostMemoryError&) { fail("{}, which is more than it has free", what); }
+        refuse(what + ", which is more than it has free");
+    } catch (const vk::OutOfHostMemoryError&) { refuse(what + ", which is more than it has free"); }
     context.name(buffer_, name);
     bytes_ = bytes;
     if (kind == MemoryKind::kDevice) {

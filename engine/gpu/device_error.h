@@ -8,7 +8,19 @@
 
 namespace binosplat {
 
-// A lack of memory is the input's fault (exit code 1), anything else the device's (3). `device` is its name.
-Error deviceError(const std::string& device, const vk::SystemError& error);
+// A lack of memory is the input's fault (exit code 1), anything else the device's (3).
+class DeviceError : public Error {
+public:
+    enum class Kind { kMemory, kLost, kOther };
+    DeviceError(Kind kind, const std::string& message)
+        : Error(kind == Kind::kMemory ? ExitCode::kBadInput : ExitCode::kNoDevice, message), kind_(kind) {}
+    [[nodiscard]] Kind kind() const { return kind_; }
+
+private:
+    Kind kind_;
+};
+
+// `device` is its name.
+DeviceError deviceError(const std::string& device, const vk::SystemError& error);
 
 }  // namespace binosplat

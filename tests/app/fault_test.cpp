@@ -91,7 +91,7 @@ TEST_CASE_FIXTURE(Machine, "where one type of memory is full, another serves tha
 
 #ifdef BINOSPLAT_LIBRARY_USER
 
-// What tests/app/library_user.cpp says of its second load where the Nth allocation fails, and of the pictures after it; empty: it came to
+// What tests/app/library_user.cpp says of its second scene where the Nth allocation fails, and of the pictures after it; empty: it came to
 // none.
 std::string loadWithout(const Machine& machine, int number) {
     CAPTURE(number);
@@ -132,11 +132,11 @@ TEST_CASE_FIXTURE(Machine, "the library draws a small scene as near as it is sma
     CHECK(glm::distance(far.from - away, large.from) < 0.01);
 }
 
-TEST_CASE("a load() of the library that fails as the frame makes room leaves the scene before, and renders it as before") {
-    CHECK(loadWithout(Machine(), 28).find("visibility needs ") != std::string::npos);
+TEST_CASE("a scene for which the library's frame finds no room leaves the scene before, and renders it as before") {
+    CHECK(loadWithout(Machine(), 32).find("visibility needs ") != std::string::npos);
 }
 
-TEST_CASE("wherever a load() of the library fails it does so" * nightly()) {
+TEST_CASE("wherever the memory for it ends it does so" * nightly()) {
     const Machine machine;
     int failed = 0;
     for (int number = 1;; ++number) {

@@ -75,9 +75,11 @@ TEST_CASE("an installed program finds its headsets, from any folder and by the d
 #endif
 }
 
-TEST_CASE_FIXTURE(AtWork, "a program of somebody else finds the installed engine by CMake and renders a scene file in stereo" * nightly()) {
+TEST_CASE_FIXTURE(AtWork,
+                  "a program of somebody else finds the installed library by CMake and renders a scene file in stereo" * nightly()) {
     const fs::path prefix = work.base / "prefix";
-    install(work, prefix, "engine");
+    install(work, prefix, "library");
+    install(work, prefix, "development");
     const std::string cmake = "'" BINOSPLAT_CMAKE "' ";
     goCommand(work, cmake + "-S '" BINOSPLAT_SOURCE_DIR "/tests/packages/engine' -B build -DCMAKE_PREFIX_PATH='" + prefix.string() +
                         "' && " + cmake + "--build build");
@@ -108,10 +110,11 @@ TEST_CASE_FIXTURE(AtWork, "a program of somebody else finds the installed engine
     const Outcome refused = work.runCommand("build/stereo nothing.ply");
     CHECK(refused.exit_code == 1);
     CHECK(refused.errors.starts_with("stereo: nothing.ply"));
-    // Nothing but what the header declares.
-    const Outcome symbols = work.runCommand("nm -D --defined-only -C \"$(find '" + prefix.string() + "' -name 'libbinosplat_engine.so')\"");
-    CHECK(symbols.output.find("binosplat::engine::Renderer::load(") != std::string::npos);
-    CHECK(symbols.output.find("binosplat::StereoFrame::") == std::string::npos);
+    // And by pkg-config, in C.
+    const fs::path settings = prefix / goCommand(work, "cd '" + prefix.string() + "' && find . -name pkgconfig -printf %P").output;
+    work.write("version.c", "#include <binosplat.h>\n#include <stdio.h>\nint main(void) { puts(bsp_version()); return 0; }\n");
+    goCommand(work, "cc version.c -o version $(PKG_CONFIG_PATH='" + settings.string() + "' pkg-config --cflags --libs binosplat)");
+    CHECK(goCommand(work, "LD_LIBRARY_PATH='" + settings.parent_path().string() + "' ./version").output == "0.1.0\n");
 }
 
 TEST_CASE_FIXTURE(AtWork, "packages of an untagged source say which, and those of a later commit are newer" * nightly()) {

@@ -1,0 +1,200 @@
+// Frames that are waited for, and their pictures.
+#include "engine/library/objects.h"
+#include "engine/library/structures.h"
+#include "engine/scene/standpoint.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace binosplat;
+
+namespace {
+
+constexpr std::size_t kMostViews = 4;
+constexpr double kUsualBudget = 0.2;
+
+Mode modeOf(bsp_mode mode) {
+    switch (mode) {
+        case BSP_MODE_USUAL:
+        case BSP_MODE_PREDICTED:
+            return Mode::kPredicted;
+        case BSP_MODE_TWO_PASS:
+            return Mode::kTwoPass;
+        case BSP_MODE_SHARED:
+            return Mode::kShared;
+        case BSP_MODE_PAPER:
+            return Mode::kPaper;
+        case BSP_MODE_TEMPORAL:
+            return Mode::kTemporal;
+    }
+    fail("mode is {}, must be one of bsp_mode", static_cast<int>(mode));
+}
+
+FrameSettings settingsOf(const bsp_frame_info& frame, const bsp_scene_t* scene) {
+    check(frame.budget <= 1.0, "budget is {}, must be at most 1", frame.budget);
+    const double usual_near = scene != nullptr ? scene->properties.near : kUsualNear;
+    const double near = frame.near_depth == 0.0 ? usual_near : frame.near_depth;
+    check(std::isfinite(near) && near > 0.0, "near_depth is {}, must be more than 0", near);
+    const glm::dvec3 background(frame.background[0], frame.background[1], frame.background[2]);
+    check(std::isfinite(background.x + background.y + background.z), "background is not finite");
+    FrameSettings settings;
+    settings.mode = modeOf(frame.mode);
+    settings.near = near;
+    settings.background = background;
+    if (scene != nullptr) { settings.order = scene->gpu->usualOrder(); }
+    settings.keep_past = hasPast(settings.mode);
+    settings.keep_depth = settings.keep_both_depths = (frame.flags & BSP_FRAME_DEPTH) != 0;
+    settings.half_floats = (frame.flags & BSP_FRAME_HALF_FLOATS) != 0;
+    settings.stereo.budget = frame.budget == 0.0 ? kUsualBudget : std::max(frame.budget, 0.0);
+    settings.stereo.move_cost = kDefaultMoveCost;
+    return settings;
+}
+
+std::vector<Eye> eyesOf(const bsp_frame_info& frame, const glm::dvec3& origin) {
+    check(frame.view_count >= 1 && frame.view_count <= kMostViews, "there are {} views, must be 1 to {}", frame.view_count, kMostViews);
+    constexpr std::size_t kFirstSize = offsetof(bsp_view, height) + sizeof(std::uint32_t);
+    checkHeader(frame.views, BSP_TYPE_VIEW, kFirstSize, "bsp_view");
+    std::vector<Eye> eyes;
+    for (std::size_t i = 0; i < frame.view_count; ++i) {
+        const auto* view = reinterpret_cast<const bsp_view*>(reinterpret_cast<const unsigned char*>(frame.views) + i * frame.views->size);
+        eyes.push_back(eyeOf(readStructure(view, BSP_TYPE_VIEW, kFirstSize, "bsp_view"), origin));
+        check(i % 2 == 0 || eyes[i].size_px == eyes[i - 1].size_px, "views {} and {} have different sizes, must be equal: they are a pair",
+              i - 1, i);
+    }
+    return eyes;
+}
+
+bsp_frame_result resultOf(const FrameResult& result) {
+    bsp_frame_result told{};
+    told.gpu_ms = result.gpu_total_ms;
+    for (const TargetCounters& target : result.counters.targets) {
+        told.splats_visible = std::max(told.splats_visible, target.splats_visible);
+        told.tile_pairs += target.tile_pairs;
+    }
+    told.work_rendered = result.work_rendered;
+    if (result.counters.ahead) { told.frames_cut_short = result.counters.ahead->frames_cut_short; }
+    told.peak_device_bytes = result.peak_gpu_bytes;
+    return told;
+}
+
+}  // namespace
+
+bsp_renderer_t::bsp_renderer_t(bsp_device_t& of_device) : device(of_device) {
+    part(0);
+    const std::lock_guard lock(device.renderers_mutex);
+    device.renderers.insert(this);
+}
+
+bsp_renderer_t::~bsp_renderer_t() {
+    const std::lock_guard lock(device.renderers_mutex);
+    device.renderers.erase(this);
+    while (!parts_.empty()) { parts_.pop_back(); }  // the first one last
+}
+
+bsp_renderer_t::Part& bsp_renderer_t::part(std::size_t index) {
+    while (parts_.size() <= index) {
+        parts_.push_back({parts_.empty() ? std::make_unique<StereoFrame>(device.context, shown != nullptr ? *shown->gpu : device.empty)
+                                         : StereoFrame::beside(*parts_.front().frame)});
+    }
+    return parts_[index];
+}
+
+void bsp_renderer_t::show(bsp_scene_t* scene) {
+    if (scene == shown) { return; }
+    part(0).frame->show(scene != nullptr ? *scene->gpu : device.empty);
+    while (parts_.size() > 1) { parts_.pop_back(); }
+    shown = scene;
+    views_read_ = 0;
+}
+
+void bsp_renderer_t::forget() noexcept {
+    try {
+        show(nullptr);
+    } catch (...) {
+        while (!parts_.empty()) { parts_.pop_back(); }
+        shown = nullptr;
+        views_read_ = 0;
+    }
+}
+
+void bsp_renderer_t::render(const bsp_frame_info& frame, bsp_frame_result* result) {
+    if (frame.scene != nullptr) {
+        check(&frame.scene->device == &device, "the scene is of another device than the renderer");
+        frame.scene->requireThere();
+    }
+    const std::vector<Eye> eyes = eyesOf(frame, frame.scene != nullptr ? frame.scene->origin : glm::dvec3(0.0));
+    FrameSettings settings = settingsOf(frame, frame.scene);
+    show(frame.scene);
+    views_read_ = 0;
+    for (std::size_t first = 0; first < eyes.size(); first += 2) {
+        Part& now = part(first / 2);
+        now.views = std::min<std::size_t>(eyes.size() - first, 2);
+        FrameSettings its = settings;
+        if (now.views == 1) {
+            its.mode = Mode::kMono;
+            its.keep_past = its.keep_both_depths = false;
+        }
+        if ((frame.flags & BSP_FRAME_CUT) != 0) { now.frame->show(shown != nullptr ? *shown->gpu : device.empty); }
+        const FrameResult done = now.frame->render(std::span(eyes).subspan(first, now.views), its);
+        if (first == 0 && result != nullptr) { writeStructure(result, resultOf(done)); }
+    }
+    views_read_ = eyes.size();
+    has_depth_ = settings.keep_depth;
+}
+
+Image bsp_renderer_t::read(std::uint32_t view, bool depth) {
+    check(view < views_read_, "view is {}, {}", view,
+          views_read_ == 0 ? "and nothing is rendered yet" : fmt::format("must be under {}", views_read_));
+    StereoFrame& frame = *parts_[view / 2].frame;
+    const int eye = static_cast<int>(view % 2);
+    if (!depth) { return frame.readPicture(eye); }
+    check(has_depth_, "the frame kept no depths, must have BSP_FRAME_DEPTH");
+    Image depths = frame.readDepth(eye);
+    const Image colours = frame.readPicture(eye);
+    for (std::size_t i = 0; i < depths.values.size(); ++i) {
+        const float alpha = colours.values[4 * i + 3];
+        depths.values[i] = alpha > 0.0f ? depths.values[i] / alpha : 0.0f;
+    }
+    return depths;
+}
+
+bsp_result bsp_renderer_create(bsp_device device, bsp_renderer* renderer) {
+    return guarded([&] {
+        check(device != nullptr && renderer != nullptr, "{} is null", device == nullptr ? "device" : "renderer");
+        *renderer = new bsp_renderer_t(*device);
+        return BSP_SUCCESS;
+    });
+}
+
+void bsp_renderer_destroy(bsp_renderer renderer) { delete renderer; }
+
+bsp_result bsp_render(bsp_renderer renderer, const bsp_frame_info* frame, bsp_frame_result* result) {
+    return guarded([&] {
+        check(renderer != nullptr, "renderer is null");
+        if (result != nullptr) { checkHeader(result, BSP_TYPE_FRAME_RESULT, sizeof(bsp_header), "bsp_frame_result"); }
+        renderer->render(readStructure(frame, BSP_TYPE_FRAME_INFO, offsetof(bsp_frame_info, mode), "bsp_frame_info"), result);
+        return BSP_SUCCESS;
+    });
+}
+
+namespace {
+
+bsp_result readInto(bsp_renderer renderer, std::uint32_t view, bool depth, float* values, std::uint64_t count) {
+    return guarded([&] {
+        check(renderer != nullptr && values != nullptr, "{} is null", renderer == nullptr ? "renderer" : "values");
+        const Image image = renderer->read(view, depth);
+        check(count >= image.values.size(), "there is room for {} floats, must be for {}", count, image.values.size());
+        std::ranges::copy(image.values, values);
+        return BSP_SUCCESS;
+    });
+}
+
+}  // namespace
+
+bsp_result bsp_read_colour(bsp_renderer renderer, std::uint32_t view, float* values, std::uint64_t count) {
+    return readInto(renderer, view, false, values, count);
+}
+
+bsp_result bsp_read_depth(bsp_renderer renderer, std::uint32_t view, float* values, std::uint64_t count) {
+    return readInto(renderer, view, true, values, count);
+}

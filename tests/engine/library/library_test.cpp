@@ -1,0 +1,190 @@
+// Facts about libbinosplat as other programs meet it: what it exports, its pictures, and what it says where something is wrong.
+#include "engine/picture/image_io.h"
+#include "engine/scene/ply.h"
+#include "engine/scene/procedural.h"
+#include "tests/engine/library/earlier_program.h"
+#include "tests/run_program.h"
+
+#include <binosplat.hpp>
+
+SUITE(library) {
+
+struct Opened : Workplace {
+    Opened() {
+        auto info = bsp::make<bsp_device_info>(BSP_TYPE_DEVICE_INFO);
+        info.validation = BINOSPLAT_TEST_VALIDATION ? 1 : 0;
+        info.log = [](void* user, const char* line) { static_cast<std::vector<std::string>*>(user)->emplace_back(line); };
+        info.log_user = &lines;
+        device.emplace(info);
+        renderer.emplace(*device);
+    }
+    ~Opened() {
+        renderer.reset();
+        device.reset();
+        CHECK(lines == expected);
+    }
+    [[nodiscard]] bsp::Scene load(const std::string& source) const {
+        bsp::Scene scene(*device, source);
+        scene.wait();
+        return scene;
+    }
+
+    std::vector<std::string> lines, expected;  // of the log
+    std::optional<bsp::Device> device;
+    std::optional<bsp::Renderer> renderer;
+};
+
+TEST_CASE_FIXTURE(AtWork, "it exports bsp_* and nothing else, under a name of its own version") {
+    const std::string library = BINOSPLAT_LIBRARY_FILE;
+    std::istringstream symbols(work.runCommand("nm -D --defined-only '" + library + "'").output);
+    int count = 0;
+    for (std::string address, kind, name; symbols >> address >> kind >> name; ++count) { CHECK_MESSAGE(name.starts_with("bsp_"), name); }
+    CHECK(count >= 18);
+    CHECK(work.runCommand("readelf -d '" + library + "'").output.find("[libbinosplat.so.0]") != std::string::npos);
+}
+
+TEST_CASE_FIXTURE(Opened, "its pictures are render's to the last bit, and its depths those of what a pixel shows") {
+    const bsp::Scene scene = load("builtin:fence");
+    const double eye[]{0.1, -0.2, -1.0}, look[]{0.0, 0.0, 2.0}, up[]{0.0, -1.0, 0.0};
+    const bsp::Views views = bsp::lookAt(eye, look, up, 0.063, 1.2, 96, 64);
+    for (const auto& [mode, name] : {std::pair(BSP_MODE_SHARED, "shared"), std::pair(BSP_MODE_PREDICTED, "predicted")}) {
+        go(
+            fmt::format("render builtin:fence --eye 0.1,-0.2,-1 --look 0,0,2 --up 0,-1,0 --fov-x 68.7549354156988 --size 96x64 --ipd 0.063 "
+                        "--mode {0} --out {0}",
+                        name));
+        bsp_frame_info frame = bsp::frame();
+        frame.mode = mode;
+        frame.flags = BSP_FRAME_DEPTH;
+        const bsp_frame_result result = renderer->render(scene, views, frame);
+        CHECK(result.splats_visible > 0);
+        const auto file = [&](const char* stem) { return readPicture(path / name / (std::string(stem) + BINOSPLAT_FLOAT_EXTENSION)); };
+        const bsp::Picture left = renderer->colour(views[0], 0), depth = renderer->depth(views[0], 0);
+        CHECK(left.values == file("left").values);
+        CHECK(renderer->colour(views[1], 1).values == file("right").values);
+        const Image sums = file("dominant_depth");
+        double worst = 0.0;
+        for (std::size_t i = 0; i < depth.values.size(); ++i) {
+            worst = std::max(worst, std::abs(static_cast<double>(depth.values[i] * left.values[4 * i + 3] - sums.values[i])));
+        }
+        CHECK(worst < 1e-5);
+    }
+}
+
+TEST_CASE_FIXTURE(Opened, "three views are a pair and one alone, and arrays with gaps between them make the scene that their file makes") {
+    const Scene made = makeBuiltin("builtin:atelier", 3000);
+    writePly(made, (path / "room.ply").string());
+    const bsp::Scene of_file = load((path / "room.ply").string());
+    struct Row {
+        glm::vec3 position;
+        std::array<float, 4> rotation;
+        glm::vec2 scales;
+        float opacity;
+        std::array<float, 48> sh;
+    };
+    std::vector<Row> rows(made.size());
+    const auto width = static_cast<std::size_t>(3 * shCoefficientCount(made.sh_degree));
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const glm::quat& q = made.rotations[i];
+        rows[i] = {made.positions[i], {q.w, q.x, q.y, q.z}, made.scales[i], made.opacities[i], {}};
+        std::copy_n(made.sh.data() + i * width, width, rows[i].sh.data());
+    }
+    auto splats = bsp::make<bsp_splats>(BSP_TYPE_SPLATS);
+    const auto at = [](const float& value) { return bsp_array{&value, sizeof(Row)}; };
+    splats.count = rows.size();
+    splats.positions = at(rows[0].position.x);
+    splats.rotations = at(rows[0].rotation[0]);
+    splats.scales = at(rows[0].scales.x);
+    splats.opacities = at(rows[0].opacity);
+    splats.sh = at(rows[0].sh[0]);
+    splats.scale_count = 2;
+    splats.sh_degree = static_cast<std::uint32_t>(made.sh_degree);
+    splats.activated = 1;
+    const bsp::Scene of_arrays(*device, splats);
+    of_arrays.wait();
+    CHECK(of_arrays.properties().splats == 3000);
+    CHECK(of_arrays.properties().core_size == doctest::Approx(of_file.properties().core_size));
+
+    const bsp::Views pair = of_file.startViews(0.063, 1.2, 64, 48);
+    std::array<bsp_view, 3> views{pair[0], pair[1], pair[0]};
+    views[2].width = 32, views[2].height = 24;
+    bsp_frame_info frame = bsp::frame();
+    frame.views = views.data();
+    frame.view_count = 3;
+    frame.mode = BSP_MODE_SHARED;
+    std::array<std::vector<float>, 2> seen;
+    for (const bool is_file : {false, true}) {
+        frame.scene = (is_file ? of_file : of_arrays).get();
+        renderer->render(frame);
+        for (unsigned v = 0; v < 3; ++v) {
+            const bsp::Picture picture = renderer->colour(views[v], v);
+            seen[is_file].insert(seen[is_file].end(), picture.values.begin(), picture.values.end());
+        }
+    }
+    // A logarithm and its inverse come between them.
+    double worst = 0.0, most = 0.0;
+    for (std::size_t i = 0; i < seen[0].size(); ++i) {
+        worst = std::max(worst, std::abs(static_cast<double>(seen[0][i] - seen[1][i])));
+        most = std::max(most, static_cast<double>(seen[0][i]));
+    }
+    CHECK(worst < 1e-3);
+    CHECK(most > 0.5);
+}
+
+TEST_CASE_FIXTURE(Opened, "a program compiled against an earlier header runs, and a later one does unless it asks for what is unknown") {
+    const bsp::Scene scene = load("builtin:one-splat");
+    float first = 0.0f, second = 1.0f;
+    CHECK(draw_as_compiled(renderer->get(), scene.get(), AN_EARLIER_ONE, &first) == BSP_SUCCESS);
+    CHECK(draw_as_compiled(renderer->get(), scene.get(), A_LATER_ONE, &second) == BSP_SUCCESS);
+    CHECK(first == second);
+    CHECK(first > 0.1f);
+    CHECK(draw_as_compiled(renderer->get(), scene.get(), A_LATER_ONE_AND_USES_IT, &second) == BSP_ERROR_INPUT);
+    CHECK(std::string(bsp_error_text()).find("a later one is needed") != std::string::npos);
+}
+
+TEST_CASE_FIXTURE(Opened, "what is wrong is a code and a line, each thread has its own, and the next call works") {
+    const auto refused = [](const std::function<void()>& action, bsp_result code, const std::string& part) {
+        try {
+            action();
+            FAIL_CHECK("nothing was refused: " << part);
+        } catch (const bsp::Error& error) {
+            CHECK(error.code() == code);
+            CHECK_MESSAGE(std::string(error.what()).find(part) != std::string::npos, error.what());
+        }
+    };
+    refused([&] { (void)load("nothing.ply"); }, BSP_ERROR_INPUT, "nothing.ply");
+    std::thread([] { CHECK(std::string(bsp_error_text()).empty()); }).join();
+    bsp::Views views = load("builtin:fence").startViews(0.063, 1.2, 64, 48);
+    refused([&] { (void)renderer->colour(views[0], 0); }, BSP_ERROR_INPUT, "nothing is rendered yet");
+    {
+        const bsp::Scene scene = load("builtin:fence");
+        bsp_frame_info frame = bsp::frame();
+        refused([&] { renderer->render(frame); }, BSP_ERROR_INPUT, "there are 0 views");
+        frame.budget = 2.0;
+        refused([&] { renderer->render(scene, views, frame); }, BSP_ERROR_INPUT, "budget is 2");
+        const bsp::Views square = scene.startViews(0.063, 1.2, 48, 48);
+        refused([&] { renderer->render(scene, {views[0], square[0]}); }, BSP_ERROR_INPUT, "different sizes");
+        renderer->render(scene, views);
+        refused([&] { (void)renderer->depth(views[0], 0); }, BSP_ERROR_INPUT, "BSP_FRAME_DEPTH");
+        CHECK(renderer->colour(views[0], 0).values.at(3) >= 0.0f);
+    }
+    // The scene is gone, and was shown: so is its picture.
+    refused([&] { (void)renderer->colour(views[0], 0); }, BSP_ERROR_INPUT, "nothing is rendered yet");
+    bsp_frame_info empty = bsp::frame();
+    empty.views = views.data();
+    empty.view_count = 2;
+    empty.background[1] = 0.5;
+    renderer->render(empty);
+    CHECK(renderer->colour(views[0], 0).values.at(1) == 0.5f);
+
+    bsp::Scene atelier(*device, "builtin:atelier");
+    atelier.cancel();
+    refused([&] { atelier.wait(); }, BSP_ERROR_CANCELLED, "cancelled");
+    auto none = bsp::make<bsp_splats>(BSP_TYPE_SPLATS);
+    none.count = 1;
+    none.scale_count = 4;
+    refused([&] { bsp::Scene(*device, none); }, BSP_ERROR_INPUT, "4 scales");
+    none.scale_count = 3;
+    refused([&] { bsp::Scene(*device, none); }, BSP_ERROR_INPUT, "positions of splats are null");
+}
+
+}  // SUITE(library)
