@@ -25,15 +25,27 @@ void FrameKernels::take(FrameKernels& from) {
 
 std::size_t FrameKernels::count() const { return passes.kernelCount() + warp_passes.kernelCount() + past_passes.kernelCount(); }
 
+namespace {
+
+// Where the target's eye looks; if nobody knows, it sees everything.
+gpu::EyeGaze gazeOf(const TargetPlan& target) {
+    const std::optional<Gaze>& gaze = target.warp ? target.warp->gaze : target.gaze;
+    if (gaze) { return eyeGazeOf(*gaze, target.eye.intrinsics); }
+    return {.direction = {0, 0, 1}, .clear_rad = 4.0f, .pixel_cycle = 1.0f, .focal_px = {1, 1}, .principal_px = {0, 0}};
+}
+
+}  // namespace
+
 void FrameRecorder::begin(Commands& commands, const FramePlan& plan) const {
     FrameState state{};
     for (std::size_t t = 0; t < plan.targets.size(); ++t) {
         const TargetPlan& target = plan.targets[t];
         state.views[t] = viewOf(target.eye, plan.near);
-        if (target.coarse) {
-            state.targets[t].counters.may_be_coarse = 1;
-            state.targets[t].counters.gaze = eyeGazeOf(target.gaze.value(), target.eye.intrinsics);
-        }
+        state.targets[t].counters.may_be_coarse = target.coarse ? 1 : 0;
+        state.targets[t].counters.gaze = gazeOf(target);
+        state.targets[t].area = static_cast<float>(target.past ? 1.0 / (target.eye.own_pixel_px * target.eye.own_pixel_px) : 1.0);
+        room.warp(static_cast<int>(t)).tell(state.targets[t]);
+        if (target.kept.past) { state.targets[t].past_tiles = room.picture(target.picture).tiles.address<gpu::PastTile>(); }
         if (target.past) {
             state.targets[t].past = pastViewOf(target.eye, target.past->eye, plan.near, glm::vec3(plan.background));
             state.targets[t].past_blocks = {.per_group = {.x = 0, .y = 1, .z = 1}, .count = 0};
@@ -108,8 +120,7 @@ void FrameRecorder::recordWarp(Commands& commands, const FramePlan& plan, int in
                                   .target_shown = room.shown(index),
                                   .words = wordsOf(plan, index),
                                   .background = glm::vec3(plan.background),
-                                  .target_lens = target.eye.intrinsics,
-                                  .target_gaze = warp.gaze});
+                                  .target_gaze = warp.gaze.has_value()});
 }
 
 MovingWords FrameRecorder::wordsOf(const FramePlan& plan, int warped) const {
@@ -128,9 +139,7 @@ PastInputs FrameRecorder::pastOf(const FramePlan& plan, int index) const {
             .source = room.picture(target.past->picture),
             .target = room.picture(target.picture),
             .shown = room.shown(index).mask(),
-            .lens = target.eye.intrinsics,
-            .gaze = target.gaze,
-            .area = static_cast<float>(1.0 / (target.eye.own_pixel_px * target.eye.own_pixel_px))};
+            .gaze = target.gaze.has_value()};
 }
 
 void FrameRecorder::recordPast(Commands& commands, const FramePlan& plan, int index) const {

@@ -53,9 +53,9 @@ public:
     // what the other touches.
     void beside() { beside_ = true; }
     template <typename Pass>
-    void dispatch(const Kernel& kernel, const Pass& pass, std::uint32_t groups_x, std::uint32_t groups_y = 1) {
+    void dispatch(const Kernel& kernel, const Pass& pass, std::uint32_t groups_x, std::uint32_t groups_y = 1, std::uint32_t groups_z = 1) {
         recordKernel(kernel, &pass, sizeof(Pass));
-        command_buffer_.dispatch(groups_x, groups_y, 1);
+        command_buffer_.dispatch(groups_x, groups_y, groups_z);
     }
     // As many workgroups as the size at `offset_bytes` into `sizes` says.
     template <typename Pass>

@@ -18,17 +18,7 @@ inline constexpr std::size_t kMostTargets = 2;
 // Pictures whose splats are projected, binned and blended at the same time, each with its share of the lists' room.
 inline constexpr int kMostAtOnce = 2;
 
-// A picture in progress.
-struct TargetState {
-    gpu::ListState pairs;
-    gpu::EyeCounters counters;
-    gpu::WarpView warp;  // if it is made from another
-    gpu::WarpCounters warp_counters;
-    gpu::PastView past;  // if it is made from its own past
-    gpu::PastBlockList past_blocks;
-    gpu::ListState chosen_tiles;    // if it is made from either: those that are rendered
-    gpu::ListState chosen_visible;  // its visible splats, or none if there is no such tile
-};
+using gpu::TargetState;
 
 // What the device gets at the start of a frame, and what it reports at the end.
 struct FrameState {

@@ -1,22 +1,14 @@
 // Recording the passes that make an eye from its own past.
 #include "engine/passes/past_passes.h"
 
+#include <algorithm>
 #include <cstddef>
+#include <type_traits>
 
 namespace binosplat {
 namespace {
 
 constexpr gpu::uint groupsOver(gpu::uint items, gpu::uint group) { return (items + group - 1) / group; }
-
-auto listAt(const PastInputs& in, std::uint64_t offset) {
-    return in.buffers.state.address<gpu::ListState>(FrameBuffers::targetField(in.index, offset));
-}
-auto countersOf(const PastInputs& in) {
-    return in.buffers.state.address<gpu::WarpCounters>(FrameBuffers::targetField(in.index, offsetof(TargetState, warp_counters)));
-}
-auto viewOf(const PastInputs& in) {
-    return in.buffers.state.address<gpu::WarpView>(FrameBuffers::targetField(in.index, offsetof(TargetState, warp)));
-}
 
 // Pairs that surely have room, as far as tiles cost what they did when they were rendered last. Lists grow when so much is needed.
 gpu::uint mostCost(const FrameCapacity& capacity) { return capacity.pairs - capacity.pairs / 8; }
@@ -83,41 +75,27 @@ void PastPasses::recordChanged(Commands& commands, const PastInputs& in, gpu::De
 
 void PastPasses::recordChoice(Commands& commands, std::span<const PastInputs> eyes) {
     const PastInputs& first = eyes.front();
+    const std::uint64_t target = FrameBuffers::targetField(first.index, 0);
+    std::uint32_t most_tiles = 0;
+    bool foveated = false;
     for (const PastInputs& in : eyes) {
-        commands.beginPass({in.role, PriceKernel::kStage, PriceKernel::kShader});
-        const gpu::PricePass pass{.warp = viewOf(in),
-                                  .tile_kinds = in.warp.tileKinds(),
-                                  .tile_costs = in.warp.tileCosts(),
-                                  .tile_errors = in.warp.tileErrors(),
-                                  .tile_prices = in.warp.tilePrices(),
-                                  .price_bins = first.warp.bins(),
-                                  .masked_tiles = listAt(in, offsetof(TargetState, chosen_tiles)),
-                                  .counters = countersOf(in),
-                                  .budget = countersOf(first),
-                                  .past_tiles = in.target.tiles.address<gpu::PastTile>(),
-                                  .is_last = &in == &eyes.back() ? 1u : 0u,
-                                  .area = in.area,
-                                  .most_cost = mostCost(in.buffers.capacity()),
-                                  .gaze = in.gaze ? eyeGazeOf(*in.gaze, in.lens) : gpu::EyeGaze{}};
-        commands.dispatch(kernels_.get(PriceKernel{.foveated = in.gaze.has_value(), .past = true}), pass,
-                          groupsOver(in.warp.tileCount(), gpu::kWarpGroup));
+        most_tiles = std::max(most_tiles, in.warp.tileCount());
+        foveated = foveated || in.gaze;
     }
-    for (const PastInputs& in : eyes) {
-        commands.beginPass({in.role, SelectKernel::kStage, SelectKernel::kShader});
-        const gpu::SelectPass pass{.warp = viewOf(in),
-                                   .tile_kinds = in.warp.tileKinds(),
-                                   .tile_prices = in.warp.tilePrices(),
-                                   .tile_list = in.warp.tileList(),
-                                   .tile_mask = in.warp.tileMask(),
-                                   .tile_costs = in.warp.tileCosts(),
-                                   .visible = in.buffers.state.address<gpu::ListState>(FrameBuffers::visibleList(0)),
-                                   .masked_tiles = listAt(in, offsetof(TargetState, chosen_tiles)),
-                                   .masked_visible = listAt(in, offsetof(TargetState, chosen_visible)),
-                                   .counters = countersOf(in),
-                                   .budget = countersOf(first)};
-        commands.dispatch(kernels_.get(SelectKernel{.predicted = true, .past = true}), pass,
-                          groupsOver(in.warp.tileCount(), gpu::kWarpGroup));
-    }
+    const auto targets = first.buffers.state.address<gpu::TargetState>(target);
+    const auto chosen = first.buffers.state.address<gpu::ListState>(target + offsetof(TargetState, chosen_tiles));
+    const auto dispatch = [&](const auto& kernel, const auto& pass) {
+        using K = std::remove_cvref_t<decltype(kernel)>;
+        commands.beginPass({eyes.size() > 1 ? Role::kBoth : first.role, K::kStage, K::kShader});
+        commands.dispatch(kernels_.get(kernel), pass, groupsOver(most_tiles, gpu::kWarpGroup), 1, static_cast<std::uint32_t>(eyes.size()));
+    };
+    dispatch(PriceKernel{.foveated = foveated, .past = true},
+             gpu::PricePass{
+                 .targets = targets, .chosen = chosen, .price_bins = first.warp.bins(), .most_cost = mostCost(first.buffers.capacity())});
+    dispatch(
+        SelectKernel{.predicted = true, .past = true},
+        gpu::SelectPass{
+            .targets = targets, .chosen = chosen, .visible = first.buffers.state.address<gpu::ListState>(FrameBuffers::visibleList(0))});
 }
 
 }  // namespace binosplat

@@ -23,9 +23,7 @@ struct PastInputs {
     const Picture& source;
     const Picture& target;
     gpu::DeviceAddress<gpu::uint> shown;  // mask of the tiles that the lens shows; null: all
-    const Intrinsics& lens;
-    std::optional<Gaze> gaze;  // empty: all tiles count alike
-    float area = 1.0f;         // of a pixel, in pixels of the eye's own picture
+    bool gaze;                            // it is known where the eye looks; otherwise all tiles count alike
 };
 
 // The eye `now` and the one whose picture is its past, for the device. `near`: nothing is seen before this, in scene units.
@@ -46,7 +44,8 @@ public:
     void recordWarp(Commands& commands, const PastInputs& in);
     // Between the two: marks where the scene changed since the past was made.
     void recordChanged(Commands& commands, const PastInputs& in, gpu::DeviceAddress<gpu::ChangedRect> rects, gpu::uint count);
-    // Chooses the tiles of all `eyes` that are rendered again. The first one's WarpView has the budget, a share of all eyes' work.
+    // Chooses the tiles of all `eyes`, one target after the other, that are rendered again. The first one's WarpView has the budget, a
+    // share of all eyes' work.
     void recordChoice(Commands& commands, std::span<const PastInputs> eyes);
 
 private:

@@ -27,6 +27,15 @@ WarpBuffers::WarpBuffers(const Context& context, const WarpBufferNeeds& needs)
     }
 }
 
+void WarpBuffers::tell(gpu::TargetState& target) const {
+    target.tile_kinds = tileKinds();
+    target.tile_costs = tileCosts();
+    target.tile_errors = tileErrors();
+    target.tile_prices = tilePrices();
+    target.tile_list = tileList();
+    target.tile_mask = tileMask();
+}
+
 gpu::DeviceAddress<gpu::uint> WarpBuffers::arrivals(const Picture& target) const {
     return sharesRows() ? target.colours.address<gpu::uint>() : planes_.address<gpu::uint>();
 }

@@ -41,6 +41,8 @@ public:
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> tilesWithPairs() const { return tilePrices(); }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> tileList() const { return tileArray(4); }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> tileMask() const { return tileArray(5); }
+    // Where these lie.
+    void tell(gpu::TargetState& target) const;
     // The price list, or the counts of depths.
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> bins() const { return tileMask().at(maskWords(needs_.size_px)); }
     [[nodiscard]] static std::uint64_t tileKindsOffset() { return 0; }

@@ -108,12 +108,14 @@ private:
         commands_.dispatchIndirect(kernels_.get(kernel), pass, in_.buffers.state, field(offsetof(TargetState, warp_counters)) + counter);
     }
     [[nodiscard]] std::uint64_t field(std::uint64_t offset) const { return FrameBuffers::targetField(in_.index, offset); }
+    [[nodiscard]] auto target() const { return in_.buffers.state.address<gpu::TargetState>(field(0)); }
     [[nodiscard]] auto view() const { return in_.buffers.state.address<gpu::WarpView>(field(offsetof(TargetState, warp))); }
     [[nodiscard]] auto counters() const {
         return in_.buffers.state.address<gpu::WarpCounters>(field(offsetof(TargetState, warp_counters)));
     }
     [[nodiscard]] auto listAt(std::uint64_t offset) const { return in_.buffers.state.address<gpu::ListState>(offset); }
     [[nodiscard]] auto visible() const { return listAt(FrameBuffers::visibleList(in_.list)); }
+    [[nodiscard]] auto chosen() const { return listAt(field(offsetof(TargetState, chosen_tiles))); }
     [[nodiscard]] bool hidesSource() const { return in_.source_shown.hideAny(); }
     [[nodiscard]] bool halfFloats() const { return in_.source.half_floats; }
     // True if resample moves the source's pixels itself.
@@ -140,7 +142,7 @@ void WarpRecorder::weigh() {
                               .price_bins = in_.warp.bins(),
                               .shown_mask = in_.source_shown.mask(),
                               .visible = visible(),
-                              .masked_tiles = listAt(field(offsetof(TargetState, chosen_tiles))),
+                              .masked_tiles = chosen(),
                               .counters = counters(),
                               .kinds_given = in_.target_shown.hideAny()};
     dispatch(WeighKernel{.rectified = in_.rectified}, pass, tileGroups());
@@ -260,36 +262,13 @@ void WarpRecorder::groupHoles() {
 
 void WarpRecorder::price() {
     begin<PriceKernel>();
-    const gpu::PricePass pass{.warp = view(),
-                              .tile_kinds = in_.warp.tileKinds(),
-                              .tile_costs = in_.warp.tileCosts(),
-                              .tile_errors = in_.warp.tileErrors(),
-                              .tile_prices = in_.warp.tilePrices(),
-                              .price_bins = in_.warp.bins(),
-                              .masked_tiles = listAt(field(offsetof(TargetState, chosen_tiles))),
-                              .counters = counters(),
-                              .budget = counters(),
-                              .past_tiles = {},
-                              .is_last = 1,
-                              .area = 1.0f,
-                              .most_cost = 0,
-                              .gaze = in_.target_gaze ? eyeGazeOf(*in_.target_gaze, in_.target_lens) : gpu::EyeGaze{}};
-    dispatch(PriceKernel{.foveated = in_.target_gaze.has_value()}, pass, tileGroups());
+    const gpu::PricePass pass{.targets = target(), .chosen = chosen(), .price_bins = in_.warp.bins(), .most_cost = 0};
+    dispatch(PriceKernel{.foveated = in_.target_gaze}, pass, tileGroups());
 }
 
 void WarpRecorder::select() {
     begin<SelectKernel>();
-    const gpu::SelectPass pass{.warp = view(),
-                               .tile_kinds = in_.warp.tileKinds(),
-                               .tile_prices = in_.warp.tilePrices(),
-                               .tile_list = in_.warp.tileList(),
-                               .tile_mask = in_.warp.tileMask(),
-                               .tile_costs = in_.warp.tileCosts(),
-                               .visible = visible(),
-                               .masked_tiles = listAt(field(offsetof(TargetState, chosen_tiles))),
-                               .masked_visible = listAt(field(offsetof(TargetState, chosen_visible))),
-                               .counters = counters(),
-                               .budget = counters()};
+    const gpu::SelectPass pass{.targets = target(), .chosen = chosen(), .visible = visible()};
     dispatch(SelectKernel{.predicted = predicts()}, pass, tileGroups());
 }
 

@@ -57,8 +57,7 @@ struct WarpInputs {
     const ShownTiles& target_shown;
     MovingWords words;
     glm::vec3 background;
-    const Intrinsics& target_lens;
-    std::optional<Gaze> target_gaze;  // empty: all tiles count alike
+    bool target_gaze;  // it is known where its eye looks; otherwise all tiles count alike
 };
 
 // True if resample moves the source's pixels itself, row by row: then reproject does not run, and no arrivals lie in memory.

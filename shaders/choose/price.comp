@@ -1,6 +1,6 @@
 // price: the price of each tile, which is its expected error per pair, and how much there is to render at each price. A thread per tile.
 // Where it is known where the eye looks, only the part of an error that it sees counts, and tiles in which it cannot tell two rows apart
-// are marked. The last workgroup finds the price at which the budget ends.
+// are marked. The last workgroup finds the price at which the budget, the first target's and of all targets, ends.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -13,6 +13,7 @@ layout(local_size_x = kWarpGroup) in;
 layout(push_constant, scalar) uniform Push { PricePass pass; };
 layout(constant_id = 0) const bool kFoveated = false;
 layout(constant_id = 1) const bool kPast = false;  // errors are those that the past has left in its tiles
+#include "lib/target.glsl"
 
 const uint kBinsPerThread = kPriceBins / kWarpGroup;
 
@@ -38,7 +39,7 @@ PastTile withGrowth(PastTile tile) {
 
 // What a coarse tile lacks is an error once the eye would notice it.
 PastTile withLoss(PastTile tile, uvec2 at) {
-    const float share = kFoveated ? seenShareThere(pass.gaze, at) : 1;
+    const float share = kFoveated ? seenShareThere(TARGET.counters.gaze, at) : 1;
     const bool is_seen = share * 3 * float(kTileSize * kTileSize) * tile.lost * tile.lost >= kLeastSeenError;
     tile.errors += is_seen ? tile.lost : 0;
     return tile;
@@ -50,38 +51,40 @@ uint binUnderBound(uint bin, PastTile tile, float share) {
     const uvec4 unseen = min(tile.grown, uvec4(kUnseenError * kErrorSteps * kCellSize * kCellSize));
     const float pixels = (float(unseen.x) + float(unseen.y) + float(unseen.z) + float(unseen.w)) / (kUnseenError * kErrorSteps);
     if (pixels >= kNewShare * kTileSize * kTileSize) { return kNewBin; }
-    const bool is_over = any(greaterThan(sqrt(share) * tile.errors, vec4(pass.warp.at[0].error_bound)));
+    const bool is_over = any(greaterThan(sqrt(share) * tile.errors, vec4(FIRST.warp.error_bound)));
     return min((is_over ? kOverBin : 0) + bin / 2, kNewBin - 1);
 }
 
 // A tile's price word: the bin of its error, and its cost. Adds the cost to the price list.
 uint priceOf(uint tile, uvec2 size_tiles) {
     const uvec2 at = uvec2(tile % size_tiles.x, tile / size_tiles.x);
+    Uints errors = Uints(TARGET.tile_errors), costs = Uints(TARGET.tile_costs);
+    const uint kind = Uints(TARGET.tile_kinds).at[tile];
     PastTile its;
     if (kPast) {
-        its = withGrowth(pass.past_tiles.at[tile]);
-        pass.past_tiles.at[tile].errors = its.errors;
+        PastTiles past_tiles = PastTiles(TARGET.past_tiles);
+        its = withGrowth(past_tiles.at[tile]);
+        past_tiles.at[tile].errors = its.errors;
         its = withLoss(its, at);
-        const bool hidden = pass.tile_kinds.at[tile] == kTileHidden;
-        pass.tile_errors.at[tile] = hidden ? 0 : errorOfPast(its);
-        const uint cost = hidden ? 0 : min(its.cost, kMaxTileCost - kTilePairs) + kTilePairs;
-        pass.tile_costs.at[tile] = cost;
-        atomicAdd(pass.budget.at[0].picture_cost, cost);
+        errors.at[tile] = kind == kTileHidden ? 0 : errorOfPast(its);
+        const uint cost = kind == kTileHidden ? 0 : min(its.cost, kMaxTileCost - kTilePairs) + kTilePairs;
+        costs.at[tile] = cost;
+        atomicAdd(FIRST.warp_counters.picture_cost, cost);
     }
     // Sums saturate there (newcomers); resample adds far less than that.
-    const uint error = min(pass.tile_errors.at[tile], 0x7fffffffu);
-    const float worth = pass.area * float(error);
-    const float share = kFoveated ? seenShare(pass.gaze, at) : 1;
-    if (kFoveated && share <= kCoarseShare) { pass.tile_errors.at[tile] = kSeenCoarsely; }
-    if (pass.tile_kinds.at[tile] != 0 || error == 0) { return 0; }
-    const uint cost = pass.tile_costs.at[tile];
+    const uint error = min(errors.at[tile], 0x7fffffffu);
+    const float worth = TARGET.area * float(error);
+    const float share = kFoveated ? seenShare(TARGET.counters.gaze, at) : 1;
+    if (kFoveated && share <= kCoarseShare) { errors.at[tile] = kSeenCoarsely; }
+    if (kind != 0 || error == 0) { return 0; }
+    const uint cost = costs.at[tile];
     const float seen = share * float(error);
     const bool unnoticed = kFoveated && share < 1 && seen < kLeastSeenError * kErrorSteps;
     const uint bin = binOf(worth / float(cost));
     uint seen_bin = binOf(share * worth / float(cost));
     // The list counts errors as if all were seen whole, so that what a pair must be worth does not fall with what is not seen. Not so with
     // a past: errors that are not seen and not rendered grow from frame to frame, and would leave nothing to those that are seen.
-    if (kPast && pass.warp.at[0].error_bound > 0) { seen_bin = binUnderBound(seen_bin, its, share); }
+    if (kPast && FIRST.warp.error_bound > 0) { seen_bin = binUnderBound(seen_bin, its, share); }
     const uint listed_bin = kPast ? seen_bin : bin;
     if (!kPast || !unnoticed) { atomicAdd(pass.price_bins.at[listed_bin], cost); }
     return unnoticed ? 0 : seen_bin << 22 | (seen_bin < listed_bin ? kSeenInPart : 0) | cost;
@@ -99,7 +102,7 @@ void findLastBin(float share, uint picture_cost) {
     uint total;
     uint before = scanGroup(own, total);
     float wanted = share * float(picture_cost);
-    if (kPast && pass.warp.at[0].error_bound > 0) {
+    if (kPast && FIRST.warp.error_bound > 0) {
         uint over;
         scanGroup(first >= kOverBin ? own : 0, over);
         wanted = max(min(wanted, float(over) + kWithinBound * float(picture_cost)), float(pass.price_bins.at[kNewBin]));
@@ -108,21 +111,21 @@ void findLastBin(float share, uint picture_cost) {
     const uint budget = wanted < 4e9 ? uint(wanted) : 4000000000u;
     [[unroll]] for (uint b = 0; b < kBinsPerThread; ++b) {
         if (before <= budget && before + costs[b] > budget) {
-            pass.budget.at[0].last_bin = first - b;
-            pass.budget.at[0].left_for_last = budget - before;
+            FIRST.warp_counters.last_bin = first - b;
+            FIRST.warp_counters.left_for_last = budget - before;
         }
         before += costs[b];
     }
     if (total <= budget && gl_LocalInvocationIndex == 0) {
-        pass.budget.at[0].last_bin = 0;
-        pass.budget.at[0].left_for_last = 0xffffffffu;
+        FIRST.warp_counters.last_bin = 0;
+        FIRST.warp_counters.left_for_last = 0xffffffffu;
     }
 }
 
 void main() [[subgroup_uniform_control_flow]] {
-    const uvec2 size_tiles = pass.warp.at[0].size_tiles;
+    const uvec2 size_tiles = TARGET.warp.size_tiles;
     const uint tile = gl_WorkGroupID.x * kWarpGroup + gl_LocalInvocationIndex;
-    if (tile < size_tiles.x * size_tiles.y) { pass.tile_prices.at[tile] = priceOf(tile, size_tiles); }
-    if (!isLastGroup(pass.masked_tiles) || pass.is_last == 0) { return; }
-    findLastBin(pass.warp.at[0].budget, kPast ? atomicOr(pass.budget.at[0].picture_cost, 0) : pass.budget.at[0].picture_cost);
+    if (tile < size_tiles.x * size_tiles.y) { Uints(TARGET.tile_prices).at[tile] = priceOf(tile, size_tiles); }
+    if (!isLastGroup(pass.chosen)) { return; }
+    findLastBin(FIRST.warp.budget, kPast ? atomicOr(FIRST.warp_counters.picture_cost, 0) : FIRST.warp_counters.picture_cost);
 }

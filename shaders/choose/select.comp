@@ -12,7 +12,8 @@
 layout(local_size_x = kWarpGroup) in;
 layout(push_constant, scalar) uniform Push { SelectPass pass; };
 layout(constant_id = 0) const bool kPredicted = false;  // otherwise tile_kinds says which
-layout(constant_id = 1) const bool kPast = false;  // two eyes share the budget, and a tile that costs more than is left still gets its turn
+layout(constant_id = 1) const bool kPast = false;  // all targets share a budget, and a tile that costs more than is left still gets its turn
+#include "lib/target.glsl"
 
 const uint kTilesPerStep = 8;  // loaded at once, since each load takes as long as all of them
 
@@ -26,15 +27,22 @@ struct End {
 // seen whole (price), has had its turn there, unless the budget is enough for all.
 bool isOfLast(uint price, End end) { return price != 0 && price >> 22 == end.bin && ((price & kSeenInPart) == 0 || end.left == 0xffffffffu); }
 
-// The cost of the last bin's tiles before this workgroup's; `first_tile` is a multiple of its size.
+uint tilesOf(uint target) { return pass.targets.at[target].warp.size_tiles.x * pass.targets.at[target].warp.size_tiles.y; }
+
+// The cost of the last bin's tiles before this workgroup's, first those of the targets before its own; `first_tile` is a multiple of its
+// size.
 uint costBefore(uint first_tile, End end) {
     uint own = 0;
-    for (uint tile = gl_LocalInvocationIndex; tile < first_tile; tile += kTilesPerStep * kWarpGroup) {
-        uint prices[kTilesPerStep];
-        [[unroll]] for (uint i = 0; i < kTilesPerStep; ++i) {
-            prices[i] = tile + i * kWarpGroup < first_tile ? pass.tile_prices.at[tile + i * kWarpGroup] : 0;
+    for (uint target = 0; target <= gl_WorkGroupID.z; ++target) {
+        Uints tile_prices = Uints(pass.targets.at[target].tile_prices);
+        const uint tiles = target < gl_WorkGroupID.z ? tilesOf(target) : first_tile;
+        for (uint tile = gl_LocalInvocationIndex; tile < tiles; tile += kTilesPerStep * kWarpGroup) {
+            uint prices[kTilesPerStep];
+            [[unroll]] for (uint i = 0; i < kTilesPerStep; ++i) {
+                prices[i] = tile + i * kWarpGroup < tiles ? tile_prices.at[tile + i * kWarpGroup] : 0;
+            }
+            [[unroll]] for (uint i = 0; i < kTilesPerStep; ++i) { own += isOfLast(prices[i], end) ? prices[i] & kMaxTileCost : 0; }
         }
-        [[unroll]] for (uint i = 0; i < kTilesPerStep; ++i) { own += isOfLast(prices[i], end) ? prices[i] & kMaxTileCost : 0; }
     }
     uint total;
     scanGroup(own, total);
@@ -42,15 +50,14 @@ uint costBefore(uint first_tile, End end) {
 }
 
 bool isChosen(uint tile, uint tiles, out bool waits) {
-    const End end = End(pass.budget.at[0].last_bin, pass.budget.at[0].left_for_last);
-    const uint price = tile < tiles ? pass.tile_prices.at[tile] : 0;
+    const End end = End(FIRST.warp_counters.last_bin, FIRST.warp_counters.left_for_last);
+    const uint price = tile < tiles ? Uints(TARGET.tile_prices).at[tile] : 0;
     const bool is_last = isOfLast(price, end);
     const uint cost = price & kMaxTileCost;
     uint total;
     uint before = scanGroup(is_last ? cost : 0, total);
     // Most workgroups have no tile of the last bin, and need not know what the others have.
     if (total > 0) { before += costBefore(min(gl_WorkGroupID.x * kWarpGroup, tiles), end); }
-    if (kPast && is_last) { atomicAdd(pass.budget.at[0].saved_cost, before < end.left ? cost : 0); }
     const bool fits = kPast ? before < end.left : before + cost <= end.left;
     const bool chosen = is_last ? fits : price != 0 && price >> 22 > end.bin;
     waits = !chosen && price >> 22 >= kOverBin;
@@ -58,48 +65,45 @@ bool isChosen(uint tile, uint tiles, out bool waits) {
 }
 
 void main() [[subgroup_uniform_control_flow]] {
-    const uvec2 size_tiles = pass.warp.at[0].size_tiles;
+    const uvec2 size_tiles = TARGET.warp.size_tiles;
     const uint tiles = size_tiles.x * size_tiles.y;
     const uint tile = gl_WorkGroupID.x * kWarpGroup + threadIndex();
     bool waits = false;
-    uint kind = tile < tiles ? pass.tile_kinds.at[tile] : kTileHidden;
-    if (kPredicted && !kPast && pass.counters.at[0].moves == 0) {
+    uint kind = tile < tiles ? Uints(TARGET.tile_kinds).at[tile] : kTileHidden;
+    if (kPredicted && !kPast && TARGET.warp_counters.moves == 0) {
         kind = kind == 0 ? kTileCheap : kind;
     } else if (kPredicted) {
         kind = isChosen(tile, tiles, waits) ? kTilePredicted : kind;
     }
     const bool selected = kind != 0 && kind != kTileHidden;
-    if (kPredicted && selected) { pass.tile_kinds.at[tile] = kind; }
+    if (kPredicted && selected) { Uints(TARGET.tile_kinds).at[tile] = kind; }
 
     const uvec4 lanes = subgroupBallot(selected);
     const uint count = subgroupBallotBitCount(lanes);
-    const uint cost = kPredicted ? subgroupAdd(selected ? pass.tile_costs.at[tile] : 0) : 0;
+    const uint cost = kPredicted ? subgroupAdd(selected ? Uints(TARGET.tile_costs).at[tile] : 0) : 0;
     const uint predicted = subgroupAdd(kind == kTilePredicted ? 1 : 0), cheap = subgroupAdd(kind == kTileCheap ? 1 : 0);
     const uint edges = subgroupAdd(kind == kTileEdge ? 1 : 0), waiting = kPast ? subgroupAdd(waits ? 1 : 0) : 0;
-    if (kPast && waiting > 0 && subgroupElect()) { atomicAdd(pass.counters.at[0].waiting_tiles, waiting); }
+    if (kPast && waiting > 0 && subgroupElect()) { atomicAdd(TARGET.warp_counters.waiting_tiles, waiting); }
     uint place = 0;
     if (subgroupElect() && count > 0) {
-        place = atomicAdd(pass.masked_tiles.at[0].needed, count);
+        place = atomicAdd(TARGET.chosen_tiles.needed, count);
         if (kPredicted) {
-            atomicAdd(pass.counters.at[0].chosen_cost, cost);
-            atomicAdd(pass.counters.at[0].predicted_tiles, predicted);
-            atomicAdd(pass.counters.at[0].cheap_tiles, cheap);
-            atomicAdd(pass.counters.at[0].edge_tiles, edges);
+            atomicAdd(TARGET.warp_counters.chosen_cost, cost);
+            atomicAdd(TARGET.warp_counters.predicted_tiles, predicted);
+            atomicAdd(TARGET.warp_counters.cheap_tiles, cheap);
+            atomicAdd(TARGET.warp_counters.edge_tiles, edges);
         }
     }
     place = subgroupBroadcastFirst(place) + subgroupBallotExclusiveBitCount(lanes);
     if (selected) {
-        pass.tile_list.at[place] = tile;
+        Uints(TARGET.tile_list).at[place] = tile;
         const uvec2 at = uvec2(tile % size_tiles.x, tile / size_tiles.x);
-        atomicOr(pass.tile_mask.at[at.y * maskWords(size_tiles) + at.x / 32], 1u << (at.x & 31));
+        atomicOr(Uints(TARGET.tile_mask).at[at.y * maskWords(size_tiles) + at.x / 32], 1u << (at.x & 31));
     }
-    if (!isLastGroup(pass.masked_tiles) || gl_LocalInvocationIndex != 0) { return; }
-    const uint listed = atomicOr(pass.masked_tiles.at[0].needed, 0);
-    pass.masked_tiles.at[0] = makeList(listed, tiles);
-    if (kPast && pass.budget.at[0].left_for_last != 0xffffffffu) {  // what the other eye may spend in the last bin
-        const uint left = pass.budget.at[0].left_for_last;
-        pass.budget.at[0].left_for_last = left - min(left, atomicExchange(pass.budget.at[0].saved_cost, 0));
+    if (!isLastGroup(pass.chosen) || gl_LocalInvocationIndex != 0) { return; }
+    for (uint target = 0; target < gl_NumWorkGroups.z; ++target) {
+        const uint listed = atomicOr(pass.targets.at[target].chosen_tiles.needed, 0), visible = listed > 0 ? pass.visible.at[0].count : 0;
+        pass.targets.at[target].chosen_tiles = makeList(listed, tilesOf(target));
+        pass.targets.at[target].chosen_visible = makeList(visible, visible);
     }
-    const uint visible = listed > 0 ? pass.visible.at[0].count : 0;
-    pass.masked_visible.at[0] = makeList(visible, visible);
 }

@@ -30,7 +30,7 @@ bool isLastGroup(ListStates list) {
     if (gl_LocalInvocationIndex == 0) {
         memoryBarrierBuffer();
         const uint done = atomicAdd(list.at[0].groups_done, 1) + 1;
-        group_is_last = done == gl_NumWorkGroups.x * gl_NumWorkGroups.y ? 1 : 0;
+        group_is_last = done == gl_NumWorkGroups.x * gl_NumWorkGroups.y * gl_NumWorkGroups.z ? 1 : 0;
         if (group_is_last != 0) { atomicExchange(list.at[0].groups_done, 0); }
         memoryBarrierBuffer();
     }

@@ -251,36 +251,17 @@ struct MarkChangedPass {
 
 // price: predicted: what it costs to mend each tile's error, and how much there is at each price.
 struct PricePass {
-    WarpViews warp;
-    Uints tile_kinds;
-    Uints tile_costs;
-    Uints tile_errors;         // in; out where an eye does not resolve two rows: kSeenCoarsely
-    Uints tile_prices;         // out: bin << 22 | cost
+    TargetStates targets;
+    ListStates chosen;         // of the first target: counts finished workgroups
     CoherentUints price_bins;  // cost of the tiles in each bin, without a past by errors as if seen whole; greatest error per pair last
-    ListStates masked_tiles;   // counts finished workgroups
-    WarpCounterss counters;
-    WarpCounterss budget;  // the counters of the budget: its own, or one for both eyes
-    // With a past: in, and tile_errors and tile_costs are written from it. Otherwise null.
-    PastTiles past_tiles;
-    uint is_last;    // 1: no other picture shares the budget after this one
-    float area;      // of a pixel, in pixels of the eye's own picture: the weight of an error in it
-    uint most_cost;  // under a bound, in pairs: what lists have room for
-    EyeGaze gaze;    // if it is known where the target looks
+    uint most_cost;            // under a bound, in pairs: what lists have room for
 };
 
 // select: the tiles to render, as a list and as a mask.
 struct SelectPass {
-    WarpViews warp;
-    Uints tile_kinds;  // in and, where errors are predicted, out
-    Uints tile_prices;
-    Uints tile_list;  // out, in no order
-    Uints tile_mask;  // in: zeros; out
-    Uints tile_costs;
+    TargetStates targets;
+    ListStates chosen;  // as in PricePass
     ListStates visible;
-    ListStates masked_tiles;    // in: an empty list; out
-    ListStates masked_visible;  // out: as long as `visible`, or empty if no tile is masked
-    WarpCounterss counters;
-    WarpCounterss budget;  // as in PricePass
 };
 
 // A stable radix sort of (key, value), up to 8 bits per round, reduce then scan: assumes neither forward progress between workgroups

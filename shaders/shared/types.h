@@ -252,6 +252,29 @@ struct EyeCounters {
 };
 BINOSPLAT_ARRAY_OF(EyeCounters, EyeCounterss);
 
+// A picture in progress, its lists and where its tiles lie. A pass over several of them has the first one's address, and its z-th
+// workgroups work for the z-th.
+struct TargetState {
+    // If it is made from another: of each tile
+    BINOSPLAT_STORED(Uints) tile_kinds;
+    BINOSPLAT_STORED(Uints) tile_costs;      // in pairs
+    BINOSPLAT_STORED(Uints) tile_errors;     // expected; where an eye does not resolve two rows: kSeenCoarsely
+    BINOSPLAT_STORED(Uints) tile_prices;     // bin << 22 | cost
+    BINOSPLAT_STORED(Uints) tile_list;       // those that are rendered, in no order
+    BINOSPLAT_STORED(Uints) tile_mask;       // the same, lib/tile_mask.glsl
+    BINOSPLAT_STORED(PastTiles) past_tiles;  // if it is going to be a past
+    ListState pairs;
+    EyeCounters counters;
+    WarpView warp;  // if it is made from another
+    WarpCounters warp_counters;
+    PastView past;  // if it is made from its own past
+    PastBlockList past_blocks;
+    ListState chosen_tiles;    // if it is made from either: those that are rendered
+    ListState chosen_visible;  // its visible splats, or none if there is no such tile
+    float area;                // of a pixel, in pixels of the eye's own picture: the weight of an error in it
+};
+BINOSPLAT_ALIGNED_ARRAY_OF(TargetState, 8, TargetStates);
+
 BINOSPLAT_END_SHARED
 
 #endif
