@@ -43,7 +43,8 @@ ROOMS = {
     "app/view/wearer": "engine engine/frame xr app/view/placement app/view/room app/view/settings",
     "app/view/panel": "engine engine/* app/options app/report app/view/files app/view/headset app/view/room app/view/scenes app/view/settings app/view/wearer",
     "app/view/window": "engine engine/gpu app/view/panel app/view/placement app/view/room",
-    "app/view": "engine engine/* shaders xr app/options app/terminal app/view/*",
+    "app/desktop": "engine engine/* app/options app/terminal app/view/files app/view/panel app/view/placement app/view/room app/view/scenes app/view/settings app/view/window",
+    "app/view": "engine engine/* shaders xr app/options app/terminal app/view/* app/desktop",
     "app/command_line": "engine engine/* app/options app/terminal app/view/settings",
     "app": "engine engine/* shaders app/*",
 }

@@ -9,7 +9,6 @@
 #include "engine/platform.h"
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -30,15 +29,6 @@ struct Match : Handlers... {
 template <typename... Handlers>
 Match(Handlers...) -> Match<Handlers...>;  // clang needs it before its 17th version
 
-// A program started by a click gets no arguments.
-Options startOptions(int argument_count, const char* const* arguments) {
-    if (argument_count > 1 || !isStartedByClick()) { return parseOptions(argument_count, arguments); }
-    constexpr std::array kWords{"binosplat", "view", "builtin:atelier"};
-    auto options = std::get<ViewOptions>(parseOptions(static_cast<int>(kWords.size()), kWords.data()));
-    options.browse = true;
-    return options;
-}
-
 void run(int argument_count, const char* const* arguments) {
     std::visit(
         Match{[](const RenderOptions& options) { runRender(options); }, [](const BenchOptions& options) { runBench(options); },
@@ -46,7 +36,7 @@ void run(int argument_count, const char* const* arguments) {
               [](const SceneOptions& options) { runScene(options); }, [](const ConvertOptions& options) { runConvert(options); },
               [](const CompareOptions& options) { runCompare(options); }, [](const StabilityOptions& options) { runStability(options); },
               [](const KernelsOptions& options) { runKernels(options); }, [](const HelpText& help) { fmt::print("{}", help.text); }},
-        startOptions(argument_count, arguments));
+        parseOptions(argument_count, arguments));
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) { fail("standard output: cannot be written ({})", std::strerror(errno)); }
 }
 

@@ -118,6 +118,14 @@ Options makeView(const Settings& given) {
     ViewOptions view;
     view.scene = wordOf(line, "SCENE");
     view.simulate = line.contains("simulate");
+    if (view.scene.empty()) {
+        view.scene = "builtin:atelier";
+        view.browse = true;
+    }
+    for (const char* other : {"headset-only", "simulate"}) {
+        if (!line.contains("desktop") || !line.contains(other)) { continue; }
+        throw Error(ExitCode::kUsage, fmt::format("--desktop and --{} contradict each other", other));
+    }
     if (line.contains("out") && !view.simulate) { throw Error(ExitCode::kUsage, "--out is given without --simulate"); }
     RunOptions standard = withPast();
     standard.stereo.half_periphery = true;
@@ -164,7 +172,12 @@ std::span<const Command> commands() {
          {{"SCENE", "files, directories, builtin:NAME, or addresses (default: those of the config)", /*required*/ false, /*many*/ true}},
          with(describe(benchRows()), kConfig),
          makeBench},
-        {"view", kView, "Show a scene in an OpenXR headset", {scene}, with(describe(viewRows()), kConfig), makeView},
+        {"view",
+         kView,
+         "Show a scene in an OpenXR headset or, without one, in a window",
+         {{"SCENE", "file, directory, builtin:NAME, or http or https address (default: a list to choose from)", /*required*/ false}},
+         with(describe(viewRows()), kConfig),
+         makeView},
         {"info", kInfo, "Print what a scene holds", {scene}, {}, makeInfo},
         {"scene",
          kScene,

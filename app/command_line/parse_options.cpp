@@ -97,10 +97,11 @@ bool looksLikeFile(const std::string& word) {
     return word.find_first_of("/\\") != std::string::npos || std::filesystem::path(word).has_extension();
 }
 
-// A scene in place of a command is viewed: a file that was dropped onto the program, or opened with it. For any other word CLI11 would only
-// say that a command is missing.
+// A scene in place of a command is viewed: a file that was dropped onto the program, or opened with it. Without any word the viewer lists
+// scenes. For any other word CLI11 would only say that a command is missing.
 std::vector<std::string> withCommand(std::vector<std::string> words) {
-    const std::string word = words.empty() ? "-" : words.front();
+    if (words.empty()) { return {"view"}; }
+    const std::string word = words.front();
     if (word.starts_with('-') || std::ranges::find(commands(), word, &Command::name) != commands().end()) { return words; }
     if (isScene(word)) {
         if (words.size() > 1 && !words[1].starts_with('-') && (isScene(words[1]) || looksLikeFile(words[1]))) {

@@ -217,6 +217,9 @@ std::span<const OptionRow<BenchOptions>> benchRows() {
 std::span<const OptionRow<ViewOptions>> viewRows() {
     static const std::vector<OptionRow<ViewOptions>> rows{
         {{"out", "", kView, "DIR", "directory for the simulated headset's pictures"}, field::file<&ViewOptions::out>()},
+        {{"desktop", "", kView, "", "show the scene in a window, even if there is a headset"}, field::flag<&ViewOptions::desktop>()},
+        {{"headset-only", "", kView, "", "end with exit code 3 if there is no headset, instead of showing the scene in a window"},
+         field::flag<&ViewOptions::headset_only>()},
         {{"frames", "", kView, "N", "stop after N frames", "never"}, noneIfZero(field::count<&ViewOptions::frames>(1, kMaxFrames))},
         {{"load-first", "", kView, "", "load the scene before the session starts, not during it"}, field::flag<&ViewOptions::load_first>()},
         {{"hide-panel", "", kView, "", "start without the panel"}, field::flag<&ViewOptions::hide_panel>()},

@@ -105,6 +105,8 @@ struct ViewOptions {
     bool browse = false;            // the panel opens with the list of scenes
     bool hide_hands = false;        // and controllers
     std::filesystem::path shaders;  // folder to reload them from; see shaderFolder
+    bool desktop = false;           // in a window, even if there is a headset
+    bool headset_only = false;      // never in a window
 };
 
 struct InfoOptions {

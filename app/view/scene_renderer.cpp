@@ -16,8 +16,6 @@ glm::uvec2 scaledSize(const xr::Instance& instance, glm::uvec2 recommended_px, d
     return glm::clamp(glm::uvec2(wanted), glm::uvec2(16), instance.maxSizePx());
 }
 
-glm::dvec3 colourOf(Backdrop backdrop) { return glm::dvec3(backdrop == Backdrop::kWhite ? 1.0 : backdrop == Backdrop::kGrey ? 0.5 : 0.0); }
-
 }  // namespace
 
 SceneRenderer::SceneRenderer(const xr::Instance& instance, const Context& context, const RunOptions& options, const FrameLog& log,

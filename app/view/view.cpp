@@ -1,6 +1,7 @@
-// `binosplat view`: a scene in a headset.
+// `binosplat view`: a scene in a headset or in a window.
 #include "app/view/view.h"
 
+#include "app/desktop/desktop.h"
 #include "app/options/camera_options.h"
 #include "app/options/device_options.h"
 #include "app/terminal/interrupt.h"
@@ -15,12 +16,15 @@
 #include <chrono>
 #include <csignal>
 #include <memory>
+#include <thread>
 
 namespace binosplat {
 
 namespace {
 
 constexpr std::chrono::milliseconds kBetweenLooks(200);
+// A headset that has not answered by then is not awaited, if the scene can be shown in a window.
+constexpr std::chrono::seconds kLongestWait(2);
 
 ViewSettings startSettings(const ViewOptions& options) {
     ViewSettings settings;
@@ -59,7 +63,8 @@ void showScene(const ViewOptions& options, const ViewSettings& settings, xr::Ins
     context.requireNoValidationMessages();
 }
 
-void viewOnce(ViewOptions options) {
+// Sets `has_headset` once there is one.
+void viewInHeadset(ViewOptions options, bool& has_headset) {
     if (options.simulate) { simulateHeadset(options); }
     readCameraFiles(options.run.camera);  // reports their errors before waiting for a headset
     const ViewSettings settings = startSettings(options);
@@ -68,11 +73,18 @@ void viewOnce(ViewOptions options) {
     instance_options.eye_tracking = settings.eye_tracking;
     instance_options.foveated_inset = settings.wantsInset();
     std::unique_ptr<WaitingWindow> waiting;
-    instance_options.wait_for_headset = [&waiting](const std::string& runtime) { waitForHeadset(runtime, waiting); };
+    const bool may_wait = options.simulate || options.headset_only || !hasDisplay();
+    instance_options.wait_for_headset = [&waiting, may_wait, begin = std::chrono::steady_clock::now()](const std::string& runtime) {
+        if (may_wait) { return waitForHeadset(runtime, waiting); }
+        stopIfInterrupted();
+        if (std::chrono::steady_clock::now() - begin > kLongestWait) { throw Error(ExitCode::kNoDevice, runtime + " has no headset"); }
+        std::this_thread::sleep_for(kBetweenLooks);
+    };
     std::unique_ptr<xr::Instance> instance;
     try {
         instance = std::make_unique<xr::Instance>(instance_options);
         waiting.reset();
+        has_headset = true;
         showScene(options, settings, *instance);
     } catch (const Interrupted&) {  // while waiting for a headset
         fmt::print("0 frames; stopped before there was a headset\n");
@@ -90,14 +102,19 @@ void viewOnce(ViewOptions options) {
 }  // namespace
 
 void runView(const ViewOptions& options) {
+    const auto showInWindow = [&] {
+        readCameraFiles(options.run.camera);
+        runDesktop(options, startSettings(options));
+    };
+    if (options.desktop) { return showInWindow(); }
+    bool has_headset = false;
     try {
-        viewOnce(options);
+        viewInHeadset(options, has_headset);
     } catch (const Error& error) {
-        const bool lacks_headset = error.code() == ExitCode::kNoDevice && !options.simulate;
-        if (!lacks_headset || !askUser(fmt::format("{}\n\nShow the scene in a window, without a headset?", error.what()))) { throw; }
-        ViewOptions in_window = options;
-        in_window.simulate = true;
-        viewOnce(in_window);
+        const bool must_have_one = has_headset || options.simulate || options.headset_only;
+        if (must_have_one || error.code() != ExitCode::kNoDevice || !hasDisplay()) { throw; }
+        FrameLog::print(fmt::format("{}; the scene is shown in a window", error.what()));
+        showInWindow();
     }
 }
 

@@ -6,6 +6,7 @@
 #include "app/view/panel/panel.h"
 #include "app/view/room/vignette.h"
 #include "app/view/scene_renderer.h"
+#include "app/view/scenes/scene_notes.h"
 #include "app/view/scenes/shown_scene.h"
 #include "app/view/settings/view_state.h"
 #include "app/view/wearer/gaze_follower.h"
@@ -69,11 +70,9 @@ private:
     void movePlace(const PanelRequests& requests);
     void goToViewpoint(int step);
     void keepViewpointHere();
-    void goBackToLastScene();
     // Saves a small picture of the scene as it was last seen, for the list of scenes.
     void keepPictureOfScene();
     void load();
-    void remember(const std::string& complaint);
     void reloadShaders();
     // Writes the last frame to a file, and reports the outcome.
     void takePicture();
@@ -108,6 +107,7 @@ private:
     Pose room_from_head_;                   // as last known
     bool recentre_asked_ = false, leaving_ = false, waits_for_kernels_ = false;
     std::chrono::steady_clock::time_point last_alone_{};
+    SceneNotes notes_;
     FileWorker files_;   // its thread ends before the users of its results
     ShownScene scenes_;  // last: the loading thread ends first
 };

@@ -1,5 +1,4 @@
 // The viewer's files: scenes, settings, pictures, shaders.
-#include "app/view/scenes/recent_scenes.h"
 #include "app/view/settings/view_files.h"
 #include "app/view/shader_reload.h"
 #include "app/view/viewer.h"
@@ -17,44 +16,20 @@ void Viewer::takeScene() {
     viewpoint_.reset();
     frames_of_scene_ = 0;
     said_there_ = false;
-    remember(complaint);
-}
-
-void Viewer::remember(const std::string& complaint) {
-    files_.write("remembering the scene", [this, scene = scenes_.name(), complaint]() -> FileWorker::Done {
-        try {
-            rememberScene(scene);
-        } catch (const Error& error) {
-            if (error.what() != complaint) {
-                return [this, why = std::string(error.what())] { log_.say(why); };
-            }
-        }
-        return {};
-    });
+    notes_.remember(scenes_.name(), complaint);
 }
 
 void Viewer::openAndSave(const PanelRequests& requests) {
-    if (requests.save) {
-        files_.write("saving", [this, scene = scenes_.name(), saved = state_.withPlacement()]() -> FileWorker::Done {
-            return [this, outcome = saveViewSettings(scene, saved)] { say(outcome); };
-        });
-    }
+    if (requests.save) { notes_.save(scenes_.name(), state_.withPlacement()); }
     if (requests.load) { load(); }
     if (requests.scene_step != 0) { scenes_.beginBeside(requests.scene_step, files_); }
     if (!requests.chosen_scene.empty()) { scenes_.begin(requests.chosen_scene); }
     picture_asked_ = picture_asked_ || requests.take_picture;
-    if (requests.last_scene) { goBackToLastScene(); }
+    if (requests.last_scene && scenes_.get() != nullptr) {
+        notes_.openLast(*scenes_.get(), [this](const std::string& scene) { scenes_.begin(scene); });
+    }
     if (!requests.favourite.empty()) {
-        files_.write("keeping a favourite", [this, scene = requests.favourite]() -> FileWorker::Done {
-            std::string trouble;
-            try {
-                toggleFavourite(scene);
-            } catch (const Error& error) { trouble = error.what(); }
-            return [this, trouble] {
-                if (!trouble.empty()) { say(trouble); }
-                panel_.listAnew();
-            };
-        });
+        notes_.toggleFavourite(requests.favourite, [this] { panel_.listAnew(); });
     }
 }
 

@@ -101,12 +101,8 @@ void Viewer::layOutPanel(bool hung, double step_seconds) {
 
 void Viewer::moveTime(bool play, int step, std::optional<std::size_t> frame) {
     LoadedScene* const scene = scenes_.get();
-    if (scene == nullptr || scene->moving == nullptr || (!play && step == 0 && !frame)) { return; }
-    SceneClock& clock = scene->clock;
-    if (play) { clock.togglePlaying(); }
-    if (step != 0) { clock.step(step); }
-    if (frame) { clock.goTo(*frame); }
-    log_.say(fmt::format("{} frame {} of {}", clock.plays() ? "plays from" : "rests at", clock.frame() + 1, clock.frameCount()));
+    if (scene == nullptr) { return; }
+    if (const std::string said = scene->moveTime(play, step, frame); !said.empty()) { log_.say(said); }
 }
 
 void Viewer::recordPanel(Commands& commands) {

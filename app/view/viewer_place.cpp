@@ -1,12 +1,8 @@
 // The wearer's place in the scene, and what the viewer keeps of it.
 #include "app/view/placement/placement.h"
-#include "app/view/scenes/recent_scenes.h"
-#include "app/view/scenes/seen_scenes.h"
 #include "app/view/scenes/viewpoints.h"
 #include "app/view/viewer.h"
 #include "engine/error.h"
-
-#include <algorithm>
 
 namespace binosplat {
 
@@ -67,31 +63,8 @@ void Viewer::goToViewpoint(int step) {
 
 void Viewer::keepViewpointHere() {
     LoadedScene& scene = *scenes_.get();
-    View view = viewOf(state_.sceneFromRoom(), room_from_head_);
-    std::size_t number = 1;
-    for (const Viewpoint& viewpoint : scene.viewpoints) { number += viewpoint.name.starts_with("your own "); }
-    scene.viewpoints.push_back(ownViewpoint(number, view));
+    notes_.addViewpoint(scene, viewOf(state_.sceneFromRoom(), room_from_head_));
     viewpoint_ = scene.viewpoints.size() - 1;
-    view.eye += scene.origin, view.look += scene.origin;
-    files_.write("keeping a viewpoint", [this, source = scene.name, view]() -> FileWorker::Done {
-        std::string outcome = "this viewpoint is kept";
-        try {
-            keepViewpoint(source, view);
-        } catch (const Error& error) { outcome = error.what(); }
-        return [this, outcome] { say(outcome); };
-    });
-}
-
-void Viewer::goBackToLastScene() {
-    files_.read("the scene shown last", [this, now = scenes_.get()->place]() -> FileWorker::Done {
-        const std::vector<std::string> recent = recentScenes();
-        const auto last = std::ranges::find_if(recent, [&](const std::string& scene) { return placeOf(scene) != now; });
-        const std::string scene = last == recent.end() ? "" : *last;
-        return [this, scene] {
-            if (scene.empty()) { return say("no other scene was shown yet"); }
-            scenes_.begin(scene);
-        };
-    });
 }
 
 void Viewer::keepPictureOfScene() {
@@ -99,12 +72,7 @@ void Viewer::keepPictureOfScene() {
     if (scene == nullptr || std::exchange(frames_of_scene_, 0) < kLeastFramesSeen) { return; }
     try {
         waitForQueue();
-        Image view = scenes_.frame().readPicture(drawn_.showsOneEye() ? 0 : static_cast<int>(drawn_.stereo.dominant));
-        files_.write("keeping a picture of the scene",
-                     [name = scene->name, about = describeBriefly(scene->facts), view = std::move(view)]() -> FileWorker::Done {
-                         keepSeenScene(name, makeScenePicture(view), about);
-                         return {};
-                     });
+        notes_.keepPicture(*scene, scenes_.frame().readPicture(drawn_.showsOneEye() ? 0 : static_cast<int>(drawn_.stereo.dominant)));
     } catch (const vk::DeviceLostError&) { throw; } catch (const vk::SystemError&) {
         // A missing picture is not worth a message.
     } catch (const Error&) {}

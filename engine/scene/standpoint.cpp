@@ -273,15 +273,17 @@ Standpoint judgeStandpoint(const Scene& scene, const StandpointWish& wish) {
     return outside;
 }
 
-double coreSize(const Scene& scene) {
-    const std::vector<SplatSample> core = coreOf(sampleSplats(scene, kMostSamples));
-    double size = 0.0;
+SceneCore measureCore(const Scene& scene) {
+    const std::vector<SplatSample> samples = coreOf(sampleSplats(scene, kMostSamples));
+    SceneCore core;
     for (int axis = 0; axis < 3; ++axis) {
         std::vector<double> values;
-        for (const SplatSample& sample : core) { values.push_back(sample.centre[axis]); }
-        size = std::max(size, rangeOf(std::move(values), 0.05).length());
+        for (const SplatSample& sample : samples) { values.push_back(sample.centre[axis]); }
+        const Range range = rangeOf(std::move(values), 0.05);
+        core.size = std::max(core.size, range.length());
+        core.middle[axis] = range.middle();
     }
-    return size;
+    return core;
 }
 
 double usualNear(const Scene& scene) {

@@ -31,9 +31,13 @@ Standpoint judgeStandpoint(const Scene& scene, const StandpointWish& wish = {});
 inline constexpr double kUsualNear = 0.2;
 double usualNear(const Scene& scene);
 
-// The longest side, along the axes, of the box with nine tenths of the splats that one stands in or in front of: hills and sky beyond do
-// not count.
-double coreSize(const Scene& scene);
+// The box, along the axes, with nine tenths of the splats that one stands in or in front of: hills and sky beyond do not count.
+struct SceneCore {
+    glm::dvec3 middle{0.0};
+    double size = 0.0;  // its longest side
+};
+SceneCore measureCore(const Scene& scene);
+inline double coreSize(const Scene& scene) { return measureCore(scene).size; }
 
 // The up of the plane that lies beneath cameras whose mean place is given, if there is one. `doubtful`: up as they have it, unless the file
 // says how it is; any floor about that is taken before the others.

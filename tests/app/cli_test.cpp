@@ -15,7 +15,6 @@ nlohmann::json reportOf(const Workplace& work, const std::string& folder) {
 
 TEST_CASE_FIXTURE(AtWork, "errors end the program with one line and the code of their kind, and leave nothing behind") {
     // A command line that is not understood, a value, a scene.
-    work.checkRefused("", 2, "subcommand");
     work.checkRefused("render builtin:one-splat --out out --bogus", 2, "--bogus");
     work.checkRefused("render builtin:one-splat --out out --near 0", 1, "--near is 0, must be a number from 1e-06 to 1000000");
     work.checkRefused("render builtin:one-splat --out out --mode mono --periphery half", 1, "--periphery is half, but --foveation is 0");
@@ -31,7 +30,9 @@ TEST_CASE_FIXTURE(AtWork, "errors end the program with one line and the code of 
     for (const char* filter : {"'('", "nothing"}) { work.checkRefused(fmt::format("kernels --filter {}", filter), 1, "--filter is "); }
 #ifdef BINOSPLAT_OPENXR
     // What can be known before there is a headset comes first.
-    const std::string no_runtime = "XR_RUNTIME_JSON=/nonexistent/runtime.json";
+    const std::string no_runtime = "DISPLAY= WAYLAND_DISPLAY= XR_RUNTIME_JSON=/nonexistent/runtime.json";
+    work.checkRefused("", 3, "OpenXR", no_runtime);
+    work.checkRefused("view builtin:one-splat --desktop", 3, "there is no display", no_runtime);
     work.checkRefused("view builtin:one-splat", 3, "OpenXR", no_runtime);
     work.checkRefused("view builtin:one-splat --cameras missing.json", 1, "missing.json", no_runtime);
 #endif

@@ -164,7 +164,7 @@ void drawMethodPage(PanelWidgets& widgets, ViewSettings& settings, const PanelSt
     ImGui::PushItemWidth(ImGui::GetContentRegionAvail().x * kSliderShare);
     drawMethod(widgets, settings);
     drawResolution(widgets, settings);
-    choose(widgets, "Frame rate", *findViewRow("quality"), settings, 4);
+    if (!status.window) { choose(widgets, "Frame rate", *findViewRow("quality"), settings, 4); }
     ImGui::PopItemWidth();
     drawFiles(widgets, settings, status.can_reload_shaders, requests);
     drawSaid(status);

@@ -30,8 +30,9 @@ void drawTabs(PanelWidgets& widgets, ViewSettings& settings, SceneChooser& choos
 }  // namespace
 
 void drawSaid(const PanelStatus& status) {
-    writeWrapped(status.message.empty() ? "Trigger: click. Grip: move the scene. Both grips: turn it and make it larger or smaller."
-                                        : status.message);
+    static constexpr const char* kHands = "Trigger: click. Grip: move the scene. Both grips: turn it and make it larger or smaller.";
+    static constexpr const char* kMouse = "Left button: orbit. Right button: move. Wheel: nearer and farther. H: all keys.";
+    writeWrapped(!status.message.empty() ? status.message : status.window ? kMouse : kHands);
     if (status.loading) { ImGui::ProgressBar(static_cast<float>(*status.loading), ImVec2(-1.0f, 0.0f)); }
     if (!status.files.empty()) { writeLine(endOf(asShown(status.files))); }
 }
@@ -76,6 +77,8 @@ PanelRequests drawPanel(glm::uvec2 size_px, const ViewSettings& current, SceneCh
     writeLine(endOf(asShown(status.state.empty() ? status.scene : fmt::format("{}  {}", status.state, status.scene))));
     if (!status.has_scene) {
         if (status.loading) { ImGui::ProgressBar(static_cast<float>(*status.loading), ImVec2(-1.0f, 0.0f)); }
+    } else if (settings.page == PanelPage::kView && status.window) {
+        drawWindowPage(widgets, settings, status, requests);
     } else if (settings.page == PanelPage::kView) {
         drawViewPage(widgets, settings, status, requests);
     } else if (settings.page == PanelPage::kScenes) {
@@ -86,7 +89,7 @@ PanelRequests drawPanel(glm::uvec2 size_px, const ViewSettings& current, SceneCh
         drawMethodPage(widgets, settings, status, requests);
     }
     // The end of the ray.
-    if (ImGui::IsMousePosValid()) {
+    if (ImGui::IsMousePosValid() && !status.window) {
         ImGui::GetForegroundDrawList()->AddCircleFilled(ImGui::GetIO().MousePos, 6.0f, IM_COL32(255, 220, 80, 255));
     }
     ImGui::End();

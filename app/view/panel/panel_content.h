@@ -44,6 +44,12 @@ struct ShownTime {
     std::uint64_t late = 0;  // frames that were not loaded in time
 };
 
+// In a window, without a headset.
+struct ShownWindow {
+    bool helps = false;  // the list of keys is shown
+    bool fills_screen = false;
+};
+
 // The panel's content.
 struct PanelStatus {
     std::string scene;
@@ -62,6 +68,7 @@ struct PanelStatus {
     std::vector<std::pair<std::string, std::string>> facts;  // of the scene, see describeFacts
     ShownPlace place;
     ShownRate rate;
+    std::optional<ShownWindow> window;        // empty: in a headset
     std::optional<ShownTime> time;            // of a scene that moves
     std::size_t viewpoint_count = 0;          // places in the scene to go to
     std::string viewpoint;                    // name of the one gone to last
@@ -71,7 +78,8 @@ struct PanelStatus {
 // What the wearer asked for.
 struct PanelRequests {
     bool save = false, load = false, reset_scene = false, quit = false, reload_shaders = false, recentre = false, level_scene = false,
-         take_picture = false, natural_size = false, keep_viewpoint = false, last_scene = false, play = false;
+         take_picture = false, natural_size = false, keep_viewpoint = false, last_scene = false, play = false, show_whole = false,
+         open_file = false, fill_screen = false, help = false;
     double growth = 1.0;               // of the scene, around the wearer's feet
     double rise_m = 0.0;               // of the wearer
     int scene_step = 0;                // to the previous or next scene

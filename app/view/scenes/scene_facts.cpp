@@ -65,7 +65,9 @@ SceneFacts factsOf(const Scene& scene, const LoadNotes& notes, const std::string
     facts.device_bytes = scene.size() * deviceBytesPerSplat(scene.sh_degree, scene.isGaussian3d());
     facts.is_from_web = isAddress(source);
     if (!isBuiltin(source) && !facts.is_from_web) { facts.file_bytes = bytesOnDisk(source); }
-    facts.size_units = coreSize(scene);
+    const SceneCore core = measureCore(scene);
+    facts.size_units = core.size;
+    facts.middle = core.middle;
     return facts;
 }
 

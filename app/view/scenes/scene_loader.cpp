@@ -51,6 +51,14 @@ void LoadedScene::follow(std::span<const Eye> eyes, double step_seconds) {
     live->update(eyes, step_seconds);
 }
 
+std::string LoadedScene::moveTime(bool play, int step, std::optional<std::size_t> frame) {
+    if (moving == nullptr || (!play && step == 0 && !frame)) { return {}; }
+    if (play) { clock.togglePlaying(); }
+    if (step != 0) { clock.step(step); }
+    if (frame) { clock.goTo(*frame); }
+    return fmt::format("{} frame {} of {}", clock.plays() ? "plays from" : "rests at", clock.frame() + 1, clock.frameCount());
+}
+
 void LoadedScene::count(FrameCounters& counters) const {
     if (live) { counters.streaming = streamingOf(*live); }
 }
@@ -116,6 +124,7 @@ void SceneLoader::load(const Context& context, const RunOptions& options, bool s
         } catch (const Error& error) { loaded_->remembering_trouble = error.what(); }
         const bool is_asked_for = options.camera.eye || options.camera.look || !options.camera.cameras_file.empty();
         const double growth = is_asked_for ? 1.0 : growthToSee(start, options.metres_per_unit);
+        loaded_->start_view = start;
         loaded_->start = startPlacement(start, growth * options.metres_per_unit);
         loaded_->up = up;
         loaded_->floor = floor;

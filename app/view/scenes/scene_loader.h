@@ -29,6 +29,8 @@ struct LoadedScene {
     }
     // Before a frame of these eyes: requests what they need, and moves a moving scene on. Never waits.
     void follow(std::span<const Eye> eyes, double step_seconds);
+    // Of one that moves: plays or pauses it, steps, or goes to a frame. Returns what it does now in a line; empty: nothing was asked for.
+    std::string moveTime(bool play, int step, std::optional<std::size_t> frame);
     // Adds what is resident of it to a frame's counters.
     void count(FrameCounters& counters) const;
 
@@ -41,6 +43,7 @@ struct LoadedScene {
     SceneClock clock;                      // of one that moves
     std::unique_ptr<StereoFrame> kernels;  // for frames that show it, see makeKernelsAhead; null: none were made
     glm::dvec3 origin{0.0};                // see Scene
+    View start_view{};                     // see startView
     Similarity start;                      // see startPlacement
     glm::dvec3 up{0.0, -1.0, 0.0};         // see upOfScene
     std::optional<double> floor;           // see floorHeight, along `up`

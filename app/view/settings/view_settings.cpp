@@ -83,6 +83,12 @@ std::span<const OptionRow<ViewSettings>> viewSettingsRows() {
         row("passthrough", "", "the room behind the scene, where the headset shows it", field::flag<&S::passthrough>()),
         row("quality", "PRESET", "how the frame rate is held, see headset.md",
             field::named<&S::quality>({std::begin(kQualityNames), std::end(kQualityNames)})),
+        row("window-stereo", "KIND", "in a window without a headset: one eye's picture, or how both are shown",
+            field::named<&S::window_stereo>({"mono", "side-by-side", "cross-eyed", "top-bottom", "anaglyph"})),
+        row("window-eyes", "SHARE", "there: distance of the eyes, as a share of the distance of the screen's plane",
+            field::number<&S::window_eyes>(0.0, 0.2)),
+        row("window-plane", "FACTOR", "there: distance of the screen's plane, in distances of the point that one orbits",
+            field::number<&S::window_plane>(0.1, 10.0)),
     };
     return rows;
 }

@@ -14,6 +14,11 @@ namespace binosplat {
 enum class PanelPage { kView, kScenes, kMethod, kTime };
 // The background behind the scene; kAsSet: that of --background.
 enum class Backdrop { kAsSet, kBlack, kGrey, kWhite };
+inline glm::dvec3 colourOf(Backdrop backdrop) {
+    return glm::dvec3(backdrop == Backdrop::kWhite ? 1.0 : backdrop == Backdrop::kGrey ? 0.5 : 0.0);
+}
+// What a window without a headset shows of the two eyes.
+enum class WindowStereo { kMono, kSideBySide, kCrossEyed, kTopBottom, kAnaglyph };
 
 struct ViewSettings {
     StereoOptions stereo;
@@ -30,10 +35,13 @@ struct ViewSettings {
     bool smooth_turn = false;     // in place of turns by 30 degrees
     Backdrop backdrop = Backdrop::kAsSet;
     PanelPage page = PanelPage::kView;
-    bool vignette = true;                       // while the wearer moves by stick
-    bool passthrough = false;                   // the room in place of the background, if the headset can
-    Quality quality = Quality::kOff;            // how the frame rate is held
-    double last_foveation_deg = 15.0;           // for the panel's box: as far as eyes usually turn before the head does
+    bool vignette = true;              // while the wearer moves by stick
+    bool passthrough = false;          // the room in place of the background, if the headset can
+    Quality quality = Quality::kOff;   // how the frame rate is held
+    double last_foveation_deg = 15.0;  // for the panel's box: as far as eyes usually turn before the head does
+    // Of a window without a headset, see WindowSight.
+    WindowStereo window_stereo = WindowStereo::kMono;
+    double window_eyes = 0.033, window_plane = 1.0;
     std::optional<Similarity> scene_from_room;  // absent: the scene's own view
 
     bool operator==(const ViewSettings&) const = default;

@@ -2,6 +2,7 @@
 #include "app/view/window/mirror_window.h"
 
 #include "app/view/room/sprites.h"
+#include "app/view/window/window_drawing.h"
 #include "engine/error.h"
 
 #define GLFW_INCLUDE_NONE
@@ -23,29 +24,9 @@ constexpr double kRadiansPerPixel = 0.004;
 using Layout = vk::ImageLayout;
 using Usage = vk::ImageUsageFlagBits;
 
-void changeLayout(Commands& commands, vk::Image image, Layout from, Layout to) {
-    const auto all = vk::AccessFlagBits::eMemoryRead | vk::AccessFlagBits::eMemoryWrite;
-    const vk::ImageMemoryBarrier barrier(all, all, from, to, VK_QUEUE_FAMILY_IGNORED, VK_QUEUE_FAMILY_IGNORED, image,
-                                         {vk::ImageAspectFlagBits::eColor, 0, 1, 0, 1});
-    const auto stage = vk::PipelineStageFlagBits::eAllCommands;
-    commands.buffer().pipelineBarrier(stage, stage, {}, {}, {}, barrier);
-}
-
 // Width of the window: a square for the eye, and the panel beside it.
 int widthOf(const Canvas& canvas) {
     return kHeightPx + kHeightPx * static_cast<int>(canvas.sizePx().x) / static_cast<int>(canvas.sizePx().y);
-}
-
-// Scales all of `from` into the columns [x0, x1) of `to`, as large as its aspect ratio allows.
-void blit(Commands& commands, vk::Image from, glm::uvec2 from_px, vk::Image to, int x0, int x1, int height) {
-    const double scale = std::min(static_cast<double>(x1 - x0) / from_px.x, static_cast<double>(height) / from_px.y);
-    const int w = std::max(static_cast<int>(scale * from_px.x), 1), h = std::max(static_cast<int>(scale * from_px.y), 1);
-    const int left = x0 + (x1 - x0 - w) / 2, top = (height - h) / 2;
-    const vk::ImageSubresourceLayers layers(vk::ImageAspectFlagBits::eColor, 0, 0, 1);
-    const std::array source{vk::Offset3D(0, 0, 0), vk::Offset3D(static_cast<int>(from_px.x), static_cast<int>(from_px.y), 1)};
-    const std::array target{vk::Offset3D(left, top, 0), vk::Offset3D(left + w, top + h, 1)};
-    commands.buffer().blitImage(from, Layout::eTransferSrcOptimal, to, Layout::eTransferDstOptimal,
-                                vk::ImageBlit(layers, source, layers, target), vk::Filter::eLinear);
 }
 
 }  // namespace
@@ -170,14 +151,13 @@ void MirrorWindow::record(Commands& commands) {
     const vk::Image target = pictures_->current();
     if (!target) { return; }
     const int width = static_cast<int>(pictures_->sizePx().x), height = static_cast<int>(pictures_->sizePx().y);
-    changeLayout(commands, target, Layout::eUndefined, Layout::eTransferDstOptimal);
-    const vk::ClearColorValue black(std::array<float, 4>{0.0f, 0.0f, 0.0f, 1.0f});
-    commands.buffer().clearColorImage(target, Layout::eTransferDstOptimal, black,
-                                      vk::ImageSubresourceRange(vk::ImageAspectFlagBits::eColor, 0, 1, 0, 1));
-    changeLayout(commands, target, Layout::eTransferDstOptimal, Layout::eTransferDstOptimal);
+    clearWindow(commands, target);
     const int split = std::clamp(width * kHeightPx / widthOf(canvas_), 1, std::max(width - 1, 1));
-    if (eye_) { blit(commands, *eye_->image, eye_px_, target, 0, split, height); }
-    if (split < width) { blit(commands, canvas_.image(), canvas_.sizePx(), target, split, width, height); }
+    const auto show = [&](vk::Image image, glm::uvec2 size_px, const WindowPart& part) {
+        blitInto(commands, image, size_px, target, fittedInto(size_px, part));
+    };
+    if (eye_) { show(*eye_->image, eye_px_, {{0, 0}, {split, height}}); }
+    if (split < width) { show(canvas_.image(), canvas_.sizePx(), {{split, 0}, {width - split, height}}); }
     changeLayout(commands, target, Layout::eTransferDstOptimal, Layout::ePresentSrcKHR);
 }
 

@@ -16,8 +16,8 @@ constexpr std::uint64_t kLongestWaitNs = 1'000'000'000;  // for a display that h
 
 }  // namespace
 
-WindowPictures::WindowPictures(const Context& context, vk::raii::SurfaceKHR surface, std::function<glm::uvec2()> window_size_px)
-    : context_(context), surface_(std::move(surface)), window_size_px_(std::move(window_size_px)) {
+WindowPictures::WindowPictures(const Context& context, vk::raii::SurfaceKHR surface, std::function<glm::uvec2()> window_size_px, bool paced)
+    : context_(context), surface_(std::move(surface)), window_size_px_(std::move(window_size_px)), paced_(paced) {
     check(context.physicalDevice().getSurfaceSupportKHR(context.queueFamily(), *surface_) == VK_TRUE, "{} cannot show on this display",
           context.deviceName());
     acquired_fence_ = context.device().createFence({});
@@ -35,11 +35,10 @@ void WindowPictures::make() {
     const vk::raii::PhysicalDevice& device = context_.physicalDevice();
     const std::optional<vk::SurfaceFormatKHR> format = windowFormat(device.getSurfaceFormatsKHR(*surface_));
     check(format.has_value(), "this display offers no 8-bit UNORM format");
-    // The headset sets the pace.
     const auto modes = device.getSurfacePresentModesKHR(*surface_);
     vk::PresentModeKHR mode = vk::PresentModeKHR::eFifo;
     for (const auto better : {vk::PresentModeKHR::eImmediate, vk::PresentModeKHR::eMailbox}) {
-        if (std::ranges::find(modes, better) != modes.end()) { mode = better; }
+        if (!paced_ && std::ranges::find(modes, better) != modes.end()) { mode = better; }
     }
     const auto able = device.getSurfaceCapabilitiesKHR(*surface_);
     check(bool(able.supportedUsageFlags & vk::ImageUsageFlagBits::eTransferDst), "this display's images cannot be copied to");

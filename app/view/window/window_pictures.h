@@ -1,4 +1,4 @@
-// The pictures of a window, which the headset never waits for.
+// The pictures of a window, for which nobody waits.
 #pragma once
 
 #include "engine/gpu/context.h"
@@ -12,8 +12,9 @@ namespace binosplat {
 
 class WindowPictures {
 public:
-    // `window_size_px` returns the window's current size. Throws Error if the device cannot show on the surface.
-    WindowPictures(const Context& context, vk::raii::SurfaceKHR surface, std::function<glm::uvec2()> window_size_px);
+    // `window_size_px` returns the window's current size. Without `paced` a headset sets the pace, otherwise the display. Throws Error if
+    // the device cannot show on the surface.
+    WindowPictures(const Context& context, vk::raii::SurfaceKHR surface, std::function<glm::uvec2()> window_size_px, bool paced = false);
 
     WindowPictures(const WindowPictures&) = delete;
     WindowPictures& operator=(const WindowPictures&) = delete;
@@ -38,6 +39,7 @@ private:
     const Context& context_;
     vk::raii::SurfaceKHR surface_;
     std::function<glm::uvec2()> window_size_px_;
+    bool paced_;
     vk::raii::SwapchainKHR swapchain_{nullptr};
     vk::raii::Fence acquired_fence_{nullptr};
     std::vector<vk::Image> images_;

@@ -33,6 +33,7 @@ TEST_CASE_FIXTURE(AtWork, "a scene in the place of a command is viewed, any othe
     CHECK(viewed.scene == file);
     CHECK(viewed.frames == 3);
     CHECK(parse<ViewOptions>(work.path.string()).scene == work.path.string());
+    CHECK(parse<ViewOptions>("").browse);
     CHECK(parse<ViewOptions>("builtin:no-such-scene").scene == "builtin:no-such-scene");
     checkRefused("rendre", ExitCode::kUsage, "rendre is not a command; must be one of: render, bench, view, info, scene, convert, compare");
     for (const char* gone : {"gone.ply", "gone/", "a/gone", "gone.ply --frames 3"}) {
@@ -47,7 +48,7 @@ TEST_CASE_FIXTURE(AtWork, "a scene in the place of a command is viewed, any othe
 
 TEST_CASE("a command line that is not understood is a usage error, which names what is wrong") {
     for (const auto& [line, part] : std::vector<std::pair<std::string, std::string>>{
-             {"", "subcommand"},
+             {"view --desktop --headset-only", "--desktop and --headset-only contradict each other"},
              {"render", "SCENE"},
              {"render builtin:one-splat", "--out"},
              {kRenderOne + "--bogus", "--bogus"},

@@ -1,0 +1,51 @@
+// What mouse, keys and gamepad do to the camera.
+#pragma once
+
+#include "app/desktop/orbit_camera.h"
+
+#include <optional>
+
+namespace binosplat {
+
+// What is held down, by keys or a gamepad: each from -1 to 1.
+struct HeldMotion {
+    glm::dvec3 fly{0.0};   // right, down, forward
+    glm::dvec2 turn{0.0};  // right, up
+    bool fast = false;
+    [[nodiscard]] bool isAny() const { return fly != glm::dvec3(0.0) || turn != glm::dvec2(0.0); }
+};
+
+class CameraMover {
+public:
+    [[nodiscard]] const OrbitCamera& camera() const { return camera_; }
+    // Jumps, or goes there in a moment; any other motion ends that.
+    void set(const OrbitCamera& camera) { camera_ = camera, way_.reset(), drag_ = Drag::kNone; }
+    void glideTo(const OrbitCamera& camera) { way_ = Way{camera_, camera, 0.0}; }
+    [[nodiscard]] bool isGliding() const { return way_.has_value(); }
+
+    // A drag begins at `place_px` of a picture, where `under` is seen; `focal_px` is the picture's, `height_px` its height.
+    enum class Drag { kNone, kOrbit, kPan };
+    void beginDrag(Drag drag, const glm::dvec2& place_px, const glm::dvec3& under, double focal_px, double height_px);
+    void dragTo(const glm::dvec2& place_px);
+    void endDrag() { drag_ = Drag::kNone; }
+    [[nodiscard]] bool isDragging() const { return drag_ != Drag::kNone; }
+
+    // Steps of the wheel, away from oneself: towards what is under the pointer.
+    void turnWheel(double steps, const glm::dvec3& under);
+    // What is held, or a way to somewhere, for so long.
+    void pass(const HeldMotion& held, double seconds);
+
+private:
+    struct Way {
+        OrbitCamera from, to;
+        double seconds = 0.0;
+    };
+    OrbitCamera camera_;
+    std::optional<Way> way_;
+    Drag drag_ = Drag::kNone;
+    glm::dvec2 place_px_{0.0};  // of the drag, so far
+    glm::dvec3 under_{0.0};
+    double depth_ = 1.0, focal_px_ = 1.0, height_px_ = 1.0;
+};
+
+}  // namespace binosplat

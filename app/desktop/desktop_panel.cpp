@@ -1,0 +1,127 @@
+// The window's panel and what is asked for there.
+#include "app/desktop/desktop_shell.h"
+#include "app/desktop/open_dialog.h"
+#include "app/view/placement/placement.h"
+#include "app/view/settings/view_files.h"
+#include "engine/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace binosplat {
+
+void DesktopShell::layOutPanel(const PanelPointer& pointer, double seconds) {
+    layouts_due_ = std::max(layouts_due_ - 1, 0);
+    PanelStatus& status = panel_.status();
+    const LoadedScene* const scene = scenes_.get();
+    status.scene = scenes_.name();
+    status.loading = scenes_.loading();
+    status.has_scene = scene != nullptr;
+    status.time.reset();
+    if (scene != nullptr) {
+        status.facts = describeFacts(scene->facts, options_.run.metres_per_unit);
+        status.place.view = viewpoint_;
+        status.viewpoint_count = scene->viewpoints.size();
+        status.viewpoint = viewpoint_ ? scene->viewpoints[*viewpoint_].name : "";
+        if (scene->moving != nullptr) {
+            status.time = {scene->clock.frame(), scene->clock.frameCount(), scene->moving->rateHz(), scene->clock.plays(),
+                           scene->moving->counters().scene_frames_late};
+        }
+    }
+    panel_.showTimes(pictures_.lastFrame(), "", seconds);
+    panel_.askFor(files_, state_.settings());
+    follow(panel_.layOut(pointer, state_.settings(), seconds));
+}
+
+void DesktopShell::follow(const PanelRequests& requests) {
+    state_.set(requests.settings);
+    ShownWindow& window = *panel_.status().window;
+    if (requests.help) {
+        window.helps = !window.helps || !state_.settings().panel;
+        ViewSettings settings = state_.settings();
+        settings.panel = true;
+        settings.page = PanelPage::kView;
+        state_.set(settings);
+        log_.say(window.helps ? "help" : "no help");
+    }
+    if (requests.fill_screen) {
+        window_.toggleFullScreen();
+        window.fills_screen = !window.fills_screen;
+    }
+    if (LoadedScene* const scene = scenes_.get(); scene != nullptr) {
+        if (requests.show_whole) { showWhole(); }
+        if (requests.reset_scene) { showStart(); }
+        if (requests.viewpoint_step != 0 && !scene->viewpoints.empty()) {
+            const std::size_t count = scene->viewpoints.size(), last = count - 1;
+            const std::size_t before = viewpoint_.value_or(requests.viewpoint_step > 0 ? last : 0);
+            goToViewpoint((before + (requests.viewpoint_step > 0 ? 1 : last)) % count);
+        }
+        if (requests.keep_viewpoint) {
+            const OrbitCamera& camera = mover_.camera();
+            notes_.addViewpoint(*scene, {camera.position(), camera.centre(), camera.up(), 0.0});
+            viewpoint_ = scene->viewpoints.size() - 1;
+        }
+        if (const std::string said = scene->moveTime(requests.play, requests.frame_step, requests.frame); !said.empty()) { log_.say(said); }
+    }
+    openAndSave(requests);
+    if (requests.quit) { leaving_ = true; }
+}
+
+void DesktopShell::openAndSave(const PanelRequests& requests) {
+    if (requests.save && scenes_.get() != nullptr) {
+        // Level, for whoever stands there in a headset.
+        const OrbitCamera& camera = mover_.camera();
+        Similarity level = startPlacement({camera.position(), camera.centre(), camera.up(), 0.0}, options_.run.metres_per_unit);
+        level.scale = state_.sceneFromRoom().scale;
+        state_.place(level);
+        notes_.save(scenes_.name(), state_.withPlacement());
+    }
+    if (requests.load) { load(); }
+    if (requests.scene_step != 0) { scenes_.beginBeside(requests.scene_step, files_); }
+    if (!requests.chosen_scene.empty()) { scenes_.begin(requests.chosen_scene); }
+    if (requests.last_scene && scenes_.get() != nullptr) {
+        notes_.openLast(*scenes_.get(), [this](const std::string& scene) { scenes_.begin(scene); });
+    }
+    if (!requests.favourite.empty()) {
+        notes_.toggleFavourite(requests.favourite, [this] { panel_.listAnew(); });
+    }
+    if (requests.open_file) { openFile(); }
+    if (requests.take_picture && scenes_.get() != nullptr) { writes_picture_ = true, is_refined_ = false; }
+}
+
+void DesktopShell::load() {
+    files_.read("loading what was saved", [this, scene = scenes_.name()]() -> FileWorker::Done {
+        return [this, scene, saved = readSavedSettings(scene)] {
+            if (scene != scenes_.name()) { return; }  // another one came meanwhile
+            ViewSettings loaded = state_.settings();
+            say(takeSavedSettings(saved, loaded));
+            loaded.panel = state_.settings().panel;
+            state_.set(loaded);
+        };
+    });
+}
+
+void DesktopShell::openFile() {
+    if (!dialogs_.now().empty()) { return; }  // it is open already
+    dialogs_.read("choosing a file", [this]() -> FileWorker::Done {
+        return [this, chosen = askForFile()] {
+            if (!chosen.trouble.empty()) { return say(chosen.trouble); }
+            if (!chosen.file.empty()) { scenes_.begin(chosen.file); }
+        };
+    });
+}
+
+void DesktopShell::takePicture() {
+    try {
+        std::error_code error;
+        const std::filesystem::path folder = std::filesystem::current_path(error);
+        check(!error, "the picture cannot be written: the working directory is gone");
+        if (const std::optional<std::string> outcome = writer_.finish()) { say(*outcome); }
+        writer_.begin(scenes_.frame(), !showsTwoEyes(state_.settings().window_stereo), folder);
+    } catch (const vk::DeviceLostError&) { throw; } catch (const vk::SystemError& error) {
+        say(fmt::format("the picture cannot be read: {}", error.what()));
+    } catch (const Error& error) { say(error.what()); }
+}
+
+}  // namespace binosplat

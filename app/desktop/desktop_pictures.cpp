@@ -1,0 +1,88 @@
+// One frame of the window.
+#include "app/desktop/desktop_pictures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <utility>
+
+namespace binosplat {
+
+namespace {
+
+// Pictures in motion may take that long, and have at least this resolution each way.
+constexpr double kMotionMs = 25.0, kCoarsest = 0.25;
+// An sRGB format, so that the presenter writes encoded values; the images that the bytes go to are not decoded either.
+constexpr vk::Format kPresented = vk::Format::eR8G8B8A8Srgb, kBytes = vk::Format::eR8G8B8A8Unorm;
+
+}  // namespace
+
+void MotionScale::measure(double scale, double gpu_ms) {
+    if (!(gpu_ms > 0.0)) { return; }
+    const double full_ms = gpu_ms / (scale * scale);
+    full_ms_ = full_ms_ == 0.0 ? full_ms : glm::mix(full_ms_, full_ms, 0.3);
+    // In steps of half the pixels: another size waits for the frames under way. And not for a little.
+    const double steps = std::log2(std::max(full_ms_ / kMotionMs, 1.0)), now = -2.0 * std::log2(scale_);
+    if (std::abs(steps - now) > 0.75) { scale_ = std::max(std::exp2(-0.5 * std::round(steps)), kCoarsest); }
+}
+
+DesktopPictures::DesktopPictures(const Context& context) : context_(context), presenter_(context, kPresented) { presenter_.makeKernels(); }
+
+void DesktopPictures::makeRoom(glm::uvec2 size_px, std::size_t eyes) {
+    const bool fits = size_px.x <= room_px_.x && size_px.y <= room_px_.y;
+    if (fits && images_.at(eyes - 1)) { return; }
+    {
+        const std::lock_guard lock(context_.queueMutex());
+        context_.queue().waitIdle();
+    }
+    using Usage = vk::ImageUsageFlagBits;
+    if (!fits) { room_px_ = size_px; }
+    for (std::size_t e = 0; e < images_.size(); ++e) {
+        images_[e].reset();
+        if (e < eyes) {
+            images_[e].emplace(context_, "the window's eye", room_px_, kBytes,
+                               Usage::eTransferDst | Usage::eTransferSrc | Usage::eColorAttachment);
+        }
+    }
+}
+
+void DesktopPictures::render(StereoFrame& frame, const std::vector<Eye>& eyes, const FrameSettings& settings, bool tint, bool waits) {
+    const glm::uvec2 size_px = eyes.front().size_px;
+    makeRoom(size_px, eyes.size());
+    frame.makeRoom(eyes, settings);
+    presenter_.makeRoom(size_px, false);
+    const auto present = [&](Commands& commands) {
+        for (std::size_t e = 0; e < eyes.size(); ++e) {
+            const vk::Image image = *images_[e]->image;
+            const WarpBuffers* const tinted_by = tint ? frame.chosenTiles(static_cast<int>(e)) : nullptr;
+            presenter_.record(commands,
+                              {.picture = &frame.picture(static_cast<int>(e)),
+                               .size_px = size_px,
+                               .tinted_by = tinted_by,
+                               .colour = image,
+                               .depth = {},
+                               .see_through = false},
+                              settings.near);
+            changeLayout(commands, image, vk::ImageLayout::eColorAttachmentOptimal, vk::ImageLayout::eTransferSrcOptimal);
+        }
+    };
+    std::optional<FrameResult> known;
+    if (waits) {
+        static_cast<void>(frame.finish());
+        known = frame.render(eyes, settings, present);
+    } else {
+        known = frame.renderAhead(eyes, settings, present);
+    }
+    if (known) { last_ = std::move(*known); }
+    eyes_ = eyes;
+}
+
+void DesktopPictures::compose(Commands& commands, vk::Image window, const std::vector<EyePart>& parts) {
+    if (eyes_.empty()) { return; }
+    for (const EyePart& part : parts) {
+        const std::size_t image = eyes_.size() == 1 ? 0 : static_cast<std::size_t>(part.eye);
+        blitInto(commands, *images_[image]->image, eyes_.front().size_px, window, {glm::ivec2(part.at_px), glm::ivec2(part.size_px)});
+    }
+}
+
+}  // namespace binosplat

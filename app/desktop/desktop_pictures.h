@@ -1,0 +1,55 @@
+// The scene's pictures in a window: rendered, kept, and composed with the panel's.
+#pragma once
+
+#include "app/desktop/eye_parts.h"
+#include "app/view/panel/canvas.h"
+#include "app/view/window/window_drawing.h"
+#include "engine/frame/stereo_frame.h"
+#include "engine/passes/present.h"
+
+#include <array>
+#include <optional>
+#include <vector>
+
+namespace binosplat {
+
+// The resolution, each way, of pictures in motion: chosen by what one in full costs, so that they come about as often as displays.
+class MotionScale {
+public:
+    // A picture at a share of the resolution took that long on the device.
+    void measure(double scale, double gpu_ms);
+    [[nodiscard]] double scale() const { return scale_; }
+
+private:
+    double full_ms_ = 0.0;  // smoothed; 0: nothing is known yet
+    double scale_ = 1.0;
+};
+
+class DesktopPictures {
+public:
+    explicit DesktopPictures(const Context& context);
+
+    // Renders these eyes, all of one size. With `waits` the picture is whole when this returns; otherwise it does not wait, and may lack
+    // splats. Throws Error if memory is short.
+    void render(StereoFrame& frame, const std::vector<Eye>& eyes, const FrameSettings& settings, bool tint, bool waits);
+    // Records the parts' pictures, scaled, into a window that was cleared.
+    void compose(Commands& commands, vk::Image window, const std::vector<EyePart>& parts);
+
+    // The last frame that the device has finished.
+    [[nodiscard]] const FrameResult& lastFrame() const { return last_; }
+    // The eyes that were rendered last; none before that.
+    [[nodiscard]] const std::vector<Eye>& eyes() const { return eyes_; }
+    void forget() { eyes_.clear(), last_ = {}; }
+
+private:
+    void makeRoom(glm::uvec2 size_px, std::size_t eyes);
+
+    const Context& context_;
+    Presenter presenter_;
+    std::array<std::optional<OwnImage>, 2> images_;
+    glm::uvec2 room_px_{0, 0};  // of each image; a picture may be smaller
+    std::vector<Eye> eyes_;
+    FrameResult last_;
+};
+
+}  // namespace binosplat

@@ -1,0 +1,239 @@
+// The window from its first picture to its last.
+#include "app/desktop/desktop_shell.h"
+
+#include "app/options/modes.h"
+#include "app/terminal/interrupt.h"
+#include "app/view/panel/panel_style.h"
+#include "engine/error.h"
+#include "engine/scene/standpoint.h"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+
+namespace binosplat {
+
+namespace {
+
+constexpr double kRestSeconds = 0.15;     // without a change, before a picture is refined
+constexpr double kIdleSeconds = 0.25;     // how often Ctrl-C is looked for
+constexpr double kLoadingSeconds = 0.05;  // how often what threads bring
+constexpr double kGamepadSeconds = 1.0 / 60.0, kNoPictureSeconds = 0.002;
+constexpr double kUsualAngleDeg = 60.0;
+// The panel's size: of its own pixels, on a desktop that does not magnify; and at most of the window's width.
+constexpr double kPanelScale = 0.7, kPanelShare = 0.6;
+constexpr double kNearShare = 0.05;  // of the distance of the centre: closer than the usual near plane if people go close
+
+double secondsSince(std::chrono::steady_clock::time_point then) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - then).count();
+}
+
+// Kernels for the method that pictures in motion are made by.
+FramesAhead framesAhead(const ViewSettings& settings, glm::uvec2 size_px) {
+    StereoOptions stereo = settings.stereo;
+    if (!showsTwoEyes(settings.window_stereo)) { stereo.mode = Mode::kMono; }
+    stereo.foveation_deg = 0.0;
+    stereo.half_periphery = false;
+    return {stereo, size_px, /*with_depth*/ true, settings.tint, {}};
+}
+
+}  // namespace
+
+DesktopShell::DesktopShell(const ViewOptions& options, const ViewSettings& settings, const Context& context)
+    : options_(options),
+      context_(context),
+      state_(settings),
+      window_(context),
+      pictures_(context),
+      panel_(context, vk::Format::eR8G8B8A8Srgb),
+      commands_{Commands(context), Commands(context)},
+      angle_rad_(glm::radians(options.run.camera.fov_x_deg.value_or(kUsualAngleDeg))),
+      notes_(files_, [this](const std::string& message) { say(message); }),
+      scenes_(context_, options_, log_, framesAhead(settings, window_.sizePx())) {
+    panel_.status().window.emplace();
+    if (const std::string& complaint = panel_.canvas().font().complaint(); !complaint.empty()) { log_.print(complaint); }
+}
+
+void DesktopShell::run() {
+    while (!leaving_) { step(); }
+    if (const std::optional<std::string> outcome = writer_.finish()) { say(*outcome); }
+    keepPictureOfScene();
+    files_.finish();
+    log_.print(fmt::format("{} pictures in the window, {} of the scene", log_.frame, scene_frames_));
+}
+
+void DesktopShell::step() {
+    window_.wait(secondsToWait());
+    const double seconds = std::min(secondsSince(last_step_), 0.1);
+    last_step_ = Clock::now();
+    if (isInterrupted() || window_.isClosed() || (options_.frames != 0 && log_.frame >= options_.frames)) { leaving_ = true; }
+    files_.deliver();
+    dialogs_.deliver();
+    if (const std::optional<std::string> outcome = writer_.takeOutcome()) { say(*outcome); }
+    if (scenes_.isNextReady()) { takeScene(); }
+    for (const DesktopEvent& event : window_.takeEvents()) { handle(event); }
+    const bool was_on_way = mover_.isGliding();
+    mover_.pass(window_.heldMotion(), seconds);
+    if (was_on_way && !mover_.isGliding()) { log_.say("arrived"); }
+    layOutPanel(pointer_, seconds);
+    draw(seconds);
+    if (const std::string change = state_.takeChange(); !change.empty()) { log_.say(change); }
+}
+
+double DesktopShell::secondsToWait() const {
+    const glm::uvec2 size_px = window_.sizePx();
+    if (size_px.x == 0 || size_px.y == 0) { return kIdleSeconds; }  // minimized
+    if (!is_shown_) { return kNoPictureSeconds; }
+    if (layouts_due_ > 0 || mover_.isGliding() || window_.heldMotion().isAny()) { return 0.0; }
+    const LoadedScene* const scene = scenes_.get();
+    if (scene != nullptr && scene->live && (!scene->live->isSettled() || (scene->moving != nullptr && scene->clock.plays()))) {
+        return kNoPictureSeconds;
+    }
+    double most = kIdleSeconds;
+    if (!is_refined_) { most = std::clamp(kRestSeconds - secondsSince(changed_at_), 0.0, most); }
+    if (scenes_.isLoading() || !files_.now().empty() || !dialogs_.now().empty()) { most = std::min(most, kLoadingSeconds); }
+    return window_.hasGamepad() ? std::min(most, kGamepadSeconds) : most;
+}
+
+void DesktopShell::takeScene() {
+    const LoadedScene* const before = scenes_.get();
+    keepPictureOfScene();
+    if (before != nullptr) { left_[before->place] = mover_.camera(); }
+    const std::string complaint = scenes_.take(state_);
+    if (!complaint.empty()) { say(complaint); }
+    const LoadedScene* const scene = scenes_.get();
+    if (scene == before) { return; }
+    pictures_.forget();
+    drawn_ = {};
+    viewpoint_.reset();
+    OrbitCamera camera(scene->start_view);
+    if (const Similarity& placed = state_.sceneFromRoom(); !(placed == scene->start)) {  // where it was saved
+        const glm::dvec3 ahead = placed.orientation * glm::dvec3(0.0, 0.0, camera.distance());
+        camera = OrbitCamera(View{placed.position, placed.position + ahead, placed.orientation * glm::dvec3(0.0, -1.0, 0.0), 0.0});
+    }
+    if (const auto left = left_.find(scene->place); left != left_.end()) { camera = left->second; }
+    mover_.set(camera);
+    notes_.remember(scene->name, complaint);
+    window_.setTitle(scene->name + " - binosplat");
+}
+
+void DesktopShell::keepPictureOfScene() {
+    if (scenes_.get() == nullptr || pictures_.eyes().empty()) { return; }
+    try {
+        notes_.keepPicture(*scenes_.get(), scenes_.frame().readPicture(0));
+    } catch (const vk::DeviceLostError&) { throw; } catch (const vk::SystemError&) {
+        // A missing picture is not worth a message.
+    } catch (const Error&) {}
+}
+
+WindowPart DesktopShell::panelPart() const {
+    if (!state_.settings().panel) { return {}; }
+    const glm::dvec2 size(window_.sizePx()), panel(kPanelPx);
+    const double scale = std::min({window_.scale() * kPanelScale, size.y / panel.y, kPanelShare * size.x / panel.x});
+    const glm::ivec2 size_px = glm::max(glm::ivec2(scale * panel), glm::ivec2(1));
+    return {{static_cast<int>(size.x) - size_px.x, 0}, size_px};
+}
+
+glm::uvec2 DesktopShell::areaPx() const {
+    const glm::uvec2 size_px = window_.sizePx();
+    return {size_px.x - static_cast<unsigned>(panelPart().size_px.x), size_px.y};
+}
+
+WindowSight DesktopShell::windowSight() const {
+    const ViewSettings& settings = state_.settings();
+    return {settings.window_stereo, settings.window_eyes, settings.window_plane, angle_rad_};
+}
+
+DesktopShell::Sight DesktopShell::sightNow() const {
+    Sight sight{scenes_.get(), mover_.camera(), partsOf(state_.settings().window_stereo, areaPx()).front().size_px, state_.settings(),
+                moment_};
+    sight.settings.page = {};  // these change nothing of the scene
+    sight.settings.panel = {};
+    return sight;
+}
+
+FrameSettings DesktopShell::frameSettingsNow(bool at_rest) const {
+    const ViewSettings& settings = state_.settings();
+    FrameSettings frame = frameSettings(options_.run.camera, framesAhead(settings, {}).stereo, kWearersOrder);
+    if (at_rest && frame.mode != Mode::kMono && !settings.tint) { frame.mode = Mode::kShared; }
+    const LoadedScene& scene = *scenes_.get();
+    const double size = scene.facts.size_units, usual = size > 0.0 ? kUsualNear * std::min(size, 1.0) : kUsualNear;
+    frame.near = options_.run.camera.near.value_or(std::min(usual, kNearShare * mover_.camera().distance()));
+    frame.half_floats = true;
+    frame.keep_both_depths = true;
+    frame.keep_classes = settings.tint;
+    frame.keep_past = !at_rest;
+    if (settings.backdrop != Backdrop::kAsSet) { frame.background = colourOf(settings.backdrop); }
+    return frame;
+}
+
+void DesktopShell::draw(double seconds) {
+    const glm::uvec2 size_px = window_.sizePx();
+    if (size_px.x == 0 || size_px.y == 0) { return; }
+    if (window_.takeDamage()) { is_shown_ = false; }
+    if (is_shown_ && scenes_.get() != nullptr) { drawScene(seconds); }
+    const std::uint64_t panel = state_.settings().panel ? panel_.canvas().revision() : 0;
+    if (std::exchange(shown_panel_, panel) != panel) { is_shown_ = false; }
+    if (!is_shown_) { show(); }
+}
+
+void DesktopShell::drawScene(double seconds) {
+    LoadedScene& scene = *scenes_.get();
+    if (scene.live) {
+        const std::size_t before = scene.clock.frame();
+        const WindowSight sight = windowSight();
+        scene.follow(eyesOf(mover_.camera(), sight, sightNow().part_px), seconds);
+        for (const std::string& line : scene.live->tryTakeLines()) { say(line); }
+        if (!scene.live->isSettled() || before != scene.clock.frame()) { ++moment_; }
+    }
+    const Sight sight = sightNow();
+    if (!(sight == drawn_)) {
+        drawn_ = sight;
+        is_refined_ = false;
+        changed_at_ = Clock::now();
+        render(motion_.scale(), false);
+    } else if (!is_refined_ && (secondsSince(changed_at_) >= kRestSeconds || writes_picture_)) {
+        is_refined_ = true;
+        render(1.0, true);
+        if (std::exchange(writes_picture_, false)) { takePicture(); }
+    }
+}
+
+void DesktopShell::render(double scale, bool at_rest) {
+    scale *= state_.settings().resolution_scale;
+    const glm::uvec2 size_px = glm::max(glm::uvec2(glm::round(scale * glm::dvec2(drawn_.part_px))), glm::uvec2(16));
+    FrameSettings settings = frameSettingsNow(at_rest);
+    settings.mark = static_cast<std::uint64_t>(std::lround(1000.0 * scale));
+    pictures_.render(scenes_.frame(), eyesOf(mover_.camera(), windowSight(), size_px), settings, state_.settings().tint, at_rest);
+    const FrameResult& last = pictures_.lastFrame();
+    motion_.measure(0.001 * static_cast<double>(last.mark), last.gpu_total_ms);
+    ++scene_frames_;
+    is_shown_ = false;
+    layouts_due_ = std::max(layouts_due_, 1);  // its times
+    panel_.keepFrameTime();
+}
+
+void DesktopShell::show() {
+    const auto compose = [&](vk::Image target, vk::Semaphore drawn) {
+        Commands& commands = commands_[log_.frame % commands_.size()];
+        commands.wait();
+        commands.begin();
+        const WindowPart panel = panelPart();
+        if (panel.size_px.x > 0) { panel_.record(commands); }
+        clearWindow(commands, target);
+        if (scenes_.get() != nullptr) { pictures_.compose(commands, target, partsOf(state_.settings().window_stereo, areaPx())); }
+        if (panel.size_px.x > 0) { blitInto(commands, panel_.canvas().image(), kPanelPx, target, panel); }
+        changeLayout(commands, target, vk::ImageLayout::eTransferDstOptimal, vk::ImageLayout::ePresentSrcKHR);
+        commands.submit(drawn);
+    };
+    is_shown_ = window_.show(compose);
+    if (is_shown_) { ++log_.frame; }
+}
+
+void DesktopShell::say(const std::string& message) {
+    panel_.status().message = message;
+    layouts_due_ = std::max(layouts_due_, 1);
+    log_.say(message);
+}
+
+}  // namespace binosplat

@@ -1,0 +1,103 @@
+// The window's loop: what people do, and what they see of it.
+#pragma once
+
+#include "app/desktop/camera_mover.h"
+#include "app/desktop/desktop_pictures.h"
+#include "app/desktop/desktop_window.h"
+#include "app/terminal/frame_log.h"
+#include "app/view/files/picture_writer.h"
+#include "app/view/panel/panel_picture.h"
+#include "app/view/scenes/scene_notes.h"
+#include "app/view/scenes/shown_scene.h"
+#include "app/view/settings/view_state.h"
+
+#include <array>
+#include <chrono>
+#include <map>
+
+namespace binosplat {
+
+class DesktopShell {
+public:
+    // Begins to load the scene. `context` outlives the shell.
+    DesktopShell(const ViewOptions& options, const ViewSettings& settings, const Context& context);
+
+    void run();
+
+private:
+    using Clock = std::chrono::steady_clock;
+    // All that the scene's picture depends on.
+    struct Sight {
+        const LoadedScene* scene = nullptr;
+        OrbitCamera camera;
+        glm::uvec2 part_px{0, 0};
+        ViewSettings settings;
+        std::uint64_t moment = 0;  // counts the changes of a scene that moves or loads
+        bool operator==(const Sight&) const = default;
+    };
+
+    // One turn of the loop.
+    void step();
+    [[nodiscard]] double secondsToWait() const;
+    void takeScene();
+    void keepPictureOfScene();
+
+    // Pictures.
+    [[nodiscard]] WindowPart panelPart() const;
+    [[nodiscard]] glm::uvec2 areaPx() const;  // beside the panel
+    [[nodiscard]] WindowSight windowSight() const;
+    [[nodiscard]] Sight sightNow() const;
+    [[nodiscard]] FrameSettings frameSettingsNow(bool at_rest) const;
+    void draw(double seconds);
+    void drawScene(double seconds);
+    void render(double scale, bool at_rest);
+    void show();
+
+    // Input.
+    void handle(const DesktopEvent& event);
+    void press(const DesktopEvent& event);
+    void pressKey(int key);
+    // What the picture shows at a place of the window or, behind it, the place as far away as the centre.
+    [[nodiscard]] std::optional<glm::dvec3> seenAt(const glm::dvec2& place_px);
+    [[nodiscard]] glm::dvec3 under(const glm::dvec2& place_px);
+    void goToViewpoint(std::size_t index);
+    void showWhole();
+    void showStart();
+
+    // The panel.
+    void layOutPanel(const PanelPointer& pointer, double seconds);
+    void follow(const PanelRequests& requests);
+    void openAndSave(const PanelRequests& requests);
+    void load();
+    void openFile();
+    void takePicture();
+    void say(const std::string& message);
+
+    ViewOptions options_;
+    const Context& context_;
+    FrameLog log_;
+    ViewState state_;
+    DesktopWindow window_;
+    DesktopPictures pictures_;
+    PanelPicture panel_;
+    MotionScale motion_;
+    CameraMover mover_;
+    std::map<std::string, OrbitCamera> left_;  // by place: where another scene replaced this one
+    std::array<Commands, 2> commands_;         // that compose the window, in turn
+    PictureWriter writer_;
+
+    PanelPointer pointer_;  // on the panel
+    double angle_rad_;      // of view
+    Sight drawn_;
+    bool is_refined_ = true, is_shown_ = true, leaving_ = false, writes_picture_ = false;
+    int layouts_due_ = 2;  // widgets settle one layout after what was done to them
+    std::uint64_t shown_panel_ = 0, scene_frames_ = 0, moment_ = 0;
+    std::optional<std::size_t> viewpoint_;  // the last one gone to
+    glm::dvec2 pressed_px_{0.0};            // the last press of the left button
+    Clock::time_point pressed_at_{}, changed_at_{}, last_step_ = Clock::now();
+    SceneNotes notes_;
+    FileWorker dialogs_, files_;  // their threads end before the users of their results
+    ShownScene scenes_;           // last: the loading thread ends first
+};
+
+}  // namespace binosplat

@@ -1,0 +1,189 @@
+// GLFW's window.
+#include "app/desktop/desktop_window.h"
+
+#include "engine/error.h"
+
+#define GLFW_INCLUDE_NONE
+#define GLFW_INCLUDE_VULKAN
+#include <GLFW/glfw3.h>
+
+#include <algorithm>
+#include <mutex>
+#include <utility>
+
+namespace binosplat {
+
+namespace {
+
+constexpr int kWindowWidthPx = 1280, kWindowHeightPx = 720;
+constexpr double kStickRests = 0.15;
+
+DesktopWindow& self(GLFWwindow* window) { return *static_cast<DesktopWindow*>(glfwGetWindowUserPointer(window)); }
+
+double stick(float value) { return std::abs(value) < kStickRests ? 0.0 : static_cast<double>(value); }
+
+bool gamepadState(GLFWgamepadstate& state) {
+    for (int pad = GLFW_JOYSTICK_1; pad <= GLFW_JOYSTICK_LAST; ++pad) {
+        if (glfwGetGamepadState(pad, &state) == GLFW_TRUE) { return true; }
+    }
+    return false;
+}
+
+}  // namespace
+
+DesktopWindow::DesktopWindow(const Context& context) : context_(context), window_(nullptr, glfwDestroyWindow) {
+    const auto require = [](bool condition, const std::string& trouble) {
+        if (!condition) { throw Error(ExitCode::kNoDevice, trouble); }
+    };
+    require(context.hasDeviceExtension(VK_KHR_SWAPCHAIN_EXTENSION_NAME),
+            fmt::format("{} cannot show pictures in a window, must be a device with VK_KHR_swapchain", context.deviceName()));
+    glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
+    glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
+    window_.reset(glfwCreateWindow(kWindowWidthPx, kWindowHeightPx, "binosplat", nullptr, nullptr));
+    require(window_ != nullptr, "the window does not open");
+    glfwSetWindowSizeLimits(window_.get(), 320, 240, GLFW_DONT_CARE, GLFW_DONT_CARE);
+    glfwSetWindowUserPointer(window_.get(), this);
+    makePictures();
+    listen();
+}
+
+DesktopWindow::~DesktopWindow() {
+    const std::lock_guard lock(context_.queueMutex());
+    try {
+        context_.device().waitIdle();
+    } catch (const vk::SystemError&) {}  // a lost device draws nothing more
+}
+
+void DesktopWindow::makePictures() {
+    pictures_.reset();
+    VkSurfaceKHR surface = VK_NULL_HANDLE;
+    const VkResult result = glfwCreateWindowSurface(*context_.instance(), window_.get(), nullptr, &surface);
+    if (result != VK_SUCCESS) {
+        throw Error(ExitCode::kNoDevice, fmt::format("the window cannot be drawn on: {}", vk::to_string(vk::Result(result))));
+    }
+    vk::raii::SurfaceKHR owned(context_.instance(), surface);
+    if (context_.physicalDevice().getSurfaceSupportKHR(context_.queueFamily(), *owned) != VK_TRUE) {
+        throw Error(ExitCode::kNoDevice, fmt::format("{} cannot show on this display, must be a device that can", context_.deviceName()));
+    }
+    constexpr bool kPaced = true;
+    pictures_ = std::make_unique<WindowPictures>(
+        context_, std::move(owned), [this] { return sizePx(); }, kPaced);
+}
+
+void DesktopWindow::add(DesktopEvent event) {
+    event.place_px = inPixels(cursor_);
+    events_.push_back(std::move(event));
+}
+
+void DesktopWindow::listen() {
+    using Kind = DesktopEvent::Kind;
+    GLFWwindow* const window = window_.get();
+    glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int, int action, int) {
+        if (action == GLFW_PRESS) { self(w).add({.kind = Kind::kKey, .code = key, .path = {}}); }
+    });
+    glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int button, int action, int) {
+        self(w).add({.kind = action == GLFW_PRESS ? Kind::kPress : Kind::kRelease, .code = button, .path = {}});
+    });
+    glfwSetCursorPosCallback(window, [](GLFWwindow* w, double x, double y) {
+        self(w).cursor_ = {x, y};
+        self(w).add({.kind = Kind::kMove, .path = {}});
+    });
+    glfwSetCursorEnterCallback(window, [](GLFWwindow* w, int entered) {
+        glfwGetCursorPos(w, &self(w).cursor_.x, &self(w).cursor_.y);
+        self(w).add({.kind = entered == GLFW_TRUE ? Kind::kMove : Kind::kLeave, .path = {}});
+    });
+    glfwSetScrollCallback(window,
+                          [](GLFWwindow* w, double, double steps) { self(w).add({.kind = Kind::kWheel, .steps = steps, .path = {}}); });
+    glfwSetDropCallback(window, [](GLFWwindow* w, int count, const char** paths) {
+        if (count > 0) { self(w).add({.kind = Kind::kDrop, .path = paths[count - 1]}); }
+    });
+    glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { self(w).is_damaged_ = true; });
+    glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) { self(w).is_damaged_ = true; });
+}
+
+void DesktopWindow::wait(double most_seconds) {
+    if (most_seconds > 0.0 && events_.empty()) { glfwWaitEventsTimeout(most_seconds); }
+    glfwPollEvents();
+}
+
+std::vector<DesktopEvent> DesktopWindow::takeEvents() { return std::exchange(events_, {}); }
+
+bool DesktopWindow::hasGamepad() const {
+    GLFWgamepadstate state{};
+    return gamepadState(state);
+}
+
+HeldMotion DesktopWindow::heldMotion() const {
+    const auto held = [&](int key) { return glfwGetKey(window_.get(), key) == GLFW_PRESS ? 1.0 : 0.0; };
+    HeldMotion motion{{held(GLFW_KEY_D) - held(GLFW_KEY_A), held(GLFW_KEY_Q) - held(GLFW_KEY_E), held(GLFW_KEY_W) - held(GLFW_KEY_S)},
+                      {held(GLFW_KEY_RIGHT) - held(GLFW_KEY_LEFT), held(GLFW_KEY_UP) - held(GLFW_KEY_DOWN)},
+                      held(GLFW_KEY_LEFT_SHIFT) + held(GLFW_KEY_RIGHT_SHIFT) > 0.0};
+    if (GLFWgamepadstate pad{}; gamepadState(pad)) {
+        const float* const axes = pad.axes;  // triggers rest at -1
+        motion.fly += glm::dvec3(stick(axes[GLFW_GAMEPAD_AXIS_LEFT_X]),
+                                 stick(0.5f * (axes[GLFW_GAMEPAD_AXIS_LEFT_TRIGGER] - axes[GLFW_GAMEPAD_AXIS_RIGHT_TRIGGER])),
+                                 -stick(axes[GLFW_GAMEPAD_AXIS_LEFT_Y]));
+        motion.turn += glm::dvec2(stick(axes[GLFW_GAMEPAD_AXIS_RIGHT_X]), -stick(axes[GLFW_GAMEPAD_AXIS_RIGHT_Y]));
+        motion.fast = motion.fast || pad.buttons[GLFW_GAMEPAD_BUTTON_LEFT_BUMPER] == GLFW_PRESS;
+    }
+    return motion;
+}
+
+bool DesktopWindow::isClosed() const { return glfwWindowShouldClose(window_.get()) == GLFW_TRUE; }
+
+bool DesktopWindow::takeDamage() { return std::exchange(is_damaged_, false); }
+
+glm::uvec2 DesktopWindow::sizePx() const {
+    int width = 0, height = 0;
+    glfwGetFramebufferSize(window_.get(), &width, &height);
+    return {width, height};
+}
+
+double DesktopWindow::scale() const {
+    float x = 1.0f, y = 1.0f;
+    glfwGetWindowContentScale(window_.get(), &x, &y);
+    return std::max(static_cast<double>(y), 0.1);
+}
+
+glm::dvec2 DesktopWindow::inPixels(const glm::dvec2& place) const {
+    glm::ivec2 size(0);
+    glfwGetWindowSize(window_.get(), &size.x, &size.y);
+    return place * glm::dvec2(sizePx()) / glm::dvec2(glm::max(size, glm::ivec2(1)));
+}
+
+void DesktopWindow::setTitle(const std::string& title) { glfwSetWindowTitle(window_.get(), title.c_str()); }
+
+void DesktopWindow::toggleFullScreen() {
+    GLFWwindow* const window = window_.get();
+    glm::ivec4& before = before_full_screen_;
+    if (glfwGetWindowMonitor(window) != nullptr) {
+        return glfwSetWindowMonitor(window, nullptr, before.x, before.y, before.z, before.w, GLFW_DONT_CARE);
+    }
+    GLFWmonitor* const monitor = glfwGetPrimaryMonitor();
+    if (monitor == nullptr) { return; }
+    glfwGetWindowPos(window, &before.x, &before.y);
+    glfwGetWindowSize(window, &before.z, &before.w);
+    const GLFWvidmode& mode = *glfwGetVideoMode(monitor);
+    glfwSetWindowMonitor(window, monitor, 0, 0, mode.width, mode.height, mode.refreshRate);
+}
+
+bool DesktopWindow::show(const std::function<void(vk::Image window, vk::Semaphore drawn)>& draw) {
+    for (int attempt = 0;; ++attempt) {
+        try {
+            pictures_->acquire();
+            if (!pictures_->current()) { return false; }
+            draw(pictures_->current(), pictures_->drawn());
+            pictures_->show();
+            return true;
+        } catch (const vk::SurfaceLostKHRError& error) {
+            if (attempt > 0) { throw Error(ExitCode::kNoDevice, fmt::format("the display is gone: {}", error.what())); }
+            {
+                const std::lock_guard lock(context_.queueMutex());
+                context_.queue().waitIdle();
+            }
+            makePictures();
+        }
+    }
+}
+
+}  // namespace binosplat

@@ -1,0 +1,70 @@
+// A window with its mouse, keys, gamepad and pictures.
+#pragma once
+
+#include "app/desktop/camera_mover.h"
+#include "app/view/window/window_pictures.h"
+
+#include <glm/glm.hpp>
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+struct GLFWwindow;
+
+namespace binosplat {
+
+// Something that people did, in the order in which they did it. Places are in the window's pixels, from its top left corner.
+struct DesktopEvent {
+    enum class Kind { kMove, kPress, kRelease, kWheel, kKey, kDrop, kLeave } kind;
+    glm::dvec2 place_px{0.0};
+    int code = 0;        // GLFW's number of a key or a button
+    double steps = 0.0;  // of the wheel, away from oneself
+    std::string path;    // that was dropped
+};
+
+class DesktopWindow {
+public:
+    // Throws Error (exit code 3) if the device cannot show on the display.
+    explicit DesktopWindow(const Context& context);
+    DesktopWindow(const DesktopWindow&) = delete;
+    DesktopWindow& operator=(const DesktopWindow&) = delete;
+    ~DesktopWindow();
+
+    // Returns after this time, or once something happens.
+    void wait(double most_seconds);
+    // Since the last call.
+    [[nodiscard]] std::vector<DesktopEvent> takeEvents();
+    [[nodiscard]] HeldMotion heldMotion() const;
+    [[nodiscard]] bool hasGamepad() const;
+    [[nodiscard]] bool isClosed() const;
+    // True once after the window was uncovered or has changed its size.
+    [[nodiscard]] bool takeDamage();
+    [[nodiscard]] glm::uvec2 sizePx() const;
+    // Of its pixels to those that desktops count in.
+    [[nodiscard]] double scale() const;
+    void setTitle(const std::string& title);
+    void toggleFullScreen();
+
+    // Shows what `draw` records, with the image to draw on, once a picture is free; false if none is, or if the window is minimized. A lost
+    // surface is made anew, once. Throws Error (exit code 3) if the display is gone.
+    bool show(const std::function<void(vk::Image window, vk::Semaphore drawn)>& draw);
+
+private:
+    void listen();
+    void makePictures();
+    void add(DesktopEvent event);
+    // A place as GLFW counts, in the window's pixels.
+    [[nodiscard]] glm::dvec2 inPixels(const glm::dvec2& place) const;
+
+    const Context& context_;
+    std::unique_ptr<GLFWwindow, void (*)(GLFWwindow*)> window_;  // outlives what is drawn on it
+    std::unique_ptr<WindowPictures> pictures_;
+    std::vector<DesktopEvent> events_;
+    glm::dvec2 cursor_{0.0};  // as GLFW counts
+    bool is_damaged_ = true;
+    glm::ivec4 before_full_screen_{0};  // place and size
+};
+
+}  // namespace binosplat

@@ -1,0 +1,39 @@
+// Which eye's picture stands where in a window, and what it sees.
+#pragma once
+
+#include "app/desktop/orbit_camera.h"
+#include "app/view/settings/view_settings.h"
+
+#include <glm/glm.hpp>
+
+#include <optional>
+#include <vector>
+
+namespace binosplat {
+
+// A part of the window, from its top left corner.
+struct EyePart {
+    int eye = kLeft;
+    glm::uvec2 at_px{0, 0}, size_px{0, 0};
+};
+
+[[nodiscard]] bool showsTwoEyes(WindowStereo stereo);
+// Parts of equal size that fill an area; both eyes' are the same for an anaglyph.
+std::vector<EyePart> partsOf(WindowStereo stereo, glm::uvec2 area_px);
+// The part that a pixel of the area is in, if any: for an anaglyph the left eye's.
+std::optional<EyePart> partAt(const std::vector<EyePart>& parts, const glm::dvec2& place_px);
+
+// How the eyes look at the scene.
+struct WindowSight {
+    WindowStereo stereo = WindowStereo::kMono;
+    double eye_distance = 0.033;  // in parts of the distance of the plane
+    double plane = 1.0;           // what is that far away lies in the plane of the screen, in parts of the distance of the centre
+    double angle_rad = 1.0;       // of view, along a part's longer side
+};
+
+// One eye, or two, [kLeft] and [kRight], of `size_px`. What lies in the plane of the screen is at the same pixel for both.
+std::vector<Eye> eyesOf(const OrbitCamera& camera, const WindowSight& sight, glm::uvec2 size_px);
+// What an eye sees at a pixel of its picture, `depth` along its axis.
+glm::dvec3 pointAt(const Eye& eye, const glm::dvec2& place_px, double depth);
+
+}  // namespace binosplat

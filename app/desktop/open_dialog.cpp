@@ -1,0 +1,42 @@
+// Other people's programs with a dialog.
+#include "app/desktop/open_dialog.h"
+
+#include "engine/error.h"
+#include "engine/platform.h"
+#include "engine/setup/text_file.h"
+#include "engine/temporary_folder.h"
+
+#include <array>
+#include <sstream>
+#include <vector>
+
+namespace binosplat {
+
+namespace {
+
+const std::array<std::vector<std::string>, 2> kDialogs{{
+    {"zenity", "--file-selection", "--title=Open a scene"},
+    {"kdialog", "--title", "Open a scene", "--getopenfilename", "."},
+}};
+
+}  // namespace
+
+ChosenFile askForFile() {
+    for (const std::vector<std::string>& dialog : kDialogs) {
+        try {
+            const TemporaryFolder folder("binosplat-open-", "choosing a file");
+            const std::filesystem::path answer = folder.path() / "answer";
+            if (!runProgram(dialog, answer)) { return {}; }  // closed
+            // Toolkits may say other things first.
+            std::istringstream lines(readTextFile(answer, "the name of a file"));
+            ChosenFile chosen;
+            for (std::string line; std::getline(lines, line);) {
+                if (!line.empty()) { chosen.file = line; }
+            }
+            return chosen;
+        } catch (const Error&) {}  // the next one
+    }
+    return {"", "neither zenity nor kdialog is installed to choose a file with: drop it on the window, or look on the page Scenes"};
+}
+
+}  // namespace binosplat

@@ -1,0 +1,50 @@
+// The camera of a window: upright, with a centre straight ahead that it is moved around. Axes of the camera: x right, y down, z forward.
+#pragma once
+
+#include "engine/geometry.h"
+#include "engine/scene/procedural.h"
+
+namespace binosplat {
+
+class OrbitCamera {
+public:
+    OrbitCamera() = default;
+    // At the view's eye, upright along its up; what it looks at is the centre.
+    explicit OrbitCamera(const View& view);
+
+    [[nodiscard]] Pose pose() const;  // scene_from_camera
+    [[nodiscard]] const glm::dvec3& position() const { return position_; }
+    [[nodiscard]] double distance() const { return distance_; }  // of the centre
+    [[nodiscard]] glm::dvec3 centre() const;
+    [[nodiscard]] glm::dvec3 up() const;
+
+    // Turns about a point, which stays where it is in the picture; not beyond straight up or down.
+    void orbit(const glm::dvec3& pivot, double right_rad, double up_rad);
+    // Turns on the spot.
+    void turn(double right_rad, double up_rad) { orbit(position_, right_rad, up_rad); }
+    // Moves without turning: what is seen at `depth` moves by `pixels` in a picture with this focal length.
+    void pan(const glm::dvec2& pixels, double depth, double focal_px);
+    // By a step along the camera's axes.
+    void fly(const glm::dvec3& step) { position_ += orientation() * step; }
+    // Towards a point, which stays where it is in the picture, until `share` of the distance is left.
+    void approach(const glm::dvec3& point, double share);
+
+    // The same direction, with this point in the middle of the picture, as far away as it is now.
+    [[nodiscard]] OrbitCamera centredOn(const glm::dvec3& point) const;
+    // The same direction, with all of a sphere in a picture of this angle.
+    [[nodiscard]] OrbitCamera framing(const glm::dvec3& middle, double radius, double angle_rad) const;
+    // On the way from one to the other, the shorter way round.
+    static OrbitCamera between(const OrbitCamera& from, const OrbitCamera& to, double share);
+
+    bool operator==(const OrbitCamera&) const = default;
+
+private:
+    [[nodiscard]] glm::dquat orientation() const;
+
+    glm::dquat scene_from_level_{1.0, 0.0, 0.0, 0.0};  // its y axis is down in the scene, its z axis is heading 0
+    glm::dvec3 position_{0.0};
+    double heading_rad_ = 0.0, pitch_rad_ = 0.0;  // to the right, and upwards
+    double distance_ = 1.0;
+};
+
+}  // namespace binosplat

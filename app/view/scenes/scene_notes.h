@@ -1,0 +1,38 @@
+// What is kept of scenes while they are shown: written beside the frames, with the outcome in a line.
+#pragma once
+
+#include "app/view/files/file_worker.h"
+#include "app/view/scenes/scene_loader.h"
+#include "app/view/settings/view_settings.h"
+#include "engine/picture/image.h"
+
+#include <functional>
+#include <string>
+
+namespace binosplat {
+
+using Say = std::function<void(const std::string&)>;
+
+class SceneNotes {
+public:
+    // Both outlive this.
+    SceneNotes(FileWorker& files, Say say) : files_(files), say_(std::move(say)) {}
+
+    // That it was shown. `complaint` was said already.
+    void remember(const std::string& scene, const std::string& complaint);
+    void save(const std::string& scene, const ViewSettings& settings);
+    // Marks a favourite, or unmarks it, and then calls `done`.
+    void toggleFavourite(const std::string& scene, std::function<void()> done);
+    // Adds a viewpoint to the scene's, and keeps it.
+    void addViewpoint(LoadedScene& scene, const View& view);
+    // A small picture of the scene, for the list of scenes.
+    void keepPicture(const LoadedScene& scene, Image view);
+    // Finds the scene that was shown before this one, and opens it.
+    void openLast(const LoadedScene& now, std::function<void(const std::string&)> open);
+
+private:
+    FileWorker& files_;
+    Say say_;
+};
+
+}  // namespace binosplat

@@ -1,0 +1,109 @@
+// Facts about the camera of a window, and about what its eyes see.
+#include "app/desktop/camera_mover.h"
+#include "app/desktop/desktop_pictures.h"
+#include "tests/suite.h"
+
+SUITE(orbit_camera) {
+
+const View kView{{0.3, -1.5, -3.0}, {0.2, -1.0, 0.5}, {0.1, -1.0, 0.05}, 60.0};
+const glm::dvec3 kUnder(0.7, -0.9, 1.2);
+const glm::uvec2 kSizePx(800, 600);
+
+glm::dvec2 pixelOf(const Eye& eye, const glm::dvec3& point) {
+    const glm::dvec3 p = transform(inverse(eye.world_from_camera), point);
+    return {eye.intrinsics.fx * p.x / p.z + eye.intrinsics.cx, eye.intrinsics.fy * p.y / p.z + eye.intrinsics.cy};
+}
+Eye eyeOf(const OrbitCamera& camera) { return eyesOf(camera, {}, kSizePx).front(); }
+void checkUpright(const OrbitCamera& camera) {
+    const glm::dvec3 right = camera.pose().orientation * glm::dvec3(1.0, 0.0, 0.0),
+                     down = camera.pose().orientation * glm::dvec3(0.0, 1.0, 0.0);
+    CHECK(glm::dot(right, kView.up) == doctest::Approx(0.0));
+    CHECK(glm::dot(down, kView.up) < 0.0);
+}
+
+TEST_CASE("what is under the pointer stays there while one orbits and nears it, and follows it where one moves; the camera stays upright") {
+    CameraMover mover;
+    mover.set(OrbitCamera(kView));
+    CHECK(glm::distance(mover.camera().centre(), kView.look) < 1e-9);
+    const double focal_px = eyeOf(mover.camera()).intrinsics.fx;
+    const glm::dvec2 start = pixelOf(eyeOf(mover.camera()), kUnder), step(70.0, -40.0);
+    mover.beginDrag(CameraMover::Drag::kOrbit, start, kUnder, focal_px, kSizePx.y);
+    mover.dragTo(start + step);
+    checkUpright(mover.camera());
+    CHECK(glm::distance(pixelOf(eyeOf(mover.camera()), kUnder), start) < 1e-6);
+    CHECK(glm::distance(mover.camera().position(), kView.eye) > 0.5);
+    mover.turnWheel(3.0, kUnder);
+    CHECK(glm::distance(pixelOf(eyeOf(mover.camera()), kUnder), start) < 1e-6);
+    CHECK(mover.camera().distance() < 0.7 * glm::distance(kView.eye, kView.look));
+    mover.beginDrag(CameraMover::Drag::kPan, start, kUnder, focal_px, kSizePx.y);
+    mover.dragTo(start + step);
+    CHECK(glm::distance(pixelOf(eyeOf(mover.camera()), kUnder), start + step) < 1e-6);
+    // Upside down it never is.
+    mover.beginDrag(CameraMover::Drag::kOrbit, start, kUnder, focal_px, kSizePx.y);
+    mover.dragTo(start + glm::dvec2(0.0, 5000.0));
+    checkUpright(mover.camera());
+}
+
+TEST_CASE("a way ends where it leads, the shorter way round; keys end it; a new centre and a whole scene come into the middle") {
+    CameraMover mover;
+    OrbitCamera from(kView);
+    from.turn(3.0, 0.0);
+    OrbitCamera to(kView);
+    to.turn(-3.0, 0.2);
+    const glm::dvec3 half = OrbitCamera::between(from, to, 0.5).pose().orientation * glm::dvec3(0.0, 0.0, 1.0);
+    CHECK(glm::dot(half, glm::normalize(kView.look - kView.eye)) < -0.8);
+    mover.set(from);
+    mover.glideTo(to);
+    for (int i = 0; i < 100; ++i) { mover.pass({}, 0.01); }
+    CHECK_FALSE(mover.isGliding());
+    CHECK(mover.camera() == OrbitCamera::between(from, to, 1.0));
+    CHECK(glm::distance(mover.camera().centre(), to.centre()) < 1e-9);
+    mover.glideTo(from);
+    mover.pass({.fly = {0.0, 0.0, 1.0}}, 0.01);
+    CHECK_FALSE(mover.isGliding());
+    const glm::dvec2 middle(0.5 * glm::dvec2(kSizePx));
+    CHECK(glm::distance(pixelOf(eyeOf(to.centredOn(kUnder)), kUnder), middle) < 1e-6);
+    const OrbitCamera whole = to.framing(kUnder, 2.0, 1.0);
+    CHECK(glm::distance(pixelOf(eyeOf(whole), kUnder), middle) < 1e-6);
+    CHECK(std::asin(2.0 / whole.distance()) == doctest::Approx(0.5));
+}
+
+TEST_CASE("what lies in the plane of the screen is at one pixel for both eyes, what is nearer is crossed; parts show each its eye") {
+    const OrbitCamera camera(kView);
+    for (const double plane : {1.0, 2.0}) {
+        const WindowSight sight{WindowStereo::kSideBySide, 0.05, plane, 1.0};
+        const std::vector<Eye> eyes = eyesOf(camera, sight, kSizePx);
+        REQUIRE(eyes.size() == 2);
+        CHECK(glm::distance(eyes[kLeft].world_from_camera.position, eyes[kRight].world_from_camera.position) ==
+              doctest::Approx(0.05 * plane * camera.distance()));
+        const auto parallax = [&](double share) {
+            const glm::dvec3 point = glm::mix(camera.position(), camera.centre(), share);
+            return pixelOf(eyes[kRight], point).x - pixelOf(eyes[kLeft], point).x;
+        };
+        CHECK(parallax(plane) == doctest::Approx(0.0));
+        CHECK(parallax(0.5 * plane) < -1.0);
+        CHECK(parallax(3.0 * plane) > 1.0);
+        const glm::dvec2 place(123.0, 456.0);
+        CHECK(glm::distance(pixelOf(eyes[kRight], pointAt(eyes[kRight], place, 2.0)), place) < 1e-9);
+    }
+    const auto eyeAt = [](WindowStereo stereo, const glm::dvec2& place) { return partAt(partsOf(stereo, {100, 60}), place)->eye; };
+    CHECK(eyeAt(WindowStereo::kSideBySide, {20, 30}) == kLeft);
+    CHECK(eyeAt(WindowStereo::kSideBySide, {70, 30}) == kRight);
+    CHECK(eyeAt(WindowStereo::kCrossEyed, {20, 30}) == kRight);
+    CHECK(eyeAt(WindowStereo::kTopBottom, {20, 40}) == kRight);
+    CHECK_FALSE(partAt(partsOf(WindowStereo::kMono, {100, 60}), {100, 30}).has_value());
+}
+
+TEST_CASE("pictures in motion have fewer pixels where the device is slow, and do not change their size for a little") {
+    MotionScale slow, fast;
+    for (int i = 0; i < 50; ++i) {
+        slow.measure(slow.scale(), 100.0 * slow.scale() * slow.scale());
+        fast.measure(fast.scale(), 20.0 * fast.scale() * fast.scale());
+    }
+    CHECK(fast.scale() == 1.0);
+    CHECK(slow.scale() == doctest::Approx(0.5));
+    for (int i = 0; i < 50; ++i) { slow.measure(slow.scale(), (i % 2 == 0 ? 140.0 : 80.0) * slow.scale() * slow.scale()); }
+    CHECK(slow.scale() == doctest::Approx(0.5));
+}
+
+}  // SUITE(orbit_camera)

@@ -1,0 +1,93 @@
+// Facts about the window without a headset: what mouse and keys do there, what it shows, and that it rests.
+#include "tests/app/view/view_window.h"
+
+SUITE(view_desktop) {
+
+// The number in a line "frame 12: help".
+std::uint64_t pictureOf(const std::string& line) { return std::stoull(line.substr(line.rfind("frame ") + 6)); }
+
+class Window {
+public:
+    Window(const Workplace& work, const std::string& options, const std::string& environment = "")
+        : program_(work.path, "env " + environment + viewOnDesk("builtin:slanted-wall " + options).substr(3)) {
+        REQUIRE(program_.waitFor("shows builtin:slanted-wall") != "");
+        hands("search --sync --onlyvisible --name '^builtin:slanted-wall - binosplat$' mousemove --window %1 20 20");
+    }
+    // The help goes or comes: by then everything before has reached the window. The number of its last picture.
+    std::uint64_t help() {
+        hands("key h");
+        const std::string lines = program_.waitFor("help");
+        REQUIRE(lines != "");
+        return pictureOf(lines);
+    }
+    // What is seen at a place, after the keys and clicks that come before; back at the start view.
+    glm::dvec3 seenAt(const glm::dvec2& place) {
+        help();
+        hands(moveTo(place) + "click --repeat 2 --delay 20 1");
+        const std::string line = program_.waitFor("the centre is ");
+        REQUIRE(line != "");
+        glm::dvec3 point(0.0);
+        REQUIRE(std::sscanf(line.substr(line.find("centre is")).c_str(), "centre is %lf, %lf, %lf", &point.x, &point.y, &point.z) == 3);
+        REQUIRE(program_.waitFor("arrived") != "");
+        hands("key r");
+        REQUIRE(program_.waitFor("arrived") != "");
+        return point;
+    }
+    void drag(int button, const glm::dvec2& from, const glm::dvec2& to) {
+        for (const std::string& does : {moveTo(from), fmt::format("mousedown {}", button), moveTo(to), fmt::format("mouseup {}", button)}) {
+            hands(does);
+        }
+    }
+    // It ends well.
+    void checkEnd() {
+        hands("key Escape");
+        CHECK(program_.exitCode() == 0);
+        INFO(program_.said());
+        CHECK(program_.said().find(" pictures in the window, ") != std::string::npos);
+        CHECK(program_.said().find("VUID") == std::string::npos);
+        CHECK(program_.said().find("SYNC") == std::string::npos);
+    }
+    [[nodiscard]] Program& program() { return program_; }
+
+private:
+    Program program_;
+};
+
+TEST_CASE(
+    "without a runtime the scene is shown in a window, as render draws it; mouse and wheel keep hold of what is seen; then it rests") {
+    if (!haveScreen()) { return; }
+    const Workplace work;
+    Window window(work, "--hide-panel", "XR_RUNTIME_JSON=/nonexistent/runtime.json ");
+    CHECK(window.program().said().find("no OpenXR runtime found") != std::string::npos);
+    CHECK(window.program().said().find("; the scene is shown in a window\n") != std::string::npos);
+
+    const glm::dvec2 place(500.0, 300.0), beside(620.0, 340.0);
+    const glm::dvec3 start = window.seenAt(place);
+    const auto fromStart = [&](const glm::dvec2& at) { return glm::distance(window.seenAt(at), start); };
+    constexpr double kSomePixels = 0.12;  // of a coarse picture
+    window.drag(1, place, beside);
+    CHECK(fromStart(place) < kSomePixels);  // around it
+    window.drag(3, place, beside);
+    CHECK(fromStart(beside) < kSomePixels);  // with it
+    hands(moveTo(place) + "click 4");
+    CHECK(fromStart(place) < kSomePixels);  // towards it
+    CHECK(fromStart({400.0, 300.0}) > 0.5);
+
+    // Whatever else happens, nothing is drawn.
+    window.help();
+    const std::uint64_t before = window.help();
+    hands("key --repeat 20 --delay 30 F12");
+    CHECK(window.help() <= before + 2);
+    window.help();
+
+    // The panel goes, since the help has brought it.
+    hands("key Tab");
+    REQUIRE(window.program().waitFor("panel = false") != "");
+    REQUIRE(work.run("render builtin:slanted-wall --mode mono --order distance --size 1280x720 --fov-x 60 --out drawn").exit_code == 0);
+    Image screen = desk().screen.picture();
+    const Image drawn = readPicture(work.path / "drawn" / "mono.png");
+    CHECK(compare(partOf(screen, {0, 0}, {1280, 720}), drawn).psnrDb() > 40.0);
+    window.checkEnd();
+}
+
+}  // SUITE(view_desktop)
