@@ -42,13 +42,16 @@ void playView(const Context& context, const BenchOptions& options, const BenchPl
     if (live != nullptr) { settle(*live, start.eyes); }
     // A GPU runs at full speed only while it is kept busy: its times are from a run without pictures.
     std::vector<std::vector<FrameResult>> timed;
+    std::optional<MotionPoint> timed_point;
     if (!context.isSoftware()) {
-        MotionPoint point(context, gpu_scene, view_run, plan, name);
-        warmUp(context, plan.warm_up, [&] { point.time(start); });
+        timed_point.emplace(context, gpu_scene, view_run, plan, name, options.frame_ms);
+        MotionPoint& point = *timed_point;
+        warmUp(context, plan.warm_up, [&] { point.warm(start); });
         for (const double time_s : times_s) { timed.push_back(point.time(camerasAt(time_s))); }
     }
-    MotionPoint point(context, gpu_scene, view_run, plan, name);
-    for (std::uint32_t i = 0; timed.empty() && i < plan.warm_up; ++i) { point.time(start); }
+    MotionPoint point(context, gpu_scene, view_run, plan, name, options.frame_ms);
+    if (timed_point) { point.chooseAs(*timed_point); }
+    for (std::uint32_t i = 0; timed.empty() && i < plan.warm_up; ++i) { point.warm(start); }
     ProgressLine progress(name);
     for (std::size_t i = 0; i < times_s.size(); ++i) {
         if (i % options.every != 0) {

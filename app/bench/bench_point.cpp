@@ -168,10 +168,11 @@ StereoFrame& MethodFrames::frameFor(const BenchMethod& method) {
 }
 
 MethodFrames::Rendered MethodFrames::render(const Cameras& full_cameras, const CameraOptions& camera, const BenchMethod& method,
-                                            bool compared, bool keep_past) {
+                                            bool compared, bool keep_past, const std::optional<GovernedSettings>& chosen) {
     stopIfInterrupted();
-    const StereoOptions& stereo = method.stereo;
-    const Cameras cameras = atResolution(full_cameras, method.resolution);
+    StereoOptions stereo = method.stereo;
+    if (chosen) { stereo.warp.error_bound_db = chosen->error_bound_db; }
+    const Cameras cameras = atResolution(full_cameras, chosen ? chosen->resolution_scale : method.resolution);
     FrameSettings settings = frameSettings(camera, stereo, scene_.usualOrder());
     settings.near = cameras.near;
     settings.gazes = gazesOf(cameras, stereo);

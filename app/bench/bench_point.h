@@ -4,6 +4,7 @@
 #include "app/bench/bench_plan.h"
 #include "app/bench/bench_results.h"
 #include "app/options/camera_options.h"
+#include "app/view/governor/governor.h"
 #include "engine/frame/stereo_frame.h"
 #include "engine/picture/resize.h"
 #include "engine/scene/scene.h"
@@ -32,9 +33,9 @@ public:
     };
     // `compared`: for pictures that are read and compared, with the origin of each pixel
     // and counters that cost time; otherwise as in the viewer. `keep_past`: see
-    // FrameSettings.
+    // FrameSettings. `chosen`: in place of the method's resolution and bound.
     Rendered render(const Cameras& full_cameras, const CameraOptions& camera, const BenchMethod& method, bool compared = false,
-                    bool keep_past = false);
+                    bool keep_past = false, const std::optional<GovernedSettings>& chosen = {});
 
     // The program's peak memory, in bytes, while it holds only this method's buffers, as in the viewer. Frees the buffers of all other
     // methods.

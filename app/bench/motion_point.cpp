@@ -94,24 +94,43 @@ void setTimes(MotionFrame& frame, const FrameResult& result) {
     frame.pass_ms = byLabel(result.gpu_ms);
 }
 
-MotionPoint::MotionPoint(const Context& context, const GpuScene& scene, const RunOptions& run, const BenchPlan& plan, std::string name)
-    : camera_(run.camera), shared_(plainMethod(Mode::kShared, run)), frames_(context, scene), name_(std::move(name)) {
+MotionPoint::MotionPoint(const Context& context, const GpuScene& scene, const RunOptions& run, const BenchPlan& plan, std::string name,
+                         double frame_ms)
+    : camera_(run.camera), shared_(plainMethod(Mode::kShared, run)), frames_(context, scene), name_(std::move(name)), frame_ms_(frame_ms) {
     for (const BenchMethod& method : plan.methods) {
-        if (method.stereo.mode != Mode::kMono) { sequences_.push_back({method, {}}); }
+        if (method.stereo.mode == Mode::kMono) { continue; }
+        MethodHistory& sequence = sequences_.emplace_back(MethodHistory{method, {}});
+        if (frame_ms > 0.0 && method.stereo.mode == Mode::kTemporal && method.resolution == 1.0) { sequence.governor.emplace(); }
     }
+}
+
+void MotionPoint::chooseAs(const MotionPoint& timed) {
+    for (std::size_t i = 0; i < sequences_.size(); ++i) { sequences_[i].chosen = timed.sequences_[i].chosen; }
+}
+
+MethodFrames::Rendered MotionPoint::render(const Cameras& cameras, MethodHistory& sequence) {
+    if (!sequence.governor) { return frames_.render(cameras, camera_, sequence.method, false, true); }
+    Governor& governor = *sequence.governor;
+    governor.wish(Quality::kBalanced, Mode::kTemporal, {sequence.method.stereo.warp.budget, 1.0});
+    if (sequence.next == sequence.chosen.size()) { sequence.chosen.push_back(governor.settings()); }
+    MethodFrames::Rendered rendered = frames_.render(cameras, camera_, sequence.method, false, true, sequence.chosen[sequence.next++]);
+    governor.measure({.gpu_ms = rendered.result.gpu_total_ms, .period_ms = frame_ms_, .work = rendered.result.work_rendered});
+    return rendered;
+}
+
+void MotionPoint::warm(const Cameras& cameras) {
+    for (const MethodHistory& sequence : sequences_) { frames_.render(cameras, camera_, sequence.method, false, true); }
 }
 
 std::vector<FrameResult> MotionPoint::time(const Cameras& cameras) {
     std::vector<FrameResult> results;
-    for (const MethodHistory& sequence : sequences_) {
-        results.push_back(frames_.render(cameras, camera_, sequence.method, false, true).result);
-    }
+    for (MethodHistory& sequence : sequences_) { results.push_back(render(cameras, sequence).result); }
     return results;
 }
 
 void MotionPoint::pass(const Cameras& cameras) {
-    for (const MethodHistory& sequence : sequences_) {
-        if (hasPast(sequence.method.stereo.mode)) { frames_.render(cameras, camera_, sequence.method, false, true); }
+    for (MethodHistory& sequence : sequences_) {
+        if (hasPast(sequence.method.stereo.mode)) { render(cameras, sequence); }
     }
 }
 
@@ -141,7 +160,7 @@ void MotionPoint::play(const Cameras& cameras, std::size_t number, double time_s
         FullRender& full = full_by_order[shared_.stereo.order];
         if (full.pairs == 0.0) { full = renderFull(cameras); }
         const FullRender& before = full_before_[shared_.stereo.order];
-        const MethodFrames::Rendered rendered = frames_.render(cameras, camera_, sequence.method, false, true);
+        const MethodFrames::Rendered rendered = render(cameras, sequence);
         MotionFrame row;
         row.point = name_;
         row.method = sequence.method.name;
@@ -150,6 +169,7 @@ void MotionPoint::play(const Cameras& cameras, std::size_t number, double time_s
         row.number = number;
         row.time_s = time_s;
         setTimes(row, rendered.result);
+        if (sequence.governor) { row.chosen = sequence.chosen[sequence.next - 1]; }
         row.work_rendered = pairsOf(rendered.result) / full.pairs;
         std::array<Image, 2> pictures;
         for (const int eye : {kLeft, kRight}) {
@@ -166,7 +186,7 @@ void MotionPoint::play(const Cameras& cameras, std::size_t number, double time_s
             row.pixels_warped = pixelsWarped(rendered.result);
             row.visible = findVisibleErrors(pictures, full.eyes);
             if (lens_) { row.seen = lens_->find(lens_->show(pictures), full.seen); }
-            row.bounded = boundedTilesOf(row.visible, *rendered.frame, sequence.method);
+            if (!sequence.governor) { row.bounded = boundedTilesOf(row.visible, *rendered.frame, sequence.method); }
             if (const auto still = still_.find(shared_.stereo.order); still != still_.end()) {
                 const Moved moved = compareMoved(pictures, full.eyes, still->second);
                 row.moved_share = moved.share;

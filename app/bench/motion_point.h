@@ -15,8 +15,14 @@ namespace binosplat {
 
 class MotionPoint {
 public:
-    MotionPoint(const Context& context, const GpuScene& scene, const RunOptions& run, const BenchPlan& plan, std::string name);
+    // `frame_ms`: what a frame of `temporal` may take, or 0; a governor then chooses its resolution and bound.
+    MotionPoint(const Context& context, const GpuScene& scene, const RunOptions& run, const BenchPlan& plan, std::string name,
+                double frame_ms = 0.0);
+    // Chooses again what `timed` chose for the same poses, whatever frames take now.
+    void chooseAs(const MotionPoint& timed);
 
+    // Renders a frame of each method, for none to be the first.
+    void warm(const Cameras& cameras);
     // Renders a frame of each method, only to measure it.
     std::vector<FrameResult> time(const Cameras& cameras);
     // Renders a pose that is not scored, but is the past of one that is.
@@ -31,6 +37,9 @@ private:
     struct MethodHistory {
         BenchMethod method;
         std::array<Image, 2> error;  // pictures - full renders, of the previous frame
+        std::optional<Governor> governor = {};
+        std::vector<GovernedSettings> chosen = {};  // for each pose, as far as the governor has come; or from another run of it
+        std::size_t next = 0;                       // of these
     };
 
     // Both eyes in full, and their pairs of tile and splat.
@@ -39,6 +48,8 @@ private:
         double pairs = 0.0;
     };
 
+    // A frame of a method, with what its governor chooses.
+    MethodFrames::Rendered render(const Cameras& cameras, MethodHistory& sequence);
     // Renders the eyes at these cameras in full, in the order of shared_.
     FullRender renderFull(const Cameras& cameras);
 
@@ -46,6 +57,7 @@ private:
     BenchMethod shared_;
     MethodFrames frames_;
     std::string name_;
+    double frame_ms_;
     std::vector<MethodHistory> sequences_;
     std::optional<SeenThroughLens> lens_;  // from the first frame on, if there is a headset: its eyes move as one
     std::map<std::optional<Order>, FullRender> full_before_;

@@ -3,6 +3,7 @@
 
 #include "app/bench/bench_results.h"
 #include "app/bench/bounded_tiles.h"
+#include "app/view/governor/governor.h"
 #include "engine/frame/counters.h"
 #include "engine/picture/visible_errors.h"
 
@@ -33,8 +34,9 @@ struct MotionFrame {
     std::array<double, 2> flicker{};
     double full_change = 0.0;  // of the full renders, mean of both eyes
     VisibleErrors visible;
-    std::optional<VisibleErrors> seen;    // through the lenses, if there is a headset: SeenThroughLens
-    std::optional<BoundedTiles> bounded;  // of both eyes, if the method has an error bound
+    std::optional<VisibleErrors> seen;       // through the lenses, if there is a headset: SeenThroughLens
+    std::optional<GovernedSettings> chosen;  // if a governor chose the resolution and the bound
+    std::optional<BoundedTiles> bounded;     // of both eyes, if the method has an error bound
     // The pixels that the scene's motion has changed since the previous frame, seen from this pose (kLeastMoved): their share in both
     // pictures, and their mean squared error, if there are any.
     double moved_share = 0.0;

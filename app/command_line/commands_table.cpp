@@ -105,7 +105,7 @@ Options makeBench(const Settings& given) {
     bench.asked = runOptions(line).camera;
     bench = readRows(benchRows(), line, bench);
     requireBenchKind(bench);
-    for (const char* key : {"motion-axes", "from", "seconds", "rate"}) {
+    for (const char* key : {"motion-axes", "from", "seconds", "rate", "frame-time"}) {
         if (line.contains(key) && bench.motion_file.empty()) {
             throw Error(ExitCode::kUsage, fmt::format("--{} is given without --motion", key));
         }

@@ -86,6 +86,7 @@ struct BenchOptions {
     MotionAxes motion_axes = MotionAxes::kOpenXr;  // --motion-axes: of the recording
     MotionSegment segment;                         // --from, --seconds, --rate: of the motion
     std::string photos_folder;                     // --photos: photographs of the cameras of --cameras
+    double frame_ms = 0.0;                         // --frame-time: of a motion's frames; 0: they take what they take
     std::uint32_t every = 1;                       // --every: of a motion's poses or of the cameras
     std::uint32_t repeats = 0;                     // --repeats: measured frames per method; 0: as the config says
     bool orders = false;                           // --orders: compare each order of splats with each pixel's own order

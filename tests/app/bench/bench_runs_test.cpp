@@ -144,6 +144,22 @@ TEST_CASE("with a headset a bench along a motion also tells what is seen through
     while (std::getline(csv, row)) { CHECK(std::ranges::count(row, ',') >= std::ranges::count(header, ',')); }
 }
 
+TEST_CASE("of frames that may take next to nothing the controller lowers resolution and bound, and says so of each") {
+    const Walk bench;
+    bench.write("b.toml", "[bench]\nmodes = [\"temporal\"]\nwarm-up = 0\n");
+    bench.go("bench builtin:step-edge --size 48x48 --config b.toml --motion m.csv --rate 60 --frame-time 0.001 --out out");
+    std::istringstream csv(bench.bytesOf("out/motion.csv"));
+    std::vector<std::string> ends;
+    for (std::string row; std::getline(csv, row);) {
+        if (row.find(",temporal,") != std::string::npos) { ends.push_back(row); }
+        CHECK((ends.size() > 0 || row.ends_with("error_bound_db") || row.ends_with(",,")));
+    }
+    REQUIRE(ends.size() >= 10);
+    CHECK(ends.front().ends_with(",1,30"));
+    CHECK(ends.back().ends_with(",0.6,20"));
+    bench.checkRefused("bench builtin:step-edge --frame-time 5 --out none", 2, "without --motion");
+}
+
 TEST_CASE("a bench compares with photographs") {
     const Walk bench;
     bench.write("b.toml", "[bench]\nmodes = [\"reproject\"]\n");
