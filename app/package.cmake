@@ -14,19 +14,18 @@ install(FILES third_party/NOTICES.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/third_p
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT viewer)             # where Debian looks for it
 
 # The program itself writes its man page and its completion.
-if(NOT CMAKE_CROSSCOMPILING)
-    set(documents ${CMAKE_CURRENT_BINARY_DIR}/documents)
-    foreach(document "man binosplat.1 man/man1" "bash binosplat bash-completion/completions")
-        string(REPLACE " " ";" document ${document})
-        list(GET document 0 kind)
-        list(GET document 1 name)
-        list(GET document 2 folder)
-        install(CODE "file(MAKE_DIRECTORY ${documents}/${kind})
-            execute_process(COMMAND $<TARGET_FILE:binosplat> document ${kind} OUTPUT_FILE ${documents}/${kind}/${name} COMMAND_ERROR_IS_FATAL ANY)"
-            COMPONENT viewer)
-        install(FILES ${documents}/${kind}/${name} DESTINATION ${CMAKE_INSTALL_DATADIR}/${folder} COMPONENT viewer)
-    endforeach()
-endif()
+set(documents ${CMAKE_CURRENT_BINARY_DIR}/documents)
+foreach(document "man binosplat.1 man/man1" "bash binosplat bash-completion/completions")
+    string(REPLACE " " ";" document ${document})
+    list(GET document 0 kind)
+    list(GET document 1 name)
+    list(GET document 2 folder)
+    install(CODE "file(MAKE_DIRECTORY ${documents}/${kind})
+        execute_process(COMMAND ${CMAKE_CROSSCOMPILING_EMULATOR} $<TARGET_FILE:binosplat> document ${kind}
+            OUTPUT_FILE ${documents}/${kind}/${name} COMMAND_ERROR_IS_FATAL ANY)"
+        COMPONENT viewer)
+    install(FILES ${documents}/${kind}/${name} DESTINATION ${CMAKE_INSTALL_DATADIR}/${folder} COMPONENT viewer)
+endforeach()
 
 set(CPACK_PACKAGE_NAME binosplat)
 set(CPACK_PACKAGE_VENDOR "the binosplat authors")
@@ -52,5 +51,8 @@ if(BINOSPLAT_OPENXR)
     set(CPACK_DEBIAN_RUNTIME_PACKAGE_SECTION devel)
     set(CPACK_DEBIAN_RUNTIME_PACKAGE_RECOMMENDS "python3, libopenxr-loader1, mesa-vulkan-drivers | vulkan-icd")
     set(CPACK_COMPONENT_RUNTIME_DESCRIPTION "An OpenXR runtime without a headset: tests of OpenXR programs load it, move its head and hands by script, and get the pictures that a wearer would see.")
+endif()
+if(CMAKE_CROSSCOMPILING)
+    include(third_party/arm64/package.cmake)
 endif()
 include(CPack)

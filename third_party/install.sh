@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that the build needs and that are missing, and nothing else; with --ci also those of the checks of .ci/run, with
-# --windows those of the build for Windows.
+# --windows those of the build for Windows, with --arm64 those of the build for aarch64, whose libraries it unpacks into build/arm64-root.
 set -euo pipefail
 
 packages=(
@@ -18,6 +18,8 @@ packages=(
 [[ ${1:-} != --ci ]] || packages+=(clang-format)
 # For Windows: the compiler, and what unpacks and compiles Debian's source packages.
 [[ ${1:-} != --windows ]] || packages+=(g++-mingw-w64-x86-64-posix libz-mingw-w64-dev xz-utils patch make python3-jinja2)
+# For aarch64: the compiler, and what runs its programs here.
+[[ ${1:-} != --arm64 ]] || packages+=(g++-aarch64-linux-gnu qemu-user-static)
 
 if ! command -v dpkg-query >/dev/null; then
     echo "third_party/install.sh: this is not a Debian system; install by hand: ${packages[*]}" >&2
@@ -31,18 +33,29 @@ for package in "${packages[@]}"; do
 done
 if ((${#missing[@]} == 0)); then
     echo "packages: all ${#packages[@]} are installed"
-    exit 0
-fi
-echo "packages: installing ${missing[*]}"
-
-as_root=()
-if ((EUID != 0)); then
-    if ! command -v sudo >/dev/null; then
-        echo "third_party/install.sh: not root and no sudo; as root, run: apt-get install --no-install-recommends ${missing[*]}" >&2
-        exit 1
+else
+    echo "packages: installing ${missing[*]}"
+    as_root=()
+    if ((EUID != 0)); then
+        if ! command -v sudo >/dev/null; then
+            echo "third_party/install.sh: not root and no sudo; as root, run: apt-get install --no-install-recommends ${missing[*]}" >&2
+            exit 1
+        fi
+        as_root=(sudo)
     fi
-    as_root=(sudo)
+    export DEBIAN_FRONTEND=noninteractive
+    "${as_root[@]}" apt-get update -q
+    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends "${missing[@]}"
 fi
-export DEBIAN_FRONTEND=noninteractive
-"${as_root[@]}" apt-get update -q
-"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends "${missing[@]}"
+
+if [[ ${1:-} == --arm64 ]]; then
+    # The libraries above of that machine: OpenEXR in place of OpenImageIO, which has a hundred packages behind it.
+    libraries=("libstdc++-$(aarch64-linux-gnu-g++ -dumpversion)-dev" libopenexr-dev)
+    for package in "${packages[@]}"; do
+        [[ $package != *-dev || $package =~ ^(libopenimageio|dpkg)-dev$ ]] || libraries+=("$package")
+    done
+    # shellcheck source=/dev/null
+    . /etc/os-release
+    here=$(dirname "${BASH_SOURCE[0]}")
+    "$here/arm64/root.sh" "$here/../build/arm64-root" "$VERSION_CODENAME" "${libraries[@]}"
+fi
