@@ -42,7 +42,8 @@ std::optional<fs::path> trainedWeights() {
 }
 
 TEST_CASE("the distance is that of the network's description, at every size across the boundaries of pooling") {
-    // Computed in float64 with a loop for every index. Each pooling halves odd sides and even ones.
+    // Computed in float64 with a loop for every index. Each pooling halves odd sides and even ones. float32 is off by 2e-7; a channel of
+    // the last stage that is 0.1 % too large, by 1.5e-6.
     struct {
         glm::uvec2 size_px;
         double distance;
@@ -51,7 +52,7 @@ TEST_CASE("the distance is that of the network's description, at every size acro
     for (const auto& one : known) {
         CAPTURE(one.size_px.x);
         CHECK(randomLpips().measure(makeWaves(one.size_px, 0.0), makeWaves(one.size_px, 1.3)) ==
-              doctest::Approx(one.distance).epsilon(2e-5));
+              doctest::Approx(one.distance).epsilon(1e-6));
     }
 }
 
