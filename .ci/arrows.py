@@ -24,7 +24,7 @@ ROOMS = {
     "engine/passes": "engine engine/gpu shaders/shared",
     "engine/frame": "engine engine/gpu engine/passes engine/picture",
     "engine/stream": "engine engine/scene engine/web engine/gpu shaders/shared",
-    "engine/library": "engine engine/scene engine/web engine/picture engine/gpu engine/frame",
+    "engine/library": "engine engine/scene engine/web engine/picture engine/gpu engine/passes engine/frame",
     "engine/stability": "engine engine/scene engine/reference engine/frame",
     "xr": "engine engine/gpu shaders/shared",
     "app/terminal": "engine",

@@ -126,7 +126,7 @@ std::optional<FrameResult> StereoFrame::renderAhead(std::span<const Eye> eyes, c
     }
     prepare(eyes, settings);
     if (!waits) {
-        record(settings, append);
+        record(flight(), settings, append);
         flight().commands.submit(signals);
         turn_ = 1 - turn_;
         return result;
@@ -202,7 +202,7 @@ std::uint64_t StereoFrame::renderAtMostTwice(const FrameSettings& settings, cons
 }
 
 void StereoFrame::renderOnce(const FrameSettings& settings, const Append& append) {
-    record(settings, append);
+    record(flight(), settings, append);
     flight().commands.submitAndWait();
     room_.forgetUploads();
     state_ = flight().readback.mapped<FrameState>()[0];
@@ -290,21 +290,21 @@ void StereoFrame::prepare(std::span<const Eye> eyes, const FrameSettings& settin
     eyes_.assign(eyes.begin(), eyes.end());
 }
 
-void StereoFrame::record(const FrameSettings& settings, const Append& append) {
-    flight().plan = plan_;
-    flight().settings = settings;
-    flight().settings.hidden_tiles = {};
-    flight().asked = moving_pays_.asked();
-    recorder().record(flight().commands, plan_);
+void StereoFrame::record(Flight& flight, const FrameSettings& settings, const Append& append) {
+    flight.plan = plan_;
+    flight.settings = settings;
+    flight.settings.hidden_tiles = {};
+    flight.asked = moving_pays_.asked();
+    recorder().record(flight.commands, plan_);
     changes_known_ = scene_->changesRecorded();
-    recorder().recordReport(flight().commands, flight().readback);
+    recorder().recordReport(flight.commands, flight.readback);
     pasts_ = pastsAfter(plan_, pastsFor(eyes_, settings));
     past_shape_ = askedApartFromSizes(settings);
     for (std::size_t e = 0; e < past_hidden_.size(); ++e) {
         past_hidden_[e].assign(settings.hidden_tiles[e].begin(), settings.hidden_tiles[e].end());
     }
-    flight().splats_held = scene_->splatsHeld();
-    if (append) { append(flight().commands); }
+    flight.splats_held = scene_->splatsHeld();
+    if (append) { append(flight.commands); }
 }
 
 }  // namespace binosplat

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -44,6 +45,21 @@ public:
     // `signals`, if given, is signalled when the frame is done.
     std::optional<FrameResult> renderAhead(std::span<const Eye> eyes, const FrameSettings& settings,
                                            const std::function<void(Commands&)>& append = {}, vk::Semaphore signals = {});
+    // A frame for commands that the caller submits, to the device's queue and in the order of recording.
+    struct Lent {
+        std::uint64_t number;
+        vk::CommandBuffer commands;  // of the second level, for outside of render passes
+    };
+    // Waits for nothing: lists have room for more than the last frame needed that came back, and a frame that finds too little of it shows
+    // background. Each that is lent comes back once.
+    Lent lend(std::span<const Eye> eyes, const FrameSettings& settings, const std::function<void(Commands&)>& append = {});
+    // The device is done with it.
+    FrameResult takeBack(std::uint64_t number);
+    // Nobody will submit it.
+    void takeBackUnused(std::uint64_t number);
+    // The next frame is made from no past.
+    void forgetPast() { pasts_ = {}; }
+
     // Makes the images that renderAhead needs for such frames, if they differ from those of the frame before, for which it waits.
     // Throws Error if the device lacks the memory: then no picture is left, and frames as they were before may still be rendered.
     void makeRoom(std::span<const Eye> eyes, const FrameSettings& settings);
@@ -93,8 +109,8 @@ private:
     // A frame on the device, and what must be remembered to interpret its report. Two take turns. What only the device touches they
     // share, since every command waits for those before it, even those of the frame before.
     struct Flight {
-        explicit Flight(const Context& context)
-            : readback(context, "frame state read-back", sizeof(FrameState), MemoryKind::kReadback), commands(context) {}
+        explicit Flight(const Context& context, Commands::Level level = Commands::Level::kPrimary)
+            : readback(context, "frame state read-back", sizeof(FrameState), MemoryKind::kReadback), commands(context, level) {}
 
         Buffer readback;
         Commands commands;  // last, after the buffer that it writes: it waits before that is freed
@@ -122,8 +138,8 @@ private:
     void planAnew(const FrameSettings& settings);
     // Plans the frame, and makes room for it as far as its needs are known.
     void prepare(std::span<const Eye> eyes, const FrameSettings& settings);
-    // Records what was prepared, into the flight whose turn it is.
-    void record(const FrameSettings& settings, const Append& append);
+    // Records what was prepared.
+    void record(Flight& flight, const FrameSettings& settings, const Append& append);
     // Waits for it; returns its result, if it was under way.
     std::optional<FrameResult> land(Flight& flight);
     // Reads the frame's report, and learns from it.
@@ -160,7 +176,9 @@ private:
     std::vector<Eye> eyes_;
     std::uint64_t cut_short_ = 0, done_again_ = 0;
     std::size_t turn_ = 0;
-    std::array<Flight, 2> flights_;  // last: they wait before anything that they use is freed
+    std::map<std::uint64_t, std::unique_ptr<Flight>> lent_;
+    std::vector<std::unique_ptr<Flight>> idle_;  // to be lent again
+    std::array<Flight, 2> flights_;              // last: they wait before anything that they use is freed
 };
 
 }  // namespace binosplat

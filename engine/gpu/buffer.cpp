@@ -54,17 +54,18 @@ Buffer::Buffer(const Context& context, const std::string& name, std::uint64_t by
                                                                                   : vk::MemoryPropertyFlags();
         memory_ = allocate(context, needs, context.memoryTypes(needs.memoryTypeBits, wanted, preferred), !is_mapped);
         buffer_.bindMemory(*memory_, 0);
-        allocated_bytes_ = needs.size;
+        if (kind == MemoryKind::kDevice) { counted_bytes_ = needs.size; }
     } catch (const vk::OutOfDeviceMemoryError&) {
         refuse(what + ", which is more than it has free");
     } catch (const vk::OutOfHostMemoryError&) { refuse(what + ", which is more than it has free"); }
     context.name(buffer_, name);
+    context_ = &context;
     bytes_ = bytes;
     if (kind == MemoryKind::kDevice) {
         address_ = device.getBufferAddress(vk::BufferDeviceAddressInfo(*buffer_), *context.device().getDispatcher());
-        use_ = &context.memoryUse();
-        const std::uint64_t now = use_->current_bytes += allocated_bytes_;
-        for (std::uint64_t peak = use_->peak_bytes; peak < now && !use_->peak_bytes.compare_exchange_weak(peak, now);) {}
+        MemoryUse& use = context.memoryUse();
+        const std::uint64_t now = use.current_bytes += counted_bytes_;
+        for (std::uint64_t peak = use.peak_bytes; peak < now && !use.peak_bytes.compare_exchange_weak(peak, now);) {}
     } else {
         mapped_ = memory_.mapMemory(0, VK_WHOLE_SIZE);
     }
@@ -74,20 +75,20 @@ Buffer& Buffer::operator=(Buffer&& other) noexcept {
     release();
     buffer_ = std::move(other.buffer_);
     memory_ = std::move(other.memory_);
-    use_ = std::exchange(other.use_, nullptr);
+    context_ = std::exchange(other.context_, nullptr);
     bytes_ = std::exchange(other.bytes_, 0);
-    allocated_bytes_ = std::exchange(other.allocated_bytes_, 0);
+    counted_bytes_ = std::exchange(other.counted_bytes_, 0);
     address_ = std::exchange(other.address_, 0);
     mapped_ = std::exchange(other.mapped_, nullptr);
     return *this;
 }
 
 void Buffer::release() {
-    if (use_ != nullptr) { use_->current_bytes -= allocated_bytes_; }
-    use_ = nullptr;
+    if (context_ != nullptr) { context_->freedBuffers().take({std::move(memory_), std::move(buffer_), counted_bytes_}); }
+    context_ = nullptr;
     buffer_ = vk::raii::Buffer(nullptr);
     memory_ = vk::raii::DeviceMemory(nullptr);
-    bytes_ = allocated_bytes_ = address_ = 0;
+    bytes_ = counted_bytes_ = address_ = 0;
     mapped_ = nullptr;
 }
 

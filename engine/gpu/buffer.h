@@ -46,8 +46,8 @@ private:
 
     vk::raii::DeviceMemory memory_{nullptr};  // freed after the buffer
     vk::raii::Buffer buffer_{nullptr};
-    MemoryUse* use_ = nullptr;
-    std::uint64_t bytes_ = 0, allocated_bytes_ = 0, address_ = 0;
+    const Context* context_ = nullptr;
+    std::uint64_t bytes_ = 0, counted_bytes_ = 0, address_ = 0;  // counted_bytes_: see MemoryUse
     void* mapped_ = nullptr;
 };
 

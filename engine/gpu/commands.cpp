@@ -19,9 +19,12 @@ std::string PassLabel::text() const {
     return kRoles[static_cast<std::size_t>(role)] + pass;
 }
 
-Commands::Commands(const Context& context) : context_(context) {
+Commands::Commands(const Context& context, Level level) : context_(context), level_(level) {
+    const bool is_whole = level == Level::kPrimary;
     pool_ = context.device().createCommandPool({vk::CommandPoolCreateFlagBits::eResetCommandBuffer, context.queueFamily()});
-    vk::raii::CommandBuffers buffers(context.device(), vk::CommandBufferAllocateInfo(*pool_, vk::CommandBufferLevel::ePrimary, 1));
+    vk::raii::CommandBuffers buffers(
+        context.device(),
+        vk::CommandBufferAllocateInfo(*pool_, is_whole ? vk::CommandBufferLevel::ePrimary : vk::CommandBufferLevel::eSecondary, 1));
     command_buffer_ = std::move(buffers[0]);
     fence_ = context.device().createFence({});
     if (context.timestampPeriodNs() > 0.0) {
@@ -30,7 +33,7 @@ Commands::Commands(const Context& context) : context_(context) {
 }
 
 Commands::~Commands() {
-    if (!under_way_) { return; }
+    if (!under_way_ || level_ == Level::kSecondary) { return; }
     // A lost device has nothing under way any more.
     const vk::Fence fence = *fence_;
     (void)context_.device().getDispatcher()->vkWaitForFences(*context_.device(), 1, reinterpret_cast<const VkFence*>(&fence), VK_TRUE,
@@ -44,7 +47,8 @@ void Commands::begin() {
     timestamp_count_ = 0;
     count_ = 0;
     command_buffer_.reset();
-    command_buffer_.begin(vk::CommandBufferBeginInfo(vk::CommandBufferUsageFlagBits::eOneTimeSubmit));
+    const vk::CommandBufferInheritanceInfo outside_of_render_passes;
+    command_buffer_.begin(vk::CommandBufferBeginInfo(vk::CommandBufferUsageFlagBits::eOneTimeSubmit, &outside_of_render_passes));
     if (*timestamps_) { command_buffer_.resetQueryPool(*timestamps_, 0, kMaxTimestamps); }
 }
 
@@ -213,15 +217,27 @@ void Commands::clearImage(vk::Image image, const glm::vec4& colour) {
 }
 
 void Commands::drop() {
+    if (std::exchange(under_way_, false)) { return; }
     endPass();
     command_buffer_.end();
 }
 
-void Commands::submit(vk::Semaphore signals) {
+void Commands::end() {
     endPass();
     const vk::MemoryBarrier to_host(vk::AccessFlagBits::eTransferWrite, vk::AccessFlagBits::eHostRead);
     command_buffer_.pipelineBarrier(vk::PipelineStageFlagBits::eTransfer, vk::PipelineStageFlagBits::eHost, {}, to_host, {}, {});
     command_buffer_.end();
+}
+
+vk::CommandBuffer Commands::lend() {
+    assert(level_ == Level::kSecondary);
+    end();
+    under_way_ = true;
+    return *command_buffer_;
+}
+
+void Commands::submit(vk::Semaphore signals) {
+    end();
     const vk::CommandBuffer commands = *command_buffer_;
     const auto signalled = signals ? vk::ArrayProxyNoTemporaries<const vk::Semaphore>(signals) : nullptr;
     try {
@@ -232,7 +248,7 @@ void Commands::submit(vk::Semaphore signals) {
 }
 
 void Commands::waitForDevice() const {
-    if (!under_way_) { return; }
+    if (!under_way_ || level_ == Level::kSecondary) { return; }
     try {
         const auto result = context_.device().waitForFences(*fence_, VK_TRUE, UINT64_MAX);
         check(result == vk::Result::eSuccess, "{}: the frame did not finish: {}", context_.deviceName(), vk::to_string(result));
@@ -243,14 +259,16 @@ void Commands::wait() {
     if (!under_way_) { return; }
     waitForDevice();
     under_way_ = false;
-    context_.device().resetFences(*fence_);
+    if (level_ == Level::kPrimary) { context_.device().resetFences(*fence_); }
 
     times_.clear();
     total_ms_ = 0.0;
     if (!*timestamps_ || timestamp_count_ == 0) { return; }
+    using Flag = vk::QueryResultFlagBits;
     const auto [status, ticks] =
         timestamps_.getResults<std::uint64_t>(0, timestamp_count_, timestamp_count_ * sizeof(std::uint64_t), sizeof(std::uint64_t),
-                                              vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait);
+                                              level_ == Level::kPrimary ? Flag::e64 | Flag::eWait : Flag::e64);
+    if (status == vk::Result::eNotReady) { return; }  // whoever submits said so too early
     check(status == vk::Result::eSuccess, "{}: no timestamps: {}", context_.deviceName(), vk::to_string(status));
     const std::uint64_t mask = context_.timestampMask();
     const double ms_per_tick = context_.timestampPeriodNs() * 1e-6;

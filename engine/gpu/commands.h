@@ -37,7 +37,9 @@ using PassTimes = std::vector<PassTime>;
 
 class Commands {
 public:
-    explicit Commands(const Context& context);
+    // kSecondary: a part of somebody else's commands, see lend.
+    enum class Level { kPrimary, kSecondary };
+    explicit Commands(const Context& context, Level level = Level::kPrimary);
     Commands(const Commands&) = delete;
     Commands& operator=(const Commands&) = delete;
     // Waits for what is under way.
@@ -98,8 +100,12 @@ public:
     [[nodiscard]] static bool canMakeMips(const Context& context, vk::Format format);
     void clearImage(vk::Image image, const glm::vec4& colour);
 
-    // Instead of submit: nothing of what was recorded is executed.
+    // Instead of submit: nothing of what was recorded is executed. Also after lend, if nobody submits that.
     void drop();
+
+    // Instead of submit, of the second level: what was recorded, for somebody's commands outside of render passes. Once the device is done
+    // with these, wait() does not wait, and measures.
+    vk::CommandBuffer lend();
 
     // The device starts; `signals`, if given, is signalled once it is done.
     void submit(vk::Semaphore signals = {});
@@ -126,10 +132,12 @@ private:
     void recordKernel(const Kernel& kernel, const void* pass, std::uint32_t bytes);
     // Called before each of them.
     void waitForAll();
+    void end();
     void changeLayout(vk::Image image, vk::ImageAspectFlagBits aspect, vk::ImageLayout from, vk::ImageLayout to);
     void writeTimestamp();
 
     const Context& context_;
+    Level level_;
     vk::raii::CommandPool pool_{nullptr};  // its own, so that threads may record at the same time
     vk::raii::CommandBuffer command_buffer_{nullptr};
     vk::raii::Fence fence_{nullptr};

@@ -92,13 +92,17 @@ Context::Context(const ContextOptions& options) : memory_limit_bytes_(options.me
                     fmt::format("no Vulkan loader (libvulkan.so.1): {}; install libvulkan1 and a driver", error.what()));
     }
     try {
-        createInstance(options, options.validation || environment("BINOSPLAT_VALIDATION") == "1");
-        if (options.maker.choose_device) {
-            takePhysicalDevice(options.maker);
+        if (options.foreign != nullptr) {
+            adopt(*options.foreign);
         } else {
-            choosePhysicalDevice(options.device);
+            createInstance(options, options.validation || environment("BINOSPLAT_VALIDATION") == "1");
+            if (options.maker.choose_device) {
+                takePhysicalDevice(options.maker);
+            } else {
+                choosePhysicalDevice(options.device);
+            }
+            createDevice(options);
         }
-        createDevice(options);
     } catch (const vk::SystemError& error) {
         throw Error(ExitCode::kNoDevice, fmt::format("no usable Vulkan device: {}; {}", error.what(), kVulkanHint));
     }
@@ -189,11 +193,14 @@ void Context::choosePhysicalDevice(const std::string& wanted) {
 
 void Context::takePhysicalDevice(const DeviceMaker& maker) {
     physical_device_ = vk::raii::PhysicalDevice(instance_, maker.choose_device(*instance_));
+    requireFeatures("the device that the runtime wants");
+}
+
+void Context::requireFeatures(const char* which) const {
     const std::string missing = missingFeatures(physical_device_);
-    if (!missing.empty()) {
-        const std::string name = physical_device_.getProperties().deviceName;
-        throw Error(ExitCode::kNoDevice, fmt::format("{}: the device that the runtime wants lacks {}", name, missing));
-    }
+    if (missing.empty()) { return; }
+    const std::string name = physical_device_.getProperties().deviceName;
+    throw Error(ExitCode::kNoDevice, fmt::format("{}: {} lacks {}", name, which, missing));
 }
 
 void Context::createDevice(const ContextOptions& options) {

@@ -1,9 +1,10 @@
 // The Vulkan device: chosen, opened, and what it can do. One queue; no descriptor sets anywhere.
 #pragma once
 
+#include "engine/gpu/foreign_device.h"
+#include "engine/gpu/freed_buffers.h"
 #include "engine/gpu/pipeline_cache.h"
 
-#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -31,6 +32,7 @@ struct ContextOptions {
     std::uint64_t max_allocation_bytes = 0;             // at most so many in one allocation; 0: what the device allows
     std::uint64_t memory_limit_bytes = 0;               // at most so many in all buffers together; 0: what the device has
     DeviceMaker maker = {};                             // instead of Vulkan itself; `device` is then without effect
+    const ForeignDevice* foreign = nullptr;             // instead of all of the others
     std::vector<const char*> instance_extensions = {};  // in addition to those that the passes need; literals
     std::vector<const char*> device_extensions = {};    // the same, but only those that the device has
     void* device_features = nullptr;                    // more of these, too: a chain of feature structs
@@ -38,12 +40,6 @@ struct ContextOptions {
 
 // Shaders by name, as SPIR-V.
 using ShaderWords = std::map<std::string, std::vector<std::uint32_t>, std::less<>>;
-
-// Bytes of device memory in use, and the most there ever were.
-struct MemoryUse {
-    // Any thread may make and free buffers.
-    std::atomic<std::uint64_t> current_bytes = 0, peak_bytes = 0;
-};
 
 class Context {
 public:
@@ -60,7 +56,7 @@ public:
     [[nodiscard]] const vk::raii::Queue& queue() const { return queue_; }
     [[nodiscard]] std::uint32_t queueFamily() const { return queue_family_; }
     // To be held by whoever uses the queue, directly or through OpenXR: a second thread may be uploading a scene.
-    [[nodiscard]] std::mutex& queueMutex() const { return queue_mutex_; }
+    [[nodiscard]] QueueMutex& queueMutex() const { return queue_mutex_; }
     [[nodiscard]] const std::string& deviceName() const { return device_name_; }
     // True for a CPU implementation, not a GPU.
     [[nodiscard]] bool isSoftware() const { return is_software_; }
@@ -100,6 +96,7 @@ public:
     [[nodiscard]] const vk::raii::PipelineCache& pipelineCache() const { return pipeline_cache_.handle(); }
 
     [[nodiscard]] MemoryUse& memoryUse() const { return memory_use_; }
+    [[nodiscard]] FreedBuffers& freedBuffers() const { return freed_buffers_; }
     // Those that will do, of a buffer's or an image's allowed ones; the preferred ones first. Throws Error if there are none.
     [[nodiscard]] std::vector<std::uint32_t> memoryTypes(std::uint32_t allowed_types, vk::MemoryPropertyFlags wanted,
                                                          vk::MemoryPropertyFlags preferred) const;
@@ -126,7 +123,9 @@ private:
     void createInstance(const ContextOptions& options, bool validation);
     void choosePhysicalDevice(const std::string& wanted);
     void takePhysicalDevice(const DeviceMaker& maker);
+    void requireFeatures(const char* which) const;
     void createDevice(const ContextOptions& options);
+    void adopt(const ForeignDevice& foreign);
     void readLimits();
     void nameObject(vk::ObjectType type, std::uint64_t handle, const std::string& object_name) const;
 
@@ -145,7 +144,7 @@ private:
     vk::raii::Device device_{nullptr};
     PipelineCache pipeline_cache_;
     vk::raii::Queue queue_{nullptr};
-    mutable std::mutex queue_mutex_;
+    mutable QueueMutex queue_mutex_;
     std::uint32_t queue_family_ = 0;
     std::string device_name_;
     bool is_software_ = false, has_full_subgroups_ = false, has_subgroup_uniform_flow_ = false;
@@ -156,6 +155,7 @@ private:
     std::uint32_t subgroup_size_ = 0, min_subgroup_size_ = 0, max_subgroup_size_ = 0;
     std::uint32_t max_group_invocations_ = 0, shared_memory_ = 0;
     mutable MemoryUse memory_use_;
+    mutable FreedBuffers freed_buffers_{memory_use_};
     mutable ShaderWords replaced_shaders_;
 };
 

@@ -56,7 +56,11 @@ typedef enum bsp_type {
     BSP_TYPE_SCENE_PROPERTIES = 4,
     BSP_TYPE_VIEW = 5,
     BSP_TYPE_FRAME_INFO = 6,
-    BSP_TYPE_FRAME_RESULT = 7
+    BSP_TYPE_FRAME_RESULT = 7,
+    // binosplat_vulkan.h
+    BSP_TYPE_VULKAN_DEVICE = 8,
+    BSP_TYPE_TARGET = 9,
+    BSP_TYPE_SUBMIT_INFO = 10
 } bsp_type;
 
 // The beginning of every structure. `next`: another structure that says more, where a comment names one; else null.

@@ -3,7 +3,7 @@
 #ifndef BINOSPLAT_HPP
 #define BINOSPLAT_HPP
 
-#include <binosplat.h>
+#include "binosplat.h"
 
 #include <array>
 #include <memory>

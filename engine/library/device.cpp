@@ -23,9 +23,20 @@ glm::dvec3 vectorAt(const double* values, const char* name) {
     return v;
 }
 
-ContextOptions optionsOf(const bsp_device_info& info) {
-    return {
-        .device = info.name != nullptr ? info.name : "", .validation = info.validation != 0, .memory_limit_bytes = info.memory_limit_bytes};
+ForeignDevice foreignOf(const bsp_vulkan_device& given) {
+    const auto calling = [&](void (*function)(void*)) {
+        return function != nullptr ? std::function<void()>([function, user = given.queue_user] { function(user); }) : nullptr;
+    };
+    check(given.enabled_extension_count == 0 || given.enabled_extensions != nullptr, "enabled_extensions of bsp_vulkan_device is null");
+    return {.instance = given.instance,
+            .physical_device = given.physical_device,
+            .device = given.device,
+            .queue_family = given.queue_family,
+            .queue = given.queue,
+            .enabled_features = given.enabled_features,
+            .enabled_extensions = {given.enabled_extensions, given.enabled_extensions + given.enabled_extension_count},
+            .lock_queue = calling(given.lock_queue),
+            .unlock_queue = calling(given.unlock_queue)};
 }
 
 }  // namespace
@@ -52,16 +63,25 @@ Eye eyeOf(const bsp_view& view, const glm::dvec3& origin) {
 
 using namespace binosplat;
 
-bsp_device_t::bsp_device_t(const bsp_device_info& info)
-    : log_to(info.log), log_user(info.log_user), context(optionsOf(info)), empty(context, Scene{}) {}
+bsp_device_t::bsp_device_t(const bsp_device_info& info, const ContextOptions& options)
+    : log_to(info.log), log_user(info.log_user), context(options), empty(context, Scene{}) {}
 
 const char* bsp_version(void) { return BINOSPLAT_LIBRARY_VERSION; }
 
 bsp_result bsp_device_create(const bsp_device_info* info, bsp_device* device) {
     return guarded([&] {
         check(device != nullptr, "device is null");
-        *device = new bsp_device_t(info != nullptr ? readStructure(info, BSP_TYPE_DEVICE_INFO, sizeof(bsp_header), "bsp_device_info")
-                                                   : bsp_device_info{});
+        const auto known =
+            info != nullptr ? readStructure(info, BSP_TYPE_DEVICE_INFO, sizeof(bsp_header), "bsp_device_info") : bsp_device_info{};
+        ContextOptions options{.device = known.name != nullptr ? known.name : "",
+                               .validation = known.validation != 0,
+                               .memory_limit_bytes = known.memory_limit_bytes};
+        ForeignDevice foreign;
+        if (const auto* next = reinterpret_cast<const bsp_vulkan_device*>(findNext(known.next, BSP_TYPE_VULKAN_DEVICE))) {
+            foreign = foreignOf(readStructure(next, BSP_TYPE_VULKAN_DEVICE, offsetof(bsp_vulkan_device, lock_queue), "bsp_vulkan_device"));
+            options.foreign = &foreign;
+        }
+        *device = new bsp_device_t(known, options);
         return BSP_SUCCESS;
     });
 }

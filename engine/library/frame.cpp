@@ -50,21 +50,35 @@ FrameSettings settingsOf(const bsp_frame_info& frame, const bsp_scene_t* scene) 
     return settings;
 }
 
-std::vector<Eye> eyesOf(const bsp_frame_info& frame, const glm::dvec3& origin) {
+// The eyes, and targets if they are wanted.
+void readViews(const bsp_frame_info& frame, bool with_targets, AskedFrame& asked) {
     check(frame.view_count >= 1 && frame.view_count <= kMostViews, "there are {} views, must be 1 to {}", frame.view_count, kMostViews);
     constexpr std::size_t kFirstSize = offsetof(bsp_view, height) + sizeof(std::uint32_t);
     checkHeader(frame.views, BSP_TYPE_VIEW, kFirstSize, "bsp_view");
-    std::vector<Eye> eyes;
+    const glm::dvec3 origin = asked.scene != nullptr ? asked.scene->origin : glm::dvec3(0.0);
     for (std::size_t i = 0; i < frame.view_count; ++i) {
         const auto* view = reinterpret_cast<const bsp_view*>(reinterpret_cast<const unsigned char*>(frame.views) + i * frame.views->size);
-        eyes.push_back(eyeOf(readStructure(view, BSP_TYPE_VIEW, kFirstSize, "bsp_view"), origin));
-        check(i % 2 == 0 || eyes[i].size_px == eyes[i - 1].size_px, "views {} and {} have different sizes, must be equal: they are a pair",
-              i - 1, i);
+        const auto known = readStructure(view, BSP_TYPE_VIEW, kFirstSize, "bsp_view");
+        asked.eyes.push_back(eyeOf(known, origin));
+        check(i % 2 == 0 || asked.eyes[i].size_px == asked.eyes[i - 1].size_px,
+              "views {} and {} have different sizes, must be equal: they are a pair", i - 1, i);
+        if (!with_targets) { continue; }
+        const auto* target = reinterpret_cast<const bsp_target*>(findNext(known.next, BSP_TYPE_TARGET));
+        check(target != nullptr, "view {} has no bsp_target, must have one", i);
+        const auto known_target = readStructure(target, BSP_TYPE_TARGET, sizeof(bsp_target), "bsp_target");
+        checkTarget(known_target, asked.settings.half_floats, asked.settings.background != glm::dvec3(0.0));
+        asked.targets.push_back(known_target);
+        asked.settings.keep_depth = asked.settings.keep_both_depths = asked.settings.keep_depth || known_target.depth != VK_NULL_HANDLE;
     }
-    return eyes;
 }
 
-bsp_frame_result resultOf(const FrameResult& result) {
+}  // namespace
+
+bsp_frame_info binosplat::readFrame(const bsp_frame_info* frame) {
+    return readStructure(frame, BSP_TYPE_FRAME_INFO, offsetof(bsp_frame_info, mode), "bsp_frame_info");
+}
+
+bsp_frame_result binosplat::resultOf(const FrameResult& result) {
     bsp_frame_result told{};
     told.gpu_ms = result.gpu_total_ms;
     for (const TargetCounters& target : result.counters.targets) {
@@ -77,9 +91,7 @@ bsp_frame_result resultOf(const FrameResult& result) {
     return told;
 }
 
-}  // namespace
-
-bsp_renderer_t::bsp_renderer_t(bsp_device_t& of_device) : device(of_device) {
+bsp_renderer_t::bsp_renderer_t(bsp_device_t& of_device) : device(of_device), targets_(of_device.context) {
     part(0);
     const std::lock_guard lock(device.renderers_mutex);
     device.renderers.insert(this);
@@ -88,21 +100,39 @@ bsp_renderer_t::bsp_renderer_t(bsp_device_t& of_device) : device(of_device) {
 bsp_renderer_t::~bsp_renderer_t() {
     const std::lock_guard lock(device.renderers_mutex);
     device.renderers.erase(this);
-    while (!parts_.empty()) { parts_.pop_back(); }  // the first one last
+    dropAll();
 }
 
-bsp_renderer_t::Part& bsp_renderer_t::part(std::size_t index) {
-    while (parts_.size() <= index) {
-        parts_.push_back({parts_.empty() ? std::make_unique<StereoFrame>(device.context, shown != nullptr ? *shown->gpu : device.empty)
-                                         : StereoFrame::beside(*parts_.front().frame)});
+void bsp_renderer_t::dropAll() noexcept {
+    for (auto& [number, lent] : lent_) {
+        (void)guarded([&] { return drop(lent), BSP_SUCCESS; });
     }
-    return parts_[index];
+    lent_.clear();
+    while (!parts_.empty()) { parts_.pop_back(); }  // the first one last
+    shown = nullptr;
+    views_read_ = 0;
+}
+
+StereoFrame& bsp_renderer_t::part(std::size_t index) {
+    while (parts_.size() <= index) {
+        parts_.push_back(parts_.empty() ? std::make_unique<StereoFrame>(device.context, gpuOf(shown))
+                                        : StereoFrame::beside(*parts_.front()));
+    }
+    return *parts_[index];
 }
 
 void bsp_renderer_t::show(bsp_scene_t* scene) {
     if (scene == shown) { return; }
-    part(0).frame->show(scene != nullptr ? *scene->gpu : device.empty);
-    while (parts_.size() > 1) { parts_.pop_back(); }
+    const GpuScene &gpu = gpuOf(scene), &before = gpuOf(shown);
+    part(0);
+    for (std::size_t p = 0; p < parts_.size(); ++p) {
+        try {
+            parts_[p]->show(gpu);
+        } catch (...) {
+            while (p-- > 0) { parts_[p]->show(before); }
+            throw;
+        }
+    }
     shown = scene;
     views_read_ = 0;
 }
@@ -110,42 +140,56 @@ void bsp_renderer_t::show(bsp_scene_t* scene) {
 void bsp_renderer_t::forget() noexcept {
     try {
         show(nullptr);
-    } catch (...) {
-        while (!parts_.empty()) { parts_.pop_back(); }
-        shown = nullptr;
-        views_read_ = 0;
-    }
+    } catch (...) { dropAll(); }
 }
 
-void bsp_renderer_t::render(const bsp_frame_info& frame, bsp_frame_result* result) {
+AskedFrame bsp_renderer_t::ask(const bsp_frame_info& frame, bool with_targets) const {
+    AskedFrame asked;
+    asked.scene = frame.scene;
+    asked.is_cut = (frame.flags & BSP_FRAME_CUT) != 0;
     if (frame.scene != nullptr) {
         check(&frame.scene->device == &device, "the scene is of another device than the renderer");
         frame.scene->requireThere();
     }
-    const std::vector<Eye> eyes = eyesOf(frame, frame.scene != nullptr ? frame.scene->origin : glm::dvec3(0.0));
-    FrameSettings settings = settingsOf(frame, frame.scene);
-    show(frame.scene);
-    views_read_ = 0;
-    for (std::size_t first = 0; first < eyes.size(); first += 2) {
-        Part& now = part(first / 2);
-        now.views = std::min<std::size_t>(eyes.size() - first, 2);
-        FrameSettings its = settings;
-        if (now.views == 1) {
-            its.mode = Mode::kMono;
-            its.keep_past = its.keep_both_depths = false;
-        }
-        if ((frame.flags & BSP_FRAME_CUT) != 0) { now.frame->show(shown != nullptr ? *shown->gpu : device.empty); }
-        const FrameResult done = now.frame->render(std::span(eyes).subspan(first, now.views), its);
-        if (first == 0 && result != nullptr) { writeStructure(result, resultOf(done)); }
+    asked.settings = ::settingsOf(frame, frame.scene);
+    readViews(frame, with_targets, asked);
+    return asked;
+}
+
+std::span<const Eye> bsp_renderer_t::eyesOf(const AskedFrame& asked, std::size_t index) {
+    return std::span(asked.eyes).subspan(2 * index, std::min<std::size_t>(asked.eyes.size() - 2 * index, 2));
+}
+
+FrameSettings bsp_renderer_t::settingsOf(const AskedFrame& asked, std::size_t index) {
+    FrameSettings settings = asked.settings;
+    if (eyesOf(asked, index).size() == 1) {
+        settings.mode = Mode::kMono;
+        settings.keep_past = settings.keep_both_depths = false;
     }
-    views_read_ = eyes.size();
-    has_depth_ = settings.keep_depth;
+    return settings;
+}
+
+void bsp_renderer_t::begin(const AskedFrame& asked) {
+    show(asked.scene);
+    views_read_ = 0;
+    if (!asked.is_cut) { return; }
+    for (const auto& part : parts_) { part->forgetPast(); }
+}
+
+void bsp_renderer_t::render(const AskedFrame& asked, bsp_frame_result* result) {
+    begin(asked);
+    for (std::size_t p = 0; 2 * p < asked.eyes.size(); ++p) {
+        const FrameResult done = part(p).render(eyesOf(asked, p), settingsOf(asked, p));
+        if (p == 0 && result != nullptr) { writeStructure(result, resultOf(done)); }
+    }
+    views_read_ = asked.eyes.size();
+    has_depth_ = asked.settings.keep_depth;
 }
 
 Image bsp_renderer_t::read(std::uint32_t view, bool depth) {
     check(view < views_read_, "view is {}, {}", view,
           views_read_ == 0 ? "and nothing is rendered yet" : fmt::format("must be under {}", views_read_));
-    StereoFrame& frame = *parts_[view / 2].frame;
+    StereoFrame& frame = *parts_[view / 2];
     const int eye = static_cast<int>(view % 2);
     if (!depth) { return frame.readPicture(eye); }
     check(has_depth_, "the frame kept no depths, must have BSP_FRAME_DEPTH");
@@ -172,7 +216,7 @@ bsp_result bsp_render(bsp_renderer renderer, const bsp_frame_info* frame, bsp_fr
     return guarded([&] {
         check(renderer != nullptr, "renderer is null");
         if (result != nullptr) { checkHeader(result, BSP_TYPE_FRAME_RESULT, sizeof(bsp_header), "bsp_frame_result"); }
-        renderer->render(readStructure(frame, BSP_TYPE_FRAME_INFO, offsetof(bsp_frame_info, mode), "bsp_frame_info"), result);
+        renderer->render(renderer->ask(readFrame(frame), false), result);
         return BSP_SUCCESS;
     });
 }

@@ -50,7 +50,7 @@ void Presenter::record(Commands& commands, const PresentedEye& eye, double near)
     pass.pixels = pixels_.address<gpu::uint>();
     if (with_depth) { pass.device_depths = depths_.address<float>(); }
     pass.size_px = eye.size_px;
-    pass.near = static_cast<float>(near);
+    pass.depth_scale = static_cast<float>(near);
     pass.blue_first = blue_first_ ? 1 : 0;
     pass.linear = linear_ ? 1 : 0;
     pass.see_through = eye.see_through ? 1 : 0;

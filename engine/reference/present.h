@@ -14,11 +14,17 @@ struct Presentation {
     bool linear = false;      // bytes that count as light, of a display-encoded value (IEC 61966-2-1)
     double near = 0.2;
     bool see_through = false;  // alpha is output, too, and the bytes' light is multiplied by it
+    double depth_offset = 0.0;
 };
 
 // A word a pixel, the first channel lowest: nearest of 0 to 255, NaN as 0; opaque, or with the pixel's own alpha.
 std::vector<std::uint32_t> present(std::span<const glm::dvec4> rgba, const Presentation& presentation);
-// near / (D/A): 1 at the near plane and before it, 0 where alpha stays under 1/255.
+// The same over `behind`, such words; splats do not show where what is there is nearer, by its depths as presentDepths has them, if there
+// are any.
+std::vector<std::uint32_t> presentOver(std::span<const glm::dvec4> rgba, std::span<const double> depth_sums,
+                                       std::span<const std::uint32_t> behind, std::span<const double> mesh_depths,
+                                       const Presentation& presentation);
+// near / (D/A), and the offset: 1 at the near plane and before it, 0 where alpha stays under 1/255.
 std::vector<double> presentDepths(std::span<const glm::dvec4> rgba, std::span<const double> depth_sums, const Presentation& presentation);
 
 }  // namespace binosplat::reference

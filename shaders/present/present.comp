@@ -1,5 +1,6 @@
 // present: an eye's picture in the format of the headset's swapchain image: 8 bits per channel and, on request, its depth. Trained values
-// are display-encoded already, as are the bytes of an sRGB image.
+// are display-encoded already, as are the bytes of an sRGB image. A program's own picture may lie behind it, and before it where the
+// program's depth says so: by the depth that stands for all splats of a pixel.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "passes.h"
@@ -40,26 +41,49 @@ vec3 tint(vec3 colour, uvec2 at, uint row_tiles) {
     return mix(colour, shade, 0.4);
 }
 
+// As it was displayed, whatever the order and the meaning of its bytes.
+vec4 unpackBehind(uint bytes) {
+    const vec4 value = unpackUnorm4x8(bytes), ordered = pass.blue_first != 0 ? value.bgra : value;
+    return pass.linear != 0 ? vec4(encode(ordered.rgb), ordered.a) : ordered;
+}
+
+// Of all that a pixel shows: of D/A, or as its word has it.
+float inverseDepthAt(uint i, float alpha) {
+    if (!isThere(uvec2(pass.words))) { return alpha / pass.depths.at[i]; }
+    const uint word = pass.words.at[i];
+    return word == 0 ? 0 : inverseDepthOf(word);
+}
+
 void main() {
     const uvec2 at = gl_GlobalInvocationID.xy;
     if (any(greaterThanEqual(at, pass.size_px))) { return; }
     const uint i = at.y * pass.size_px.x + at.x;
-    const vec4 pixel = colourAt(pass.colours, pass.half_colours, i);
+    vec4 pixel = colourAt(pass.colours, pass.half_colours, i);
+    const bool has_mesh = isThere(uvec2(pass.mesh_depths)), has_depth = has_mesh || isThere(uvec2(pass.device_depths));
+    const float inverse_depth = has_depth ? inverseDepthAt(i, pixel.a) : 0;
+    const float mesh_depth = has_mesh ? pass.mesh_depths.at[i] : 0;
+    if (has_mesh && !(inverse_depth > (mesh_depth - pass.depth_offset) / pass.depth_scale)) { pixel = vec4(0); }
     vec3 colour = clampToDisplay(pixel.rgb);
     // Colours were multiplied by alpha as display-encoded values, but headsets blend light: alpha is divided out and multiplied back in.
     const bool see_through = pass.see_through != 0, linear = pass.linear != 0;
     const float alpha = see_through ? (pixel.a > 0 ? min(pixel.a, 1) : 0) : 1;
+    float left_alpha = alpha;
+    if (pass.over != 0) {
+        const vec4 behind = unpackBehind(pass.pixels.at[i]);
+        const float share = 1 - (pixel.a > 0 ? min(pixel.a, 1) : 0);
+        colour = min(colour + share * behind.rgb, vec3(1));
+        left_alpha = 1 - share + share * behind.a;
+    }
     if (see_through) { colour = alpha > 0 ? clampToDisplay(pixel.rgb / alpha) : vec3(0); }
     if (isThere(uvec2(pass.tile_kinds))) { colour = tint(colour, at, (pass.size_px.x + kTileSize - 1) / kTileSize); }
     if (linear || see_through) { colour = alpha * decode(colour); }
     if (see_through && !linear) { colour = encode(colour); }
     const uvec3 bytes = uvec3(colour * 255 + 0.5);
-    pass.pixels.at[i] = (pass.blue_first != 0 ? bytes.b | bytes.g << 8 | bytes.r << 16 : bytes.r | bytes.g << 8 | bytes.b << 16) | uint(alpha * 255 + 0.5) << 24;
+    pass.pixels.at[i] = (pass.blue_first != 0 ? bytes.b | bytes.g << 8 | bytes.r << 16 : bytes.r | bytes.g << 8 | bytes.b << 16) | uint(left_alpha * 255 + 0.5) << 24;
     if (isThere(uvec2(pass.device_depths))) {
-        // near over the depth D/A: 1 at the near plane, 0 where there is nothing.
-        const bool from_words = isThere(uvec2(pass.words));
-        const uint word = from_words ? pass.words.at[i] : 0;
-        const float share = !from_words ? pass.near * pixel.a / pass.depths.at[i] : word == 0 ? 0 : pass.near * inverseDepthOf(word);
-        pass.device_depths.at[i] = share > 0 && pixel.a >= kMinAlpha ? min(share, 1) : 0;
+        // Infinitely far where there is nothing; of a pixel with a mesh, the depth of what is more of it.
+        const bool is_shown = inverse_depth > 0 && pixel.a >= (has_mesh ? 0.5 : kMinAlpha);
+        const float own = clamp((is_shown ? inverse_depth * pass.depth_scale : 0) + pass.depth_offset, 0, 1);
+        pass.device_depths.at[i] = has_mesh && !is_shown ? mesh_depth : own;
     }
 }

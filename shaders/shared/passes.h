@@ -294,13 +294,16 @@ struct PresentPass {
     Uints words;           // instead of D, for a picture that later ones are made from: lib/moving_pixel.glsl; otherwise null
     Uints tile_kinds;      // for a tint by what made each pixel; otherwise null
     Uints pixel_classes;   // for the tint, or null
-    Uints pixels;          // out: 8 bits a channel
-    Floats device_depths;  // out where wanted, otherwise null: near / depth
+    Uints pixels;          // out: 8 bits a channel; with `over` also in, what is behind the splats
+    Floats device_depths;  // out where wanted, otherwise null: depth_scale / depth + depth_offset
+    Floats mesh_depths;    // of what is in `pixels`, likewise, or null: splats behind it do not show; may be device_depths
     uvec2 size_px;
-    float near;
+    float depth_scale;
+    float depth_offset;
     uint blue_first;   // 1: BGRA in place of RGBA
     uint linear;       // 1: the image is not an sRGB one: its bytes count as light
     uint see_through;  // 1: output alpha, for what the headset shows behind it
+    uint over;         // 1: blended over what is in `pixels`; then the picture has no background
 };
 
 BINOSPLAT_END_SHARED

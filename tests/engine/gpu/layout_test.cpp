@@ -83,8 +83,8 @@ std::vector<Layout> hostLayouts() {
         LAYOUT(SelectPass, targets, chosen, visible),
         LAYOUT(SortCountPass, keys, histograms, run_sums, digit_begins, list, shift, digits),
         LAYOUT(SortScatterPass, keys_in, values_in, keys_out, values_out, histograms, run_sums, digit_begins, list, shift, digits),
-        LAYOUT(PresentPass, colours, half_colours, depths, words, tile_kinds, pixel_classes, pixels, device_depths, size_px, near,
-               blue_first, linear, see_through),
+        LAYOUT(PresentPass, colours, half_colours, depths, words, tile_kinds, pixel_classes, pixels, device_depths, mesh_depths, size_px,
+               depth_scale, depth_offset, blue_first, linear, see_through, over),
     };
 }
 

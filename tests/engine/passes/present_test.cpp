@@ -16,6 +16,8 @@ struct Shown {
     std::vector<float> depth_sums = {};
     std::vector<gpu::uint> words = {}, tile_kinds = {}, pixel_classes = {};
     bool halves = false;
+    Bytes behind = {};  // and what is before and behind it
+    std::vector<float> mesh_depths = {};
 };
 
 struct Presented {
@@ -28,7 +30,8 @@ Presented runPresent(Gpu& gpu, const Shown& shown, const reference::Presentation
                  sums = gpu.upload("depth sums", shown.depth_sums), words = gpu.upload("words", shown.words),
                  kinds = gpu.upload("kinds", shown.tile_kinds), classes = gpu.upload("classes", shown.pixel_classes);
     const std::size_t count = shown.colours.size();
-    const Buffer pixels = gpu.allocate<std::uint32_t>("pixels", count), depths = gpu.allocate<float>("depths", count);
+    const Buffer pixels = shown.behind.empty() ? gpu.allocate<std::uint32_t>("pixels", count) : gpu.upload("pixels", shown.behind),
+                 depths = shown.mesh_depths.empty() ? gpu.allocate<float>("depths", count) : gpu.upload("depths", shown.mesh_depths);
     const bool with_depth = !shown.words.empty() || !shown.depth_sums.empty();
     gpu::PresentPass pass{};
     pass.colours = colours.address<gpu::vec4>();
@@ -40,7 +43,10 @@ Presented runPresent(Gpu& gpu, const Shown& shown, const reference::Presentation
     pass.pixels = pixels.address<gpu::uint>();
     if (with_depth) { pass.device_depths = depths.address<float>(); }
     pass.size_px = shown.size_px;
-    pass.near = static_cast<float>(how.near);
+    pass.depth_scale = static_cast<float>(how.near);
+    pass.depth_offset = static_cast<float>(how.depth_offset);
+    pass.over = shown.behind.empty() ? 0 : 1;
+    if (!shown.mesh_depths.empty()) { pass.mesh_depths = depths.address<float>(); }
     pass.blue_first = how.blue_first ? 1 : 0;
     pass.linear = how.linear ? 1 : 0;
     pass.see_through = how.see_through ? 1 : 0;
@@ -148,6 +154,31 @@ TEST_CASE_FIXTURE(Gpu, "depth is near over depth, and nothing is infinitely far,
         CHECK(expected[2] == 1.0);
         const Presented presented = runPresent(*this, *shown, how);
         for (std::size_t i = 0; i < sums.size(); ++i) { CHECK(presented.depths[i] == doctest::Approx(expected[i]).epsilon(1e-6)); }
+    }
+}
+
+TEST_CASE_FIXTURE(
+    Gpu, "a picture lies over a program's own bytes, in any order and meaning, and before or behind its depths, as its twin's does") {
+    Shown shown{{64, 4}, makeColours({64, 4})};
+    std::vector<double> sums, meshes;
+    for (std::uint32_t i = 0; i < 256; ++i) {
+        for (int c = 0; c < 3; ++c) { shown.colours[i][c] *= shown.colours[i].a; }
+        shown.behind.push_back(0xff000000u | i << 16 | (255 - i) << 8 | 77);
+        sums.push_back(static_cast<double>(shown.colours[i].a) * (1.0 + 0.1 * (i % 16)));
+        meshes.push_back(0.25 / (1.05 + 0.1 * (i / 16)) + 0.125);
+        shown.depth_sums.push_back(static_cast<float>(sums.back()));
+        shown.mesh_depths.push_back(static_cast<float>(meshes.back()));
+    }
+    for (int choice = 0; choice < 4; ++choice) {
+        const reference::Presentation how{(choice & 1) != 0, (choice & 2) != 0, 0.25, false, 0.125};
+        const Bytes expected = reference::presentOver(asDoubles(shown.colours), sums, shown.behind, meshes, how);
+        const Presented presented = runPresent(*this, shown, how);
+        CHECK(countOff(presented.pixels, expected, 1) == 0);
+        const std::vector<double> own = reference::presentDepths(asDoubles(shown.colours), sums, how);
+        for (std::size_t i = 0; i < own.size(); ++i) {
+            const bool is_splats = own[i] > meshes[i] && shown.colours[i].a >= 0.5f;
+            CHECK(presented.depths[i] == doctest::Approx(is_splats ? own[i] : meshes[i]).epsilon(1e-6));
+        }
     }
 }
 

@@ -1,0 +1,50 @@
+// Frames that somebody else submits.
+#include "engine/frame/stereo_frame.h"
+
+#include <cassert>
+#include <utility>
+
+namespace binosplat {
+
+StereoFrame::Lent StereoFrame::lend(std::span<const Eye> eyes, const FrameSettings& settings, const Append& append) {
+    finish();
+    // What is freed from here on stays until the frames before have come back.
+    const std::uint64_t number = context_.freedBuffers().beginFrame();
+    try {
+        if (idle_.empty()) { idle_.push_back(std::make_unique<Flight>(context_, Commands::Level::kSecondary)); }
+        std::unique_ptr<Flight>& flight = lent_[number] = std::move(idle_.back());
+        idle_.pop_back();
+        if (FrameRoom::isCutShort(state_)) {
+            room_.growIfItFits(plan_, state_);
+        } else if (!plan_.targets.empty() && room_.fitsAhead() && !room_.hasRoom(plan_, stateAhead(), kRoomAhead)) {
+            room_.makeRoomAhead(plan_, stateAhead());
+        }
+        prepare(eyes, settings);
+        record(*flight, settings, append);
+        return {number, flight->commands.lend()};
+    } catch (...) {
+        takeBackUnused(number);
+        throw;
+    }
+}
+
+FrameResult StereoFrame::takeBack(std::uint64_t number) {
+    std::unique_ptr<Flight> flight = std::move(lent_.at(number));
+    lent_.erase(number);
+    FrameResult result = land(*flight).value();
+    idle_.push_back(std::move(flight));
+    context_.freedBuffers().endFrame(number);
+    return result;
+}
+
+void StereoFrame::takeBackUnused(std::uint64_t number) {
+    if (const auto found = lent_.find(number); found != lent_.end()) {
+        if (found->second->commands.isUnderWay()) { found->second->commands.drop(); }
+        idle_.push_back(std::move(found->second));
+        lent_.erase(found);
+    }
+    pasts_ = {};  // some of what it was to leave is not there
+    context_.freedBuffers().endFrame(number);
+}
+
+}  // namespace binosplat

@@ -1,0 +1,63 @@
+// A Vulkan program of somebody else: its own instance under the validation layers, its device, a picture and its depth.
+#pragma once
+
+#include "tests/suite.h"
+
+#include <binosplat_vulkan.h>
+#include <binosplat.hpp>
+#include <vulkan/vulkan_raii.hpp>
+
+namespace binosplat::test {
+
+class ForeignImage {
+public:
+    ForeignImage(const vk::raii::PhysicalDevice& physical, const vk::raii::Device& device, vk::Format format, glm::uvec2 size_px,
+                 vk::ImageUsageFlags usage, vk::ImageAspectFlagBits aspect);
+
+    vk::Format format;
+    vk::raii::Image image;
+    vk::raii::DeviceMemory memory{nullptr};
+    vk::raii::ImageView view{nullptr};
+};
+
+class ForeignProgram {
+public:
+    static constexpr glm::uvec2 kSize{64, 48};
+
+    // Without `features` the device lacks what the library needs.
+    explicit ForeignProgram(bool features = true);
+    ~ForeignProgram();
+
+    [[nodiscard]] bsp::Device open();
+    // Clears colour and depth, and puts a wall over the left half: red, at the stored depth. The image is then read as an attachment.
+    void drawWall(const vk::raii::CommandBuffer& commands, float wall_depth) const;
+    // A white square in the corner, over what is there.
+    void drawSign(const vk::raii::CommandBuffer& commands) const;
+    // The bytes of an image in this layout; waits.
+    [[nodiscard]] std::vector<float> readFloats(const ForeignImage& image, vk::ImageLayout layout, std::uint32_t floats_per_pixel) const;
+    [[nodiscard]] std::vector<std::uint32_t> readWords(const ForeignImage& image, vk::ImageLayout layout) const;
+    [[nodiscard]] vk::raii::CommandBuffer begin() const;
+    void submit(const vk::raii::CommandBuffer& commands, const vk::raii::Fence& fence) const;
+
+    mutable std::mutex queue_mutex, messages_mutex;
+    std::vector<std::string> messages;  // of the layers
+
+    vk::raii::Context loader;
+    vk::raii::Instance instance{nullptr};
+    vk::raii::DebugUtilsMessengerEXT messenger{nullptr};
+    vk::raii::PhysicalDevice physical{nullptr};
+    vk::raii::Device device{nullptr};
+    vk::raii::Queue queue{nullptr};
+    vk::raii::CommandPool pool{nullptr};
+    std::optional<ForeignImage> colour, depth, floats;
+
+private:
+    void makePasses();
+    [[nodiscard]] std::vector<std::byte> read(const ForeignImage& image, vk::ImageLayout layout, std::uint64_t bytes) const;
+
+    vk::PhysicalDeviceVulkan12Features features_;
+    vk::raii::RenderPass wall_{nullptr}, sign_{nullptr};
+    vk::raii::Framebuffer of_wall_{nullptr}, of_sign_{nullptr};
+};
+
+}  // namespace binosplat::test
