@@ -4,6 +4,7 @@
 #include "engine/scene/procedural.h"
 #include "tests/engine/library/earlier_program.h"
 #include "tests/run_program.h"
+#include "tests/shared_data.h"
 
 #include <binosplat.hpp>
 
@@ -185,6 +186,49 @@ TEST_CASE_FIXTURE(Opened, "what is wrong is a code and a line, each thread has i
     refused([&] { bsp::Scene(*device, none); }, BSP_ERROR_INPUT, "4 scales");
     none.scale_count = 3;
     refused([&] { bsp::Scene(*device, none); }, BSP_ERROR_INPUT, "positions of splats are null");
+}
+
+// A script of tests/, with Debian's numpy; none where that is not installed.
+std::optional<std::string> outputOf(const Workplace& work, const std::string& script, const std::string& arguments) {
+    if (work.runCommand("/usr/bin/python3 -c 'import numpy'").exit_code != 0) {
+        CHECK_MESSAGE(std::getenv("CI") == nullptr, "python3-numpy is not installed");
+        return std::nullopt;
+    }
+    const Outcome outcome = work.runCommand(fmt::format(
+        "PYTHONDONTWRITEBYTECODE=1 PYTHONPATH='{0}/engine/library' BINOSPLAT_LIBRARY='{1}' /usr/bin/python3 '{0}/tests/{2}' {3}",
+        BINOSPLAT_SOURCE_DIR, BINOSPLAT_LIBRARY_FILE, script, arguments));
+    CHECK_MESSAGE(outcome.exit_code == 0, outcome.errors);
+    return outcome.output;
+}
+
+void checkArrays(const Workplace& work, const fs::path& ply, int frames) {
+    const auto output = outputOf(work, "engine/library/arrays.py", fmt::format("'{}' {}", ply.string(), frames));
+    CHECK(output.value_or("all right\n") == "all right\n");
+}
+
+TEST_CASE_FIXTURE(AtWork, "Python draws a file's arrays as the file, turned cameras as they are, and refuses other shapes and types") {
+    writePly(makeBuiltin("builtin:atelier", 3000), (work.path / "room.ply").string());
+    checkArrays(work, work.path / "room.ply", 3);
+}
+
+TEST_CASE_FIXTURE(AtWork, "evaluate.py finds no more between a photograph and the same camera's picture than bytes lose") {
+    work.go("render builtin:fence --mode mono --eye 0.1,-0.2,-1 --look 0.1,-0.2,2 --up 0,-1,0 --fov-x 90 --size 96x64 --out photos");
+    work.write("cameras.json", R"([{"img_name": "mono.png", "width": 96, "height": 64, "fx": 48, "fy": 48, "position": [0.1, -0.2, -1],
+                                  "rotation": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]}])");
+    fs::remove(work.path / "photos" / ("mono" BINOSPLAT_FLOAT_EXTENSION));
+    const auto output = outputOf(work, "packages/engine/evaluate.py", "builtin:fence cameras.json photos");
+    if (!output) { return; }
+    REQUIRE(output->ends_with(" dB of 1 test cameras\n"));
+    CHECK(std::atof(output->substr(output->find("mean ") + 5).c_str()) > 50.0);
+}
+
+TEST_CASE_FIXTURE(AtWork, "a thousand frames from Python take no more memory than twenty" * nightly()) {
+    writePly(makeBuiltin("builtin:atelier", 3000), (work.path / "room.ply").string());
+    checkArrays(work, work.path / "room.ply", 1000);
+}
+
+TEST_CASE_FIXTURE(AtWork, "playbot's arrays from Python are its file, to the bit" * needsSharedData()) {
+    if (const auto data = sharedData()) { checkArrays(work, *data / "playbot/playbot_lod3_2dgs_sh2.ply", 1); }
 }
 
 }  // SUITE(library)
