@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Tries what people install, in bare Debian trees. As root, with debootstrap and a network.
 #   tests/packages/run.sh [BUILD]
-#       Makes both Debian packages and the tarball of a finished build, and tries each: some ten minutes.
+#       Makes the Debian packages and the tarball of a finished build, and tries each: some ten minutes.
 #   tests/packages/run.sh --whole [options of ctest]
 #       Begins with a clean clone of the last commit in a fresh tree: `./run demo`, `./run test` and `cmake --install`, each tried, then the
 #       packages made there. Hours the first time; the compiler's cache is kept.
@@ -100,10 +100,11 @@ tryPackages() {
     cp build/packages/*.{deb,tar.gz} "$tree/tmp/packages/"
     enter "$tree" <<'END'
 # Those of an earlier run may be newer, or of the same version.
-dpkg --remove binosplat binosplat-simulated-runtime
+dpkg --remove python3-binosplat libbinosplat-dev libbinosplat0 binosplat binosplat-simulated-runtime
 apt-get update -q
 step apt-get install -y -q --no-install-recommends /tmp/packages/*.deb mesa-vulkan-drivers
 step tryProgram
+python3 -c 'import binosplat; scene = binosplat.Scene.from_file("builtin:fence"); assert scene.render(scene.start_view(64, 64))[0].max() > 0'
 
 # The tarball, from a folder of its own; what it is linked with stays from the packages.
 dpkg --remove binosplat binosplat-simulated-runtime
