@@ -27,6 +27,7 @@
 namespace {
 
 namespace faults = binosplat::faults;
+using faults::asVoid;
 
 // What BINOSPLAT_FAULT says.
 struct Plan {
@@ -47,17 +48,8 @@ struct Plan {
 // One instance and one device a process, as the program has them.
 PFN_vkGetInstanceProcAddr g_instance_next = nullptr;
 VkInstance g_instance = VK_NULL_HANDLE;
-PFN_vkGetDeviceProcAddr g_device_next = nullptr;
-PFN_vkQueueSubmit g_submit = nullptr;
-PFN_vkQueuePresentKHR g_present = nullptr;
-PFN_vkWaitForFences g_wait = nullptr;
-PFN_vkDeviceWaitIdle g_wait_device = nullptr;
-PFN_vkQueueWaitIdle g_wait_queue = nullptr;
-std::atomic<bool> g_is_lost{false};
-PFN_vkAllocateMemory g_allocate = nullptr;
-PFN_vkGetQueryPoolResults g_results = nullptr;
 PFN_vkGetPhysicalDeviceMemoryProperties g_memory_properties = nullptr;
-PFN_vkGetBufferMemoryRequirements g_requirements = nullptr;
+std::atomic<bool> g_is_lost{false};
 std::uint32_t g_added_type = 0;  // of memory
 
 const Plan& thePlan() {
@@ -100,12 +92,12 @@ VKAPI_ATTR VkResult VKAPI_CALL submit(VkQueue queue, std::uint32_t count, const 
     faults::noteSubmission();
     faults::noteFenceSubmitted(fence);
     const VkResult result = strike("submit");
-    return result != VK_SUCCESS ? result : g_submit(queue, count, infos, fence);
+    return result != VK_SUCCESS ? result : BINOSPLAT_NEXT(vkQueueSubmit)(queue, count, infos, fence);
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL present(VkQueue queue, const VkPresentInfoKHR* info) {
     const VkResult result = strike("present");
-    return result != VK_SUCCESS ? result : g_present(queue, info);
+    return result != VK_SUCCESS ? result : BINOSPLAT_NEXT(vkQueuePresentKHR)(queue, info);
 }
 
 // A device is lost while it works: the wait itself is made, so that nothing is destroyed that is still in use.
@@ -114,7 +106,7 @@ VKAPI_ATTR VkResult VKAPI_CALL wait(VkDevice device, std::uint32_t count, const 
         trace("wait", fences[i]);
         faults::noteFenceWait(fences[i], timeout);
     }
-    const VkResult waited = g_wait(device, count, fences, all, timeout);
+    const VkResult waited = BINOSPLAT_NEXT(vkWaitForFences)(device, count, fences, all, timeout);
     const VkResult result = strike("wait");
     return result != VK_SUCCESS ? result : waited;
 }
@@ -125,13 +117,13 @@ void traceWaitForAll() {
 
 VKAPI_ATTR VkResult VKAPI_CALL waitForDevice(VkDevice device) {
     traceWaitForAll();
-    const VkResult waited = g_wait_device(device);
+    const VkResult waited = BINOSPLAT_NEXT(vkDeviceWaitIdle)(device);
     return g_is_lost ? VK_ERROR_DEVICE_LOST : waited;
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL waitForQueue(VkQueue queue) {
     traceWaitForAll();
-    const VkResult waited = g_wait_queue(queue);
+    const VkResult waited = BINOSPLAT_NEXT(vkQueueWaitIdle)(queue);
     return g_is_lost ? VK_ERROR_DEVICE_LOST : waited;
 }
 
@@ -144,7 +136,7 @@ VKAPI_ATTR void VKAPI_CALL memoryProperties(VkPhysicalDevice physical_device, Vk
 }
 
 VKAPI_ATTR void VKAPI_CALL requirements(VkDevice device, VkBuffer buffer, VkMemoryRequirements* needs) {
-    g_requirements(device, buffer, needs);
+    BINOSPLAT_NEXT(vkGetBufferMemoryRequirements)(device, buffer, needs);
     if ((needs->memoryTypeBits & 1) != 0) { needs->memoryTypeBits |= 1u << g_added_type; }
 }
 
@@ -153,7 +145,7 @@ VKAPI_ATTR VkResult VKAPI_CALL allocate(VkDevice device, const VkMemoryAllocateI
     VkMemoryAllocateInfo own = *info;
     if (addsType() && info->memoryTypeIndex == g_added_type) { own.memoryTypeIndex = 0; }
     const VkResult struck = own.memoryTypeIndex == info->memoryTypeIndex ? strike("allocate") : VK_SUCCESS;
-    const VkResult result = struck != VK_SUCCESS ? struck : g_allocate(device, &own, callbacks, memory);
+    const VkResult result = struck != VK_SUCCESS ? struck : BINOSPLAT_NEXT(vkAllocateMemory)(device, &own, callbacks, memory);
     if (result == VK_SUCCESS) { faults::countMemory(*memory, info->allocationSize); }
     return result;
 }
@@ -161,7 +153,7 @@ VKAPI_ATTR VkResult VKAPI_CALL allocate(VkDevice device, const VkMemoryAllocateI
 // The program reads 64 bits each.
 VKAPI_ATTR VkResult VKAPI_CALL results(VkDevice device, VkQueryPool pool, std::uint32_t first, std::uint32_t count, std::size_t bytes,
                                        void* data, VkDeviceSize stride, VkQueryResultFlags flags) {
-    const VkResult result = g_results(device, pool, first, count, bytes, data, stride, flags);
+    const VkResult result = BINOSPLAT_NEXT(vkGetQueryPoolResults)(device, pool, first, count, bytes, data, stride, flags);
     const char* const apart = std::getenv("BINOSPLAT_FAULT_TICKS");
     const std::optional<std::uint64_t> frame = faults::ticksOf(pool);
     if ((apart == nullptr && !frame) || (flags & VK_QUERY_RESULT_64_BIT) == 0) { return result; }
@@ -206,24 +198,16 @@ VKAPI_ATTR VkResult VKAPI_CALL createDevice(VkPhysicalDevice physical_device, co
     auto* link = linkOf<VkLayerDeviceCreateInfo>(info->pNext, VK_STRUCTURE_TYPE_LOADER_DEVICE_CREATE_INFO);
     if (link == nullptr) { return VK_ERROR_INITIALIZATION_FAILED; }
     const PFN_vkGetInstanceProcAddr instance_next = link->u.pLayerInfo->pfnNextGetInstanceProcAddr;
-    g_device_next = link->u.pLayerInfo->pfnNextGetDeviceProcAddr;
+    faults::device_next = link->u.pLayerInfo->pfnNextGetDeviceProcAddr;
     link->u.pLayerInfo = link->u.pLayerInfo->pNext;
     const auto create = reinterpret_cast<PFN_vkCreateDevice>(instance_next(VK_NULL_HANDLE, "vkCreateDevice"));
     const VkResult result = create(physical_device, info, callbacks, device);
     if (result != VK_SUCCESS) { return result; }
-    g_submit = reinterpret_cast<PFN_vkQueueSubmit>(g_device_next(*device, "vkQueueSubmit"));
-    g_present = reinterpret_cast<PFN_vkQueuePresentKHR>(g_device_next(*device, "vkQueuePresentKHR"));
-    g_wait = reinterpret_cast<PFN_vkWaitForFences>(g_device_next(*device, "vkWaitForFences"));
-    g_wait_device = reinterpret_cast<PFN_vkDeviceWaitIdle>(g_device_next(*device, "vkDeviceWaitIdle"));
-    g_wait_queue = reinterpret_cast<PFN_vkQueueWaitIdle>(g_device_next(*device, "vkQueueWaitIdle"));
-    g_allocate = reinterpret_cast<PFN_vkAllocateMemory>(g_device_next(*device, "vkAllocateMemory"));
-    g_results = reinterpret_cast<PFN_vkGetQueryPoolResults>(g_device_next(*device, "vkGetQueryPoolResults"));
-    g_requirements = reinterpret_cast<PFN_vkGetBufferMemoryRequirements>(g_device_next(*device, "vkGetBufferMemoryRequirements"));
-    faults::beginCounting(g_device_next, *device);
+    faults::the_device = *device;
     VkPhysicalDeviceProperties properties{};
     reinterpret_cast<PFN_vkGetPhysicalDeviceProperties>(instance_next(g_instance, "vkGetPhysicalDeviceProperties"))(physical_device,
                                                                                                                     &properties);
-    faults::beginLoad(g_device_next, *device, static_cast<double>(properties.limits.timestampPeriod));
+    faults::beginLoad(static_cast<double>(properties.limits.timestampPeriod));
     for (const faults::WatchedCall& watched : faults::watchedCalls()) {
         *watched.next = nullptr;
         *watched.next = getDeviceProcAddr(*device, watched.name.data());
@@ -231,15 +215,13 @@ VKAPI_ATTR VkResult VKAPI_CALL createDevice(VkPhysicalDevice physical_device, co
     return VK_SUCCESS;
 }
 
-template <typename Function>
-PFN_vkVoidFunction asVoid(Function* function) {
-    return reinterpret_cast<PFN_vkVoidFunction>(function);
-}
-
 PFN_vkVoidFunction ownFunction(const char* name) {
     if (const PFN_vkVoidFunction watched = faults::watchedFunction(name); watched != nullptr) { return watched; }
     if (std::strcmp(name, "vkQueueSubmit") == 0) { return asVoid(submit); }
-    if (std::strcmp(name, "vkQueuePresentKHR") == 0 && g_present != nullptr) { return asVoid(present); }
+    if (std::strcmp(name, "vkQueuePresentKHR") == 0 && faults::the_device != VK_NULL_HANDLE &&
+        BINOSPLAT_NEXT(vkQueuePresentKHR) != nullptr) {
+        return asVoid(present);
+    }
     if (std::strcmp(name, "vkWaitForFences") == 0) { return asVoid(wait); }
     if (std::strcmp(name, "vkDeviceWaitIdle") == 0) { return asVoid(waitForDevice); }
     if (std::strcmp(name, "vkQueueWaitIdle") == 0) { return asVoid(waitForQueue); }
@@ -254,7 +236,7 @@ PFN_vkVoidFunction ownFunction(const char* name) {
 
 VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL getDeviceProcAddr(VkDevice device, const char* name) {
     const PFN_vkVoidFunction own = ownFunction(name);
-    return own != nullptr ? own : g_device_next(device, name);
+    return own != nullptr ? own : faults::device_next(device, name);
 }
 
 VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL getInstanceProcAddr(VkInstance instance, const char* name) {

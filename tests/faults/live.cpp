@@ -48,29 +48,22 @@ void count(std::int64_t more) {
         of(DescriptorPool) of(DescriptorSetLayout) of(Sampler) of(RenderPass) of(Framebuffer) of(PipelineCache)
 
 #define BINOSPLAT_COUNT_KIND(Kind)                                                                                                         \
-    PFN_vkCreate##Kind g_create_##Kind = nullptr;                                                                                          \
-    PFN_vkDestroy##Kind g_destroy_##Kind = nullptr;                                                                                        \
     VKAPI_ATTR VkResult VKAPI_CALL create##Kind(VkDevice device, const Vk##Kind##CreateInfo* info, const VkAllocationCallbacks* callbacks, \
                                                 Vk##Kind* made) {                                                                          \
-        const VkResult result = g_create_##Kind(device, info, callbacks, made);                                                            \
+        const VkResult result = BINOSPLAT_NEXT(vkCreate##Kind)(device, info, callbacks, made);                                             \
         if (result == VK_SUCCESS) { count(1); }                                                                                            \
         return result;                                                                                                                     \
     }                                                                                                                                      \
     VKAPI_ATTR void VKAPI_CALL destroy##Kind(VkDevice device, Vk##Kind object, const VkAllocationCallbacks* callbacks) {                   \
         if (object != VK_NULL_HANDLE) { count(-1); }                                                                                       \
-        g_destroy_##Kind(device, object, callbacks);                                                                                       \
+        BINOSPLAT_NEXT(vkDestroy##Kind)(device, object, callbacks);                                                                        \
     }
 BINOSPLAT_EACH_KIND(BINOSPLAT_COUNT_KIND)
-
-PFN_vkCreateComputePipelines g_compute = nullptr;
-PFN_vkCreateGraphicsPipelines g_graphics = nullptr;
-PFN_vkDestroyPipeline g_destroy_pipeline = nullptr;
-PFN_vkFreeMemory g_free = nullptr;
 
 VKAPI_ATTR VkResult VKAPI_CALL createCompute(VkDevice device, VkPipelineCache cache, std::uint32_t many,
                                              const VkComputePipelineCreateInfo* infos, const VkAllocationCallbacks* callbacks,
                                              VkPipeline* made) {
-    const VkResult result = g_compute(device, cache, many, infos, callbacks, made);
+    const VkResult result = BINOSPLAT_NEXT(vkCreateComputePipelines)(device, cache, many, infos, callbacks, made);
     if (result != VK_SUCCESS) { return result; }
     count(many);
     const std::lock_guard lock(g_mutex);
@@ -81,14 +74,14 @@ VKAPI_ATTR VkResult VKAPI_CALL createCompute(VkDevice device, VkPipelineCache ca
 VKAPI_ATTR VkResult VKAPI_CALL createGraphics(VkDevice device, VkPipelineCache cache, std::uint32_t many,
                                               const VkGraphicsPipelineCreateInfo* infos, const VkAllocationCallbacks* callbacks,
                                               VkPipeline* made) {
-    const VkResult result = g_graphics(device, cache, many, infos, callbacks, made);
+    const VkResult result = BINOSPLAT_NEXT(vkCreateGraphicsPipelines)(device, cache, many, infos, callbacks, made);
     if (result == VK_SUCCESS) { count(many); }
     return result;
 }
 
 VKAPI_ATTR void VKAPI_CALL destroyPipeline(VkDevice device, VkPipeline pipeline, const VkAllocationCallbacks* callbacks) {
     if (pipeline != VK_NULL_HANDLE) { count(-1); }
-    g_destroy_pipeline(device, pipeline, callbacks);
+    BINOSPLAT_NEXT(vkDestroyPipeline)(device, pipeline, callbacks);
 }
 
 VKAPI_ATTR void VKAPI_CALL freeMemory(VkDevice device, VkDeviceMemory memory, const VkAllocationCallbacks* callbacks) {
@@ -100,7 +93,7 @@ VKAPI_ATTR void VKAPI_CALL freeMemory(VkDevice device, VkDeviceMemory memory, co
             g_memory.erase(found);
         }
     }
-    g_free(device, memory, callbacks);
+    BINOSPLAT_NEXT(vkFreeMemory)(device, memory, callbacks);
 }
 
 // Of the host, by the sanitizer where there is one.
@@ -125,16 +118,6 @@ std::FILE* output() {
     return file;
 }
 
-template <typename Function>
-void find(PFN_vkGetDeviceProcAddr next, VkDevice device, const char* name, Function& function) {
-    function = reinterpret_cast<Function>(next(device, name));
-}
-
-template <typename Function>
-PFN_vkVoidFunction asVoid(Function* function) {
-    return reinterpret_cast<PFN_vkVoidFunction>(function);
-}
-
 // At the end.
 __attribute__((destructor)) void noteRead() {
     const char* const name = std::getenv("BINOSPLAT_FAULT_READ");
@@ -152,17 +135,6 @@ __attribute__((destructor)) void noteRead() {
 }  // namespace
 
 bool countsLive() { return output() != nullptr; }
-
-void beginCounting(PFN_vkGetDeviceProcAddr next, VkDevice device) {
-#define BINOSPLAT_FIND_KIND(Kind)                          \
-    find(next, device, "vkCreate" #Kind, g_create_##Kind); \
-    find(next, device, "vkDestroy" #Kind, g_destroy_##Kind);
-    BINOSPLAT_EACH_KIND(BINOSPLAT_FIND_KIND)
-    find(next, device, "vkCreateComputePipelines", g_compute);
-    find(next, device, "vkCreateGraphicsPipelines", g_graphics);
-    find(next, device, "vkDestroyPipeline", g_destroy_pipeline);
-    find(next, device, "vkFreeMemory", g_free);
-}
 
 PFN_vkVoidFunction countingFunction(const char* name) {
     if (!countsLive()) { return nullptr; }

@@ -17,10 +17,19 @@ inline std::FILE* openNamedBy(const char* variable) {
     return name != nullptr ? std::fopen(name, "w") : nullptr;
 }
 
+// The one device of a process, and where the next layer's functions of it are found.
+inline VkDevice the_device = VK_NULL_HANDLE;
+inline PFN_vkGetDeviceProcAddr device_next = nullptr;
+#define BINOSPLAT_NEXT(function) \
+    reinterpret_cast<decltype(&function)>(binosplat::faults::device_next(binosplat::faults::the_device, #function))
+
+template <typename Function>
+PFN_vkVoidFunction asVoid(Function* function) {
+    return reinterpret_cast<PFN_vkVoidFunction>(function);
+}
+
 // Whether anybody wants to know.
 bool countsLive();
-// From now on of this device.
-void beginCounting(PFN_vkGetDeviceProcAddr next, VkDevice device);
 // A function of the device that makes or destroys something; null: it does neither.
 PFN_vkVoidFunction countingFunction(const char* name);
 // Of a call that the layer makes itself.

@@ -1,5 +1,6 @@
 // Watching what is recorded.
 #include "tests/faults/load.h"
+#include "tests/faults/live.h"
 
 #include <cmath>
 #include <cstdlib>
@@ -23,9 +24,6 @@ std::mutex g_load_mutex;
 std::map<VkCommandBuffer, Recording> g_recordings;
 std::uint64_t g_frames = 0, g_first_groups = 0;
 double g_tick_ns = 1.0;
-PFN_vkCmdResetQueryPool g_reset = nullptr;
-PFN_vkCmdDispatch g_dispatch = nullptr;
-PFN_vkCmdBeginDebugUtilsLabelEXT g_begin_label = nullptr;
 
 // In milliseconds, by the frame from which on it is so.
 const std::map<std::uint64_t, double>& loads() {
@@ -48,7 +46,7 @@ VKAPI_ATTR void VKAPI_CALL resetQueryPool(VkCommandBuffer commands, VkQueryPool 
         const std::lock_guard lock(g_load_mutex);
         g_recordings[commands] = {pool};
     }
-    g_reset(commands, pool, first, count);
+    BINOSPLAT_NEXT(vkCmdResetQueryPool)(commands, pool, first, count);
 }
 
 VKAPI_ATTR void VKAPI_CALL beginLabel(VkCommandBuffer commands, const VkDebugUtilsLabelEXT* label) {
@@ -56,7 +54,8 @@ VKAPI_ATTR void VKAPI_CALL beginLabel(VkCommandBuffer commands, const VkDebugUti
         const std::lock_guard lock(g_load_mutex);
         g_recordings[commands].is_in_present = std::strcmp(label->pLabelName, "present") == 0;
     }
-    if (g_begin_label != nullptr) { g_begin_label(commands, label); }
+    const auto next = BINOSPLAT_NEXT(vkCmdBeginDebugUtilsLabelEXT);
+    if (next != nullptr) { next(commands, label); }
 }
 
 VKAPI_ATTR void VKAPI_CALL dispatch(VkCommandBuffer commands, std::uint32_t x, std::uint32_t y, std::uint32_t z) {
@@ -65,30 +64,20 @@ VKAPI_ATTR void VKAPI_CALL dispatch(VkCommandBuffer commands, std::uint32_t x, s
         Recording& recording = g_recordings[commands];
         if (recording.is_in_present) { recording.groups += std::uint64_t{x} * y * z; }
     }
-    g_dispatch(commands, x, y, z);
-}
-
-template <typename Function>
-PFN_vkVoidFunction withoutType(Function* function) {
-    return reinterpret_cast<PFN_vkVoidFunction>(function);
+    BINOSPLAT_NEXT(vkCmdDispatch)(commands, x, y, z);
 }
 
 }  // namespace
 
 bool hasLoad() { return !loads().empty(); }
 
-void beginLoad(PFN_vkGetDeviceProcAddr next, VkDevice device, double tick_ns) {
-    g_tick_ns = tick_ns;
-    g_reset = reinterpret_cast<PFN_vkCmdResetQueryPool>(next(device, "vkCmdResetQueryPool"));
-    g_dispatch = reinterpret_cast<PFN_vkCmdDispatch>(next(device, "vkCmdDispatch"));
-    g_begin_label = reinterpret_cast<PFN_vkCmdBeginDebugUtilsLabelEXT>(next(device, "vkCmdBeginDebugUtilsLabelEXT"));
-}
+void beginLoad(double tick_ns) { g_tick_ns = tick_ns; }
 
 PFN_vkVoidFunction loadFunction(const char* name) {
     if (!hasLoad()) { return nullptr; }
-    if (std::strcmp(name, "vkCmdResetQueryPool") == 0) { return withoutType(resetQueryPool); }
-    if (std::strcmp(name, "vkCmdDispatch") == 0) { return withoutType(dispatch); }
-    if (std::strcmp(name, "vkCmdBeginDebugUtilsLabelEXT") == 0) { return withoutType(beginLabel); }
+    if (std::strcmp(name, "vkCmdResetQueryPool") == 0) { return asVoid(resetQueryPool); }
+    if (std::strcmp(name, "vkCmdDispatch") == 0) { return asVoid(dispatch); }
+    if (std::strcmp(name, "vkCmdBeginDebugUtilsLabelEXT") == 0) { return asVoid(beginLabel); }
     return nullptr;
 }
 

@@ -12,8 +12,8 @@ namespace binosplat::faults {
 
 // Whether a test says so.
 bool hasLoad();
-// From now on of this device, whose timestamps tick every `tick_ns`.
-void beginLoad(PFN_vkGetDeviceProcAddr next, VkDevice device, double tick_ns);
+// On a device whose timestamps tick every `tick_ns`.
+void beginLoad(double tick_ns);
 // A function of the device that records something of interest; null: it does not.
 PFN_vkVoidFunction loadFunction(const char* name);
 // How many ticks the frame took whose timestamps these are; none if it is no frame, or nobody says.
