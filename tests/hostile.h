@@ -104,22 +104,10 @@ inline void spliceBytes(const std::string& good, int count, const Attempt& attem
 
 // Every number in the first `reach` bytes of a text, replaced by each of these.
 inline void replaceNumbers(const std::string& good, std::size_t reach, const Attempt& attempt) {
-    constexpr const char* kAbsurd[] = {"-1",
-                                       "0",
-                                       "4294967296",
-                                       "9223372036854775807",
-                                       "9223372036854775808",
-                                       "18446744073709551615",
-                                       "-9223372036854775808",
-                                       "nan",
-                                       "-inf",
-                                       "1e308",
-                                       "1e999",
-                                       "1e-320",
-                                       "0x10",
-                                       "\"7\"",
-                                       "",
-                                       "99999999999999999999999"};
+    std::vector<std::string> absurd = wordsIn(
+        "-1 0 4294967296 9223372036854775807 9223372036854775808 18446744073709551615 -9223372036854775808 nan -inf 1e308 1e999 1e-320 "
+        "0x10 \"7\" 99999999999999999999999");
+    absurd.emplace_back();
     const auto isNumber = [](char letter) {
         return std::isdigit(static_cast<unsigned char>(letter)) != 0 || letter == '.' || letter == '-';
     };
@@ -127,8 +115,8 @@ inline void replaceNumbers(const std::string& good, std::size_t reach, const Att
         if (!isNumber(good[at]) || (at > 0 && isNumber(good[at - 1]))) { continue; }
         std::size_t end = at;
         while (end < good.size() && isNumber(good[end])) { ++end; }
-        for (const char* absurd : kAbsurd) {
-            attempt(fmt::format("byte {}: {}", at, absurd), good.substr(0, at) + absurd + good.substr(end));
+        for (const std::string& other : absurd) {
+            attempt(fmt::format("byte {}: {}", at, other), good.substr(0, at) + other + good.substr(end));
         }
     }
 }

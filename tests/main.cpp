@@ -3,9 +3,6 @@
 #define DOCTEST_CONFIG_IMPLEMENT
 #include "tests/shared_data.h"
 
-#include <cstdio>
-#include <cstdlib>
-
 namespace {
 
 struct Counter : doctest::IReporter {

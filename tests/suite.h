@@ -56,6 +56,11 @@ inline std::string textIn(const fs::path& file) {
     return {std::istreambuf_iterator<char>(stream), {}};
 }
 
+inline std::vector<std::string> wordsIn(const std::string& text) {
+    std::istringstream stream(text);
+    return {std::istream_iterator<std::string>(stream), {}};
+}
+
 // JSON with some of its keys as they are to be: equal to what it was if they are so.
 inline nlohmann::json expecting(nlohmann::json json, const nlohmann::json& keys) {
     json.merge_patch(keys);

@@ -1,7 +1,5 @@
-// Facts about the program as its user meets it: exit codes, one line for each error, and nothing left behind. What of the command line and
-// of a config is refused, options_test.cpp holds.
+// Facts about the program as its user meets it: exit codes, one line for each error, and nothing left behind.
 #include "engine/picture/image_io.h"
-#include "tests/engine/scene/gltf_files.h"
 #include "tests/run_program.h"
 
 SUITE(cli) {
@@ -48,6 +46,7 @@ TEST_CASE_FIXTURE(AtWork, "errors end the program with one line and the code of 
     work.checkRefused("bench builtin:one-splat --out file", 1, "file: cannot be used as output directory", kNoDriver);
     work.checkRefused("scene one-splat --out nowhere/a.ply", 1, "nowhere");
     work.checkRefused("scene one-splat --out a.txt", 1, ".ply");
+    CHECK(work.run("info builtin:one-splat >/dev/full").exit_code == 1);
     CHECK(work.bytesOf("file") == "keep me");
     CHECK(work.files() == std::set<std::string>{"cut.ply", "file", "text.ply"});
 }
@@ -68,15 +67,6 @@ TEST_CASE_FIXTURE(AtWork, "pipes, folders and endless files are refused at once"
     fs::rename(work.path / "pipe.toml", work.path / "p.ppm");
     work.checkRefused("compare p.ppm p.ppm", 1, "not a regular file");
     CHECK_FALSE(work.holds("out"));
-}
-
-TEST_CASE_FIXTURE(AtWork, "a scene can be written and described") {
-    work.go("scene one-splat --out one.ply");
-    const Outcome info = work.go("info one.ply");
-    CHECK(info.errors.empty());
-    CHECK(info.output.find("splats             1\n") != std::string::npos);
-    CHECK(info.output.find("\nstart              0,0,0.8 looking at 0,0,2, outside: 1.2 units from the middle") != std::string::npos);
-    CHECK(work.run("info one.ply >/dev/full").exit_code == 1);
 }
 
 TEST_CASE_FIXTURE(AtWork, "what two hints say of a file is said once in its notes, and goes from file to file") {
@@ -100,31 +90,6 @@ TEST_CASE_FIXTURE(AtWork, "what two hints say of a file is said once in its note
         CHECK(work.run("info " + file).output.find("3D Gaussians, antialiased") != std::string::npos);
         CHECK(work.run("info " + file + " --flatten").output.find("antialiased") == std::string::npos);
     }
-}
-
-TEST_CASE_FIXTURE(AtWork, "a training's output is rendered from its own cameras") {
-    fs::create_directories(work.path / "garden/point_cloud/iteration_30000");
-    work.go("scene one-splat --out garden/point_cloud/iteration_30000/point_cloud.ply");
-    const std::string rotation = R"("rotation": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]})";
-    work.write("garden/cameras.json", R"([{"width": 8, "height": 8, "fx": 8, "fy": 8, "position": [0, 0, 0], )" + rotation +
-                                          R"(, {"width": 16, "height": 8, "fx": 8, "fy": 8, "position": [0, 0, 1], )" + rotation + "]");
-    const Outcome outcome = work.go("render garden --mode mono --view 1 --out out");
-    CHECK(outcome.errors.empty());
-    CHECK(outcome.output.find("note: garden: a training's output") != std::string::npos);
-    const nlohmann::json options = reportOf(work, "out")["options"];
-    CHECK(options["size"] == "16x8");
-    CHECK(options["view"] == 1);
-    CHECK(options["cameras"] == "garden/cameras.json");
-}
-
-TEST_CASE_FIXTURE(AtWork, "a glTF says in which order its splats are blended unless the user does") {
-    GltfText gltf = makeGltf(9);
-    gltf.extension = R"({"kernel":"ellipse","colorSpace":"srgb_rec709_display","sortingMethod":"cameraDistance"})";
-    work.write("a.glb", gltf.glb());
-    work.go("render a.glb --mode mono --size 16x8 --out own");
-    work.go("render a.glb --mode mono --size 16x8 --out asked --order depth");
-    CHECK(reportOf(work, "own")["options"]["order"] == "distance");
-    CHECK(reportOf(work, "asked")["options"]["order"] == "depth");
 }
 
 TEST_CASE_FIXTURE(AtWork, "of a camera that sees no splat one line says so, and where the nearest is") {

@@ -128,11 +128,6 @@ std::string wrongCall(std::vector<std::string> call) {
     return "";
 }
 
-TEST_CASE("the simulated runtime's folder has the same licence") {
-    REQUIRE(!textIn(kSource / "LICENSE").empty());
-    CHECK(textIn(kSource / "xr" / "simulated" / "LICENSE") == textIn(kSource / "LICENSE"));
-}
-
 TEST_CASE("every library that is built with has its row in the notices, and its licence if it is compiled in") {
     const std::string notices = textIn(kSource / "third_party" / "NOTICES.md");
     const std::size_t licences = notices.find("\n## Licences of what is compiled in");
@@ -148,24 +143,6 @@ TEST_CASE("every library that is built with has its row in the notices, and its 
         findAll(textIn(kSource / "third_party" / "CMakeLists.txt"), R"(add_library\(third_party_([a-z0-9]+) )");
     CHECK(libraries.size() > 10);
     for (const std::string& library : libraries) { CHECK_MESSAGE(rows.find(library) != std::string::npos, "no row of " << library); }
-}
-
-TEST_CASE("variables of the environment that the program reads are documented") {
-    const std::string page = textIn(kSource / "docs" / "render.md"), man = documentOf("man");
-    std::set<std::string> names;
-    for (const char* room : {"engine", "app", "xr"}) {
-        for (const fs::directory_entry& entry : fs::recursive_directory_iterator(kSource / room)) {
-            if (!entry.is_regular_file()) { continue; }
-            const std::string text = textIn(entry.path());
-            if (text.find("environment(\"BINOSPLAT_") == std::string::npos) { continue; }
-            for (const std::string& name : findAll(text, R"re(environment\("(BINOSPLAT_[A-Z_]+)"\))re")) { names.insert(name); }
-        }
-    }
-    CHECK(names.size() >= 6);
-    for (const std::string& name : names) {
-        CHECK_MESSAGE(page.find(fmt::format("\n| `{}` |", name)) != std::string::npos, name);
-        CHECK_MESSAGE(man.find(fmt::format("\n.B {}\n", name)) != std::string::npos, name);
-    }
 }
 
 TEST_CASE_FIXTURE(test::AtWork, "bash completes commands, options, the values of choices, and files where an option takes one") {
@@ -264,19 +241,6 @@ TEST_CASE_FIXTURE(test::AtWork, "the README's commands about files do what they 
     CHECK(done == 3);
     CHECK(work.holds("OUT.ply"));
     CHECK(work.holds("FILE.ply"));
-}
-
-TEST_CASE("measured results name scenes by their files, not by where they lay" * test::nightly()) {
-    int files = 0;
-    for (const fs::directory_entry& entry : fs::directory_iterator(kSource / "docs" / "results")) {
-        const fs::path extension = entry.path().extension();
-        if (extension != ".csv" && extension != ".txt" && extension != ".svg") { continue; }
-        for (const char* folder : {"../", "/tmp/", "/home/"}) {
-            CHECK_MESSAGE(textIn(entry.path()).find(folder) == std::string::npos, entry.path().string());
-        }
-        ++files;
-    }
-    CHECK(files > 10);
 }
 
 }  // SUITE(docs)

@@ -18,7 +18,6 @@
 #include <wordexp.h>
 
 #include <csignal>
-#include <cstdio>
 #include <iostream>
 #include <regex>
 

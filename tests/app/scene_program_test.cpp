@@ -3,7 +3,6 @@
 #include "engine/picture/metrics.h"
 #include "engine/scene/ply.h"
 #include "engine/scene/procedural.h"
-#include "tests/engine/scene/ply_files.h"
 #include "tests/run_program.h"
 #ifdef BINOSPLAT_SOG
 #include "tests/engine/scene/streamed_scenes.h"

@@ -1,6 +1,4 @@
-// Facts about what the operating system is asked for, and about files that somebody else has prepared: links, pipes, devices and much too
-// long ones.
-#include "engine/platform.h"
+// Facts about what the operating system is asked for, and about files prepared by somebody else: links, pipes, long ones.
 
 #include "engine/picture/image_io.h"
 #include "engine/scene/part_file.h"

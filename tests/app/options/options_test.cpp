@@ -1,5 +1,4 @@
 // Facts about options: the command line over the config, what of both is refused, and the documents.
-#include "app/options/options.h"
 #include "app/command_line/option_documents.h"
 #include "app/options/camera_options.h"
 #include "app/options/modes.h"
@@ -231,20 +230,13 @@ TEST_CASE_FIXTURE(AtWork, "the documents of the options are those that the progr
 TEST_CASE("bash is told of files for the options that take one, of names for those that are one of a few, and of nothing for others") {
     const std::string bash = documentOf("bash"), files = "COMPREPLY=($(compgen -f -- \"$word\"));";
     const auto names = [](const char* choices) { return fmt::format("COMPREPLY=($(compgen -W \"{}\" -- \"$word\"));", choices); };
-    for (const auto& [option, completed] : std::vector<std::pair<std::string, std::string>>{{"render:--path", files},
-                                                                                            {"render:--out", files},
-                                                                                            {"render:--cameras", files},
-                                                                                            {"bench:--motion", files},
-                                                                                            {"bench:--photos", files},
-                                                                                            {"compare:--lpips", files},
-                                                                                            {"scene:--out", files},
-                                                                                            {"view:--config", files},
-                                                                                            {"view:--shaders", files},
-                                                                                            {"view:--simulate", files},
-                                                                                            {"render:--path-axes", names("openxr unity")},
-                                                                                            {"view:--dominant", names("left right")},
-                                                                                            {"render:--rate", ""},
-                                                                                            {"render:--headset", ""}}) {
+    std::map<std::string, std::string> expected{{"render:--path-axes", names("openxr unity")}, {"view:--dominant", names("left right")}};
+    for (const std::string& option : wordsIn("render:--path render:--out render:--cameras bench:--motion bench:--photos compare:--lpips "
+                                             "scene:--out view:--config view:--shaders view:--simulate")) {
+        expected[option] = files;
+    }
+    for (const char* option : {"render:--rate", "render:--headset"}) { expected[option] = ""; }
+    for (const auto& [option, completed] : expected) {
         CHECK_MESSAGE(bash.find(fmt::format("        {}) {} return ;;\n", option, completed)) != std::string::npos, option);
     }
 }

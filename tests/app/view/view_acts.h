@@ -1,11 +1,8 @@
 // Somebody who wears the simulated headset and does one thing after the other.
 #pragma once
 
-#include "engine/geometry.h"
 #include "tests/app/view/panel/panel_sketch.h"
 #include "tests/app/view/view_runs.h"
-
-#include <map>
 
 namespace binosplat::test {
 

@@ -1,5 +1,4 @@
-// Facts about controllers and hands: what their buttons and sticks do, and what is seen beside the scene: rays, hands, controllers, the way
-// to another place, the vignette.
+// Facts about controllers and hands: what buttons and sticks do, and what is seen of them: rays, hands, arcs, the vignette.
 #include "tests/app/view/view_acts.h"
 
 SUITE(view_hands) {

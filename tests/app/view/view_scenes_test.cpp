@@ -1,5 +1,4 @@
-// Facts about what is to be seen: the next scene, scenes that cannot be read, that are streamed or that move, the room behind them,
-// pictures, and which way is up.
+// Facts about what is to be seen: the next scene, streamed and moving ones, the room behind, pictures, which way is up.
 #include "app/options/start_view.h"
 #include "app/view/scenes/scene_up.h"
 #include "tests/app/view/view_acts.h"

@@ -1,5 +1,4 @@
-// Facts about the eye that is made from the other, as whole frames: that nothing moves where nothing should, that every pixel is
-// written, that no byte depends on the run, and what it costs.
+// Facts about the eye that is made from the other, as whole frames: what stays, that all is written, and what it costs.
 #include "tests/engine/frame/affiliated_frames.h"
 #include "tests/engine/frame/frame_runs.h"
 

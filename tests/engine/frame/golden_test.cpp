@@ -1,5 +1,4 @@
-// Pictures that must not change, kept as PNG files in golden/: the twin's of a few scenes, and the last pair of a walk whose frames are
-// made from the ones before.
+// Pictures that must not change, in golden/: the twin's of a few scenes, and the last pair of a walk.
 #include "engine/picture/image_io.h"
 #include "engine/reference/coarse.h"
 #include "engine/stream/moving_scene.h"

@@ -1,11 +1,10 @@
-// The device's stereo frames are like those of the twin, which moves a wall by its disparity.
+// The device's stereo frames are like those of the twin.
 #include "tests/engine/frame/frame_runs.h"
 #include "tests/engine/passes/stereo_cases.h"
 
 SUITE(stereo_twin) {
 
 using reference::DepthChoice;
-using reference::PixelClass;
 using reference::TileKind;
 
 Mode modeOf(TileChoice method) {
@@ -109,37 +108,6 @@ void checkEverySecond(const Context& context, std::size_t first) {
                 if (number++ % 2 == 0) { checkIsTwins(frame, seen, dominant, making, full); }
             }
         }
-    }
-}
-
-TEST_CASE("the twin moves a wall by its disparity, up to the kernel's error") {
-    std::vector<test::Splat> splats;
-    for (int j = -30; j <= 30; ++j) {
-        for (int i = -40; i <= 40; ++i) {
-            const float x = static_cast<float>(i), y = static_cast<float>(j);
-            splats.push_back({.position = {0.04f * x, 0.04f * y, 2.0f},
-                              .scale = glm::vec2(0.03f),
-                              .opacity = 0.95f,
-                              .colour = {0.5f + 0.3f * std::sin(0.5f * x), 0.4f, 0.5f + 0.3f * std::cos(0.7f * y)}});
-        }
-    }
-    const Scene wall = test::makeScene(splats);
-    // fx b / z = 100 * 0.08 / 2 = 4 px to the left: whole pixels, so that the picture is the same but for the column; and 4.5 px.
-    for (const double eye_distance : {0.08, 0.09}) {
-        const auto eyes = stereoPair(test::makeEye({64, 48}), eye_distance);
-        const auto pictures = reference::renderStereo(wall, {eyes[kLeft], eyes[kRight]}, {.choice = TileChoice::kNone}, {});
-        const Image full = test::toImage(reference::render(wall, eyes[kRight], {})), moved = test::toImage({64, 48}, pictures.affiliated);
-        double squares = 0.0, nearest_squares = 0.0;
-        for (std::size_t i = 0; i < pictures.resolved.size(); ++i) {
-            const bool covered = i % 64 < 60;
-            if (eye_distance == 0.08) { CHECK(pictures.resolved[i].pixel_class == (covered ? PixelClass::kCovered : PixelClass::kHole)); }
-            if (!covered) { continue; }
-            CHECK(pictures.resolved[i].inverse_depth == doctest::Approx(0.5).epsilon(1e-6));
-            const double wanted = static_cast<double>(full.values[4 * i]);
-            squares += std::pow(static_cast<double>(moved.values[4 * i]) - wanted, 2);
-            nearest_squares += std::pow(pictures.dominant.rgba[i + 4].x - wanted, 2);
-        }
-        CHECK(squares <= 0.02 * nearest_squares + 1e-9);  // measured: 0.0156 of it
     }
 }
 

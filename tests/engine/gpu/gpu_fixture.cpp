@@ -1,13 +1,6 @@
 // Arrays to the device and back, and the verdict of the validation layers.
 #include "tests/engine/gpu/gpu_fixture.h"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cstring>
-#include <map>
-#include <utility>
-
 namespace binosplat::test {
 namespace {
 

@@ -1,5 +1,4 @@
 // Facts about what a driver has compiled and the file that keeps it.
-#include "engine/gpu/pipeline_cache.h"
 #include "engine/passes/passes.h"
 #include "tests/engine/gpu/gpu_fixture.h"
 #include "tests/run_program.h"

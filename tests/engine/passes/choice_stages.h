@@ -1,7 +1,6 @@
 // price and select on the device, of tiles that a test makes up.
 #pragma once
 
-#include "engine/passes/past_passes.h"
 #include "tests/engine/passes/past_stages.h"
 
 namespace binosplat::test {

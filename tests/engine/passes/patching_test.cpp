@@ -1,7 +1,4 @@
-// Facts about which tiles are rendered again, on scenes made so that the cause is known: holes at depth steps, pixels of two depths, and
-// splats that only the affiliated eye sees; where moving pays, and where it is known where the eye looks.
-#include "engine/picture/metrics.h"
-#include "tests/engine/frame/affiliated_frames.h"
+// Facts about which tiles are rendered again, on scenes made so that the cause is known, and where moving pays.
 #include "tests/engine/frame/frame_runs.h"
 #include "tests/engine/passes/stereo_cases.h"
 

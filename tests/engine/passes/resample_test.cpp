@@ -1,6 +1,4 @@
-// Facts about resample: what a moved picture looks like, and the error that is expected of it, each started from what the twin's reproject
-// left.
-#include "tests/engine/passes/stereo_cases.h"
+// Facts about resample: what a moved picture looks like, and the error expected of it, from what the twin's reproject left.
 #include "tests/engine/passes/stereo_stages.h"
 
 SUITE(resample) {

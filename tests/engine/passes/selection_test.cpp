@@ -1,5 +1,4 @@
-// Facts about price and select: the dearest errors up to a budget, of tiles that are moved and of tiles with a past, wherever an eye looks,
-// as the twin has them, and the lists and masks that patching goes by.
+// Facts about price and select: the dearest errors up to a budget, as the twin has them, and the lists patching goes by.
 #include "tests/engine/passes/choice_stages.h"
 
 SUITE(selection) {

@@ -1,7 +1,4 @@
-// Facts about frames of which the lenses hide a part: what is hidden costs nothing and stays background, and nothing else changes; and
-// about such in which it is known where an eye looks.
-#include "engine/picture/metrics.h"
-#include "tests/engine/frame/affiliated_frames.h"
+// Facts about frames of which lenses hide a part, which costs nothing and changes nothing else, and about gazes in them.
 #include "tests/engine/frame/frame_runs.h"
 #include "tests/engine/passes/stereo_cases.h"
 

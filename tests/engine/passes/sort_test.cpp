@@ -1,5 +1,4 @@
-// Facts about the radix sort, held against std::stable_sort at every size that crosses a boundary, and about sums by the last workgroup:
-// the lists that they state, room, overflow, and the sizes of the dispatches over them.
+// Facts about the radix sort at every size that crosses a boundary, and about sums by the last workgroup and their lists.
 #include "engine/passes/sort.h"
 #include "tests/engine/gpu/gpu_fixture.h"
 

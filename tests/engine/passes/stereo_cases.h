@@ -1,7 +1,6 @@
 // Dominant pictures and pairs of eyes that the stereo passes are tested on, and the twin's arrays as the device holds them.
 #pragma once
 
-#include "engine/passes/warp_passes.h"
 #include "engine/reference/stereo.h"
 #include "tests/engine/frame/affiliated_frames.h"
 

@@ -1,8 +1,6 @@
 // The stereo passes on the device, one at a time, over arrays that come from the host and go back to it.
 #pragma once
 
-#include "engine/passes/warp_passes.h"
-#include "tests/engine/gpu/gpu_fixture.h"
 #include "tests/engine/passes/pass_stages.h"
 #include "tests/engine/passes/stereo_cases.h"
 

@@ -1,6 +1,4 @@
-// Facts about the paper's choice of tiles to render, depth_bounds, edge_rois and components: against the twin, against examples worked out
-// by hand, and against plainer algorithms.
-#include "tests/engine/passes/stereo_cases.h"
+// Facts about the paper's choice of tiles, depth_bounds, edge_rois and components: against the twin, and by hand.
 #include "tests/engine/passes/stereo_stages.h"
 
 SUITE(tile_choice) {

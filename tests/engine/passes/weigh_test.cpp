@@ -1,5 +1,4 @@
 // Facts about weigh: what a tile costs, which tiles are not worth moving, and whether anything is.
-#include "tests/engine/passes/stereo_cases.h"
 #include "tests/engine/passes/stereo_stages.h"
 
 SUITE(weigh) {

@@ -11,9 +11,6 @@ bool isAt(const Image& image, std::uint32_t x, std::uint32_t y, const glm::vec3&
     return glm::length(colourOf(image, x, y) - colour) < 1e-6f;
 }
 
-constexpr PixelOrigin kTintedOrigins[]{PixelOrigin::kGap, PixelOrigin::kHole, PixelOrigin::kEdgeRoi, PixelOrigin::kCenterRoi,
-                                       PixelOrigin::kPredictedRoi};
-
 TEST_CASE("tiles are tinted up to their last pixel, and what is reprojected stays as it is") {
     // 3 x 2 tiles over 33 x 17 pixels: the last column and the last row of tiles are one pixel wide.
     const std::vector<std::uint32_t> kinds{gpu::kTileEdge, 0, gpu::kTileCenter, gpu::kTilePredicted, 0, 0};
@@ -46,19 +43,6 @@ TEST_CASE("interpolated pixels are tinted where no tile was rendered again") {
     const Image picture = makeRoiPicture(makeGrey({32, 16}, 3, 0.25f), kinds, classes);
     CHECK(isAt(picture, 0, 0, tinted(PixelOrigin::kGap, 0.25f)));
     CHECK(isAt(picture, 1, 0, tinted(PixelOrigin::kHole, 0.25f)));
-}
-
-TEST_CASE("tints can be told apart on any picture, even one brighter than the display") {
-    for (const PixelOrigin a : kTintedOrigins) {
-        for (const PixelOrigin b : kTintedOrigins) {
-            if (a != b) { CHECK(kTintShare * glm::length(tintOf(a) - tintOf(b)) > 0.2f); }
-        }
-        // A tint has colour: no grey looks like it.
-        const glm::vec3 tint = tintOf(a);
-        CHECK(std::max({tint.r, tint.g, tint.b}) - std::min({tint.r, tint.g, tint.b}) > 0.7f);
-    }
-    const std::vector<std::uint32_t> kinds{gpu::kTileEdge};
-    CHECK(isAt(makeRoiPicture(makeGrey({1, 1}, 3, 7.0f), kinds, {}), 0, 0, tinted(PixelOrigin::kEdgeRoi, 1.0f)));
 }
 
 TEST_CASE("lists that do not fit are refused") {

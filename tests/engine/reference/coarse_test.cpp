@@ -2,8 +2,6 @@
 #include "engine/reference/coarse.h"
 #include "tests/suite.h"
 
-#include <cmath>
-
 SUITE(coarse) {
 
 constexpr double kApart = 15.0 / 7.0;  // samples, in pixels

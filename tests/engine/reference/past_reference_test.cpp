@@ -40,9 +40,6 @@ Eye moved(Eye eye, const glm::dvec3& by) {
 
 double depthAt(const WarpedPast& warped, std::size_t pixel) { return warped.picture.pixels[pixel].value_or(MovingPixel{}).inverse_depth; }
 
-using Kinds = std::vector<TileKind>;
-constexpr TileKind kNone = TileKind::kNone, kChosen = TileKind::kPredicted;
-
 TEST_CASE("the kernel of repeated sampling keeps sums, and makes no frequency stronger at any shift") {
     for (int step = 0; step <= 200; ++step) {
         const auto weights = lagrangeWeights(step / 200.0);
@@ -122,19 +119,6 @@ TEST_CASE("what is lost between pixels is what alternates there, in whole blocks
     CHECK(warpPast(makePast(eye, grey, bands), half).picture.tiles[7].grown[0] == doctest::Approx(64 * kLeastGrowth));
 }
 
-TEST_CASE("an uncertain depth costs how the picture changes over what the place may be off by") {
-    const Eye eye = test::makeEye({96, 64});
-    Past past = makePast(
-        eye, [](double x, double) { return glm::dvec3(0.01 * x, 0.0, 0.0); }, [](double, double) { return 0.5; });
-    const std::uint32_t code = spreadCode(0.25);
-    for (auto& pixel : past.pixels) { pixel->spread = code; }
-    // One pixel of the past for 0.02: half of a quarter of it, at a slope of 0.01 in one channel.
-    const WarpedPast warped = warpPast(past, moved(eye, {0.02, 0.0, 0.0}));
-    CHECK(warped.picture.tiles[7].grown[2] == doctest::Approx(64 * std::pow(0.5 * 0.25 * 0.01, 2)).epsilon(1e-3));
-    CHECK(std::ranges::count_if(warped.picture.pixels, [&](const auto& pixel) { return pixel->spread == code; }) ==
-          95 * 64);  // one column is new
-}
-
 TEST_CASE("what was hidden behind a nearer wall is not taken for seen, and the nearer of two is it") {
     const Eye eye = test::makeEye({160, 48});
     // The left half near, at inverse depth 1; a step of 0.02 to the right moves it 2 px to the left, and what is behind, at 0.1, by 0.2.
@@ -150,116 +134,6 @@ TEST_CASE("what was hidden behind a nearer wall is not taken for seen, and the n
     // And to the left: the near wall covers two pixels that both would claim.
     const WarpedPast covered = warpPast(past, moved(eye, {-0.02, 0.0, 0.0}));
     for (std::size_t x = 78; x < 160; ++x) { CHECK(depthAt(covered, 160 * 24 + x) == doctest::Approx(x < 82 ? 1.0 : 0.1)); }
-}
-
-TEST_CASE("what a tile has gone wrong by comes along from where its blocks come from, and ages") {
-    const Eye eye = test::makeEye({96, 64});
-    Past past = makePast(eye, waves, [](double, double) { return 0.5; });
-    past.tiles[8] = {70, 3, {0.01, 0.02, 0.03, 0.04}, {0.1, 0.2, 0.3, 0.4}, {}};
-    const auto areNear = [](const std::array<double, 4>& a, const std::array<double, 4>& b) {
-        return std::ranges::equal(a, b, [](double one, double other) { return std::abs(one - other) < 1e-12; });
-    };
-    const auto still = warpPast(past, eye).picture.tiles[8];
-    CHECK(areNear(still.errors, past.tiles[8].errors));
-    CHECK(areNear(still.growth, past.tiles[8].growth));
-    CHECK(still.age == 4);
-    CHECK(still.cost == 70);
-    // 7.5 px: what was a tile's right half is its left one.
-    const auto shifted = warpPast(past, moved(eye, {0.15, 0.0, 0.0})).picture.tiles;
-    CHECK(areNear(shifted[8].errors, {0.2, 0.0, 0.4, 0.0}));
-    CHECK(areNear(shifted[7].errors, {0.0, 0.1, 0.0, 0.3}));
-    // 4.5 px: of two blocks of a quarter one comes from each half. Squares have a mean; how fast errors grow has, too.
-    const auto between = warpPast(past, moved(eye, {0.09, 0.0, 0.0})).picture.tiles[8];
-    CHECK(areNear(between.errors, {std::sqrt(0.025), std::sqrt(0.02), std::sqrt(0.125), std::sqrt(0.08)}));
-    CHECK(areNear(between.growth, {0.015, 0.01, 0.035, 0.02}));
-}
-
-TEST_CASE("nothing comes from where a lens hides the picture, and what it hides is background") {
-    const Eye eye = test::makeEye({96, 64});
-    const Past past = makePast(eye, waves, [](double, double) { return 0.5; });
-    std::vector<std::uint8_t> hidden(24, 0);
-    hidden[8] = 1;
-    const WarpedPast warped = warpPast(past, moved(eye, {0.02, 0.0, 0.0}), hidden, {0.1, 0.2, 0.3});
-    CHECK(warped.picture.rgba[20 * 96 + 40] == glm::dvec4(0.1, 0.2, 0.3, 0.0));
-    CHECK_FALSE(warped.picture.pixels[20 * 96 + 40]);
-    CHECK(warped.unseen[20 * 96 + 31] == 1);  // the pixel beside it comes from there
-    CHECK(warped.unseen[20 * 96 + 30] == 0);
-}
-
-TEST_CASE("errors add up as amplitudes, half of what was measured and half of what is expected") {
-    PastTile tile{100, 2, {}, {0.1, 0.0, 0.0, 0.0}, {}};
-    tile.grown = {192 * 0.03 * 0.03, 192 * 0.03 * 0.03, 0.0, 192 * 0.06 * 0.06};
-    growErrors(std::span(&tile, 1));
-    CHECK(tile.errors[0] == doctest::Approx(0.13));
-    CHECK(tile.errors[1] == doctest::Approx(0.03));
-    CHECK(tile.errors[2] == 0.0);
-    CHECK(tile.errors[3] == doctest::Approx(0.06));
-    tile.growth = {0.01, 0.05, 0.01, 0.01};
-    growErrors(std::span(&tile, 1));
-    CHECK(tile.errors[0] == doctest::Approx(0.15));
-    CHECK(tile.errors[1] == doctest::Approx(0.07));
-    CHECK(tile.errors[2] == doctest::Approx(0.005));
-    CHECK(tile.errors[3] == doctest::Approx(0.12));  // much of it was not seen: nobody has measured that
-}
-
-TEST_CASE("a tile is worth its squared error for each frame that it has waited") {
-    PastTile tile{100, 1, {}, {0.1, 0.1, 0.1, 0.1}, {}};
-    CHECK(worthOf(tile) == doctest::Approx(256 * 3 * 0.01));
-    tile.age = 5;
-    CHECK(worthOf(tile) == doctest::Approx(5 * 256 * 3 * 0.01));
-    tile.age = 100000;
-    CHECK(worthOf(tile) == 2000.0);
-    tile.errors = {1e-9, 0.0, 0.0, 0.0};
-    CHECK(worthOf(tile) == 0x1p-20);  // the least that is anything
-    tile.errors = {};
-    CHECK(worthOf(tile) == 0.0);
-    CHECK(costOf(tile) == 116);
-    tile.cost = 1u << 30;
-    CHECK(costOf(tile) == (1u << 21) - 1);
-}
-
-TEST_CASE("two pictures share one budget, and the tile that it ends in has its turn, however dear") {
-    using Costs = std::vector<std::uint64_t>;
-    const auto chosen = [](std::uint64_t budget, const Costs& left_costs, const Costs& right_costs) {
-        Kinds left(3, kNone), right(2, kNone);
-        const std::vector<std::optional<std::uint32_t>> left_prices{5, std::nullopt, 7}, right_prices{7, 6};
-        selectTogether(std::array{PricedTiles{left, left_prices, left_costs}, PricedTiles{right, right_prices, right_costs}}, budget);
-        std::string row;
-        for (const Kinds& kinds : {left, right}) {
-            for (const TileKind kind : kinds) { row += kind == kChosen ? 'p' : '.'; }
-        }
-        return row;
-    };
-    // 7 in both, then 6, then 5; nothing for a budget of nothing.
-    const Costs three{10, 10, 10}, two{10, 10};
-    CHECK(chosen(0, three, two) == ".....");
-    CHECK(chosen(10, three, two) == "..p..");
-    CHECK(chosen(11, three, two) == "..pp.");
-    CHECK(chosen(20, three, two) == "..pp.");
-    CHECK(chosen(40, three, two) == "p.ppp");
-    CHECK(chosen(1, {10, 10, 10000}, two) == "..p..");
-    CHECK(chosen(21, three, {10, 10000}) == "..ppp");
-}
-
-TEST_CASE("a tile that is rendered again says how far off it was, for each frame that it waited") {
-    const Eye eye = test::makeEye({40, 16});  // two tiles, and half of one
-    Past past = makePast(
-        eye, [](double, double) { return glm::dvec3(0.5); }, [](double, double) { return 0.5; });
-    for (PastTile& tile : past.tiles) { tile = {100, 4, {}, {0.3, 0.3, 0.3, 0.3}, {}}; }
-    Picture full = makePicture(eye.size_px);
-    for (glm::dvec4& colour : full.rgba) { colour = {0.6, 0.5, 0.5, 0.9}; }
-    full.rgba[8] = {0.5, 0.5, 0.5, 1.0};  // a pixel of the second quarter was right
-    renderTiles(past, full, std::vector<std::uint64_t>{33, 44, 0}, Kinds{kChosen, kNone, kChosen});
-    CHECK(past.rgba[0] == full.rgba[0]);
-    CHECK(past.rgba[20] == glm::dvec4(0.5, 0.5, 0.5, 1.0));
-    CHECK(past.rgba[35] == full.rgba[35]);
-    CHECK(past.tiles[0].cost == 33);
-    CHECK(past.tiles[0].age == 0);
-    CHECK(past.tiles[0].errors == std::array<double, 4>{});
-    CHECK(past.tiles[0].growth[0] == doctest::Approx(std::sqrt(0.01 / 3.0) / 4.0));
-    CHECK(past.tiles[0].growth[1] == doctest::Approx(std::sqrt(63.0 / 64.0 * 0.01 / 3.0) / 4.0));
-    CHECK(past.tiles[1].age == 4);
-    CHECK(past.tiles[2].growth == std::array<double, 4>{});  // nothing is left there
 }
 
 }  // SUITE(past_reference)

@@ -1,7 +1,6 @@
 // Facts about the float64 twin's pictures that are derived by hand, and what its passes leave out; what frame_test.cpp derives for
 // those of the device, which are held against the twin's, is not derived again. The eye sits at the origin and looks along z with a focal
 // length of 100 px; its axis passes through the centre of the middle pixel.
-#include "engine/reference/harmonics.h"
 #include "engine/reference/reach.h"
 #include "tests/engine/reference/reference_scenes.h"
 
@@ -76,31 +75,6 @@ TEST_CASE("no pixel at which a splat is met is left out by cull, by its box, by 
             CHECK(kept < scene.size());
         }
     }
-}
-
-TEST_CASE("one thread and two give the same bits") {
-    const Scene scene = makeCloud(3000, 2);
-    const Eye eye = makeOddEye({150, 130});
-    Settings one, two;
-    one.threads = 1;
-    two.threads = 2;
-    const Picture a = reference::render(scene, eye, one), b = reference::render(scene, eye, two);
-    CHECK(a.rgba == b.rgba);
-    CHECK(a.depth == b.depth);
-}
-
-TEST_CASE("depth order is that of a stable sort, through zero") {
-    reference::Visible visible{{3, 5, 7, 8, 9, 11, 12}, {2.0, -1.0, 0.0, -0.0, 2.0, 1e-300, -1e300}};
-    CHECK(reference::sortDepth(visible) == std::vector<std::uint32_t>{12, 5, 7, 8, 11, 3, 9});
-    visible = {};
-    std::mt19937 random(1);
-    for (std::uint32_t i = 0; i < 5000; ++i) {
-        visible.splats.push_back(i);
-        visible.depths.push_back(std::floor(static_cast<double>(random() % 2000)) / 7.0 - 20.0);
-    }
-    std::vector<std::uint32_t> expected = visible.splats;
-    std::ranges::stable_sort(expected, {}, [&](std::uint32_t i) { return visible.depths[i]; });
-    CHECK(reference::sortDepth(visible) == expected);
 }
 
 TEST_CASE("the customary box of a disc that faces the eye is a square of 3 sigma") {
@@ -231,30 +205,6 @@ TEST_CASE("spherical harmonics have the signs scenes are trained with") {
         scene.sh[3 * coefficient] = 0.25f;
         const std::uint32_t order = 0;
         CHECK((reference::project(scene, {&order, 1}, makeEye({301, 301}), {})[0].colour.x - 0.5) / 0.25 == near(value));
-    }
-}
-
-TEST_CASE("spherical harmonics are orthonormal over the sphere") {
-    // Gauss-Legendre is not needed: the mean over n heights and m angles of a polynomial of degree 6 converges as 1/n^2.
-    constexpr int kHeights = 400, kAngles = 16;
-    double products[16][16] = {};
-    for (int i = 0; i < kHeights; ++i) {
-        const double z = (2.0 * i + 1.0) / kHeights - 1.0, r = std::sqrt(1.0 - z * z);
-        for (int j = 0; j < kAngles; ++j) {
-            const double angle = 2.0 * std::numbers::pi * (j + 0.25) / kAngles;
-            double values[16];
-            for (int k = 0; k < 16; ++k) {
-                float sh[48] = {};
-                sh[3 * k] = 1.0f;
-                values[k] = reference::evaluateHarmonics(sh, 3, {r * std::cos(angle), r * std::sin(angle), z}).x;
-            }
-            for (int k = 0; k < 16; ++k) {
-                for (int l = 0; l < 16; ++l) { products[k][l] += values[k] * values[l] * 4.0 * std::numbers::pi / (kHeights * kAngles); }
-            }
-        }
-    }
-    for (int k = 0; k < 16; ++k) {
-        for (int l = 0; l < 16; ++l) { CHECK(std::abs(products[k][l] - (k == l ? 1.0 : 0.0)) < 1e-3); }
     }
 }
 

@@ -1,5 +1,4 @@
-// Facts about scene files that change while they are read, and how far ahead they are read. They change where reading reports its progress,
-// so no test waits for a time.
+// Facts about scene files that change while they are read, which they do where reading reports its progress.
 #include "engine/scene/ply.h"
 #include "engine/scene/procedural.h"
 #include "engine/scene/read_ahead.h"

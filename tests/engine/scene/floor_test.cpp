@@ -1,6 +1,5 @@
 // Which way is up: what a scene stands on, whichever axis of the file is up, and what the file says of it.
 #include "engine/scene/floor_choice.h"
-#include "engine/scene/procedural.h"
 #include "tests/engine/scene/captures.h"
 #include "tests/shared_data.h"
 

@@ -1,7 +1,6 @@
 // Small scenes in every format, to be broken.
 #pragma once
 
-#include "tests/engine/scene/ply_files.h"
 #include "tests/engine/scene/spz_files.h"
 
 namespace binosplat::test {

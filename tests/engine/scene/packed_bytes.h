@@ -5,8 +5,6 @@
 
 #include <zlib.h>
 
-#include <stdexcept>
-
 namespace binosplat::test {
 
 inline std::string littleWord(std::uint64_t value, int bytes = 4) {

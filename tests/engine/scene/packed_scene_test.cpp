@@ -1,12 +1,9 @@
 // Scenes that come packed: within gzip, or alone in a zip archive.
 #include "engine/scene/packed_scene.h"
-#include "engine/scene/scene.h"
 #include "tests/engine/scene/gltf_files.h"
-#include "tests/engine/scene/ply_files.h"
 #include "tests/engine/scene/spz_files.h"
 #ifdef BINOSPLAT_SOG
 #include "tests/engine/scene/sog_scenes.h"
-#include "tests/suite.h"
 #endif
 
 SUITE(packed_scene) {

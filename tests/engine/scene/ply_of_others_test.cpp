@@ -1,7 +1,5 @@
 // PLY files as other programs write them: what is read of each, what is said of it, and what is no scene.
-#include "engine/scene/ply.h"
 #include "tests/engine/scene/scene_measures.h"
-#include "tests/suite.h"
 
 SUITE(ply_of_others) {
 

@@ -4,8 +4,6 @@
 #include "engine/scene/ply.h"
 #include "tests/engine/scene/ply_files.h"
 
-#include <random>
-
 namespace binosplat::test {
 
 // `sh_range`: of the harmonics above the constant one.

@@ -3,11 +3,9 @@
 #include "engine/scene/procedural.h"
 #include "engine/scene/scene_folder.h"
 #include "engine/scene/scene_series.h"
-#include "tests/engine/scene/ply_files.h"
 #include "tests/engine/scene/spz_files.h"
 #ifdef BINOSPLAT_SOG
 #include "tests/engine/scene/sog_scenes.h"
-#include "tests/suite.h"
 #endif
 
 SUITE(scene) {

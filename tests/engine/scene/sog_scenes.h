@@ -5,8 +5,6 @@
 #include "tests/engine/scene/packed_bytes.h"
 #include "tests/engine/scene/ply_files.h"
 
-#include <array>
-
 namespace binosplat::test {
 
 // By file name, meta.json among them.

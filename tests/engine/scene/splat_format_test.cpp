@@ -1,6 +1,5 @@
 // .splat files: values worked out by hand, and what is not taken for one.
 #include "tests/engine/scene/hostile_scenes.h"
-#include "tests/suite.h"
 
 SUITE(splat_format) {
 

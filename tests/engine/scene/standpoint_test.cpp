@@ -1,5 +1,4 @@
 // Where one stands in captures as people make them, without cameras.
-#include "engine/scene/procedural.h"
 #include "tests/engine/scene/captures.h"
 
 SUITE(standpoint) {

@@ -1,5 +1,4 @@
-// Facts about stiff and extreme cases: the catalogue of `binosplat stability` but for its largest picture, on the device, and its
-// sequences.
+// Facts about extreme cases: the catalogue of `binosplat stability` but for its largest picture, and its sequences.
 #include "engine/stability/extreme_scenes.h"
 #include "engine/stability/run_case.h"
 #include "tests/engine/frame/frame_runs.h"

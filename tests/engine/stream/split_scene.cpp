@@ -12,7 +12,6 @@
 #include <limits>
 #include <numeric>
 #include <span>
-#include <vector>
 
 namespace binosplat::test {
 

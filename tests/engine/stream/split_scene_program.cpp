@@ -3,7 +3,6 @@
 #include "tests/engine/stream/split_scene.h"
 
 #include <cstdio>
-#include <string>
 
 int main(int argc, char** argv) {
     using namespace binosplat;

@@ -1,6 +1,5 @@
 // Servers that are busy, cut off, lie, lead elsewhere or vanish: the scene all the same, or one plain line and nothing left behind.
 #include "tests/engine/scene/gltf_files.h"
-#include "tests/engine/scene/packed_bytes.h"
 #include "tests/engine/web/web_runs.h"
 
 SUITE(web_fetch) {

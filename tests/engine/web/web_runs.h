@@ -5,8 +5,6 @@
 #include "tests/engine/scene/ply_files.h"
 #include "tests/engine/web/web_server.h"
 
-#include <doctest/doctest.h>
-
 namespace binosplat::test {
 
 // Without pauses between attempts, into a cache in the folder of the test.

@@ -1,5 +1,4 @@
 // Facts about the panel's letters: names in any script can be read.
-#include "app/view/panel/shown_text.h"
 #include "tests/app/view/panel/panel_sketch.h"
 #include "tests/run_program.h"
 

@@ -1,5 +1,4 @@
-// Facts about looking for a scene: what a folder holds, in which order, which scenes were shown last, what is said and kept of one, and
-// the places to go to in it.
+// Facts about looking for a scene: folders, scenes that were shown last, what is said and kept of one, and places in it.
 #include "app/view/scenes/scene_list.h"
 #include "app/view/files/file_worker.h"
 #include "app/view/governor/met_displays.h"

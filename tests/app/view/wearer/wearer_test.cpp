@@ -114,18 +114,6 @@ TEST_CASE_FIXTURE(Pointing, "a trigger that was pulled beside the panel does not
     CHECK_FALSE(panel.clicksElsewhere(kRight));
 }
 
-TEST_CASE_FIXTURE(Pointing, "without a panel a hand shows its ray only while its trigger is pulled") {
-    hands.fill(pointingAt(panel, {0.0, 0.0}));
-    CHECK(at(false) < 0.0);
-    CHECK(rays() == 0);
-    hands[kLeft].clicks = true;
-    at(false);
-    const auto seen = panel.rays(glm::dvec3(0.1, -0.2, 0.0), std::nullopt);
-    REQUIRE(seen.size() == 1);
-    CHECK(seen[0].sprite == Sprite::kFadingRay);
-    CHECK(rays(kLeft) == 0);
-}
-
 TEST_CASE_FIXTURE(Pointing,
                   "a ray meets the panel where it points, from the front alone, and a strip joins its ends and shows its face to the eye") {
     // A quarter to the right and downwards of the panel's middle.

@@ -1,5 +1,4 @@
-// XR_EXT_conformance_automation on the simulated runtime, where a program's own test moves inputs, poses and profiles from inside, and
-// XR_EXT_eye_gaze_interaction: where the wearer looks, as the script says it, or such a test.
+// A program's own test moves inputs from inside (XR_EXT_conformance_automation); where the wearer looks (XR_EXT_eye_gaze_interaction).
 #include "tests/xr/simulated/api/simulated_fixture.h"
 
 SUITE(simulated_automation) {

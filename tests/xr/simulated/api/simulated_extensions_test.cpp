@@ -1,5 +1,4 @@
-// Headless sessions (XR_MND_headless) of the simulated runtime, without a loader: the extensions that need no graphics (but for messages,
-// see simulated_messages_test.cpp), and objects that end in every order.
+// Headless sessions without a loader: the extensions that need no graphics, and objects that end in every order.
 #include "tests/xr/simulated/api/simulated_direct.h"
 
 SUITE(simulated_extensions) {

@@ -3,10 +3,6 @@
 
 #include <unistd.h>
 
-#include <cstdio>
-#include <cstdlib>
-#include <fstream>
-
 namespace binosplat::test {
 namespace {
 

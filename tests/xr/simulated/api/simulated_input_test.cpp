@@ -1,5 +1,4 @@
-// Chapter 11 of OpenXR on the simulated runtime: action sets, actions, suggested bindings, what actions read from the script's controllers,
-// and haptics.
+// Chapter 11 of OpenXR on the simulated runtime: action sets, actions, bindings, what actions read, and haptics.
 #include "tests/xr/simulated/api/simulated_fixture.h"
 
 SUITE(simulated_input) {

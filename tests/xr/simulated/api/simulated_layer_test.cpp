@@ -1,5 +1,4 @@
-// Section 10.6 of OpenXR on the simulated runtime: the layers of xrEndFrame, also of XR_KHR_composition_layer_cylinder, _equirect2 and
-// _cube, and what of them reaches the wearer's eyes and the log.
+// Section 10.6 of OpenXR on the simulated runtime: layers, flat and around, and what of them reaches the eyes and the log.
 #include "tests/xr/simulated/api/simulated_painter.h"
 #include "xr/simulated/compose/picture_file.h"
 

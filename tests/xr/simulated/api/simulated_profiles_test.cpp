@@ -1,5 +1,4 @@
-// Every input and output of every interaction profile on the simulated runtime, moved by XR_EXT_conformance_automation and read back, and
-// what may be bound with which version and extensions. There is no loader here; sessions are headless.
+// Every input of every interaction profile, moved and read back, and what may be bound with which version; without a loader.
 #include "tests/xr/simulated/api/simulated_direct.h"
 #include "xr/simulated/api/profiles.h"
 
@@ -129,10 +128,75 @@ struct Played : HeadlessSession {
 
 // What answers where it is bound: of 1.0, of 1.1, and of 1.0 with an extension.
 struct Binding {
-    const char *profile, *path, *extension = nullptr;
-    bool of_1_0 = false, of_1_1 = true;
-    XrActionType type = XR_ACTION_TYPE_BOOLEAN_INPUT;
+    std::string profile, path, extension;
+    bool of_1_0, of_1_1;
+
+    [[nodiscard]] XrActionType type() const {
+        const auto has = [&](const char* part) { return path.find(part) != std::string::npos; };
+        if (has("haptic_")) { return XR_ACTION_TYPE_VIBRATION_OUTPUT; }
+        if (has("pinch_ext/value")) { return XR_ACTION_TYPE_FLOAT_INPUT; }
+        return has("/pose") || has("gaze_ext") || has("grip_surface") ? XR_ACTION_TYPE_POSE_INPUT : XR_ACTION_TYPE_BOOLEAN_INPUT;
+    }
 };
+
+// A line for each profile, whose paths it takes in "1.0" and 1.1, from "1.1" on, or never ("none"), and with an extension.
+std::vector<Binding> bindingsIn(const char* lines) {
+    std::vector<Binding> bindings;
+    std::istringstream stream(lines);
+    for (std::string line; std::getline(stream, line);) {
+        const std::vector<std::string> words = wordsIn(line);
+        for (std::size_t i = 3; i < words.size(); ++i) {
+            bindings.push_back({words[2], words[i], words[1] == "-" ? "" : words[1], words[0] == "1.0", words[0] != "none"});
+        }
+    }
+    return bindings;
+}
+
+// The core's, nobody's, and those of extensions of which some became part of 1.1. The palm's surface is grip_surface in 1.1 and palm_ext by
+// an extension; finger tips are poses of every hand, gestures of the hands' profile alone; the eyes' profile has a gaze, and nothing else.
+constexpr const char* kBindings =
+    R"(1.0 - khr/simple_controller hand/left/input/select/click hand/right/output/haptic
+1.0 - google/daydream_controller hand/left/input/trackpad/touch
+1.0 - htc/vive_controller hand/right/input/squeeze/click hand/right/input/trackpad
+1.0 - htc/vive_pro head/input/volume_up/click
+1.0 - microsoft/motion_controller hand/left/input/thumbstick/x
+1.0 - microsoft/xbox_controller gamepad/input/dpad_up/click gamepad/output/haptic_left_trigger
+1.0 - oculus/go_controller hand/left/input/back/click
+1.0 - oculus/touch_controller hand/left/input/x/click hand/right/input/a/touch hand/left/input/thumbrest/touch
+1.0 - valve/index_controller hand/left/input/squeeze/force hand/left/input/a/click
+none - khr/simple_controller hand/left/input/trigger/value head/input/select/click hand/left hand/left/input
+none - google/daydream_controller hand/left/output/haptic
+none - htc/vive_controller hand/left/input/squeeze/value
+none - htc/vive_pro hand/left/input/system/click
+none - microsoft/motion_controller hand/left/input/squeeze/value
+none - microsoft/xbox_controller hand/left/input/a/click gamepad/output/haptic gamepad/input/grip_surface/pose
+none - oculus/go_controller hand/left/input/menu/click
+none - oculus/touch_controller hand/right/input/x/click hand/left/input/a/click hand/right/input/menu/click
+none - oculus/touch_controller hand/left/input/trig/value hand/left/input/trigger/click
+none - valve/index_controller hand/left/input/trackpad/click
+none - nobody/nothing hand/left/input/a/click
+none - bytedance/pico4_controller hand/right/input/menu/click
+none - meta/touch_controller_quest_1_rift_s hand/left/input/thumbrest/touch
+none - htc/vive_cosmos_controller hand/left/input/thumbrest/touch
+1.1 XR_EXT_hp_mixed_reality_controller hp/mixed_reality_controller hand/left/input/x/click
+1.1 XR_EXT_samsung_odyssey_controller samsung/odyssey_controller hand/left/input/trackpad/click
+1.1 XR_HTC_vive_cosmos_controller_interaction htc/vive_cosmos_controller hand/left/input/shoulder/click
+1.1 XR_HTC_vive_focus3_controller_interaction htc/vive_focus3_controller hand/right/input/squeeze/touch
+1.1 XR_ML_ml2_controller_interaction ml/ml2_controller hand/right/input/home/click
+1.1 XR_BD_controller_interaction bytedance/pico_neo3_controller hand/right/input/menu/click
+1.1 XR_BD_controller_interaction bytedance/pico4_controller hand/left/input/menu/click
+1.1 XR_BD_controller_interaction bytedance/pico_g3_controller hand/left/input/thumbstick/click hand/right/input/thumbstick/x
+1.1 - oculus/touch_controller hand/left/input/trigger/proximity hand/right/input/thumb_resting_surfaces/proximity
+1.1 - meta/touch_pro_controller hand/left/input/stylus/force hand/left/output/haptic_thumb
+1.1 - meta/touch_plus_controller hand/left/input/trigger/force
+1.1 - meta/touch_controller_quest_2 hand/left/input/thumbrest/touch
+1.1 - meta/touch_controller_quest_1_rift_s hand/left/input/trigger/proximity
+1.1 - meta/touch_controller_rift_cv1 hand/left/input/thumb_resting_surfaces/proximity
+1.1 XR_KHR_maintenance1 khr/simple_controller hand/left/input/grip_surface/pose hand/left/input/grip_surface
+none XR_EXT_palm_pose khr/simple_controller hand/left/input/palm_ext/pose
+none XR_EXT_hand_interaction khr/simple_controller hand/left/input/pinch_ext/pose hand/right/input/poke_ext/pose
+none XR_EXT_hand_interaction ext/hand_interaction_ext hand/left/input/pinch_ext/value
+none XR_EXT_eye_gaze_interaction ext/eye_gaze_interaction eyes_ext/input/gaze_ext/pose eyes_ext/input/gaze_ext)";
 
 TEST_CASE("every input of every profile is read as it is moved, each by itself, every pose where it is put, while its device is there") {
     for (const Profile& profile : simulated::listProfiles()) {
@@ -179,102 +243,25 @@ TEST_CASE("every input of every profile is read as it is moved, each by itself, 
 }
 
 TEST_CASE("each profile takes its own paths and no others, in its version, or with its extension") {
-    constexpr const char* kPico4 = "bytedance/pico4_controller";
-    constexpr const char* kPicoG3 = "bytedance/pico_g3_controller";
-    constexpr const char* kCosmos = "htc/vive_cosmos_controller";
-    constexpr const char* kQuest1 = "meta/touch_controller_quest_1_rift_s";
-    constexpr const char* kByteDance = "XR_BD_controller_interaction";
     constexpr const char* kHands = "XR_EXT_hand_interaction";
     constexpr const char* kEyes = XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME;
-    constexpr auto kPose = XR_ACTION_TYPE_POSE_INPUT;
-    const Binding bindings[] = {
-        // The core's.
-        {"khr/simple_controller", "hand/left/input/select/click", nullptr, true},
-        {"khr/simple_controller", "hand/right/output/haptic", nullptr, true},
-        {"google/daydream_controller", "hand/left/input/trackpad/touch", nullptr, true},
-        {"htc/vive_controller", "hand/right/input/squeeze/click", nullptr, true},
-        {"htc/vive_controller", "hand/right/input/trackpad", nullptr, true},
-        {"htc/vive_pro", "head/input/volume_up/click", nullptr, true},
-        {"microsoft/motion_controller", "hand/left/input/thumbstick/x", nullptr, true},
-        {"microsoft/xbox_controller", "gamepad/input/dpad_up/click", nullptr, true},
-        {"microsoft/xbox_controller", "gamepad/output/haptic_left_trigger", nullptr, true},
-        {"oculus/go_controller", "hand/left/input/back/click", nullptr, true},
-        {"oculus/touch_controller", "hand/left/input/x/click", nullptr, true},
-        {"oculus/touch_controller", "hand/right/input/a/touch", nullptr, true},
-        {"oculus/touch_controller", "hand/left/input/thumbrest/touch", nullptr, true},
-        {"valve/index_controller", "hand/left/input/squeeze/force", nullptr, true},
-        {"valve/index_controller", "hand/left/input/a/click", nullptr, true},
-        // Nobody's.
-        {"khr/simple_controller", "hand/left/input/trigger/value", nullptr, false, false},
-        {"khr/simple_controller", "head/input/select/click", nullptr, false, false},
-        {"khr/simple_controller", "hand/left", nullptr, false, false},
-        {"khr/simple_controller", "hand/left/input", nullptr, false, false},
-        {"google/daydream_controller", "hand/left/output/haptic", nullptr, false, false},
-        {"htc/vive_controller", "hand/left/input/squeeze/value", nullptr, false, false},
-        {"htc/vive_pro", "hand/left/input/system/click", nullptr, false, false},
-        {"microsoft/motion_controller", "hand/left/input/squeeze/value", nullptr, false, false},
-        {"microsoft/xbox_controller", "hand/left/input/a/click", nullptr, false, false},
-        {"microsoft/xbox_controller", "gamepad/output/haptic", nullptr, false, false},
-        {"microsoft/xbox_controller", "gamepad/input/grip_surface/pose", nullptr, false, false, kPose},
-        {"oculus/go_controller", "hand/left/input/menu/click", nullptr, false, false},
-        {"oculus/touch_controller", "hand/right/input/x/click", nullptr, false, false},
-        {"oculus/touch_controller", "hand/left/input/a/click", nullptr, false, false},
-        {"oculus/touch_controller", "hand/right/input/menu/click", nullptr, false, false},
-        {"oculus/touch_controller", "hand/left/input/trig/value", nullptr, false, false},
-        {"oculus/touch_controller", "hand/left/input/trigger/click", nullptr, false, false},
-        {"valve/index_controller", "hand/left/input/trackpad/click", nullptr, false, false},
-        {"nobody/nothing", "hand/left/input/a/click", nullptr, false, false},
-        {kPico4, "hand/right/input/menu/click", nullptr, false, false},
-        {kQuest1, "hand/left/input/thumbrest/touch", nullptr, false, false},
-        {kCosmos, "hand/left/input/thumbrest/touch", nullptr, false, false},
-        // Those of 1.1, and of extensions of 1.0 that became part of it.
-        {"hp/mixed_reality_controller", "hand/left/input/x/click", "XR_EXT_hp_mixed_reality_controller"},
-        {"samsung/odyssey_controller", "hand/left/input/trackpad/click", "XR_EXT_samsung_odyssey_controller"},
-        {kCosmos, "hand/left/input/shoulder/click", "XR_HTC_vive_cosmos_controller_interaction"},
-        {"htc/vive_focus3_controller", "hand/right/input/squeeze/touch", "XR_HTC_vive_focus3_controller_interaction"},
-        {"ml/ml2_controller", "hand/right/input/home/click", "XR_ML_ml2_controller_interaction"},
-        {"bytedance/pico_neo3_controller", "hand/right/input/menu/click", kByteDance},
-        {kPico4, "hand/left/input/menu/click", kByteDance},
-        {kPicoG3, "hand/left/input/thumbstick/click", kByteDance},
-        {kPicoG3, "hand/right/input/thumbstick/x", kByteDance},
-        {"oculus/touch_controller", "hand/left/input/trigger/proximity"},
-        {"oculus/touch_controller", "hand/right/input/thumb_resting_surfaces/proximity"},
-        {"meta/touch_pro_controller", "hand/left/input/stylus/force"},
-        {"meta/touch_pro_controller", "hand/left/output/haptic_thumb", nullptr, false, true, XR_ACTION_TYPE_VIBRATION_OUTPUT},
-        {"meta/touch_plus_controller", "hand/left/input/trigger/force"},
-        {"meta/touch_controller_quest_2", "hand/left/input/thumbrest/touch"},
-        {kQuest1, "hand/left/input/trigger/proximity"},
-        {"meta/touch_controller_rift_cv1", "hand/left/input/thumb_resting_surfaces/proximity"},
-        // The palm's surface is grip_surface in 1.1 and palm_ext by the extension.
-        {"khr/simple_controller", "hand/left/input/grip_surface/pose", XR_KHR_MAINTENANCE1_EXTENSION_NAME, false, true, kPose},
-        {"khr/simple_controller", "hand/left/input/grip_surface", XR_KHR_MAINTENANCE1_EXTENSION_NAME, false, true, kPose},
-        {"khr/simple_controller", "hand/left/input/palm_ext/pose", XR_EXT_PALM_POSE_EXTENSION_NAME, false, false, kPose},
-        // Finger tips are poses of every hand with the hands' extension, and gestures are of its profile alone.
-        {"khr/simple_controller", "hand/left/input/pinch_ext/pose", kHands, false, false, kPose},
-        {"khr/simple_controller", "hand/right/input/poke_ext/pose", kHands, false, false, kPose},
-        {"ext/hand_interaction_ext", "hand/left/input/pinch_ext/value", kHands, false, false, XR_ACTION_TYPE_FLOAT_INPUT},
-        // The eyes' profile has a gaze, and nothing else.
-        {"ext/eye_gaze_interaction", "eyes_ext/input/gaze_ext/pose", kEyes, false, false, kPose},
-        {"ext/eye_gaze_interaction", "eyes_ext/input/gaze_ext", kEyes, false, false, kPose},
-    };
+    const std::vector<Binding> bindings = bindingsIn(kBindings);
     const auto check = [&](XrVersion version, const Extensions& extensions, const auto& isTaken) {
         const DirectInstance made(version, extensions);
         for (const Binding& one : bindings) {
             INFO(one.profile, " ", one.path, " ", version == k1_1 ? "1.1 " : "1.0 ", extensions.empty() ? "" : extensions[0]);
             const XrResult expected = isTaken(one) ? XR_SUCCESS : XR_ERROR_PATH_UNSUPPORTED;
-            CHECK(made.suggest(std::string("/interaction_profiles/") + one.profile, std::string("/user/") + one.path, one.type) ==
-                  expected);
+            CHECK(made.suggest("/interaction_profiles/" + one.profile, "/user/" + one.path, one.type()) == expected);
         }
     };
     check(k1_0, {}, [](const Binding& one) { return one.of_1_0; });
     check(k1_1, {}, [](const Binding& one) { return one.of_1_1; });
     std::set<std::string> extensions;
     for (const Binding& one : bindings) {
-        if (one.extension != nullptr) { extensions.insert(one.extension); }
+        if (!one.extension.empty()) { extensions.insert(one.extension); }
     }
     for (const std::string& extension : extensions) {
-        check(k1_0, {extension.c_str()},
-              [&](const Binding& one) { return one.of_1_0 || (one.extension != nullptr && one.extension == extension); });
+        check(k1_0, {extension.c_str()}, [&](const Binding& one) { return one.of_1_0 || one.extension == extension; });
     }
     for (const auto& [extension, profile, path] :
          {std::tuple(kHands, kSimple, "/user/hand/left/input/pinch_ext/value"),

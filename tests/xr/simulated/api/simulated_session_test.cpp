@@ -1,5 +1,4 @@
-// Chapter 9 and section 10.4 of OpenXR on the simulated runtime: the life of a session, its frame loop, the pace of its frames by script,
-// and how either ends early.
+// Chapter 9 and section 10.4 of OpenXR on the simulated runtime: a session's life, its frames, their pace, and how it ends.
 #include "tests/xr/simulated/api/simulated_fixture.h"
 
 SUITE(simulated_session) {

@@ -1,5 +1,4 @@
-// Chapter 7 and section 10.3 of OpenXR on the simulated runtime: spaces, views and the visibility mask. What Debian's loader, of 1.0, does
-// not know is asked without it, in headless sessions.
+// Chapter 7 and section 10.3 of OpenXR on the simulated runtime: spaces, views and the visibility mask.
 #include "tests/xr/simulated/api/simulated_direct.h"
 
 SUITE(simulated_space) {

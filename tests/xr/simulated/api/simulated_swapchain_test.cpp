@@ -1,5 +1,4 @@
-// XR_KHR_vulkan_enable2 and section 10.1 of OpenXR on the simulated runtime: Vulkan's instances and devices, swapchains, and the layouts in
-// which their images are handed over.
+// XR_KHR_vulkan_enable2 and section 10.1 of OpenXR on the simulated runtime: devices, swapchains, and images' layouts.
 #include "tests/xr/simulated/api/simulated_direct.h"
 #include "tests/xr/simulated/api/simulated_painter.h"
 

@@ -5,8 +5,6 @@
 
 #include <glm/gtc/packing.hpp>
 
-#include <stdexcept>
-
 SUITE(simulated_compose) {
 
 using namespace simulated;
@@ -91,13 +89,6 @@ Rgb lookAt(const Layer& layer, double yaw_rad, double pitch_rad, const glm::dvec
     return at(compose(eye, {layer}), 32, 32);
 }
 
-TEST_CASE("every sRGB byte comes back") {
-    for (int byte = 0; byte < 256; ++byte) { CHECK(encoded(decoded(byte)) == byte); }
-    CHECK(decodeSrgb(0.5) == doctest::Approx(0.21404114));
-    CHECK(encodeSrgb(0.21404114) == doctest::Approx(0.5));
-    CHECK(decodeSrgb(0.04) == doctest::Approx(0.04 / 12.92));
-}
-
 TEST_CASE("a projection of the eye's own view comes through byte for byte, also of a pose in single precision, or elsewhere") {
     const Canvas canvas = noise({64, 48});
     const EyeView eye{{64, 48}, {glm::angleAxis(0.7, glm::normalize(glm::dvec3(1, 2, 3))), {1, 2, 3}}, {-0.9, 0.6, 0.7, -0.8}};
@@ -131,16 +122,6 @@ TEST_CASE("an inset and its view are one picture: what shows through the inset i
     // An empty one is none.
     layer.insets[kLeft]->rect.extent = {0, 2};
     CHECK(at(compose(eye, {layer}), 1, 1) == Rgb{255, 0, 0});
-}
-
-TEST_CASE("bilinear sampling stays inside the rectangle") {
-    // The rectangle is white, all around it black: twice enlarged, no black bleeds in.
-    Canvas canvas({8, 8}, {0, 0, 0, 255});
-    canvas.fill({{2, 2}, {4, 4}}, {255, 255, 255, 255});
-    const EyeView eye = eyeOf({8, 8});
-    ProjectionLayer layer = projection(canvas, eye);
-    for (ProjectionView& view : layer.views) { view.rect = {{2, 2}, {4, 4}}; }
-    for (const std::uint8_t byte : compose(eye, {layer}).bytes) { CHECK(byte == 255); }
 }
 
 TEST_CASE("halves beyond white are white and NaN is black") {

@@ -3,8 +3,6 @@
 #include "xr/simulated/compose/old_output.h"
 #include "xr/simulated/log/frame_log.h"
 
-#include <stdexcept>
-
 SUITE(simulated_log) {
 
 using namespace simulated;

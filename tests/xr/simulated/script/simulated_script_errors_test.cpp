@@ -278,20 +278,4 @@ TEST_CASE("a script cut off anywhere, or with any byte changed, is a script or a
     CHECK(countRefused(changed) > 1000);
 }
 
-TEST_CASE_FIXTURE(ScriptFolder, "headsets and recordings cut off anywhere are read or refused") {
-    const std::string motion = "time_ms,x,y,z,qw,qx,qy,qz\n0,1,2,3,1,0,0,0\n16.5,1e-1,-2,3,0.70710678,0,0.70710678,0\n";
-    for (const auto& [line, whole] : {std::pair("headset cut", kHeadsetToml), std::pair("head-motion cut", motion)}) {
-        std::size_t refused = 0;
-        for (std::size_t length = 0; length <= whole.size(); ++length) {
-            write("cut", whole.substr(0, length));
-            const std::string message = messageOf(line);
-            if (message == "accepted") { continue; }
-            ++refused;
-            if (message.find((path / "cut").string()) == std::string::npos) { FAIL_CHECK(message); }
-        }
-        CHECK(refused > 40);
-        CHECK(messageOf(line) == "accepted");
-    }
-}
-
 }  // SUITE(simulated_script_errors)

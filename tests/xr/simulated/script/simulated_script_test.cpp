@@ -1,7 +1,5 @@
 // Facts about the simulated headset's scripts: what they say at a time.
-#include "tests/shared_data.h"
 #include "tests/xr/simulated/folder.h"
-#include "xr/simulated/extensions.h"
 #include "xr/simulated/script/script.h"
 
 SUITE(simulated_script) {
@@ -31,8 +29,6 @@ struct HeadCase {
     double time_s;
     glm::dvec3 position, forward;
 };
-
-std::string textOf(const std::string& file) { return textIn(BINOSPLAT_SOURCE_DIR + ("/" + file)); }
 
 TEST_CASE("an empty script is the resting headset; comments, blanks and carriage returns do not count") {
     const Script script = parse("");
@@ -293,20 +289,6 @@ TEST_CASE_FIXTURE(ScriptFolder, "recorded motion starts where the head line says
     CHECK(isNear(script(kStanding).at(2.5).stage_from_head.position, {0.0, 1.85, -0.5}, 1e-9));
 }
 
-TEST_CASE("recordings in ticks are read" * binosplat::test::needsSharedData()) {
-    const auto data = binosplat::test::sharedData();
-    if (!data) { return; }
-    const Script script = Script::parse("head-motion User3.csv axes unity", (*data / "headmotion" / "a.script").string());
-    // The second line comes 15.9744 ms after the first, 3.2 mm away from it; it is half there at half the time.
-    const auto walked = [&](double time_s) {
-        return glm::length(script.at(time_s).stage_from_head.position - script.at(0.0).stage_from_head.position);
-    };
-    const double whole = glm::length(glm::dvec3(0.111800678 - 0.110972665, 0.0893199742 - 0.08962741, 0.092439 - 0.09279076));
-    CHECK(walked(0.0159744) == doctest::Approx(whole).epsilon(1e-6));
-    CHECK(walked(0.0079872) == doctest::Approx(0.5 * whole).epsilon(1e-6));
-    CHECK(script.at(0.0).stage_from_head.position == glm::dvec3(0.0, 1.6, 0.0));
-}
-
 TEST_CASE("the same time gives the same state, and every script that comes along is one") {
     const Script script = Script::load(std::string(BINOSPLAT_SOURCE_DIR) + "/configs/simulated/walk.script");
     const State once = script.at(1.7);
@@ -322,32 +304,6 @@ TEST_CASE("the same time gives the same state, and every script that comes along
         ++count;
     }
     CHECK(count >= 2);
-}
-
-TEST_CASE("the documented example is the file, and every command and extension is documented") {
-    const std::string page = textOf("docs/simulated_script.md"), example = textOf("configs/simulated/walk.script");
-    REQUIRE(example.size() > 100);
-    CHECK(page.find("```\n" + example + "```\n") != std::string::npos);
-    // The list of commands comes from the message about one that does not exist.
-    std::string known;
-    try {
-        (void)parse("?");
-    } catch (const ScriptError& error) { known = error.what(); }
-    known = known.substr(known.rfind(": ") + 2);
-    std::size_t commands = 0;
-    for (std::size_t begin = 0; begin < known.size(); ++commands) {
-        const std::size_t end = std::min(known.find(", ", begin), known.size());
-        const std::string command = known.substr(begin, end - begin);
-        INFO(command);
-        CHECK(page.find("`" + command + " ") != std::string::npos);
-        begin = end + 2;
-    }
-    CHECK(commands == 32);
-    const std::string runtime = textOf("docs/openxr_runtime.md");
-    for (const Extension& extension : kExtensions) {
-        INFO(extension.name);
-        CHECK(runtime.find(std::string("`").append(extension.name).append("`")) != std::string::npos);
-    }
 }
 
 }  // SUITE(simulated_script)
