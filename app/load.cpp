@@ -123,7 +123,7 @@ std::optional<OpenedScene> openLive(const Context& context, const std::string& s
     OpenedScene scene;
     scene.sample = loadCoarsest(source, run, chunks->meta().levels.size(), scene.notes, progress);
     StreamSettings settings;
-    settings.splat_budget = load.splat_budget;
+    settings.splat_budget = load.splat_budget > 0 ? load.splat_budget : load.most_splats;
     if (load.sh_degree) { settings.sh_degree = static_cast<int>(*load.sh_degree); }
     settings.flatten = load.flatten;
     settings.antialiased = load.antialiased;

@@ -46,7 +46,8 @@ inline constexpr double kDefaultIpdMetres = 0.063;
 // How a scene is loaded: its level, and how 3D Gaussians are drawn.
 struct LoadOptions {
     std::optional<std::uint32_t> lod;        // level of detail, 0 the finest; absent: the finest that fits
-    std::uint64_t splat_budget = 0;          // for a scene with levels, chosen for each leaf by the view; 0: as many as fit
+    std::uint64_t splat_budget = 0;          // for a scene with levels, chosen for each leaf by the view; 0: as many as there is time for
+    std::uint64_t most_splats = 0;           // without splat_budget: as many as suit the device; 0: as many as fit; no option
     std::optional<std::uint32_t> sh_degree;  // the most that is kept; absent: the scene's
     bool flatten = false;                    // 3D Gaussians as discs, without their shortest axis
     std::uint64_t cache_limit_mib = 4096;    // on disk, for scenes from the web
@@ -108,6 +109,7 @@ struct ViewOptions {
     std::filesystem::path shaders;  // folder to reload them from; see shaderFolder
     bool desktop = false;           // in a window, even if there is a headset
     bool headset_only = false;      // never in a window
+    double usual_rate_hz = 0.0;     // the rate that suits the device, if the headset has it; no option
 };
 
 struct InfoOptions {

@@ -5,6 +5,7 @@
 #include "app/options/camera_options.h"
 #include "app/options/device_options.h"
 #include "app/terminal/interrupt.h"
+#include "app/view/settings/device_defaults.h"
 #include "app/view/simulate.h"
 #include "app/view/viewer.h"
 #include "app/view/window/mirror_window.h"
@@ -13,6 +14,7 @@
 #include "engine/platform.h"
 #include "xr/extensions/vulkan_enable2.h"
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <memory>
@@ -26,8 +28,10 @@ constexpr std::chrono::milliseconds kBetweenLooks(200);
 // A headset that has not answered by then is not awaited, if the scene can be shown in a window.
 constexpr std::chrono::seconds kLongestWait(2);
 
-ViewSettings startSettings(const ViewOptions& options) {
+ViewSettings startSettings(const ViewOptions& options, const DeviceDefaults& device = {}) {
     ViewSettings settings;
+    settings.quality = device.quality;
+    settings.resolution_scale = device.resolution_scale;
     settings.stereo = options.run.stereo;
     settings = readViewSettings(options.tables, settings);
     if (options.browse) { settings.page = PanelPage::kScenes; }
@@ -47,7 +51,22 @@ void waitForHeadset(const std::string& runtime, std::unique_ptr<WaitingWindow>& 
     if (window->wait(kBetweenLooks)) { throw Interrupted{SIGINT}; }
 }
 
-void showScene(const ViewOptions& options, const ViewSettings& settings, xr::Instance& instance) {
+// What suits the device, where the user has said nothing.
+ViewSettings suitDevice(ViewOptions& options, const Context& context) {
+    const auto properties = context.physicalDevice().getProperties();
+    const DeviceDefaults device =
+        defaultsOf(context.deviceName(), properties.deviceType == vk::PhysicalDeviceType::eIntegratedGpu, context.deviceMemoryBytes());
+    if (!options.run.load.sh_degree) { options.run.load.sh_degree = device.sh_degree; }
+    options.run.load.most_splats = device.most_splats;
+    const auto namesRate = [](const SettingsTable& table) { return table.settings.contains("refresh-rate"); };
+    if (std::ranges::none_of(options.tables, namesRate)) { options.usual_rate_hz = device.refresh_rate; }
+    if (const std::string words = describeDefaults(device); !words.empty()) {
+        FrameLog::print(fmt::format("{}: a small device, begins with {}, see docs/arm.md", context.deviceName(), words));
+    }
+    return startSettings(options, device);
+}
+
+void showScene(ViewOptions options, xr::Instance& instance) {
     ContextOptions context_options = contextOptions(options.run);
     context_options.maker = xr::deviceMaker(instance);
     const std::unique_ptr<WindowSystem> windows = WindowSystem::find();
@@ -58,6 +77,7 @@ void showScene(const ViewOptions& options, const ViewSettings& settings, xr::Ins
     const Context context(context_options);
     const glm::uvec2 size_px = instance.recommendedSizePx();
     FrameLog::print(fmt::format("{}, {}x{} per eye, on {}", instance.description(), size_px.x, size_px.y, context.deviceName()));
+    const ViewSettings settings = suitDevice(options, context);
     Viewer(options, settings, instance, context, windows != nullptr).run();
     if (!options.out.empty()) { fmt::print("what the wearer saw: {}\n", options.out.string()); }
     context.requireNoValidationMessages();
@@ -85,7 +105,7 @@ void viewInHeadset(ViewOptions options, bool& has_headset) {
         instance = std::make_unique<xr::Instance>(instance_options);
         waiting.reset();
         has_headset = true;
-        showScene(options, settings, *instance);
+        showScene(options, *instance);
     } catch (const Interrupted&) {  // while waiting for a headset
         fmt::print("0 frames; stopped before there was a headset\n");
     } catch (const xr::Lost& lost) { throw Error(ExitCode::kNoDevice, lost.what()); } catch (const xr::InstanceLost& lost) {

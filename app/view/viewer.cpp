@@ -6,6 +6,7 @@
 #include "app/view/shader_reload.h"
 #include "engine/error.h"
 
+#include <cmath>
 #include <thread>
 
 namespace binosplat {
@@ -30,6 +31,12 @@ Viewer::Viewer(const ViewOptions& options, const ViewSettings& settings, xr::Ins
       notes_(files_, [this](const std::string& message) { say(message); }),
       scenes_(context_, options_, log_,
               FramesAhead{settings.stereo, renderer_.sizePx(settings), instance.takesDepth(), settings.tint, {}}) {
+    for (const double rate_hz : headset().refresh_rates) {
+        if (options_.usual_rate_hz == 0.0 || std::abs(rate_hz - options_.usual_rate_hz) > 0.5) { continue; }
+        ViewSettings usual = state_.settings();
+        usual.refresh_rate = rate_hz;
+        state_.set(usual);
+    }
     panel_.status().can_reload_shaders = !shaderFolder(options.shaders).empty();
     if (const std::string& complaint = panel_.canvas().font().complaint(); !complaint.empty()) { log_.print(complaint); }
     if (mirrored) { openWindow(); }
