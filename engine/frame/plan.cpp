@@ -102,6 +102,10 @@ void planAlternate(FramePlan& plan, const Pasts& pasts, const ListPlan& list) {
     plan.steps.push_back({Step::Kind::kPast, other});
 }
 
+std::uint32_t countHidden(std::span<const std::uint8_t> hidden_tiles) {
+    return static_cast<std::uint32_t>(hidden_tiles.size() - static_cast<std::size_t>(std::ranges::count(hidden_tiles, std::uint8_t{0})));
+}
+
 StereoSettings stereoSettingsOf(const FrameSettings& settings) {
     StereoSettings stereo = settings.stereo;
     stereo.choice = choiceOf(settings.mode);
@@ -170,6 +174,7 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
                                         : is_first ? Role::kDominant
                                                    : Role::kAffiliated,
                                 .list = apart ? e : 0,
+                                .tiles_hidden = countHidden(settings.hidden_tiles[static_cast<std::size_t>(e)]),
                                 .kept = {.depth = is_first ? settings.keep_depth : settings.keep_both_depths,
                                          .moments = is_first && settings.keep_moments,
                                          .half_floats = settings.half_floats,

@@ -48,6 +48,7 @@ struct TargetPlan {
     Eye eye;
     Role role = Role::kNone;
     int list = 0;  // of visible splats
+    std::uint32_t tiles_hidden = 0;
     Kept kept;
     TileChoice choice = TileChoice::kAll;  // of the tiles that are rendered
     std::optional<Warp> warp = {};

@@ -139,6 +139,7 @@ PastInputs FrameRecorder::pastOf(const FramePlan& plan, int index) const {
             .source = room.picture(target.past->picture),
             .target = room.picture(target.picture),
             .shown = room.shown(index).mask(),
+            .source_shown = room.shown(index).maskBefore(),
             .gaze = target.gaze.has_value()};
 }
 

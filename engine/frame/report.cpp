@@ -45,7 +45,7 @@ void countWarp(const FrameFacts& frame, std::size_t index, FrameResult& result) 
                                                  .size_px = target.eye.size_px,
                                                  .counters = warp,
                                                  .visible = frame.state.visible[0].count});
-    const std::uint32_t shown = buffers.tileCount() - frame.room.shown(static_cast<int>(index)).hiddenCount();
+    const std::uint32_t shown = buffers.tileCount() - target.tiles_hidden;
     counters.tiles_shown = shown;
     result.tiles_rendered = shown > 0 ? static_cast<double>(state.chosen_tiles.count) / shown : 0.0;
     if (warp.picture_cost > 0) { result.work_rendered = static_cast<double>(warp.chosen_cost) / warp.picture_cost; }
@@ -67,7 +67,7 @@ void countPast(const FrameFacts& frame, FrameResult& result) {
         counters.bytes += buffers.bytes();
         work.full += state.warp_counters.picture_cost;
         work.patched += state.warp_counters.chosen_cost;
-        shown += buffers.tileCount() - frame.room.shown(static_cast<int>(t)).hiddenCount();
+        shown += buffers.tileCount() - frame.plan.targets[t].tiles_hidden;
     }
     counters.tiles_shown = shown;
     result.tiles_rendered = shown > 0 ? static_cast<double>(counters.tiles_patched) / static_cast<double>(shown) : 0.0;
@@ -131,9 +131,9 @@ void explainLeftOut(const FrameFacts& frame, FrameResult& result) {
                                        : "depth sort of the affiliated eye: the eyes are parallel, so the dominant eye's order is exact");
     for (std::size_t e = 0; e < plan.eyes; ++e) {
         const glm::uvec2 tiles = tilesOf(plan.targets[e].eye.size_px);
-        const ShownTiles& shown = frame.room.shown(static_cast<int>(e));
-        leaveOut(shown.hideAny(), fmt::format("{} of the {} tiles of the {} eye: its lens never shows them", shown.hiddenCount(),
-                                              std::uint64_t{tiles.x} * tiles.y, e == kLeft ? "left" : "right"));
+        const std::uint32_t hidden = plan.targets[e].tiles_hidden;
+        leaveOut(hidden > 0, fmt::format("{} of the {} tiles of the {} eye: its lens never shows them", hidden,
+                                         std::uint64_t{tiles.x} * tiles.y, e == kLeft ? "left" : "right"));
     }
     const bool two_full = two && plan.targets[0].coarse && !plan.targets[0].past && !plan.targets[1].past;
     leaveOut(two_full, "reprojection: both eyes are rendered, coarsely where they do not see sharply");
@@ -171,7 +171,7 @@ FrameResult reportFrame(const FrameFacts& frame, std::uint64_t mark) {
         its.splats_visible = frame.state.visible[static_cast<std::size_t>(target.list)].count;
         its.tile_pairs = state.pairs.count;
         its.tiles = std::uint64_t{tiles.x} * tiles.y;
-        its.tiles_hidden = frame.room.shown(static_cast<int>(t)).hiddenCount();
+        its.tiles_hidden = target.tiles_hidden;
         its.pixels = std::uint64_t{size_px.x} * size_px.y;
         its.pixel_bytes = picture.colours.bytes() + picture.depths.bytes() + picture.words.bytes() + picture.tiles.bytes();
         if (target.warp) { countWarp(frame, t, result); }

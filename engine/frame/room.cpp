@@ -66,10 +66,6 @@ void FrameRoom::recordShown(Commands& commands) {
     for (ShownTiles& shown : shown_) { shown.record(commands); }
 }
 
-void FrameRoom::forgetUploads() {
-    for (ShownTiles& shown : shown_) { shown.forgetUpload(); }
-}
-
 void FrameRoom::fitWarps(const FramePlan& plan) {
     std::array<WarpBufferNeeds, kMostTargets> needs;
     for (std::size_t t = 0; t < needs.size() && t < plan.targets.size(); ++t) { needs[t] = needsOf(plan.targets[t]); }

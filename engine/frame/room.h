@@ -63,8 +63,6 @@ public:
     [[nodiscard]] const Buffer& changedRects();
     // To be called before the passes of a frame.
     void recordShown(Commands& commands);
-    // To be called once what was recorded has run.
-    void forgetUploads();
 
 private:
     void resize(Buffer& buffer, const char* name, std::uint64_t bytes);

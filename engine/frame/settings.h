@@ -47,6 +47,9 @@ struct FrameSettings {
     std::uint64_t mark = 0;  // the caller's own; comes back with the result
 };
 
+// Of such a mask.
+std::uint32_t countHidden(std::span<const std::uint8_t> hidden_tiles);
+
 // Its `stereo`, with the choice of tiles that follows from the mode.
 StereoSettings stereoSettingsOf(const FrameSettings& settings);
 

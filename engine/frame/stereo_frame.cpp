@@ -14,6 +14,8 @@ namespace {
 // the picture as in the rest, and a few more. If more than the last figure changed, lists that were made for whole pictures may be too
 // short for the patches of both.
 constexpr double kBudgetBesideChanges = 0.5, kMoreWhereChanged = 1.2, kMostChanged = 0.4;
+// If more of a picture's tiles than this share come into view, or if some are hidden and were not before, its lists may differ much.
+constexpr double kMostHiddenDiffer = 0.1;
 
 // The traits that a past must share with a frame.
 FrameShape askedApartFromSizes(const FrameSettings& settings) { return shapeOf({}, settings); }
@@ -204,7 +206,6 @@ std::uint64_t StereoFrame::renderAtMostTwice(const FrameSettings& settings, cons
 void StereoFrame::renderOnce(const FrameSettings& settings, const Append& append) {
     record(flight(), settings, append);
     flight().commands.submitAndWait();
-    room_.forgetUploads();
     state_ = flight().readback.mapped<FrameState>()[0];
     splats_known_ = flight().splats_held;
 }
@@ -244,12 +245,7 @@ Pasts StereoFrame::pastsFor(std::span<const Eye> eyes, const FrameSettings& sett
     const double farthest = farthestPast(eyes, settings.units_per_metre);
     for (std::size_t e = 0; e < eyes.size(); ++e) {
         if (settings.mode == Mode::kAlternate && static_cast<int>(e) == pasts_.turn) { continue; }  // rendered anyway
-        const Past& past = *pasts_.of_eyes[e];
-        if (!canComeFrom(past.eye, eyes[e], farthest)) { return {}; }
-        // A lens hides the same parts at any size.
-        const auto& hidden = settings.hidden_tiles[e];
-        const bool same_size = past.eye.size_px == eyes[e].size_px;
-        if (same_size ? !std::ranges::equal(hidden, past_hidden_[e]) : hidden.empty() != past_hidden_[e].empty()) { return {}; }
+        if (!canComeFrom(pasts_.of_eyes[e]->eye, eyes[e], farthest)) { return {}; }
     }
     return pasts_;
 }
@@ -269,10 +265,13 @@ void StereoFrame::planAnew(const FrameSettings& settings) {
 }
 
 bool StereoFrame::isUnlikeLast(std::span<const Eye> eyes, const FrameSettings& settings) const {
+    if (shapeOf(eyes, settings) != shape_ || jumps(eyes_, eyes, settings.units_per_metre)) { return true; }
     for (std::size_t e = 0; e < eyes.size(); ++e) {
-        if (!room_.shown(static_cast<int>(e)).isOf(settings.hidden_tiles[e], tilesOf(eyes[e].size_px))) { return true; }
+        const double before = plan_.targets[e].tiles_hidden, now = countHidden(settings.hidden_tiles[e]);
+        const glm::uvec2 tiles = tilesOf(eyes[e].size_px);
+        if ((before > 0) != (now > 0) || std::abs(now - before) > kMostHiddenDiffer * tiles.x * tiles.y) { return true; }
     }
-    return shapeOf(eyes, settings) != shape_ || jumps(eyes_, eyes, settings.units_per_metre);
+    return false;
 }
 
 void StereoFrame::prepare(std::span<const Eye> eyes, const FrameSettings& settings) {
@@ -300,9 +299,6 @@ void StereoFrame::record(Flight& flight, const FrameSettings& settings, const Ap
     recorder().recordReport(flight.commands, flight.readback);
     pasts_ = pastsAfter(plan_, pastsFor(eyes_, settings));
     past_shape_ = askedApartFromSizes(settings);
-    for (std::size_t e = 0; e < past_hidden_.size(); ++e) {
-        past_hidden_[e].assign(settings.hidden_tiles[e].begin(), settings.hidden_tiles[e].end());
-    }
     flight.splats_held = scene_->splatsHeld();
     if (append) { append(flight.commands); }
 }

@@ -164,12 +164,11 @@ private:
     std::unique_ptr<FrameKernels> own_kernels_;  // null if they are another frame's
     FrameKernels& kernels_;
     FrameRoom room_;
-    FramePlan plan_;                                        // of the last frame
-    Pasts pasts_;                                           // that the last frame leaves
-    FrameShape past_shape_;                                 // of these pasts, apart from sizes
-    std::array<std::vector<std::uint8_t>, 2> past_hidden_;  // FrameSettings::hidden_tiles of the pasts
-    FrameState state_{};                                    // the report of the last known frame
-    std::uint32_t splats_known_ = 0;                        // how many the scene held then
+    FramePlan plan_;                  // of the last frame
+    Pasts pasts_;                     // that the last frame leaves
+    FrameShape past_shape_;           // of these pasts, apart from sizes
+    FrameState state_{};              // the report of the last known frame
+    std::uint32_t splats_known_ = 0;  // how many the scene held then
     MovingPays moving_pays_;
     std::uint64_t changes_known_ = 0;  // the scene's changes that the last frame shows, see GpuScene::changesSince
     FrameShape shape_;

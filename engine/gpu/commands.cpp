@@ -99,11 +99,15 @@ void Commands::fillZero(const Buffer& buffer) {
     command_buffer_.fillBuffer(buffer.handle(), 0, VK_WHOLE_SIZE, 0);
 }
 
-void Commands::update(const Buffer& buffer, const void* data, std::uint64_t bytes) {
-    assert(bytes <= 65536 && bytes % 4 == 0);
+void Commands::update(const Buffer& buffer, const void* data, std::uint64_t bytes, std::uint64_t to_offset) {
+    assert(bytes % 4 == 0);
+    constexpr std::uint64_t kMostBytes = 65536;  // of one command
     waitForAll();
-    command_buffer_.updateBuffer<std::uint8_t>(buffer.handle(), 0,
-                                               {static_cast<std::uint32_t>(bytes), static_cast<const std::uint8_t*>(data)});
+    for (std::uint64_t from = 0; from < bytes; from += kMostBytes) {
+        command_buffer_.updateBuffer<std::uint8_t>(
+            buffer.handle(), to_offset + from,
+            {static_cast<std::uint32_t>(std::min(bytes - from, kMostBytes)), static_cast<const std::uint8_t*>(data) + from});
+    }
 }
 
 void Commands::copy(const Buffer& from, const Buffer& to, std::uint64_t bytes, std::uint64_t from_offset, std::uint64_t to_offset) {

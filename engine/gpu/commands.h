@@ -79,8 +79,8 @@ public:
         dispatch(kernel, pass, rows.width, rows.height);
     }
     void fillZero(const Buffer& buffer);
-    // At most 64 KiB, carried by the command buffer itself.
-    void update(const Buffer& buffer, const void* data, std::uint64_t bytes);
+    // Little, carried by the command buffer itself.
+    void update(const Buffer& buffer, const void* data, std::uint64_t bytes, std::uint64_t to_offset = 0);
     void copy(const Buffer& from, const Buffer& to, std::uint64_t bytes, std::uint64_t from_offset = 0, std::uint64_t to_offset = 0);
     // The same for several parts, none of which may overlap.
     void copy(const Buffer& from, const Buffer& to, std::span<const vk::BufferCopy> parts);

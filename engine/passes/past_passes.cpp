@@ -51,11 +51,12 @@ void PastPasses::recordWarp(Commands& commands, const PastInputs& in) {
         .tile_mask = in.warp.tileMask(),
         .price_bins = in.warp.bins(),
         .shown_mask = in.shown,
+        .past_shown = in.source_shown,
         .blocks = in.warp.pastBlocks(),
         .block_list = in.buffers.state.address<gpu::PastBlockList>(blocks)};
     const glm::uvec2 size_px = in.target.size_px;
     const WarpPastKernel kernel{.half_colours = in.target.half_floats,
-                                .hidden_tiles = in.shown.value != 0,
+                                .hidden_tiles = in.shown.value != 0 || in.source_shown.value != 0,
                                 .whole_blocks = size_px.x % gpu::kPastColumns == 0,
                                 .by_address = by_address_};
     commands.dispatch(kernels_.get(kernel), pass, groupsOver(size_px.x, gpu::kPastTiles * gpu::kTileSize),

@@ -22,8 +22,8 @@ struct PastInputs {
     Role role;
     const Picture& source;
     const Picture& target;
-    gpu::DeviceAddress<gpu::uint> shown;  // mask of the tiles that the lens shows; null: all
-    bool gaze;                            // it is known where the eye looks; otherwise all tiles count alike
+    gpu::DeviceAddress<gpu::uint> shown, source_shown;  // masks of the tiles that are seen; null: all
+    bool gaze;                                          // it is known where the eye looks; otherwise all tiles count alike
 };
 
 // The eye `now` and the one whose picture is its past, for the device. `near`: nothing is seen before this, in scene units.

@@ -1,43 +1,42 @@
-// Uploading the mask when it changes.
+// The mask goes to the device with the commands of its frame.
 #include "engine/passes/shown_tiles.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace binosplat {
 
-bool ShownTiles::isOf(std::span<const std::uint8_t> hidden, glm::uvec2 size_tiles) const {
-    return std::ranges::equal(hidden, hidden_) && (hidden.empty() || size_tiles == size_tiles_);
-}
-
 void ShownTiles::set(std::span<const std::uint8_t> hidden, glm::uvec2 size_tiles) {
-    if (isOf(hidden, size_tiles)) { return; }
+    if (std::ranges::equal(hidden, hidden_) && size_tiles == size_tiles_) { return; }
     hidden_.assign(hidden.begin(), hidden.end());
     size_tiles_ = size_tiles;
     hidden_count_ = static_cast<std::uint32_t>(std::ranges::count_if(hidden_, [](std::uint8_t tile) { return tile != 0; }));
-    words_ = {};
-    upload_ = {};
+    words_.clear();
     if (!hideAny()) { return; }
     const std::size_t row_words = (size_tiles.x + 31) / 32;
-    mask_words_ = row_words * size_tiles.y;
-    std::vector<gpu::uint> words(mask_words_, 0);
-    for (std::size_t tile = 0; tile < hidden_.size(); ++tile) {
-        const std::size_t x = tile % size_tiles.x, y = tile / size_tiles.x;
-        if (hidden_[tile] == 0) { words[y * row_words + x / 32] |= 1u << (x % 32); }
-        words.push_back(hidden_[tile] == 0 ? 0 : gpu::kTileHidden);
+    words_.resize(row_words * size_tiles.y, 0);
+    for (std::size_t y = 0, tile = 0; y < size_tiles.y; ++y) {
+        for (std::size_t x = 0; x < size_tiles.x; ++x, ++tile) {
+            if (hidden_[tile] == 0) { words_[y * row_words + x / 32] |= 1u << (x % 32); }
+        }
     }
-    const std::uint64_t bytes = words.size() * sizeof(gpu::uint);
-    words_ = Buffer(context_, "shown tiles", bytes);
-    upload_ = Buffer(context_, "shown tiles on their way", bytes, MemoryKind::kUpload);
-    std::ranges::copy(words, upload_.mapped<gpu::uint>().begin());
 }
 
 void ShownTiles::record(Commands& commands) {
-    if (upload_.bytes() > 0) { commands.copy(upload_, words_, upload_.bytes()); }
+    turn_ = 1 - turn_;
+    Buffer& mask = masks_[turn_];
+    const std::uint64_t bytes = words_.size() * sizeof(gpu::uint);
+    // Frames before the last one are done.
+    retired_ = {};
+    if (mask.bytes() != bytes) { retired_ = std::exchange(mask, bytes > 0 ? Buffer(context_, "shown tiles", bytes) : Buffer()); }
+    if (bytes > 0) { commands.update(mask, words_.data(), bytes); }
 }
 
 void ShownTiles::recordKinds(Commands& commands, const Buffer& kinds, std::uint64_t offset_bytes) const {
     if (!hideAny()) { return; }
-    commands.copy(words_, kinds, hidden_.size() * sizeof(gpu::uint), mask_words_ * sizeof(gpu::uint), offset_bytes);
+    std::vector<gpu::uint> words(hidden_.size());
+    std::ranges::transform(hidden_, words.begin(), [](std::uint8_t hidden) { return hidden == 0 ? 0u : gpu::kTileHidden; });
+    commands.update(kinds, words.data(), words.size() * sizeof(gpu::uint), offset_bytes);
 }
 
 }  // namespace binosplat

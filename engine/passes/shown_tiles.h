@@ -1,8 +1,10 @@
-// The tiles of an eye's picture that its lens shows, for the passes: a visibility mask for binning, and marks for the other eye's pixels.
+// The tiles of an eye's picture that anybody sees, for the passes: a visibility mask for binning, and marks for the other eye's pixels.
+// Lenses hide the same ones in all frames; where a picture keeps its axes while the head turns, they change from frame to frame.
 #pragma once
 
 #include "engine/gpu/commands.h"
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -13,19 +15,17 @@ class ShownTiles {
 public:
     explicit ShownTiles(const Context& context) : context_(context) {}
 
-    // A byte a tile, row-major: 1 where nobody will see it; empty: all are shown. Changes are uploaded by the next record().
+    // A byte a tile, row-major: 1 where nobody will see it; empty: all are shown. Of the next frame.
     void set(std::span<const std::uint8_t> hidden, glm::uvec2 size_tiles);
-    // True if set() with these would change nothing.
-    [[nodiscard]] bool isOf(std::span<const std::uint8_t> hidden, glm::uvec2 size_tiles) const;
-    // Before the passes that read the mask. Records nothing if the device has it already.
+    // Before the passes of a frame: brings the mask, and keeps that of the frame before.
     void record(Commands& commands);
-    // To be called once what was recorded has run.
-    void forgetUpload() { upload_ = {}; }
 
     [[nodiscard]] bool hideAny() const { return hidden_count_ > 0; }
     [[nodiscard]] std::uint32_t hiddenCount() const { return hidden_count_; }
     // The shown tiles, as in shaders/lib/tile_mask.glsl. Null if none is hidden.
-    [[nodiscard]] gpu::DeviceAddress<gpu::uint> mask() const { return words_.address<gpu::uint>(); }
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> mask() const { return masks_[turn_].address<gpu::uint>(); }
+    // Those of the frame before.
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> maskBefore() const { return masks_[1 - turn_].address<gpu::uint>(); }
     // Writes kTileHidden, or 0, into an array of tile kinds that begins `offset_bytes` into `kinds`.
     void recordKinds(Commands& commands, const Buffer& kinds, std::uint64_t offset_bytes) const;
 
@@ -34,8 +34,10 @@ private:
     std::vector<std::uint8_t> hidden_;
     std::uint32_t hidden_count_ = 0;
     glm::uvec2 size_tiles_{0, 0};
-    std::uint64_t mask_words_ = 0;
-    Buffer words_, upload_;  // mask, kinds
+    std::vector<gpu::uint> words_;  // of the mask
+    std::array<Buffer, 2> masks_;   // of the last two frames; empty if all tiles are shown
+    Buffer retired_;                // may be in use by a frame under way
+    std::size_t turn_ = 0;          // of the last frame that was recorded
 };
 
 }  // namespace binosplat

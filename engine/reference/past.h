@@ -30,6 +30,7 @@ struct Past {
     std::vector<glm::dvec4> rgba;
     std::vector<std::optional<MovingPixel>> pixels;  // nothing: it goes nowhere
     std::vector<PastTile> tiles;
+    std::vector<std::uint8_t> hidden = {};  // by tiles: 1 where nobody has seen it; empty: all was seen
 };
 
 // rasterize: a picture that was rendered whole, from its moments of inverse depth. `costs`: pairs of each tile.
@@ -54,7 +55,8 @@ struct WarpedPast {
     std::vector<std::uint8_t> one_by_one;  // by blocks: 1 if its pixels are made so
     std::vector<std::uint8_t> unseen;      // by pixels: 1 if the past did not see it
 };
-// `hidden`: a byte a tile of the picture being made, 1 where no lens shows it; empty: all are seen. `near`: nothing is seen before this.
+// `hidden`: a byte a tile of the picture being made, 1 where nobody sees it: that is not made, and is background; empty: all are seen.
+// `near`: nothing is seen before this.
 WarpedPast warpPast(const Past& past, const Eye& eye, std::span<const std::uint8_t> hidden = {},
                     const glm::dvec3& background = glm::dvec3(0.0), double near = 0.2);
 
@@ -95,7 +97,7 @@ void selectTogether(std::span<const PricedTiles> pictures, std::uint64_t budget_
 std::uint64_t budgetUnderBound(std::span<const PricedTiles> pictures, std::uint64_t budget_cost, std::uint64_t picture_cost);
 
 // rasterize and tile_ranges: puts the tiles of `full` that are rendered over the warped ones. Their error turns out, and is measured for
-// each frame since they were last rendered; not for a tile without pairs, nor for one that is new. `costs`: pairs of each
+// each frame since they were last rendered; not for a tile without pairs, nor where nobody had seen it. `costs`: pairs of each
 // tile.
 void renderTiles(Past& warped, const Picture& full, std::span<const std::uint64_t> costs, std::span<const TileKind> kinds);
 

@@ -15,20 +15,19 @@ inline constexpr glm::ivec2 kPastBlock{4, 8};
 inline constexpr double kMostSpreadPx = 4.0, kOwnSpread = 0.5;
 inline constexpr double kMostPixelError = 4.0;  // squared, of three channels
 inline constexpr double kLeastGrowth = 1.9e-7;  // squared, of three channels, of a pixel that is made from another
+inline constexpr double kSameDepthPx = 0.25;    // content whose depths move it apart by no more moves as one
 inline constexpr double kAgreesPx = 0.51;       // a pixel of the past this close to where it is wanted is what is seen there
 
 inline double squareOf(double amplitude) { return std::min(amplitude * amplitude, kMostPixelError); }
 
 class PastView {
 public:
-    PastView(const Past& past, const Eye& now, std::span<const std::uint8_t> hidden)
+    PastView(const Past& past, const Eye& now)
         : past_from_now(past.eye, now),
           now_from_past(now, past.eye),
           last(glm::ivec2(past.eye.size_px) - 1),
-          size_ratio_(glm::dvec2(now.size_px) / glm::dvec2(past.eye.size_px)),
-          columns_(tileGrid(now.size_px).x),
-          past_(past),
-          hidden_(hidden) {}
+          columns_(tileGrid(past.eye.size_px).x),
+          past_(past) {}
 
     [[nodiscard]] bool isInside(const glm::dvec2& place_px) const {
         return glm::all(glm::greaterThanEqual(place_px, glm::dvec2(0.0))) && glm::all(glm::lessThan(place_px, glm::dvec2(last) + 1.0));
@@ -47,13 +46,12 @@ public:
     }
     [[nodiscard]] const glm::dvec4& colour(int x, int y) const { return past_.rgba[indexOf({x, y})]; }
     [[nodiscard]] std::optional<MovingPixel> pixel(const glm::ivec2& at) const {
-        // A lens hides the same parts of a picture at any size.
-        const glm::uvec2 tile = glm::uvec2((glm::dvec2(glm::clamp(at, glm::ivec2(0), last)) + 0.5) * size_ratio_) / unsigned{kTileSize};
-        const bool is_hidden = !hidden_.empty() && hidden_[std::size_t{tile.y} * columns_ + tile.x] != 0;
+        const glm::uvec2 tile = glm::uvec2(glm::clamp(at, glm::ivec2(0), last)) / unsigned{kTileSize};
+        const bool is_hidden = !past_.hidden.empty() && past_.hidden[std::size_t{tile.y} * columns_ + tile.x] != 0;
         return is_hidden ? std::nullopt : past_.pixels[indexOf(at)];
     }
 
-    // Whether a lens hides it or not.
+    // Whether it was hidden or not.
     [[nodiscard]] std::optional<MovingPixel> own(const glm::ivec2& at) const { return past_.pixels[indexOf(at)]; }
 
     // What the past shows at a place.
@@ -81,11 +79,14 @@ public:
     glm::ivec2 last;  // pixel of the past
 
 private:
-    glm::dvec2 size_ratio_;
     std::size_t columns_;
     const Past& past_;
-    std::span<const std::uint8_t> hidden_;
 };
+
+// With six taps each way.
+glm::dvec4 sampleSmoothly(const PastView& view, const glm::dvec2& place_px);
+// The squared error expected of that, `t` after the pixel `wanted`, if the place may be off by `off_px`.
+double lossAt(const PastView& view, const glm::ivec2& wanted, const glm::dvec2& t, const glm::dvec2& off_px);
 
 // warp_pixels: a pixel by itself. `near` and `far`: inverse depths around it.
 struct PixelFromPast {

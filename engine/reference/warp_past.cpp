@@ -5,7 +5,7 @@ namespace binosplat::reference {
 namespace {
 
 constexpr int kBorder = 2;
-constexpr double kSmoothPx = 1.0 / 16.0, kSameDepthPx = 0.25;
+constexpr double kSmoothPx = 1.0 / 16.0;
 constexpr double kSearchStepPx = 8.0;
 constexpr int kMostSearched = 48;
 
@@ -93,38 +93,6 @@ BlockFromPast findBlock(const PastView& view, const glm::ivec2& first, double ne
     return block;
 }
 
-// With six taps each way.
-glm::dvec4 sampleSmoothly(const PastView& view, const glm::dvec2& place_px) {
-    const glm::dvec2 at = place_px - 0.5, base = glm::floor(at);
-    const auto weights_x = lagrangeWeights(at.x - base.x), weights_y = lagrangeWeights(at.y - base.y);
-    glm::dvec4 sum(0.0);
-    for (int y = 0; y < 6; ++y) {
-        for (int x = 0; x < 6; ++x) {
-            sum += weights_x[static_cast<std::size_t>(x)] * weights_y[static_cast<std::size_t>(y)] *
-                   view.colour(static_cast<int>(base.x) + x - 2, static_cast<int>(base.y) + y - 2);
-        }
-    }
-    return glm::max(sum, glm::dvec4(0.0));
-}
-
-// The squared error expected of a pixel of a block: what alternates in sign from pixel to pixel with an amplitude d has fifth differences
-// of 32 d, all of which is lost halfway between two pixels; and how the picture changes over what its place may be off by.
-double lossAt(const PastView& view, const glm::ivec2& wanted, const glm::dvec2& t, const glm::dvec2& off_px) {
-    constexpr std::array<double, 6> kFifthDifference{-1, 5, -10, 10, -5, 1};
-    const glm::ivec2 at = glm::clamp(wanted, glm::ivec2(0), view.last);
-    glm::dvec3 across(0.0), down(0.0);
-    for (int k = 0; k < 6; ++k) {
-        across += kFifthDifference[static_cast<std::size_t>(k)] * glm::dvec3(view.colour(at.x + k - 2, at.y));
-        down += kFifthDifference[static_cast<std::size_t>(k)] * glm::dvec3(view.colour(at.x, at.y + k - 2));
-    }
-    across *= 4.0 * t.x * (1.0 - t.x) / 32.0;
-    down *= 4.0 * t.y * (1.0 - t.y) / 32.0;
-    const glm::dvec3 slope_across = 0.5 * glm::dvec3(view.colour(at.x + 1, at.y) - view.colour(at.x - 1, at.y));
-    const glm::dvec3 slope_down = 0.5 * glm::dvec3(view.colour(at.x, at.y + 1) - view.colour(at.x, at.y - 1));
-    return squareOf(std::sqrt(glm::dot(across, across) + glm::dot(down, down)) +
-                    glm::length(off_px.x * slope_across + off_px.y * slope_down));
-}
-
 // If anything moves, a block does not lose less than this, so that every tile gets its turn.
 double leastLossOf(const BlockFromPast& block) {
     return kPastBlock.x * kPastBlock.y * (block.mean_move_px != glm::dvec2(0.0) ? kLeastGrowth : 0.0);
@@ -142,9 +110,13 @@ double lossOf(const PastView& view, const BlockFromPast& block, const glm::ivec2
 class Warper {
 public:
     Warper(const Past& past, const Eye& eye, std::span<const std::uint8_t> hidden, const glm::dvec3& background, double near)
-        : past_(past), hidden_(hidden), background_(background, 0.0), near_(near), view_(past, eye, hidden), tiles_(tileGrid(eye.size_px)) {
+        : past_(past), hidden_(hidden), background_(background, 0.0), near_(near), view_(past, eye), tiles_(tileGrid(eye.size_px)) {
         const std::size_t pixels = std::size_t{eye.size_px.x} * eye.size_px.y;
-        warped_.picture = {eye, std::vector<glm::dvec4>(pixels), std::vector<std::optional<MovingPixel>>(pixels), {}};
+        warped_.picture = {eye,
+                           std::vector<glm::dvec4>(pixels, background_),
+                           std::vector<std::optional<MovingPixel>>(pixels),
+                           {},
+                           {hidden.begin(), hidden.end()}};
         warped_.unseen.resize(pixels);
         for (std::size_t t = 0; t < std::size_t{tiles_.x} * tiles_.y; ++t) { warped_.picture.tiles.push_back(tileBefore(t)); }
     }
@@ -176,8 +148,10 @@ private:
     }
 
     void makeBlock(const glm::ivec2& first) {
+        const std::size_t tile_index = std::size_t(first.y / kTileSize) * tiles_.x + std::size_t(first.x / kTileSize);
+        if (!hidden_.empty() && hidden_[tile_index] != 0) { return warped_.one_by_one.push_back(0); }
         const BlockFromPast block = findBlock(view_, first, near_);
-        PastTile& tile = warped_.picture.tiles[std::size_t(first.y / kTileSize) * tiles_.x + std::size_t(first.x / kTileSize)];
+        PastTile& tile = warped_.picture.tiles[tile_index];
         const std::size_t quarter = quarterOf(first);
         // The past's errors carry over as squares, and how fast they grow as it is: means over where the quarter's blocks come from.
         if (view_.isInside(block.source_px)) {
@@ -210,10 +184,8 @@ private:
         return static_cast<std::size_t>(pixel.y) * warped_.picture.eye.size_px.x + static_cast<std::size_t>(pixel.x);
     }
     void put(const glm::ivec2& pixel, const MovingPixel& moving, const glm::dvec4& colour) {
-        const glm::ivec2 tile = pixel / kTileSize;
-        const bool is_hidden = !hidden_.empty() && hidden_[std::size_t(tile.y) * tiles_.x + std::size_t(tile.x)] != 0;
-        warped_.picture.rgba[indexOf(pixel)] = is_hidden ? background_ : colour;
-        if (!is_hidden) { warped_.picture.pixels[indexOf(pixel)] = moving; }
+        warped_.picture.rgba[indexOf(pixel)] = colour;
+        warped_.picture.pixels[indexOf(pixel)] = moving;
     }
 
     const Past& past_;
@@ -226,6 +198,37 @@ private:
 };
 
 }  // namespace
+
+glm::dvec4 sampleSmoothly(const PastView& view, const glm::dvec2& place_px) {
+    const glm::dvec2 at = place_px - 0.5, base = glm::floor(at);
+    const auto weights_x = lagrangeWeights(at.x - base.x), weights_y = lagrangeWeights(at.y - base.y);
+    glm::dvec4 sum(0.0);
+    for (int y = 0; y < 6; ++y) {
+        for (int x = 0; x < 6; ++x) {
+            sum += weights_x[static_cast<std::size_t>(x)] * weights_y[static_cast<std::size_t>(y)] *
+                   view.colour(static_cast<int>(base.x) + x - 2, static_cast<int>(base.y) + y - 2);
+        }
+    }
+    return glm::max(sum, glm::dvec4(0.0));
+}
+
+// The squared error expected of a pixel of a block: what alternates in sign from pixel to pixel with an amplitude d has fifth differences
+// of 32 d, all of which is lost halfway between two pixels; and how the picture changes over what its place may be off by.
+double lossAt(const PastView& view, const glm::ivec2& wanted, const glm::dvec2& t, const glm::dvec2& off_px) {
+    constexpr std::array<double, 6> kFifthDifference{-1, 5, -10, 10, -5, 1};
+    const glm::ivec2 at = glm::clamp(wanted, glm::ivec2(0), view.last);
+    glm::dvec3 across(0.0), down(0.0);
+    for (int k = 0; k < 6; ++k) {
+        across += kFifthDifference[static_cast<std::size_t>(k)] * glm::dvec3(view.colour(at.x + k - 2, at.y));
+        down += kFifthDifference[static_cast<std::size_t>(k)] * glm::dvec3(view.colour(at.x, at.y + k - 2));
+    }
+    across *= 4.0 * t.x * (1.0 - t.x) / 32.0;
+    down *= 4.0 * t.y * (1.0 - t.y) / 32.0;
+    const glm::dvec3 slope_across = 0.5 * glm::dvec3(view.colour(at.x + 1, at.y) - view.colour(at.x - 1, at.y));
+    const glm::dvec3 slope_down = 0.5 * glm::dvec3(view.colour(at.x, at.y + 1) - view.colour(at.x, at.y - 1));
+    return squareOf(std::sqrt(glm::dot(across, across) + glm::dot(down, down)) +
+                    glm::length(off_px.x * slope_across + off_px.y * slope_down));
+}
 
 std::array<double, 6> lagrangeWeights(double t) {
     std::array<double, 6> weights{};

@@ -33,10 +33,8 @@ struct Seen {
     vec2 off_px;          // where that pixel's middle comes to lie, relative to `wanted_px`
 };
 
-// The lens hides the same parts of a picture at any size. By a pixel's middle: a GPU's division is not exact, not even for equal numbers.
 bool isHiddenInPast(PastView view, uvec2 at) {
-    if (!kHiddenTiles) { return false; }
-    return !isInMask(pass.shown_mask, view.size_tiles, uvec2((vec2(at) + 0.5) * (vec2(view.size_px) / vec2(view.past_size_px))) / kTileSize);
+    return kHiddenTiles && isThere(uvec2(pass.past_shown)) && !isInMask(pass.past_shown, view.past_size_tiles, at / kTileSize);
 }
 
 uint wordAt(PastView view, vec2 place_px) {
@@ -63,7 +61,7 @@ vec2 uncertainMove(vec2 disparity_px, float spread) {
 }
 
 bool isHidden(PastView view, uvec2 pixel) {
-    return kHiddenTiles && !isInMask(pass.shown_mask, view.size_tiles, pixel / kTileSize);
+    return kHiddenTiles && isThere(uvec2(pass.shown_mask)) && !isInMask(pass.shown_mask, view.size_tiles, pixel / kTileSize);
 }
 
 vec4 sourceAt(uint i) {

@@ -210,6 +210,7 @@ struct WarpPastPass {
     Uints tile_mask;      // out: zeros
     Uints price_bins;     // out: zeros
     Uints shown_mask;     // if parts are hidden: the shown tiles; otherwise null
+    Uints past_shown;     // the same of the past
     PastBlocks blocks;    // from warp_past to warp_pixels: the blocks whose pixels are made one by one
     PastBlockLists block_list;
 };

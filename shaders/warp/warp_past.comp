@@ -242,7 +242,12 @@ void main() {
     if (thread == 0) { listed_count = 0; }
     if (thread < kRegionCells.x * kRegionCells.y) { cell_grown[thread] = cell_carried[thread] = cell_growth[thread] = 0; }
     barrier();
-    if (all(lessThan(first, view.size_px))) {
+    if (all(lessThan(first, view.size_px)) && isHidden(view, first)) {
+        [[unroll]] for (uint r = 0; r < kPastRows; ++r) {
+            putWords(view, first + uvec2(0, r), uvec4(0));
+            putPixels(view, first + uvec2(0, r), vec4[kPastColumns](vec4(0), vec4(0), vec4(0), vec4(0)));
+        }
+    } else if (all(lessThan(first, view.size_px))) {
         BlockMoves moves;
         vec2 source_px;
         float spread;

@@ -72,7 +72,7 @@ std::vector<Layout> hostLayouts() {
         LAYOUT(EdgeRoisPass, warp, bins, tile_kinds, shown_mask, counters),
         LAYOUT(ReprojectPass, warp, moving, arrivals, shown_mask),
         LAYOUT(WarpPastPass, view, source, source_words, source_tiles, target, target_words, tiles, tile_kinds, tile_mask, price_bins,
-               shown_mask, blocks, block_list),
+               shown_mask, past_shown, blocks, block_list),
         LAYOUT(NewcomersPass, chunks, eyes, warp, tile_depths, order, visible, source_counts, tile_kinds, tile_errors, counters, chunk_bits,
                eye),
         LAYOUT(ResamplePass, warp, source, half_source, moving, target, half_target, depths, tile_kinds, tile_errors, pixel_classes,

@@ -136,4 +136,20 @@ TEST_CASE("what was hidden behind a nearer wall is not taken for seen, and the n
     for (std::size_t x = 78; x < 160; ++x) { CHECK(depthAt(covered, 160 * 24 + x) == doctest::Approx(x < 82 ? 1.0 : 0.1)); }
 }
 
+TEST_CASE("nothing comes from where the past was hidden, and what is hidden now is background") {
+    const Eye eye = test::makeEye({96, 64});
+    Past past = makePast(eye, waves, [](double, double) { return 0.5; });
+    std::vector<std::uint8_t> hidden(24, 0);
+    hidden[8] = 1;
+    past.hidden = hidden;
+    hidden[15] = 1;
+    const WarpedPast warped = warpPast(past, moved(eye, {0.02, 0.0, 0.0}), hidden, {0.1, 0.2, 0.3});
+    CHECK(warped.picture.rgba[40 * 96 + 50] == glm::dvec4(0.1, 0.2, 0.3, 0.0));
+    CHECK(warped.unseen[40 * 96 + 46] == 0);  // that tile was seen
+    CHECK(warped.picture.rgba[20 * 96 + 40] == glm::dvec4(0.1, 0.2, 0.3, 0.0));
+    CHECK_FALSE(warped.picture.pixels[20 * 96 + 40]);
+    CHECK(warped.unseen[20 * 96 + 31] == 1);  // the pixel beside it comes from there
+    CHECK(warped.unseen[20 * 96 + 30] == 0);
+}
+
 }  // SUITE(past_reference)
