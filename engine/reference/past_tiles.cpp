@@ -84,9 +84,13 @@ void renderTiles(Past& warped, const Picture& full, std::span<const std::uint64_
     for (std::size_t t = 0; t < kinds.size(); ++t) {
         if (kinds[t] == TileKind::kNone || kinds[t] == TileKind::kHidden) { continue; }
         const std::uint32_t age = warped.tiles[t].age;
+        const std::array<double, 4> grown = warped.tiles[t].grown;
         warped.tiles[t] = {costs[t], 0, {}, {}, {}};
         if (costs[t] == 0 || age == 0) { continue; }
-        for (std::size_t q = 0; q < 4; ++q) { warped.tiles[t].growth[q] = std::sqrt(squares[t][q] / (kChannels * kCellPixels)) / age; }
+        for (std::size_t q = 0; q < 4; ++q) {
+            if (std::sqrt(grown[q] / (kChannels * kCellPixels)) >= kUnseenGrowth) { continue; }
+            warped.tiles[t].growth[q] = std::sqrt(squares[t][q] / (kChannels * kCellPixels)) / age;
+        }
     }
 }
 

@@ -14,7 +14,17 @@ struct Found {
     bool agrees = false;
 };
 
-Found search(const PastView& view, const glm::dvec2& wanted_px, double guess) {
+// How wide a pixel of the past is at a place: wider than one if the view has turned towards it.
+glm::dvec2 widthOfPixel(const PastView& view, const glm::dvec2& wanted_px) {
+    const auto changeAlong = [&](const glm::dvec2& half) {
+        return view.place(wanted_px + half, 0.0).place_px - view.place(wanted_px - half, 0.0).place_px;
+    };
+    const glm::dvec2 across = changeAlong({0.5, 0.0}), down = changeAlong({0.0, 0.5});
+    return glm::dvec2(std::abs(down.x) + std::abs(down.y), std::abs(across.x) + std::abs(across.y)) /
+           std::abs(across.x * down.y - across.y * down.x);
+}
+
+Found search(const PastView& view, const glm::dvec2& wanted_px, double guess, const glm::dvec2& agrees_px) {
     Found found{{std::nullopt, guess}, wanted_px};
     for (int step = 0; step < kSteps && !found.agrees; ++step) {
         const EyeChange::Moved place = view.place(wanted_px, found.seen.inverse_depth);
@@ -22,7 +32,7 @@ Found search(const PastView& view, const glm::dvec2& wanted_px, double guess) {
         if (!place.in_front || !view.isInside(place.place_px)) { return found; }
         found.seen = view.look(place.place_px);
         const glm::dvec2 off_px = glm::abs(found.seen.lands_px - wanted_px);
-        found.agrees = found.seen.pixel && std::max(off_px.x, off_px.y) <= kAgreesPx;
+        found.agrees = found.seen.pixel && glm::all(glm::lessThanEqual(off_px, agrees_px));
     }
     if (found.agrees) { found.place_px = view.place(wanted_px, found.seen.inverse_depth).place_px; }
     return found;
@@ -81,11 +91,14 @@ Sample sampleAround(const PastView& view, const glm::dvec2& place_px) {
 }  // namespace
 
 PixelFromPast makePixel(const PastView& view, const glm::dvec2& wanted_px, double near, double far) {
-    const Found from_near = search(view, wanted_px, near), from_far = search(view, wanted_px, far);
+    const glm::dvec2 disparity = glm::abs(view.past_from_now.disparity(wanted_px));
+    const bool is_flat = std::max(disparity.x, disparity.y) * (near - far) <= kSameDepthPx;
+    const glm::dvec2 agrees_px = kAgreesPx * glm::max(glm::dvec2(1.0), widthOfPixel(view, wanted_px));
+    const Found from_near = search(view, wanted_px, near, agrees_px), from_far = search(view, wanted_px, far, agrees_px);
     const bool takes_near = from_near.agrees && (!from_far.agrees || from_near.seen.inverse_depth >= from_far.seen.inverse_depth);
     Found found = takes_near ? from_near : from_far;
     // A pixel that blends two depths moves with what stands in front of it.
-    if (found.agrees) {
+    if (found.agrees && !is_flat) {
         const EyeChange::Moved place = view.place(wanted_px, frontAround(view, found.place_px));
         if (place.in_front && view.isInside(place.place_px)) {
             const PastView::Seen there = view.look(place.place_px);
@@ -95,6 +108,13 @@ PixelFromPast makePixel(const PastView& view, const glm::dvec2& wanted_px, doubl
     const std::uint32_t code = found.seen.pixel ? found.seen.pixel->spread : 0;
     const double spread = kOwnSpread * spreadOf(code) * found.seen.inverse_depth + 0.5 * (near - far);
     const glm::dvec2 off_px = view.uncertainMove(wanted_px, spread);
+    if (is_flat) {
+        const glm::dvec2 at = glm::clamp(found.place_px, glm::dvec2(0.5), glm::dvec2(view.last) + 0.5) - 0.5, base = glm::floor(at);
+        return {sampleSmoothly(view, at + 0.5),
+                {found.seen.inverse_depth, code},
+                found.agrees,
+                found.agrees ? lossAt(view, glm::ivec2(base), at - base, off_px) : kUnseenError};
+    }
     const Sample sample = sampleAround(view, found.place_px);
     const double amplitude = std::sqrt(sample.lost) + glm::length(off_px.x * sample.across + off_px.y * sample.down);
     return {sample.colour, {found.seen.inverse_depth, code}, found.agrees, found.agrees ? squareOf(amplitude) : kUnseenError};

@@ -206,7 +206,9 @@ bool isMade() { return kMasked && (!kCoarse || pass.is_made != 0); }
 void leaveTile(uint tile, uint cost, vec4 sums, float lost) {
     const vec4 amplitude = isMade() ? sqrt(sums / (kErrorSteps * 3 * kCellSize * kCellSize)) : vec4(0);
     const uint age = isMade() ? pass.past_tiles.at[tile].age : 0;  // 0: nothing was there
-    const vec4 growth = age > 0 ? amplitude / float(age) : vec4(0);
+    // What was wrong because nobody had seen it says nothing of later frames.
+    const vec4 expected = age > 0 ? sqrt(vec4(pass.past_tiles.at[tile].grown) / (kErrorSteps * 3 * kCellSize * kCellSize)) : vec4(1);
+    const vec4 growth = mix(amplitude / float(max(age, 1)), vec4(0), greaterThanEqual(expected, vec4(kUnseenGrowth)));
     pass.past_tiles.at[tile] = PastTile(cost, 0, growth, vec4(0), uvec4(0), lost);
 }
 

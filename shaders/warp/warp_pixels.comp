@@ -21,11 +21,21 @@ layout(push_constant, scalar) uniform Push { WarpPastPass pass; };
 #include "lib/move_pixel.glsl"
 #include "lib/past.glsl"
 #include "lib/cubic.glsl"
+#include "lib/lagrange.glsl"
 
 const uint kBlockPixels = kPastColumns * kPastRows;
 
+// How wide a pixel of the past is at a place: wider than one if the view has turned towards it.
+vec2 widthOfPixel(PastView view, vec2 wanted_px) {
+    const PixelMap map = view.past_from_now;
+    const vec3 place = movePixelAnywhere(map, wanted_px, 0);
+    const vec2 across = (vec2(1 + map.excess_x.x, map.excess_y.x) - place.xy * map.excess_z.x) / place.z;
+    const vec2 down = (vec2(map.excess_x.y, 1 + map.excess_y.y) - place.xy * map.excess_z.y) / place.z;
+    return vec2(abs(down.x) + abs(down.y), abs(across.x) + abs(across.y)) / abs(across.x * down.y - across.y * down.x);
+}
+
 // Searches, from a first guess, where the past shows what is wanted; true if found.
-bool search(PastView view, vec2 wanted_px, float guess, out Seen seen, out vec2 place_px) {
+bool search(PastView view, vec2 wanted_px, float guess, vec2 agrees, out Seen seen, out vec2 place_px) {
     float inverse_depth = guess;
     bool found = false, inside = true;
     place_px = wanted_px;
@@ -37,7 +47,7 @@ bool search(PastView view, vec2 wanted_px, float guess, out Seen seen, out vec2 
             inside = place.z > 0 && isInPast(view, place_px);
             if (inside) {
                 seen = look(view, place_px, wanted_px);
-                found = seen.word != 0 && max(abs(seen.off_px.x), abs(seen.off_px.y)) <= kPastAgrees;
+                found = seen.word != 0 && all(lessThanEqual(abs(seen.off_px), agrees));
                 inverse_depth = seen.inverse_depth;
             }
         }
@@ -61,20 +71,54 @@ float frontAround(PastView view, vec2 place_px) {
     return inverse_depth / max(moveOfPixel(view.now_from_past, vec2(middle) + 0.5, inverse_depth).z, 1e-6);
 }
 
+// With the kernel of whole blocks.
+Sample sampleSmoothly(vec2 place_px, ivec2 size, vec2 direction) {
+    const vec2 from_first = clamp(place_px, vec2(0.5), vec2(size) - 0.5) - 0.5;
+    const ivec2 base = ivec2(floor(from_first));
+    float weights_x[kTaps], weights_y[kTaps];
+    lagrangeWeights(from_first.x - float(base.x), weights_x);
+    lagrangeWeights(from_first.y - float(base.y), weights_y);
+    vec4 sum = vec4(0);
+    vec3 change = vec3(0), lost_across = vec3(0), lost_down = vec3(0);
+    [[unroll]] for (int y = 0; y < int(kTaps); ++y) {
+        const int row = clamp(base.y + y - 2, 0, size.y - 1) * size.x;
+        vec4 in_row = vec4(0);
+        vec3 middle = vec3(0);
+        [[unroll]] for (int x = 0; x < int(kTaps); ++x) {
+            const vec4 tap = sourceAt(uint(row + clamp(base.x + x - 2, 0, size.x - 1)));
+            in_row += weights_x[x] * tap;
+            if (x == 2) { middle = tap.rgb; }
+            if (y == 2) { lost_across += kFifthDifference[x] * tap.rgb; }
+            if (y == 2 && x == 1) { change -= 0.5 * direction.x * tap.rgb; }
+            if (y == 2 && x == 3) { change += 0.5 * direction.x * tap.rgb; }
+        }
+        sum += weights_y[y] * in_row;
+        lost_down += kFifthDifference[y] * middle;
+        if (y == 1) { change -= 0.5 * direction.y * middle; }
+        if (y == 3) { change += 0.5 * direction.y * middle; }
+    }
+    lost_across *= lostShare(from_first.x - float(base.x));
+    lost_down *= lostShare(from_first.y - float(base.y));
+    return Sample(max(sum, vec4(0)), change, dot(lost_across, lost_across) + dot(lost_down, lost_down));
+}
+
 // Makes one pixel; returns its expected squared error.
 float makePixel(PastView view, uvec2 pixel, vec2 depths) {
     const vec2 wanted_px = vec2(pixel) + 0.5;
     Seen from_near, from_far;
     vec2 near_px, far_px;
-    const bool near_found = search(view, wanted_px, depths.y, from_near, near_px);
-    const bool far_found = search(view, wanted_px, depths.x, from_far, far_px);
+    const vec2 disparity_px = disparity(view, wanted_px);
+    const bool is_flat = max(abs(disparity_px.x), abs(disparity_px.y)) * (depths.y - depths.x) <= kPastSameDepth;
+    const vec2 agrees = kPastAgrees * max(vec2(1), widthOfPixel(view, wanted_px));
+    const bool near_found = search(view, wanted_px, depths.y, agrees, from_near, near_px);
+    const bool far_found = search(view, wanted_px, depths.x, agrees, from_far, far_px);
     const bool takes_near = near_found && (!far_found || from_near.inverse_depth >= from_far.inverse_depth);
     Seen seen = from_far;
     if (takes_near) { seen = from_near; }
     vec2 place_px = takes_near ? near_px : far_px;
     const bool found = near_found || far_found;
     // A pixel that blends two depths moves with what stands in front, so that a silhouette keeps its shape.
-    if (found) {
+    if (found && !is_flat) {
         const vec3 with_front = movePixelAnywhere(view.past_from_now, wanted_px, frontAround(view, place_px));
         if (with_front.z > 0 && isInPast(view, with_front.xy)) {
             const Seen there = look(view, with_front.xy, wanted_px);
@@ -84,10 +128,15 @@ float makePixel(PastView view, uvec2 pixel, vec2 depths) {
             }
         }
     }
-    const vec2 disparity_px = disparity(view, wanted_px);
     const float own = kSpreadWeight * sqrt(varianceShareOf(seen.word)) * seen.inverse_depth;
     const vec2 uncertain_px = uncertainMove(disparity_px, own + 0.5 * (depths.y - depths.x));
-    const Sample one = sampleAround(place_px, ivec2(view.past_size_px), uncertain_px);
+    const ivec2 size = ivec2(view.past_size_px);
+    Sample one;
+    if (is_flat) {
+        one = sampleSmoothly(place_px, size, uncertain_px);
+    } else {
+        one = sampleAround(place_px, size, uncertain_px);
+    }
     putWord(view, pixel, movingPixel(seen.inverse_depth, kLanded, seen.word & kSpreadBits));
     putPixel(view, pixel, one.colour);
     const float amplitude = sqrt(one.lost) + length(one.gradient);
