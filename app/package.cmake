@@ -57,6 +57,7 @@ if(BINOSPLAT_LIBRARY)
     set(CPACK_DEBIAN_ENABLE_COMPONENT_DEPENDS ON)
     set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libbinosplat${PROJECT_VERSION_MAJOR})
     set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)
+    set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS libvulkan1)  # loaded as a device is opened
     set(CPACK_DEBIAN_LIBRARY_PACKAGE_RECOMMENDS "mesa-vulkan-drivers | vulkan-icd, ca-certificates")
     set(CPACK_COMPONENT_LIBRARY_DESCRIPTION "Scenes of 2D and 3D Gaussian splats for other programs: loaded, and drawn for one to four eyes into their own Vulkan images.")
     set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libbinosplat-dev)
