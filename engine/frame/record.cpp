@@ -34,6 +34,11 @@ gpu::EyeGaze gazeOf(const TargetPlan& target) {
     return {.direction = {0, 0, 1}, .clear_rad = 4.0f, .pixel_cycle = 1.0f, .focal_px = {1, 1}, .principal_px = {0, 0}};
 }
 
+gpu::uint tileCountOf(const TargetPlan& target) {
+    const glm::uvec2 tiles = tilesOf(target.eye.size_px);
+    return tiles.x * tiles.y;
+}
+
 }  // namespace
 
 void FrameRecorder::begin(Commands& commands, const FramePlan& plan) const {
@@ -41,11 +46,7 @@ void FrameRecorder::begin(Commands& commands, const FramePlan& plan) const {
     for (std::size_t t = 0; t < plan.targets.size(); ++t) {
         const TargetPlan& target = plan.targets[t];
         state.views[t] = viewOf(target.eye, plan.near);
-        state.targets[t].counters.may_be_coarse = target.coarse ? 1 : 0;
-        state.targets[t].counters.gaze = gazeOf(target);
-        state.targets[t].area = static_cast<float>(target.past ? 1.0 / (target.eye.own_pixel_px * target.eye.own_pixel_px) : 1.0);
-        room.warp(static_cast<int>(t)).tell(state.targets[t]);
-        if (target.kept.past) { state.targets[t].past_tiles = room.picture(target.picture).tiles.address<gpu::PastTile>(); }
+        describe(plan, static_cast<int>(t), state.targets[t]);
         if (target.past) {
             state.targets[t].past = pastViewOf(target.eye, target.past->eye, plan.near, glm::vec3(plan.background));
             state.targets[t].past_blocks = {.per_group = {.x = 0, .y = 1, .z = 1}, .count = 0};
@@ -61,6 +62,39 @@ void FrameRecorder::begin(Commands& commands, const FramePlan& plan) const {
     commands.begin();
     if (changes_known) { scene.recordChanges(commands); }
     commands.update(room.lists().state, &state, sizeof(state));
+}
+
+void FrameRecorder::describe(const FramePlan& plan, int index, TargetState& state) const {
+    const TargetPlan& target = plan.targets[static_cast<std::size_t>(index)];
+    const Picture& picture = room.picture(target.picture);
+    const bool chooses = target.choice != TileChoice::kAll;
+    room.warp(index).tell(state);
+    if (!chooses) {
+        state.tile_mask = room.shown(index).mask();
+        state.tile_list = {};
+        state.full_tiles = room.lists().tile_ranges.address<gpu::uint>(tileCountOf(target) * sizeof(gpu::uvec2));
+    }
+    state.colours = picture.colours.address<gpu::vec4>();
+    if (target.kept.depth) { state.depths = picture.depths.address<float>(); }
+    if (target.kept.moments) { state.moments = room.moments().address<gpu::vec2>(); }
+    if (target.kept.past) {
+        state.past_tiles = picture.tiles.address<gpu::PastTile>();
+        state.moving = picture.words.address<gpu::uint>();
+        state.row_words = target.eye.size_px.x;
+    }
+    const std::optional<int> warped = plan.warpedTarget();
+    if (target.kept.moving && warped && plan.targets[static_cast<std::size_t>(*warped)].warp->source == index) {
+        const MovingWords words = wordsOf(plan, *warped);
+        state.moving = words.moving;
+        const EyeRelation& relation = plan.targets[static_cast<std::size_t>(*warped)].warp->relation;
+        if (!movesRows(relation.rectified, room.warp(*warped))) { state.arrivals = words.arrivals; }
+        state.row_words = words.row_words;
+    }
+    if (plan.shares() > 1 && index > 0) { state.first_tile = tileCountOf(plan.targets[0]); }
+    state.is_made = target.past ? 1 : 0;
+    state.area = static_cast<float>(target.past ? 1.0 / (target.eye.own_pixel_px * target.eye.own_pixel_px) : 1.0);
+    state.counters.may_be_coarse = target.coarse ? 1 : 0;
+    state.counters.gaze = gazeOf(target);
 }
 
 void FrameRecorder::recordCulling(Commands& commands, const FramePlan& plan) const {
@@ -92,10 +126,10 @@ void FrameRecorder::record(Commands& commands, const FramePlan& plan) const {
                 recordChoice(commands, plan);
                 break;
             case Step::Kind::kRender:
-                recordPicture(commands, plan, step.index);
+                recordPictures(commands, plan, step.index, 1);
                 break;
             case Step::Kind::kRenderAll:
-                recordPatches(commands, plan, step.index);
+                recordPictures(commands, plan, 0, static_cast<int>(plan.targets.size()));
                 break;
         }
     }
@@ -153,7 +187,7 @@ void FrameRecorder::recordChoice(Commands& commands, const FramePlan& plan) cons
         if (plan.targets[static_cast<std::size_t>(t)].choice == TileChoice::kPast) { eyes.push_back(pastOf(plan, t)); }
     }
     recordChanged(commands, plan, eyes);
-    past_passes.recordChoice(commands, eyes);
+    past_passes.recordChoice(commands, eyes, static_cast<gpu::uint>(plan.shares()));
 }
 
 void FrameRecorder::recordChanged(Commands& commands, const FramePlan& plan, std::span<const PastInputs> pictures) const {
@@ -180,75 +214,34 @@ void FrameRecorder::recordChanged(Commands& commands, const FramePlan& plan, std
 EyesOfList FrameRecorder::eyesOf(const ListPlan& list) const {
     EyesOfList eyes = list.eyes;
     if (list.of_chosen) {
-        eyes.first_mask = chosenTiles(eyes.first).mask;
-        eyes.last_mask = chosenTiles(eyes.first + eyes.count - 1).mask;
+        eyes.first_mask = room.warp(eyes.first).tileMask();
+        eyes.last_mask = room.warp(eyes.first + eyes.count - 1).tileMask();
     }
     return eyes;
 }
 
-void FrameRecorder::recordPicture(Commands& commands, const FramePlan& plan, int index) const {
-    const TargetPlan& planned = plan.targets[static_cast<std::size_t>(index)];
-    const Target target = targetOf(plan, index);
-    if (planned.choice == TileChoice::kAll) {
-        passes.recordEye(commands, scene, room.lists(), target, planned.role);
-    } else {
-        const Passes::Patch patch{target, chosenTiles(index)};
-        passes.recordTiles(commands, scene, room.lists(), std::span(&patch, 1), planned.role);
+void FrameRecorder::recordPictures(Commands& commands, const FramePlan& plan, int first, int count) const {
+    const TargetPlan& planned = plan.targets[static_cast<std::size_t>(first)];
+    Targets targets{.first = first,
+                    .count = count,
+                    .list = planned.list,
+                    .pairs = {},
+                    .background = glm::vec3(plan.background),
+                    .kept = planned.kept,
+                    .coarse = planned.coarse,
+                    .masked = planned.choice != TileChoice::kAll || room.shown(first).hideAny(),
+                    .chosen = planned.choice != TileChoice::kAll};
+    for (int t = first; t < first + count; ++t) {
+        const TargetPlan& target = plan.targets[static_cast<std::size_t>(t)];
+        targets.size_tiles = glm::max(targets.size_tiles, tilesOf(target.eye.size_px));
+        targets.all_tiles += tileCountOf(target);
     }
-}
-
-TileMask FrameRecorder::chosenTiles(int index) const {
-    const WarpBuffers& warp = room.warp(index);
-    return {warp.tileMask(), warp.tileList(), warp.tilesWithPairs()};
-}
-
-void FrameRecorder::recordPatches(Commands& commands, const FramePlan& plan, int first) const {
-    std::vector<Passes::Patch> patches;
-    for (int t = 0; t < static_cast<int>(plan.targets.size()); ++t) {
-        if (plan.targets[static_cast<std::size_t>(t)].list != plan.targets[static_cast<std::size_t>(first)].list) { continue; }
-        const int share = static_cast<int>(patches.size());
-        Passes::Patch& patch = patches.emplace_back(Passes::Patch{targetOf(plan, t), chosenTiles(t)});
-        patch.target.share = share;
-        patch.target.shares = plan.shares();
-        patch.target.pairs = room.lists().pairs.arrays(share, plan.shares());
-    }
-    passes.recordTiles(commands, scene, room.lists(), patches, Role::kBoth);
-}
-
-Target FrameRecorder::targetOf(const FramePlan& plan, int index) const {
-    const TargetPlan& planned = plan.targets[static_cast<std::size_t>(index)];
     const PairBuffers& pairs = room.lists().pairs;
-    Target target{.index = index,
-                  .list = planned.list,
-                  .size_px = planned.eye.size_px,
-                  .size_tiles = tilesOf(planned.eye.size_px),
-                  .pairs = plan.isSortedInPicture(planned)
-                               ? pairs.arraysBeside(room.picture(planned.picture).colours, tileBits(tilesOf(planned.eye.size_px)))
-                               : pairs.arrays(),
-                  .picture = &room.picture(planned.picture),
-                  .background = glm::vec3(plan.background),
-                  .kept = planned.kept,
-                  .is_made = planned.past.has_value(),
-                  .coarse = planned.coarse,
-                  .moments = planned.kept.moments ? room.moments().address<gpu::vec2>() : gpu::DeviceAddress<gpu::vec2>{},
-                  .shown = room.shown(index).mask()};
-    if (planned.kept.past) {
-        target.moving = target.picture->words.address<gpu::uint>();
-        target.row_words = planned.eye.size_px.x;
-    }
-    target.lists_chosen =
+    targets.pairs = plan.isSortedInPicture(planned) ? pairs.arraysBeside(room.picture(planned.picture).colours, tileBits(targets.all_tiles))
+                                                    : pairs.arrays();
+    targets.lists_chosen =
         std::ranges::any_of(plan.lists, [&](const ListPlan& list) { return list.of_chosen && list.eyes.list == planned.list; });
-    target.low_pass = viewOf(planned.eye, plan.near).low_pass;
-    const std::optional<int> warped = plan.warpedTarget();
-    if (!warped || plan.targets[static_cast<std::size_t>(*warped)].warp->source != index) { return target; }
-    if (planned.kept.moving) {
-        const MovingWords words = wordsOf(plan, *warped);
-        target.moving = words.moving;
-        const EyeRelation& relation = plan.targets[static_cast<std::size_t>(*warped)].warp->relation;
-        if (!movesRows(relation.rectified, room.warp(*warped))) { target.arrivals = words.arrivals; }
-        target.row_words = words.row_words;
-    }
-    return target;
+    passes.recordPictures(commands, scene, room.lists(), targets, count > 1 ? Role::kBoth : planned.role);
 }
 
 }  // namespace binosplat

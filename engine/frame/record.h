@@ -38,6 +38,8 @@ struct FrameRecorder {
 
 private:
     void begin(Commands& commands, const FramePlan& plan) const;
+    // Tells the device of a target where it lies, and what becomes of it.
+    void describe(const FramePlan& plan, int index, TargetState& state) const;
     void recordWarp(Commands& commands, const FramePlan& plan, int index) const;
     void recordPast(Commands& commands, const FramePlan& plan, int index) const;
     void recordChoice(Commands& commands, const FramePlan& plan) const;
@@ -45,10 +47,8 @@ private:
     [[nodiscard]] MovingWords wordsOf(const FramePlan& plan, int warped) const;
     [[nodiscard]] PastInputs pastOf(const FramePlan& plan, int index) const;
     [[nodiscard]] EyesOfList eyesOf(const ListPlan& list) const;
-    void recordPicture(Commands& commands, const FramePlan& plan, int index) const;
-    void recordPatches(Commands& commands, const FramePlan& plan, int first) const;
-    [[nodiscard]] TileMask chosenTiles(int index) const;
-    [[nodiscard]] Target targetOf(const FramePlan& plan, int index) const;
+    // Of `count` targets at once.
+    void recordPictures(Commands& commands, const FramePlan& plan, int first, int count) const;
 };
 
 }  // namespace binosplat

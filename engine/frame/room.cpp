@@ -171,8 +171,8 @@ FrameCapacity FrameRoom::roomFor(const FramePlan& plan, const FrameState& state,
     };
     const FrameCapacity now = lists_.capacity();
     FrameCapacity wanted = now;
-    // Each picture that is rendered at the same time as others has its own part of the lists; so it will in the next frame, whose pictures
-    // meet no more splats than these.
+    // Each picture that is rendered at the same time as others has its own part of the lists of splats; so it will in the next frame, whose
+    // pictures meet no more splats than these.
     const auto ofAll = [](std::uint32_t needed, int shares) {
         return std::min(needed, UINT32_MAX / static_cast<std::uint32_t>(shares)) * static_cast<std::uint32_t>(shares);
     };
@@ -187,7 +187,7 @@ FrameCapacity FrameRoom::roomFor(const FramePlan& plan, const FrameState& state,
         // Without the source's pairs every tile seems cheap to render: how many the target needs turns out in the next try.
         if (plan.targets[t].warp && isSourceVoid(plan, state)) { continue; }
         const auto roomOf = [&](std::uint32_t of) { return roomForPairs(plan, plan.targets[t], of, ahead > 1.0); };
-        wanted.pairs = std::max(wanted.pairs, enough(ofAll(pairs, plan.shares()), now.pairs, roomOf));
+        wanted.pairs = std::max(wanted.pairs, enough(pairs, now.pairs, roomOf));
     }
     return wanted;
 }

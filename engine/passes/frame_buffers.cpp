@@ -20,11 +20,9 @@ std::uint32_t PairBuffers::capacityBeside(const Buffer& colours, std::uint32_t p
     return static_cast<std::uint32_t>((words_here * pairs + 3) / 4);
 }
 
-PairArrays PairBuffers::arrays(int share, int shares) const {
-    const std::uint32_t capacity = capacity_ / static_cast<std::uint32_t>(shares);
-    const std::uint64_t first = static_cast<std::uint64_t>(share) * capacity;
-    const auto array = [&](std::uint64_t i) { return buffer_.address<gpu::uint>((i * capacity_ + first) * sizeof(gpu::uint)); };
-    return {{array(0), array(1)}, {array(2), array(3)}, capacity};
+PairArrays PairBuffers::arrays() const {
+    const auto array = [&](std::uint64_t i) { return buffer_.address<gpu::uint>(i * capacity_ * sizeof(gpu::uint)); };
+    return {{array(0), array(1)}, {array(2), array(3)}, capacity_};
 }
 
 PairArrays PairBuffers::arraysBeside(const Buffer& colours, unsigned key_bits) const {
@@ -70,9 +68,8 @@ void growFrameBuffers(const Context& context, FrameBuffers& buffers, FrameCapaci
         buffers.pairs = PairBuffers(context, capacity.pairs);
     }
     const std::uint64_t scratch_bytes =
-        std::max(kMostAtOnce * std::max({VisibleBuffers::groupSumBytes(capacity.visible), Sort::histogramBytes(capacity.visible),
-                                         Sort::histogramBytes(capacity.pairs)}),
-                 Sort::histogramBytes(4 * std::uint64_t{capacity.pairs}));
+        std::max({VisibleBuffers::groupSumBytes(capacity.visible) + sizeof(gpu::uint), Sort::histogramBytes(capacity.visible),
+                  Sort::histogramBytes(4 * std::uint64_t{capacity.pairs})});
     if (buffers.scratch.bytes() != scratch_bytes) {
         buffers.scratch = {};
         buffers.scratch = Buffer(context, "sums and sort scratch", scratch_bytes);

@@ -15,9 +15,6 @@ namespace binosplat {
 // The most pictures and lists of visible splats in a frame.
 inline constexpr std::size_t kMostTargets = 2;
 
-// Pictures whose splats are projected, binned and blended at the same time, each with its share of the lists' room.
-inline constexpr int kMostAtOnce = 2;
-
 using gpu::TargetState;
 
 // What the device gets at the start of a frame, and what it reports at the end.
@@ -96,8 +93,7 @@ public:
     [[nodiscard]] std::uint32_t capacity() const { return capacity_; }
     // The same that an eye with so many pairs needs if the rest lies in `colours`.
     static std::uint32_t capacityBeside(const Buffer& colours, std::uint32_t pairs);
-    // The `share`th of `shares` equal parts.
-    [[nodiscard]] PairArrays arrays(int share = 0, int shares = 1) const;
+    [[nodiscard]] PairArrays arrays() const;
     // For as many pairs as there is room for here and in `colours`, where nothing remains after a sort by `key_bits`.
     [[nodiscard]] PairArrays arraysBeside(const Buffer& colours, unsigned key_bits) const;
     [[nodiscard]] std::uint64_t bytes() const { return buffer_.bytes(); }
@@ -117,7 +113,7 @@ struct FrameBuffers {
     VisibleBuffers visible;
     PairBuffers pairs;
     Buffer scratch;      // sums of workgroups or histograms of the list at hand
-    Buffer tile_ranges;  // uvec2 a tile; then, if tiles may be coarse, a list of those with pairs
+    Buffer tile_ranges;  // uvec2 a tile of all that are rendered at once; then, if tiles may be coarse, a list of those with pairs
 
     [[nodiscard]] FrameCapacity capacity() const { return {visible.capacity(), pairs.capacity()}; }
     [[nodiscard]] gpu::DeviceAddress<gpu::EyeView> eyes() const { return state.address<gpu::EyeView>(offsetof(FrameState, views)); }

@@ -9,7 +9,7 @@
 
 namespace binosplat {
 
-unsigned tileBits(glm::uvec2 size_tiles) { return static_cast<unsigned>(std::bit_width(size_tiles.x * size_tiles.y)); }
+unsigned tileBits(gpu::uint tiles) { return static_cast<unsigned>(std::bit_width(tiles)); }
 
 namespace {
 
@@ -126,6 +126,7 @@ void Passes::recordCull(Commands& commands, const GpuScene& scene, const FrameBu
                              .first_eye = static_cast<gpu::uint>(eyes.first),
                              .eye_count = static_cast<gpu::uint>(eyes.count),
                              .capacity = buffers.visible.capacity() / static_cast<gpu::uint>(eyes.shares),
+                             .at_once = static_cast<gpu::uint>(eyes.shares),
                              .first_tile_mask = eyes.first_mask,
                              .last_tile_mask = eyes.last_mask};
     const CullKernel kernel{.splat_kind = scene.splatShape(), .masked = eyes.first_mask.value != 0, .in_pages = scene.isInPages()};
@@ -155,207 +156,128 @@ void Passes::recordOrder(Commands& commands, const GpuScene& scene, const FrameB
     sort().record(commands, order, spare, buffers.scratch.address<gpu::uint>(), buffers.state, FrameBuffers::visibleList(eyes.list), 32);
 }
 
-// One eye's part of a recording: project to rasterize.
-struct Passes::EyePart {
+// What the passes of pictures that are rendered at once have in common.
+struct Passes::Recording {
     Commands& commands;
     const GpuScene& scene;
     const FrameBuffers& buffers;
-    const Target& target;
-    TileMask tiles;  // those that are rendered
-    bool lists_tiles;
-    Role role;
+    const Targets& targets;
 
-    [[nodiscard]] gpu::uint eye() const { return static_cast<gpu::uint>(target.index); }
-    [[nodiscard]] bool masked() const { return tiles.mask.value != 0; }
+    [[nodiscard]] std::uint64_t field(std::uint64_t offset) const { return FrameBuffers::targetField(targets.first, offset); }
     // Where the lists' states lie in the frame's.
     [[nodiscard]] std::uint64_t visibleList() const {
-        return lists_tiles && !target.lists_chosen ? FrameBuffers::targetField(target.index, offsetof(TargetState, chosen_visible))
-                                                   : FrameBuffers::visibleList(target.list);
+        return targets.chosen && !targets.lists_chosen ? field(offsetof(TargetState, chosen_visible))
+                                                       : FrameBuffers::visibleList(targets.list);
     }
-    [[nodiscard]] std::uint64_t pairList() const { return FrameBuffers::targetField(target.index, offsetof(TargetState, pairs)); }
-    [[nodiscard]] std::uint64_t chosenTiles() const { return FrameBuffers::targetField(target.index, offsetof(TargetState, chosen_tiles)); }
     [[nodiscard]] auto visible() const { return buffers.state.address<gpu::ListState>(visibleList()); }
-    [[nodiscard]] auto pairs() const { return buffers.state.address<gpu::ListState>(pairList()); }
-    [[nodiscard]] std::uint64_t counterBytes() const { return FrameBuffers::targetField(target.index, offsetof(TargetState, counters)); }
-    [[nodiscard]] auto counters() const { return buffers.state.address<gpu::EyeCounters>(counterBytes()); }
-    [[nodiscard]] gpu::BinPass binPass() const;
-    // Its share of what is in `buffers`.
-    [[nodiscard]] std::uint64_t splatCapacity() const { return buffers.visible.capacity() / static_cast<std::uint64_t>(target.shares); }
-    [[nodiscard]] std::uint64_t firstSplat() const { return splatCapacity() * static_cast<std::uint64_t>(target.share); }
-    [[nodiscard]] auto splats() const { return buffers.visible.splats().at(firstSplat()); }
-    [[nodiscard]] auto tileSets() const { return buffers.visible.tileSets().at(firstSplat()); }
-    [[nodiscard]] auto tileCounts() const { return buffers.visible.tileCounts().at(firstSplat()); }
+    [[nodiscard]] auto pairs() const { return buffers.state.address<gpu::ListState>(field(offsetof(TargetState, pairs))); }
+    [[nodiscard]] auto states() const { return buffers.state.address<gpu::TargetState>(field(0)); }
+    [[nodiscard]] auto eyes() const { return buffers.eyes().at(static_cast<std::uint64_t>(targets.first)); }
+    [[nodiscard]] auto ranges() const { return buffers.tile_ranges.address<gpu::uvec2>(); }
+    [[nodiscard]] auto sums() const { return buffers.scratch.address<gpu::uint>(); }
+    [[nodiscard]] gpu::uint count() const { return static_cast<gpu::uint>(targets.count); }
+    [[nodiscard]] gpu::uint splatsApart() const { return buffers.visible.capacity() / count(); }
     // The device lists the tiles that have pairs.
-    [[nodiscard]] bool listsFull() const { return lists_tiles || target.coarse; }
-    // Behind the ranges of all tiles, unless some were chosen.
-    [[nodiscard]] auto fullTiles() const {
-        return lists_tiles ? tiles.full : buffers.tile_ranges.address<gpu::uint>(tileCount() * sizeof(gpu::uvec2));
-    }
-    [[nodiscard]] std::uint64_t tileCount() const { return std::uint64_t{target.size_tiles.x} * target.size_tiles.y; }
-    [[nodiscard]] auto ranges() const {
-        return buffers.tile_ranges.address<gpu::uvec2>().at(tileCount() * static_cast<std::uint64_t>(target.share));
-    }
-    [[nodiscard]] auto scratch() const {
-        const std::uint64_t words = buffers.scratch.bytes() / sizeof(gpu::uint) / kMostAtOnce;
-        return buffers.scratch.address<gpu::uint>().at(words * static_cast<std::uint64_t>(target.share));
-    }
+    [[nodiscard]] bool listsFull() const { return targets.chosen || targets.coarse; }
 };
 
-void Passes::recordEye(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const Target& target, Role role) {
-    const EyePart part{.commands = commands,
-                       .scene = scene,
-                       .buffers = buffers,
-                       .target = target,
-                       .tiles = {.mask = target.shown, .list = {}, .full = {}},
-                       .lists_tiles = false,
-                       .role = role};
-    record(std::span(&part, 1));
-}
-
-void Passes::recordTiles(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, std::span<const Patch> patches,
-                         Role role) {
-    std::vector<EyePart> parts;
-    for (const Patch& patch : patches) {
-        parts.push_back({.commands = commands,
-                         .scene = scene,
-                         .buffers = buffers,
-                         .target = patch.target,
-                         .tiles = patch.mask,
-                         .lists_tiles = true,
-                         .role = role});
-    }
-    record(parts);
-}
-
-void Passes::record(std::span<const EyePart> parts) {
-    Commands& commands = parts.front().commands;
-    const Role role = parts.front().role;
-    // A command for each part, all of them beside each other.
-    const auto forEach = [&](auto&& recordPart) {
-        for (std::size_t i = 0; i < parts.size(); ++i) {
-            if (i > 0) { commands.beside(); }
-            recordPart(i);
-        }
-    };
+void Passes::recordPictures(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const Targets& targets, Role role) {
+    const Recording recording{commands, scene, buffers, targets};
     commands.beginPass({role, FrameStage::kSplat, "project"});
-    forEach([&](std::size_t i) { recordProjected(parts[i]); });
+    recordProjected(recording);
     commands.beginPass({role, FrameStage::kSplat, "bin"});
-    forEach([&](std::size_t i) { recordBinned(parts[i]); });
-    forEach([&](std::size_t i) { recordLargeBinned(parts[i]); });
+    recordBinned(recording);
     commands.beginPass({role, FrameStage::kSplat, "sort_tiles"});
-    std::vector<Sort::Job> jobs;
-    for (const EyePart& part : parts) {
-        jobs.push_back({part.target.pairs.pairs, part.target.pairs.spare, part.scratch(), part.pairList()});
-    }
-    sort().record(commands, jobs, parts.front().buffers.state, tileBits(parts.front().target.size_tiles));
-    forEach([&](std::size_t i) { recordTileRanges(parts[i], jobs[i].in); });
+    const KeyValues sorted = sort().record(commands, targets.pairs.pairs, targets.pairs.spare, recording.sums(), buffers.state,
+                                           recording.field(offsetof(TargetState, pairs)), tileBits(targets.all_tiles));
+    recordTileRanges(recording, sorted);
     commands.beginPass({role, FrameStage::kSplat, "rasterize"});
-    forEach([&](std::size_t i) { recordRasterized(parts[i], jobs[i].in); });
+    recordRasterized(recording, sorted);
 }
 
-void Passes::recordProjected(const EyePart& part) {
-    const gpu::ProjectPass project{.chunks = part.scene.chunks(),
-                                   .eyes = part.buffers.eyes(),
-                                   .order = part.buffers.visible.order().values,
-                                   .visible = part.visible(),
-                                   .splats = part.splats(),
-                                   .tile_sets = part.tileSets(),
-                                   .tile_counts = part.tileCounts(),
-                                   .group_sums = part.scratch(),
-                                   .pairs = part.pairs(),
-                                   .counters = part.counters(),
-                                   .tile_mask = part.tiles.mask,
-                                   .chunk_bits = part.scene.chunkBits(),
-                                   .eye = part.eye(),
-                                   .capacity = part.target.pairs.capacity};
-    part.commands.dispatchIndirect(
-        kernels_.get(ProjectKernel{
-            .sh_degree = static_cast<std::uint32_t>(part.scene.shDegree()), .masked = part.masked(), .splat_kind = part.scene.splatKind()}),
-        project, part.buffers.state, part.visibleList() + offsetof(gpu::ListState, per_block));
+void Passes::recordProjected(const Recording& recording) {
+    const GpuScene& scene = recording.scene;
+    const VisibleBuffers& visible = recording.buffers.visible;
+    const gpu::ProjectPass project{.chunks = scene.chunks(),
+                                   .eyes = recording.eyes(),
+                                   .order = visible.order().values,
+                                   .visible = recording.visible(),
+                                   .splats = visible.splats(),
+                                   .tile_sets = visible.tileSets(),
+                                   .tile_counts = visible.tileCounts(),
+                                   .group_sums = recording.sums(),
+                                   .pairs = recording.pairs(),
+                                   .targets = recording.states(),
+                                   .chunk_bits = scene.chunkBits(),
+                                   .splats_apart = recording.splatsApart(),
+                                   .capacity = recording.targets.pairs.capacity};
+    const ProjectKernel kernel{
+        .sh_degree = static_cast<std::uint32_t>(scene.shDegree()), .masked = recording.targets.masked, .splat_kind = scene.splatKind()};
+    recording.commands.dispatchIndirect(kernels_.get(kernel), project, recording.buffers.state,
+                                        recording.visibleList() + offsetof(gpu::ListState, per_block));
 }
 
-// For bin and bin_large.
-gpu::BinPass Passes::EyePart::binPass() const {
-    return {.splats = splats(),
-            .tile_sets = tileSets(),
-            .tile_counts = tileCounts(),
-            .group_sums = scratch(),
-            .visible = visible(),
-            .pairs = pairs(),
-            .tiles = target.pairs.pairs.keys,
-            .ranks = target.pairs.pairs.values,
-            .large_splats = target.pairs.spare.keys,
-            .large_begins = target.pairs.spare.values,
-            .counters = counters(),
-            .tile_mask = tiles.mask,
-            .size_tiles = target.size_tiles,
-            .low_pass = target.low_pass};
+void Passes::recordBinned(const Recording& recording) {
+    const VisibleBuffers& visible = recording.buffers.visible;
+    const PairArrays& pairs = recording.targets.pairs;
+    const gpu::BinPass bin{.eyes = recording.eyes(),
+                           .splats = visible.splats(),
+                           .tile_sets = visible.tileSets(),
+                           .tile_counts = visible.tileCounts(),
+                           .group_sums = recording.sums(),
+                           .visible = recording.visible(),
+                           .pairs = recording.pairs(),
+                           .tiles = pairs.pairs.keys,
+                           .ranks = pairs.pairs.values,
+                           .large_splats = pairs.spare.keys,
+                           .large_begins = pairs.spare.values,
+                           .targets = recording.states(),
+                           .splats_apart = recording.splatsApart(),
+                           .all_tiles = recording.targets.all_tiles};
+    recording.commands.dispatchIndirect(kernels_.get(BinKernel{}), bin, recording.buffers.state,
+                                        recording.visibleList() + offsetof(gpu::ListState, per_block));
+    const BinLargeKernel large{.masked = recording.targets.masked, .splat_kind = recording.scene.splatShape()};
+    recording.commands.dispatch(kernels_.get(large), bin, gpu::kBinLargeGroups, 1, recording.count());
 }
 
-void Passes::recordBinned(const EyePart& part) {
-    part.commands.dispatchIndirect(kernels_.get(BinKernel{}), part.binPass(), part.buffers.state,
-                                   part.visibleList() + offsetof(gpu::ListState, per_block));
-}
-
-void Passes::recordLargeBinned(const EyePart& part) {
-    part.commands.dispatch(kernels_.get(BinLargeKernel{.masked = part.masked(), .splat_kind = part.scene.splatShape()}), part.binPass(),
-                           gpu::kBinLargeGroups);
-}
-
-void Passes::recordTileRanges(const EyePart& part, const KeyValues& sorted) {
-    const Target& target = part.target;
-    const gpu::TileRangesPass ranges{.tiles = sorted.keys,
-                                     .pairs = part.pairs(),
-                                     .ranges = part.ranges(),
-                                     .tile_list = part.tiles.list,
-                                     .masked_tiles = part.buffers.state.address<gpu::ListState>(part.chosenTiles()),
-                                     .full_tiles = part.fullTiles(),
-                                     .counters = part.counters(),
-                                     .colours = target.picture->colours.address<gpu::vec4>(),
-                                     .depths = target.kept.depth ? target.picture->depths.address<float>() : gpu::DeviceAddress<float>{},
-                                     .moving = target.moving,
-                                     .past_tiles = target.picture->tiles.address<gpu::PastTile>(),
-                                     .visible = part.visible(),
-                                     .background = target.background,
-                                     .size_px = target.size_px,
-                                     .is_made = target.is_made ? 1u : 0u};
-    const Kernel& kernel =
-        kernels_.get(part.listsFull() ? TileRangesKernel{.masked = true, .half_colours = target.kept.half_floats} : TileRangesKernel{});
-    if (part.lists_tiles) {
-        part.commands.dispatchIndirect(kernel, ranges, part.buffers.state, part.chosenTiles() + offsetof(gpu::ListState, per_item));
+void Passes::recordTileRanges(const Recording& recording, const KeyValues& sorted) {
+    const Targets& targets = recording.targets;
+    const gpu::TileRangesPass ranges{.eyes = recording.eyes(),
+                                     .tiles = sorted.keys,
+                                     .pairs = recording.pairs(),
+                                     .ranges = recording.ranges(),
+                                     .visible = recording.visible(),
+                                     .targets = recording.states(),
+                                     .background = targets.background};
+    const Kernel& kernel = kernels_.get(recording.listsFull() ? TileRangesKernel{.masked = true, .half_colours = targets.kept.half_floats}
+                                                              : TileRangesKernel{});
+    if (targets.chosen) {
+        recording.commands.dispatchIndirect(kernel, ranges, recording.buffers.state,
+                                            recording.field(offsetof(TargetState, chosen_tiles) + offsetof(gpu::ListState, per_item)));
     } else {
-        part.commands.dispatchOver(kernel, ranges, part.tileCount());
+        const gpu::uint tiles = targets.size_tiles.x * targets.size_tiles.y;
+        recording.commands.dispatch(kernel, ranges, (tiles + gpu::kGroupSize - 1) / gpu::kGroupSize, 1, recording.count());
     }
 }
 
-void Passes::recordRasterized(const EyePart& part, const KeyValues& sorted) {
-    const Target& target = part.target;
-    const bool is_light = part.scene.isLight();
-    const gpu::RasterizePass rasterize{.eyes = part.buffers.eyes(),
-                                       .splats = part.splats(),
+void Passes::recordRasterized(const Recording& recording, const KeyValues& sorted) {
+    const Targets& targets = recording.targets;
+    const bool is_light = recording.scene.isLight();
+    const gpu::RasterizePass rasterize{.eyes = recording.eyes(),
+                                       .splats = recording.buffers.visible.splats(),
                                        .ranks = sorted.values,
-                                       .ranges = part.ranges(),
-                                       .colours = target.picture->colours.address<gpu::vec4>(),
-                                       .depths = target.kept.depth ? target.picture->depths.address<float>() : gpu::DeviceAddress<float>{},
-                                       .moments = target.moments,
-                                       .moving = target.moving,
-                                       .arrivals = target.arrivals,
-                                       .full_tiles = part.fullTiles(),
-                                       .counters = part.counters(),
-                                       .background = is_light ? glm::vec3(lightOf(glm::dvec3(target.background))) : target.background,
-                                       .eye = part.eye(),
-                                       .row_words = target.row_words,
-                                       .depth_choice = target.kept.depth_choice,
-                                       .is_light = is_light,
-                                       .is_made = target.is_made ? 1u : 0u,
-                                       .past_tiles = target.picture->tiles.address<gpu::PastTile>()};
+                                       .ranges = recording.ranges(),
+                                       .targets = recording.states(),
+                                       .background = is_light ? glm::vec3(lightOf(glm::dvec3(targets.background))) : targets.background,
+                                       .depth_choice = targets.kept.depth_choice,
+                                       .is_light = is_light};
     const Kernel& kernel =
-        kernels_.get(rasterizeKernel(threads_per_cell_, target.kept, part.scene.splatShape(), part.listsFull(), target.coarse));
-    if (part.listsFull()) {
-        part.commands.dispatchIndirect(kernel, rasterize, part.buffers.state,
-                                       part.counterBytes() + offsetof(gpu::EyeCounters, per_full_tile));
+        kernels_.get(rasterizeKernel(threads_per_cell_, targets.kept, recording.scene.splatShape(), recording.listsFull(), targets.coarse));
+    if (recording.listsFull()) {
+        recording.commands.dispatchIndirect(kernel, rasterize, recording.buffers.state,
+                                            recording.field(offsetof(TargetState, counters) + offsetof(gpu::EyeCounters, per_full_tile)));
     } else {  // hidden tiles have no pairs, and so become background
-        part.commands.dispatch(kernel, rasterize, target.size_tiles.x, target.size_tiles.y);
+        recording.commands.dispatch(kernel, rasterize, targets.size_tiles.x, targets.size_tiles.y, recording.count());
     }
 }
 

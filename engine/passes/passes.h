@@ -30,34 +30,23 @@ struct Kept {
     bool past = false;                            // later pictures are going to be made from this one: its words and tiles are kept
 };
 
-// The tiles to render (shaders/lib/tile_mask.glsl). `list` is there only if the device alone knows how many they are; `full` is
-// then as long, for those of them that have pairs.
-struct TileMask {
-    gpu::DeviceAddress<gpu::uint> mask, list, full;
-};
-
-// A picture that a frame renders, all of it or some tiles.
-struct Target {
-    int index = 0;  // of FrameState::views and targets
-    int list = 0;   // of the visible splats
-    glm::uvec2 size_px{0, 0}, size_tiles{0, 0};
+// Pictures that a frame renders at once, all of each or some tiles: FrameState::views and targets say where they lie.
+struct Targets {
+    int first = 0, count = 1;
+    int list = 0;                 // of the visible splats
+    glm::uvec2 size_tiles{0, 0};  // of the greatest
+    gpu::uint all_tiles = 0;      // of all of them
     PairArrays pairs;
-    const Picture* picture = nullptr;
     glm::vec3 background{0.0f};
     Kept kept;
-    bool is_made = false;                                      // from a past: tiles whose lists have no room stay
-    bool coarse = false;                                       // tiles that its eye does not see sharply may be
-    gpu::DeviceAddress<gpu::vec2> moments = {};                // if they are kept
-    gpu::DeviceAddress<gpu::uint> moving = {}, arrivals = {};  // if the picture is warped
-    gpu::uint row_words = 0;                                   // of `moving` and `arrivals`
-    int share = 0, shares = 1;                                 // of the lists' room: `pairs` belongs to this share
-    float low_pass = gpu::kLowPass;                            // EyeView
-    bool lists_chosen = false;                 // the list holds what touches its chosen tiles, and there is no other one for these
-    gpu::DeviceAddress<gpu::uint> shown = {};  // the lens's visibility mask, if it hides anything; the other tiles become background
+    bool coarse = false;        // tiles that their eyes do not see sharply may be
+    bool masked = false;        // not all tiles count: some are chosen, or a lens hides some
+    bool chosen = false;        // passes listed the tiles to render; others stay as they are
+    bool lists_chosen = false;  // the list holds what touches these, and there is no other one for them
 };
 
-// How many bits distinguish the tiles of a picture, and no tile.
-unsigned tileBits(glm::uvec2 size_tiles);
+// How many bits distinguish so many tiles, and no tile.
+unsigned tileBits(gpu::uint tiles);
 
 // The eyes of a list of visible splats: it holds what any of the eyes [first, first + count) sees, ordered by the distance from the middle
 // between the eyes, or without one by the depths of `order_eye`.
@@ -91,25 +80,16 @@ public:
     // The list of these, front to back: compact and sort_depth. Also again by the depths of another eye; visibility is then not determined
     // anew.
     void recordOrder(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes, Role role);
-    // The picture of an eye: project to rasterize.
-    void recordEye(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const Target& target, Role role);
-    // The same for some tiles only: the others stay as they are. Several pictures with equal tiles run beside each other, each with its
-    // share of the lists.
-    struct Patch {
-        Target target;
-        TileMask mask;
-    };
-    void recordTiles(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, std::span<const Patch> patches, Role role);
+    // The pictures: project to rasterize.
+    void recordPictures(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const Targets& targets, Role role);
 
 private:
     void recordCullPages(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes, Role role);
-    struct EyePart;
-    void record(std::span<const EyePart> parts);
-    void recordProjected(const EyePart& part);
-    void recordBinned(const EyePart& part);
-    void recordLargeBinned(const EyePart& part);
-    void recordTileRanges(const EyePart& part, const KeyValues& sorted);
-    void recordRasterized(const EyePart& part, const KeyValues& sorted);
+    struct Recording;
+    void recordProjected(const Recording& recording);
+    void recordBinned(const Recording& recording);
+    void recordTileRanges(const Recording& recording, const KeyValues& sorted);
+    void recordRasterized(const Recording& recording, const KeyValues& sorted);
     const Sort& sort();
 
     const Context& context_;

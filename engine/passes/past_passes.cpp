@@ -74,7 +74,7 @@ void PastPasses::recordChanged(Commands& commands, const PastInputs& in, gpu::De
     commands.dispatch(kernels_.get(MarkChangedKernel{}), pass, groupsOver(in.warp.tileCount(), gpu::kWarpGroup));
 }
 
-void PastPasses::recordChoice(Commands& commands, std::span<const PastInputs> eyes) {
+void PastPasses::recordChoice(Commands& commands, std::span<const PastInputs> eyes, gpu::uint at_once) {
     const PastInputs& first = eyes.front();
     const std::uint64_t target = FrameBuffers::targetField(first.index, 0);
     std::uint32_t most_tiles = 0;
@@ -93,10 +93,11 @@ void PastPasses::recordChoice(Commands& commands, std::span<const PastInputs> ey
     dispatch(PriceKernel{.foveated = foveated, .past = true},
              gpu::PricePass{
                  .targets = targets, .chosen = chosen, .price_bins = first.warp.bins(), .most_cost = mostCost(first.buffers.capacity())});
-    dispatch(
-        SelectKernel{.predicted = true, .past = true},
-        gpu::SelectPass{
-            .targets = targets, .chosen = chosen, .visible = first.buffers.state.address<gpu::ListState>(FrameBuffers::visibleList(0))});
+    dispatch(SelectKernel{.predicted = true, .past = true},
+             gpu::SelectPass{.targets = targets,
+                             .chosen = chosen,
+                             .visible = first.buffers.state.address<gpu::ListState>(FrameBuffers::visibleList(0)),
+                             .at_once = at_once});
 }
 
 }  // namespace binosplat

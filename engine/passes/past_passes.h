@@ -44,9 +44,9 @@ public:
     void recordWarp(Commands& commands, const PastInputs& in);
     // Between the two: marks where the scene changed since the past was made.
     void recordChanged(Commands& commands, const PastInputs& in, gpu::DeviceAddress<gpu::ChangedRect> rects, gpu::uint count);
-    // Chooses the tiles of all `eyes`, one target after the other, that are rendered again. The first one's WarpView has the budget, a
-    // share of all eyes' work.
-    void recordChoice(Commands& commands, std::span<const PastInputs> eyes);
+    // Chooses the tiles of all `eyes`, one target after the other, that are rendered again; `at_once` of them at the same time. The first
+    // one's WarpView has the budget, a share of all eyes' work.
+    void recordChoice(Commands& commands, std::span<const PastInputs> eyes, gpu::uint at_once);
 
 private:
     bool by_address_;

@@ -56,55 +56,22 @@ std::uint64_t Sort::histogramBytes(std::uint64_t items) {
 
 KeyValues Sort::record(Commands& commands, KeyValues in, KeyValues spare, gpu::DeviceAddress<gpu::uint> histograms, const Buffer& lists,
                        std::uint64_t list_bytes, unsigned key_bits) const {
-    Job job{in, spare, histograms, list_bytes};
-    record(commands, std::span(&job, 1), lists, key_bits);
-    return job.in;
-}
-
-void Sort::record(Commands& commands, std::span<Job> jobs, const Buffer& lists, unsigned key_bits) const {
-    const auto beside = [&](const Job& job) {
-        if (&job != jobs.data()) { commands.beside(); }
-    };
-    const auto countsOf = [](const Job& job) {
-        return job.histograms.at(gpu::kMaxDigits).at(std::uint64_t{gpu::kMaxSortRuns} * gpu::kMaxDigits);
-    };
-    const auto listOf = [&](const Job& job) { return lists.address<gpu::ListState>(job.list_bytes); };
-    const auto groupsOf = [](const Job& job) { return job.list_bytes + offsetof(gpu::ListState, per_sort_block); };
+    const auto run_sums = histograms.at(gpu::kMaxDigits), counts = run_sums.at(std::uint64_t{gpu::kMaxSortRuns} * gpu::kMaxDigits);
+    const auto list = lists.address<gpu::ListState>(list_bytes);
+    const std::uint64_t groups = list_bytes + offsetof(gpu::ListState, per_sort_block);
     // As few bits a round as will do.
     const unsigned rounds = roundsOf(key_bits);
     for (unsigned round = 0, shift = 0; round < rounds; ++round) {
         const unsigned bits = (key_bits - shift + rounds - round - 1) / (rounds - round);
         const gpu::uint digits = 1u << bits;
-        for (const Job& job : jobs) {
-            beside(job);
-            commands.dispatchIndirect(count_,
-                                      gpu::SortCountPass{.keys = job.in.keys,
-                                                         .histograms = countsOf(job),
-                                                         .run_sums = job.histograms.at(gpu::kMaxDigits),
-                                                         .digit_begins = job.histograms,
-                                                         .list = listOf(job),
-                                                         .shift = shift,
-                                                         .digits = digits},
-                                      lists, groupsOf(job));
-        }
-        for (Job& job : jobs) {
-            beside(job);
-            commands.dispatchIndirect(scatter_,
-                                      gpu::SortScatterPass{.keys_in = job.in.keys,
-                                                           .values_in = job.in.values,
-                                                           .keys_out = job.spare.keys,
-                                                           .values_out = job.spare.values,
-                                                           .histograms = countsOf(job),
-                                                           .run_sums = job.histograms.at(gpu::kMaxDigits),
-                                                           .digit_begins = job.histograms,
-                                                           .list = listOf(job),
-                                                           .shift = shift,
-                                                           .digits = digits},
-                                      lists, groupsOf(job));
-            std::swap(job.in, job.spare);
-        }
+        commands.dispatchIndirect(count_, gpu::SortCountPass{in.keys, counts, run_sums, histograms, list, shift, digits}, lists, groups);
+        commands.dispatchIndirect(
+            scatter_, gpu::SortScatterPass{in.keys, in.values, spare.keys, spare.values, counts, run_sums, histograms, list, shift, digits},
+            lists, groups);
+        std::swap(in, spare);
         shift += bits;
     }
+    return in;
 }
 
 }  // namespace binosplat

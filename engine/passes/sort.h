@@ -5,8 +5,6 @@
 #include "engine/gpu/commands.h"
 #include "shaders/shared/passes.h"
 
-#include <span>
-
 namespace binosplat {
 
 // Keys and their values, as two arrays.
@@ -34,14 +32,6 @@ public:
     // True if the result of `record` lies in `spare`.
     static bool endsInSpare(unsigned key_bits) { return roundsOf(key_bits) % 2 == 1; }
 
-    // A list to sort: its pairs, as much spare room, room for histograms, and its place in the buffer of lists.
-    struct Job {
-        KeyValues in, spare;
-        gpu::DeviceAddress<gpu::uint> histograms;
-        std::uint64_t list_bytes = 0;
-    };
-    // The same for several lists, round by round beside each other.
-    void record(Commands& commands, std::span<Job> jobs, const Buffer& lists, unsigned key_bits) const;
     // Sorts `in` by the lowest `key_bits` bits of its keys; `spare` is as large and is overwritten. Returns whichever of the two
     // holds the result. The length is that of the list at `list_bytes` of `lists`, whose count of workgroups is used.
     KeyValues record(Commands& commands, KeyValues in, KeyValues spare, gpu::DeviceAddress<gpu::uint> histograms, const Buffer& lists,

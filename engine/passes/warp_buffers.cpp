@@ -34,6 +34,7 @@ void WarpBuffers::tell(gpu::TargetState& target) const {
     target.tile_prices = tilePrices();
     target.tile_list = tileList();
     target.tile_mask = tileMask();
+    target.full_tiles = tilesWithPairs();
 }
 
 gpu::DeviceAddress<gpu::uint> WarpBuffers::arrivals(const Picture& target) const {

@@ -268,7 +268,7 @@ void WarpRecorder::price() {
 
 void WarpRecorder::select() {
     begin<SelectKernel>();
-    const gpu::SelectPass pass{.targets = target(), .chosen = chosen(), .visible = visible()};
+    const gpu::SelectPass pass{.targets = target(), .chosen = chosen(), .visible = visible(), .at_once = 1};
     dispatch(SelectKernel{.predicted = predicts()}, pass, tileGroups());
 }
 

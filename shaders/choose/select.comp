@@ -101,9 +101,15 @@ void main() [[subgroup_uniform_control_flow]] {
         atomicOr(Uints(TARGET.tile_mask).at[at.y * maskWords(size_tiles) + at.x / 32], 1u << (at.x & 31));
     }
     if (!isLastGroup(pass.chosen) || gl_LocalInvocationIndex != 0) { return; }
+    uint most = 0;
     for (uint target = 0; target < gl_NumWorkGroups.z; ++target) {
         const uint listed = atomicOr(pass.targets.at[target].chosen_tiles.needed, 0), visible = listed > 0 ? pass.visible.at[0].count : 0;
         pass.targets.at[target].chosen_tiles = makeList(listed, tilesOf(target));
         pass.targets.at[target].chosen_visible = makeList(visible, visible);
+        most = max(most, listed);
+    }
+    if (pass.at_once > 1) {
+        const DispatchSize size = dispatchOver(most, kGroupSize);
+        FIRST.chosen_tiles.per_item = DispatchSize(size.x, size.y, pass.at_once);
     }
 }

@@ -1,12 +1,17 @@
-// Writing the pairs of a splat. For shaders with a BinPass as `pass`.
+// Writing the pairs of a splat. For shaders with a BinPass as `pass`, after lib/list.glsl and lib/target.glsl.
+
+uint firstSplat() { return gl_WorkGroupID.z * pass.splats_apart; }
+
+// Where the pairs of the target's block of kListBlock splats begin.
+uint pairsBefore(uint block) { return pass.group_sums.at[gl_WorkGroupID.z * groupsOver(pass.visible.at[0].count, kListBlock) + block]; }
 
 // Where the `count` pairs of a splat lie, half open; empty if there is no room for the pairs of all splats.
 uvec2 pairsFrom(uint begin, uint count) { return pass.pairs.at[0].count > 0 ? uvec2(begin, begin + count) : uvec2(0); }
 
-// The next of `pairs`, if there is any.
-void putPair(inout uvec2 pairs, uvec2 tile, uint rank) {
+// The next of `pairs`, if there is any. `tile`: its number.
+void putPair(inout uvec2 pairs, uint tile, uint rank) {
     if (pairs.x >= pairs.y) { return; }
-    pass.tiles.at[pairs.x] = tile.y * pass.size_tiles.x + tile.x;
-    pass.ranks.at[pairs.x] = rank;
+    pass.tiles.at[pairs.x] = tile;
+    pass.ranks.at[pairs.x] = firstSplat() + rank;
     ++pairs.x;
 }

@@ -33,6 +33,7 @@ struct CullPass {
     uint first_eye;
     uint eye_count;
     uint capacity;          // of the list
+    uint at_once;           // how many targets are rendered from it at the same time
     Uints first_tile_mask;  // where only the chosen tiles of each eye count: lib/tile_mask.glsl
     Uints last_tile_mask;
 };
@@ -54,26 +55,26 @@ struct CompactPass {
     Place middle;    // between the eyes, if distances are the keys
 };
 
-// project: the visible splats, front to back, as one eye sees them, and how many tiles each meets.
+// project: the visible splats, front to back, as each eye sees them, and how many tiles each meets.
 struct ProjectPass {
     SceneChunks chunks;
-    EyeViews eyes;
-    Uints order;  // indices into the scene, front to back
+    EyeViews eyes;  // of the targets, from the first on
+    Uints order;    // indices into the scene, front to back
     ListStates visible;
     ProjectedSplats splats;    // out
     UVec2s tile_sets;          // out: lib/tile_set.glsl
     Uints tile_counts;         // out
-    CoherentUints group_sums;  // out: tiles before each block of kListBlock splats
+    CoherentUints group_sums;  // out: tiles before each block of kListBlock splats, those of one target after the other
     ListStates pairs;          // out: one for each tile that a splat meets
-    EyeCounterss counters;     // out
-    Uints tile_mask;           // under a mask: lib/tile_mask.glsl
+    TargetStates targets;
     uint chunk_bits;
-    uint eye;
-    uint capacity;  // of the pairs
+    uint splats_apart;  // of one target's splats, sets and counts to the next one's
+    uint capacity;      // of the pairs
 };
 
 // bin and bin_large: a (tile, splat) pair for each tile a splat meets, front to back.
 struct BinPass {
+    EyeViews eyes;
     ProjectedSplats splats;
     UVec2s tile_sets;
     Uints tile_counts;
@@ -82,32 +83,23 @@ struct BinPass {
     ListStates pairs;
     Uints tiles;         // out
     Uints ranks;         // out: indices into `splats`
-    Uints large_splats;  // out of bin, in no order: what is left to bin_large
+    Uints large_splats;  // out of bin, in no order: what is left to bin_large; of each target where its pairs begin
     Uints large_begins;  // out of bin: where the pairs of each begin
-    EyeCounterss counters;
-    Uints tile_mask;  // under a mask, as in ProjectPass
-    uvec2 size_tiles;
-    float low_pass;  // EyeView
+    TargetStates targets;
+    uint splats_apart;  // as in ProjectPass
+    uint all_tiles;     // of all targets
 };
 
 // tile_ranges: where each tile's pairs lie once sorted by tile. Under a mask also which tiles have any; the others become
 // background.
 struct TileRangesPass {
+    EyeViews eyes;
     Uints tiles;
-    ListStates pairs;         // also counts finished workgroups
-    UVec2s ranges;            // out: begin and end, equal where a tile has no pairs
-    Uints tile_list;          // under a mask: the tiles to render; null: all of them
-    ListStates masked_tiles;  // under a mask: how many
-    Uints full_tiles;         // out under a mask: the tiles with pairs; coarse ones from the end backwards
-    EyeCounterss counters;    // out under a mask: how many have pairs
-    FloatColours colours;     // out under a mask, for tiles without pairs; of half floats this is their address, too
-    Floats depths;            // the same, unless null
-    Uints moving;             // the same if the picture is going to be a past: infinitely far
-    PastTiles past_tiles;     // the same; otherwise null
-    ListStates visible;       // under a mask: the splats of the pairs
+    ListStates pairs;    // also counts finished workgroups
+    UVec2s ranges;       // out: begin and end, equal where a tile has no pairs
+    ListStates visible;  // under a mask: the splats of the pairs
+    TargetStates targets;
     vec3 background;
-    uvec2 size_px;
-    uint is_made;  // 1: every tile shows a picture warped from a past, which stays where lists had no room
 };
 
 // rasterize: blending, one workgroup per tile.
@@ -116,20 +108,10 @@ struct RasterizePass {
     ProjectedSplats splats;
     Uints ranks;
     UVec2s ranges;
-    FloatColours colours;   // out; of half floats this is their address, too
-    Floats depths;          // out where asked for, otherwise null: D = sum w z
-    Vec2s moments;          // out where asked for, otherwise null: I = sum w/z and J = sum w/z^2
-    Uints moving;           // out if the picture is going to be warped, otherwise null: lib/moving_pixel.glsl
-    Uints arrivals;         // out then, unless null: 0, since nothing has arrived in the other eye yet
-    Uints full_tiles;       // under a mask: the tiles to render
-    EyeCounterss counters;  // under a mask: how many
+    TargetStates targets;
     vec3 background;
-    uint eye;
-    uint row_words;        // of `moving` and `arrivals`
-    uint depth_choice;     // the depth that a pixel is warped by: kDepthInverse, or one of those that D tells
-    uint is_light;         // 1: colours and background are light, to be encoded once they are blended
-    uint is_made;          // as in TileRangesPass
-    PastTiles past_tiles;  // out if the picture is going to be a past; in, too, if it is made
+    uint depth_choice;  // the depth that a pixel is warped by: kDepthInverse, or one of those that D tells
+    uint is_light;      // 1: colours and background are light, to be encoded once they are blended
 };
 
 // weigh: predicted: which tiles are cheaper to render than to warp, and whether warping anything pays.
@@ -263,6 +245,7 @@ struct SelectPass {
     TargetStates targets;
     ListStates chosen;  // as in PricePass
     ListStates visible;
+    uint at_once;  // how many of the targets are rendered at the same time
 };
 
 // A stable radix sort of (key, value), up to 8 bits per round, reduce then scan: assumes neither forward progress between workgroups

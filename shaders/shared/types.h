@@ -240,37 +240,47 @@ BINOSPLAT_ARRAY_OF(PixelBox, PixelBoxes);
 
 // Counters that belong to no list: for the report, and for dispatches. And where the eye looks, if that decides on coarse tiles.
 struct EyeCounters {
-    uint large_splats;  // splats that bin left to bin_large
-    uint full_tiles;    // under a mask: tiles with pairs
-    uint coarse_tiles;  // tiles with pairs that are coarse, or are tried so
-    DispatchSize per_full_tile;
-    uint coarse_kept;    // of these, the ones that stay so
-    uint coarse_pairs;   // that are blended as samples
-    uint sharp_pairs;    // where tiles may be coarse: those that are blended in full
-    uint may_be_coarse;  // 1: what the eye does not see sharply is
+    uint pairs;                  // of tile and splat
+    uint large_splats;           // splats that bin left to bin_large
+    uint full_tiles;             // under a mask: tiles with pairs
+    uint coarse_tiles;           // tiles with pairs that are coarse, or are tried so
+    DispatchSize per_full_tile;  // of the first of several targets that are rendered at once: for all
+    uint coarse_kept;            // of these, the ones that stay so
+    uint coarse_pairs;           // that are blended as samples
+    uint sharp_pairs;            // where tiles may be coarse: those that are blended in full
+    uint may_be_coarse;          // 1: what the eye does not see sharply is
     EyeGaze gaze;
 };
 BINOSPLAT_ARRAY_OF(EyeCounters, EyeCounterss);
 
-// A picture in progress, its lists and where its tiles lie. A pass over several of them has the first one's address, and its z-th
-// workgroups work for the z-th.
+// A picture in progress: its lists, and where it lies. A pass over several targets has the first one's address, and its z-th workgroups
+// work for the z-th. Addresses are null where there is no such thing.
 struct TargetState {
-    // If it is made from another: of each tile
-    BINOSPLAT_STORED(Uints) tile_kinds;
-    BINOSPLAT_STORED(Uints) tile_costs;      // in pairs
-    BINOSPLAT_STORED(Uints) tile_errors;     // expected; where an eye does not resolve two rows: kSeenCoarsely
-    BINOSPLAT_STORED(Uints) tile_prices;     // bin << 22 | cost
-    BINOSPLAT_STORED(Uints) tile_list;       // those that are rendered, in no order
-    BINOSPLAT_STORED(Uints) tile_mask;       // the same, lib/tile_mask.glsl
+    BINOSPLAT_STORED(FloatColours) colours;  // of half floats this is their address, too
+    BINOSPLAT_STORED(Floats) depths;         // D = sum w z
+    BINOSPLAT_STORED(Vec2s) moments;         // I = sum w/z and J = sum w/z^2
+    BINOSPLAT_STORED(Uints) moving;          // if the picture is going to be warped: lib/moving_pixel.glsl
+    BINOSPLAT_STORED(Uints) arrivals;        // where these will arrive in the other eye
     BINOSPLAT_STORED(PastTiles) past_tiles;  // if it is going to be a past
-    ListState pairs;
+    BINOSPLAT_STORED(Uints) tile_mask;       // lib/tile_mask.glsl: the tiles that are rendered; null: all
+    BINOSPLAT_STORED(Uints) tile_list;       // the same, in no order, if passes chose them
+    BINOSPLAT_STORED(Uints) full_tiles;      // if tiles are chosen or may be coarse: those with pairs, coarse ones from the end backwards
+    // If passes choose tiles, of each tile:
+    BINOSPLAT_STORED(Uints) tile_kinds;
+    BINOSPLAT_STORED(Uints) tile_costs;   // in pairs
+    BINOSPLAT_STORED(Uints) tile_errors;  // expected; where an eye does not resolve two rows: kSeenCoarsely
+    BINOSPLAT_STORED(Uints) tile_prices;  // bin << 22 | cost
+    ListState pairs;                      // of the first target: those of all targets that are rendered at once
     EyeCounters counters;
     WarpView warp;  // if it is made from another
     WarpCounters warp_counters;
     PastView past;  // if it is made from its own past
     PastBlockList past_blocks;
-    ListState chosen_tiles;    // if it is made from either: those that are rendered
+    ListState chosen_tiles;    // if it is made from either: those that are rendered. Of the first target: per_item is for all
     ListState chosen_visible;  // its visible splats, or none if there is no such tile
+    uint first_tile;           // of its tiles, which are numbered through all targets that are rendered at once
+    uint row_words;            // of `moving` and `arrivals`
+    uint is_made;              // 1: every tile shows a picture warped from a past, which stays where lists have no room
     float area;                // of a pixel, in pixels of the eye's own picture: the weight of an error in it
 };
 BINOSPLAT_ALIGNED_ARRAY_OF(TargetState, 8, TargetStates);

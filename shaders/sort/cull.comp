@@ -146,4 +146,5 @@ void main() [[subgroup_uniform_control_flow]] {
         if (gl_LocalInvocationIndex == 0) { pass.group_counts.at[group] = visible_count; }
     }
     sumUp(pass.group_counts, group, groups, pass.visible, pass.capacity);
+    if (group_is_last != 0 && gl_LocalInvocationIndex == 0) { pass.visible.at[0].per_block.z = pass.at_once; }
 }

@@ -6,6 +6,8 @@
 #include "passes.h"
 #include "lib/group.glsl"
 #include "lib/tile_set.glsl"
+#include "lib/list.glsl"
+#include "lib/target.glsl"
 
 layout(local_size_x = kGroupSize) in;
 layout(push_constant, scalar) uniform Push { BinPass pass; };
@@ -13,15 +15,15 @@ layout(push_constant, scalar) uniform Push { BinPass pass; };
 #include "lib/pair.glsl"
 
 // Every lane of a workgroup must call it; it returns to none early, see lib/group.glsl.
-void listLarge(bool is_large, uint rank, uint begin) {
+void listLarge(bool is_large, uint rank, uint begin, uint first_pair) {
     const uvec4 large_lanes = subgroupBallot(is_large);
     const uint large = subgroupBallotBitCount(large_lanes);
     uint place = 0;
-    if (large > 0 && subgroupElect()) { place = atomicAdd(pass.counters.at[0].large_splats, large); }
+    if (large > 0 && subgroupElect()) { place = atomicAdd(TARGET.counters.large_splats, large); }
     place = subgroupBroadcastFirst(place) + subgroupBallotExclusiveBitCount(large_lanes);
     if (is_large) {
-        pass.large_splats.at[place] = rank;
-        pass.large_begins.at[place] = begin;
+        pass.large_splats.at[first_pair + place] = rank;
+        pass.large_begins.at[first_pair + place] = begin;
     }
 }
 
@@ -34,28 +36,30 @@ void main() [[subgroup_uniform_control_flow]] {
     uint counts[kPerThread];
     uint own = 0;
     [[unroll]] for (uint i = 0; i < kPerThread; ++i) {
-        counts[i] = first + i < splats ? pass.tile_counts.at[first + i] : 0;
+        counts[i] = first + i < splats ? pass.tile_counts.at[firstSplat() + first + i] : 0;
         own += counts[i];
     }
     uint of_group;
     uint begin = scanGroup(own, of_group);
-    if (group * kListBlock < splats) { begin += pass.group_sums.at[group]; }
+    if (group * kListBlock < splats) { begin += pairsBefore(group); }
+    const uint columns = pass.eyes.at[gl_WorkGroupID.z].size_tiles.x, first_tile = TARGET.first_tile, first_pair = pairsBefore(0);
     [[unroll]] for (uint i = 0; i < kPerThread; ++i) {
         const uint rank = first + i;
         uvec2 pairs = pairsFrom(begin, counts[i]);
         bool is_large = false;
         if (pairs.x < pairs.y) {
-            const uvec2 tile_set = pass.tile_sets.at[rank];
+            const uvec2 tile_set = pass.tile_sets.at[firstSplat() + rank];
             is_large = !isSmall(tile_set);
             uint bits = smallTiles(tile_set);
             if (bits != 0) {
                 [[dont_unroll]] do {
-                    putPair(pairs, uvec2(tileOfBit(tile_set, findLSB(bits))), rank);
+                    const uvec2 tile = uvec2(tileOfBit(tile_set, findLSB(bits)));
+                    putPair(pairs, first_tile + tile.y * columns + tile.x, rank);
                     bits &= bits - 1;
                 } while (bits != 0);
             }
         }
-        listLarge(is_large, rank, begin);
+        listLarge(is_large, rank, begin, first_pair);
         begin += counts[i];
     }
 }

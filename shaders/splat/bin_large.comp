@@ -6,6 +6,8 @@
 #include "lib/group.glsl"
 #include "lib/tile_set.glsl"
 #include "lib/tile_mask.glsl"
+#include "lib/list.glsl"
+#include "lib/target.glsl"
 
 layout(local_size_x = kBinLargeSize) in;
 layout(push_constant, scalar) uniform Push { BinPass pass; };
@@ -17,30 +19,31 @@ layout(constant_id = 1) const uint kSplatKind = kDiscs;  // dimmed or not makes 
 #include "lib/pair.glsl"
 
 // How many of a row's tiles from `begin` to `end` count.
-uint countRow(int row, uint begin, uint end) {
+uint countRow(Uints mask, uvec2 size_tiles, int row, uint begin, uint end) {
     if (!kMasked) { return end - begin; }
     uint tiles = 0, x = begin;
     if (x < end) {
         [[dont_unroll]] do {
-            tiles += bitCount(maskBits(pass.tile_mask, pass.size_tiles, row, x, wordEnd(x, end)));
+            tiles += bitCount(maskBits(mask, size_tiles, row, x, wordEnd(x, end)));
             x = wordEnd(x, end);
         } while (x < end);
     }
     return tiles;
 }
 
-void putRow(uvec2 pairs, int row, uint begin, uint end, uint rank) {
+void putRow(Uints mask, uvec2 size_tiles, uvec2 pairs, int row, uint begin, uint end, uint rank) {
+    const uint first = TARGET.first_tile + uint(row) * size_tiles.x;
     uint x = begin;
     if (x >= end) { return; }
     [[dont_unroll]] do {
         if (!kMasked) {
-            putPair(pairs, uvec2(x, row), rank);
+            putPair(pairs, first + x, rank);
             ++x;
         } else {
-            uint bits = maskBits(pass.tile_mask, pass.size_tiles, row, x, wordEnd(x, end));
+            uint bits = maskBits(mask, size_tiles, row, x, wordEnd(x, end));
             if (bits != 0) {
                 [[dont_unroll]] do {
-                    putPair(pairs, uvec2(x + findLSB(bits), row), rank);
+                    putPair(pairs, first + x + findLSB(bits), rank);
                     bits &= bits - 1;
                 } while (bits != 0);
             }
@@ -51,34 +54,37 @@ void putRow(uvec2 pairs, int row, uint begin, uint end, uint rank) {
 
 // The pairs of the splat at place `i` of the list. Every lane of a subgroup must call it.
 void putLarge(uint i, uint lanes) {
-    const uint rank = pass.large_splats.at[i];
-    const ivec4 box = largeBox(pass.tile_sets.at[rank]);
-    const Outline outline = outlineOfProjected(pass.splats.at[rank], pass.low_pass);
-    uvec2 pairs = pairsFrom(pass.large_begins.at[i], pass.tile_counts.at[rank]);
+    const uint rank = pass.large_splats.at[i], splat = firstSplat() + rank;
+    const ivec4 box = largeBox(pass.tile_sets.at[splat]);
+    const Outline outline = outlineOfProjected(pass.splats.at[splat], pass.eyes.at[gl_WorkGroupID.z].low_pass);
+    const uvec2 size_tiles = pass.eyes.at[gl_WorkGroupID.z].size_tiles;
+    Uints mask = Uints(kMasked ? TARGET.tile_mask : uvec2(0));
+    uvec2 pairs = pairsFrom(pass.large_begins.at[i], pass.tile_counts.at[splat]);
     int first_row = box.y;
     [[dont_unroll]] do {
         const int row = first_row + int(gl_SubgroupInvocationID);
         const ivec2 in_row = row < box.w ? tilesInRow(outline, uint(row), box) : ivec2(0);
         const uint begin = uint(in_row.x), end = uint(max(in_row.x, in_row.y));
-        const uint tiles = countRow(row, begin, end);
-        putRow(uvec2(pairs.x + subgroupExclusiveAdd(tiles), pairs.y), row, begin, end, rank);
+        const uint tiles = countRow(mask, size_tiles, row, begin, end);
+        putRow(mask, size_tiles, uvec2(pairs.x + subgroupExclusiveAdd(tiles), pairs.y), row, begin, end, rank);
         pairs.x += subgroupAdd(tiles);
         first_row += int(lanes);
     } while (first_row < box.w);
     // project counted no fewer. Should it count more, the rest become pairs of no tile, which are sorted last and never blended.
     for (uint pair = pairs.x + gl_SubgroupInvocationID; pair < pairs.y; pair += lanes) {
-        pass.tiles.at[pair] = pass.size_tiles.x * pass.size_tiles.y;
-        pass.ranks.at[pair] = rank;
+        pass.tiles.at[pair] = pass.all_tiles;
+        pass.ranks.at[pair] = splat;
     }
 }
 
 void main() [[subgroup_uniform_control_flow]] {
     const uint lanes = laneCount();
-    const uint large = pass.counters.at[0].large_splats;
+    const uint large = TARGET.counters.large_splats;
     uint i = gl_WorkGroupID.x * gl_NumSubgroups + gl_SubgroupID;
     if (i >= large) { return; }
+    const uint first = pairsBefore(0);
     [[dont_unroll]] do {
-        putLarge(i, lanes);
+        putLarge(first + i, lanes);
         i += gl_NumWorkGroups.x * gl_NumSubgroups;
     } while (i < large);
 }

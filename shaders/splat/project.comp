@@ -1,4 +1,4 @@
-// project: the visible splats, front to back, as one eye sees them, and how many tiles each meets. The last workgroup writes the length of
+// project: the visible splats, front to back, as each eye sees them, and how many tiles each meets. The last workgroup writes the length of
 // the list of pairs.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -23,6 +23,7 @@ layout(constant_id = 2) const uint kSplatKind = kDiscs;
 #include "lib/tile_set.glsl"
 #include "lib/tile_mask.glsl"
 #include "lib/sh.glsl"
+#include "lib/target.glsl"
 
 shared uint group_tiles;
 
@@ -31,6 +32,7 @@ uint countTiles(Outline outline, ivec4 box, uvec2 size_tiles, out uint small) {
     const bool fits = isSmallBox(box);
     uint tiles = 0;
     small = 0;
+    Uints mask = Uints(kMasked ? TARGET.tile_mask : uvec2(0));
     int row = box.y;
     if (row < box.w) {
         [[dont_unroll]] do {
@@ -44,7 +46,7 @@ uint countTiles(Outline outline, ivec4 box, uvec2 size_tiles, out uint small) {
                 const uint end = uint(max(in_row.x, in_row.y));
                 if (x < end) {
                     [[dont_unroll]] do {
-                        const uint bits = maskBits(pass.tile_mask, size_tiles, row, x, wordEnd(x, end));
+                        const uint bits = maskBits(mask, size_tiles, row, x, wordEnd(x, end));
                         small |= bits << (x - box.x + first_bit);
                         tiles += bitCount(bits);
                         x = wordEnd(x, end);
@@ -56,6 +58,9 @@ uint countTiles(Outline outline, ivec4 box, uvec2 size_tiles, out uint small) {
     }
     return fits ? bitCount(small) : tiles;
 }
+
+// Of the target.
+uint firstSplat() { return gl_WorkGroupID.z * pass.splats_apart; }
 
 // Projects a visible splat for this eye; returns how many tiles it meets.
 uint project(uint rank, EyeView eye) {
@@ -73,10 +78,10 @@ uint project(uint rank, EyeView eye) {
     const uint tiles = countTiles(outline, box, size_tiles, small);
     if (tiles > 0) {
         p.colour = uvec2(0, p.colour.y & 0xffff0000u) | packColour(shColour(pass.chunks, at, normalize(fromEye(eye, in_world.centre))));
-        pass.splats.at[rank] = p;
+        pass.splats.at[firstSplat() + rank] = p;
     }
     // Empty where the splat meets no tile: then there is no splat either.
-    pass.tile_sets.at[rank] = tiles > 0 ? packTileSet(box, small) : uvec2(0);
+    pass.tile_sets.at[firstSplat() + rank] = tiles > 0 ? packTileSet(box, small) : uvec2(0);
     return tiles;
 }
 
@@ -84,14 +89,14 @@ void main() [[subgroup_uniform_control_flow]] {
     const uint count = pass.visible.at[0].count;
     const uint group = groupIndex();
     if (gl_LocalInvocationIndex == 0) { group_tiles = 0; }
-    const EyeView eye = shareEye(pass.eyes, pass.eye);
+    const EyeView eye = shareEye(pass.eyes, gl_WorkGroupID.z);
     uint own_tiles = 0;
     uint rank = group * kListBlock + gl_LocalInvocationIndex;
     const uint end = min((group + 1) * kListBlock, count);
     [[dont_unroll]] do {
         if (rank < end) {
             const uint tiles = project(rank, eye);
-            pass.tile_counts.at[rank] = tiles;
+            pass.tile_counts.at[firstSplat() + rank] = tiles;
             own_tiles += tiles;
         }
         rank += kGroupSize;
@@ -99,7 +104,11 @@ void main() [[subgroup_uniform_control_flow]] {
     const uint subgroup_tiles = subgroupAdd(own_tiles);
     if (subgroupElect()) { atomicAdd(group_tiles, subgroup_tiles); }
     barrier();
-    if (gl_LocalInvocationIndex == 0 && group * kListBlock < count) { pass.group_sums.at[group] = group_tiles; }
+    const uint blocks = groupsOver(count, kListBlock);
+    if (gl_LocalInvocationIndex == 0 && group < blocks) {
+        pass.group_sums.at[gl_WorkGroupID.z * blocks + group] = group_tiles;
+        atomicAdd(TARGET.counters.pairs, group_tiles);
+    }
     // In one step: in two the shader takes more registers, which every frame would pay for.
-    if (isLastGroup(pass.pairs)) { sumUpAtOnce(pass.group_sums, groupsOver(count, kListBlock), pass.pairs, pass.capacity); }
+    if (isLastGroup(pass.pairs)) { sumUpAtOnce(pass.group_sums, gl_NumWorkGroups.z * blocks, pass.pairs, pass.capacity); }
 }

@@ -22,7 +22,7 @@ layout(constant_id = 3) const bool kHalfColours = false;
 layout(constant_id = 4) const uint kSplatKind = kDiscs;  // dimmed or not makes no difference here
 layout(local_size_x_id = 5) in;  // kCellsPerTile * kThreadsPerCell
 layout(constant_id = 6) const bool kEvenRows = false;  // an odd row is going to be warped like the even one above it
-layout(constant_id = 7) const bool kMasked = false;    // only the tiles of pass.full_tiles
+layout(constant_id = 7) const bool kMasked = false;    // only the tiles of its target's list
 layout(constant_id = 8) const bool kPast = false;      // the picture is going to be a past
 layout(constant_id = 9) const bool kCoarse = false;    // some tiles of the list may be coarse
 
@@ -32,6 +32,7 @@ layout(constant_id = 9) const bool kCoarse = false;    // some tiles of the list
 #include "lib/srgb.glsl"
 
 layout(push_constant, scalar) uniform Push { RasterizePass pass; };
+#include "lib/target.glsl"
 
 const uint kThreads = kCellsPerTile * kThreadsPerCell;
 const uint kPixels = kCellSize * kCellSize / kThreadsPerCell;  // of a thread: a column
@@ -67,8 +68,8 @@ uint cellsOf(ProjectedSplat splat, uvec2 tile_px, float low_pass) {
 }
 
 void loadSplat(uint slot, uint lanes_in_subgroup, uint rank, uvec2 tile_px, bool is_coarse) {
-    const vec2 middle_px = vec2(pass.eyes.at[pass.eye].size_px) * 0.5;
-    const float low_pass = pass.eyes.at[pass.eye].low_pass;
+    const vec2 middle_px = vec2(pass.eyes.at[gl_WorkGroupID.z].size_px) * 0.5;
+    const float low_pass = pass.eyes.at[gl_WorkGroupID.z].low_pass;
     const ProjectedSplat splat = pass.splats.at[rank];
     const bool has_reference = kSplatKind != kDiscs || hasReference(splat);
     const float scale = sqrt(kLog2PerRho);
@@ -194,29 +195,30 @@ uint toMove(float alpha, float depth_sum, vec2 inverse_depth_sums) {
 }
 
 // Adds the difference between a pixel and what was there before.
-void addError(inout float error, vec3 shown, HalfColours half_colours, uint at) {
-    const vec3 off = shown - colourAt(pass.colours, half_colours, at).rgb;
+void addError(inout float error, vec3 shown, uvec2 colours, uint at) {
+    const vec3 off = shown - colourAt(FloatColours(colours), HalfColours(colours), at).rgb;
     error += min(dot(off, off), kMaxPixelError);
 }
 
-bool isMade() { return kMasked && (!kCoarse || pass.is_made != 0); }
+bool isMade() { return kMasked && (!kCoarse || TARGET.is_made != 0); }
 
 // Writes what a picture that is made from this one must know of the tile; `sums` is what its quarters turned out to have had, and
 // `lost` the amplitude that it lacks.
 void leaveTile(uint tile, uint cost, vec4 sums, float lost) {
     const vec4 amplitude = isMade() ? sqrt(sums / (kErrorSteps * 3 * kCellSize * kCellSize)) : vec4(0);
-    const uint age = isMade() ? pass.past_tiles.at[tile].age : 0;  // 0: nothing was there
+    PastTiles past_tiles = PastTiles(TARGET.past_tiles);
+    const uint age = isMade() ? past_tiles.at[tile].age : 0;  // 0: nothing was there
     // What was wrong because nobody had seen it says nothing of later frames.
-    const vec4 expected = age > 0 ? sqrt(vec4(pass.past_tiles.at[tile].grown) / (kErrorSteps * 3 * kCellSize * kCellSize)) : vec4(1);
+    const vec4 expected = age > 0 ? sqrt(vec4(past_tiles.at[tile].grown) / (kErrorSteps * 3 * kCellSize * kCellSize)) : vec4(1);
     const vec4 growth = mix(amplitude / float(max(age, 1)), vec4(0), greaterThanEqual(expected, vec4(kUnseenGrowth)));
-    pass.past_tiles.at[tile] = PastTile(cost, 0, growth, vec4(0), uvec4(0), lost);
+    past_tiles.at[tile] = PastTile(cost, 0, growth, vec4(0), uvec4(0), lost);
 }
 
 // Blends the tile or, if they are coarse, each cell its own: the sums of the thread's pixels. `first_px`: of the first of these.
 void blendTile(uint lanes, uvec2 range, uvec2 tile_px, vec2 first_px, bool is_coarse) {
     const float apart = is_coarse ? kSamplesApart : 1;
-    const uint max_inverse_depth_bits = floatBitsToUint(pass.eyes.at[pass.eye].max_inverse_depth);
-    const uvec2 size_px = pass.eyes.at[pass.eye].size_px;
+    const uint max_inverse_depth_bits = floatBitsToUint(pass.eyes.at[gl_WorkGroupID.z].max_inverse_depth);
+    const uvec2 size_px = pass.eyes.at[gl_WorkGroupID.z].size_px;
     any_open = false;
     [[unroll]] for (uint p = 0; p < kPixels; ++p) {
         colour[p] = vec3(0);
@@ -272,10 +274,12 @@ vec3 shownOf(vec3 sum, float left) {
 
 // Writes the tile's pixels.
 void putTile(uint tile, uvec2 range, uvec2 first_pixel) {
-    const uvec2 size_px = pass.eyes.at[pass.eye].size_px;
-    const bool clears_arrivals = isThere(uvec2(pass.arrivals)), keeps_moments = kMoments && !kEvenRows && !kPast && isThere(uvec2(pass.moments)),
-               moves = kEvenRows || kPast || (kMoments && isThere(uvec2(pass.moving)));
-    HalfColours half_colours = HalfColours(uvec2(pass.colours));
+    const uvec2 size_px = pass.eyes.at[gl_WorkGroupID.z].size_px;
+    const bool may_move = kEvenRows || kPast || kMoments, may_keep = kMoments && !kEvenRows && !kPast;
+    const uvec2 colours = TARGET.colours, depths = kDepth ? TARGET.depths : uvec2(0), sums = may_keep ? TARGET.moments : uvec2(0),
+                moving = may_move ? TARGET.moving : uvec2(0), arrivals = may_move ? TARGET.arrivals : uvec2(0);
+    const bool clears_arrivals = isThere(arrivals), keeps_moments = may_keep && isThere(sums), moves = kEvenRows || kPast || (kMoments && isThere(moving));
+    const uint row_words = may_move ? TARGET.row_words : 0;
     float error = 0;
     [[unroll]] for (uint p = 0; p < kPixels; ++p) {
         const uvec2 pixel = first_pixel + uvec2(0, p);
@@ -283,13 +287,13 @@ void putTile(uint tile, uvec2 range, uvec2 first_pixel) {
             const uint at = pixel.y * size_px.x + pixel.x;
             const float left = abs(transmittance[p]);
             const vec3 shown = shownOf(colour[p], left);
-            if (kPast && isMade()) { addError(error, shown, half_colours, at); }
-            putColour(pass.colours, half_colours, at, vec4(shown, 1 - left));
-            if (kDepth && isThere(uvec2(pass.depths))) { pass.depths.at[at] = depth[p]; }
-            if (keeps_moments) { pass.moments.at[at] = moments[p]; }
+            if (kPast && isMade()) { addError(error, shown, colours, at); }
+            putColour(FloatColours(colours), HalfColours(colours), at, vec4(shown, 1 - left));
+            if (kDepth && isThere(depths)) { Floats(depths).at[at] = depth[p]; }
+            if (keeps_moments) { Vec2s(sums).at[at] = moments[p]; }
             if (moves && (!kEvenRows || (pixel.y & 1) == 0)) {
-                pass.moving.at[pixel.y * pass.row_words + pixel.x] = toMove(1 - left, depth[p], moments[p]);
-                if (clears_arrivals) { pass.arrivals.at[pixel.y * pass.row_words + pixel.x] = 0; }
+                Uints(moving).at[pixel.y * row_words + pixel.x] = toMove(1 - left, depth[p], moments[p]);
+                if (clears_arrivals) { Uints(arrivals).at[pixel.y * row_words + pixel.x] = 0; }
             }
         }
     }
@@ -320,17 +324,18 @@ uint fillTiles(uint tile, uvec2 tile_px, uvec2 range) {
     barrier();
     const float lost = kCoarseLoss * float(cell_details[cellIndex()]);
     if (indexInCell() == 0 && is_there) {
-        const bool is_seen = seenShareThere(pass.counters.at[0].gaze, tile_px / kTileSize) * lost >= kLeastSeenError * kErrorSteps;
+        const bool is_seen = seenShareThere(TARGET.counters.gaze, tile_px / kTileSize) * lost >= kLeastSeenError * kErrorSteps;
         if (is_seen) { atomicOr(sharp_cells, 1u << cellIndex()); }
-        atomicAdd(pass.counters.at[0].coarse_kept, is_seen ? 0 : 1);
-        atomicAdd(pass.counters.at[0].coarse_pairs, range.y - range.x);
+        atomicAdd(TARGET.counters.coarse_kept, is_seen ? 0 : 1);
+        atomicAdd(TARGET.counters.coarse_pairs, range.y - range.x);
     }
     barrier();
     const uint sharp = sharp_cells;
     const bool is_filled = is_there && (sharp & (1u << cellIndex())) == 0;
     float error = 0;
     if (is_filled) {
-        HalfColours half_colours = HalfColours(uvec2(pass.colours));
+        const uvec2 colours = TARGET.colours, depths = kDepth ? TARGET.depths : uvec2(0), moving = kPast ? TARGET.moving : uvec2(0);
+        const uint width = pass.eyes.at[gl_WorkGroupID.z].size_px.x;
         for (uint task = indexInCell(); task < 2 * kTileSize; task += kThreadsPerCell) {
             const int x = int(task % kTileSize);
             const bool is_lower = task >= kTileSize;
@@ -341,11 +346,11 @@ uint fillTiles(uint tile, uvec2 tile_px, uvec2 range) {
                 const int y = mirrored(p, int(kTileSize) - 1, is_lower);
                 const ivec2 nearest = ivec2(x, y) / 2;
                 const uvec2 pixel = tile_px + uvec2(x, y);
-                const uint at = pixel.y * pass.eyes.at[pass.eye].size_px.x + pixel.x;
-                if (kPast && isMade()) { addError(error, filled.rgb, half_colours, at); }
-                putColour(pass.colours, half_colours, at, filled);
-                if (kDepth && isThere(uvec2(pass.depths))) { pass.depths.at[at] = filled.a * sampleDepth(cellIndex(), nearest); }
-                if (kPast) { pass.moving.at[pixel.y * pass.row_words + pixel.x] = sampleWord(cellIndex(), nearest); }
+                const uint at = pixel.y * width + pixel.x;
+                if (kPast && isMade()) { addError(error, filled.rgb, colours, at); }
+                putColour(FloatColours(colours), HalfColours(colours), at, filled);
+                if (kDepth && isThere(depths)) { Floats(depths).at[at] = filled.a * sampleDepth(cellIndex(), nearest); }
+                if (kPast) { Uints(moving).at[pixel.y * width + pixel.x] = sampleWord(cellIndex(), nearest); }
                 ++p;
             } while (p < kHalfTile);
         }
@@ -361,24 +366,25 @@ uint fillTiles(uint tile, uvec2 tile_px, uvec2 range) {
     return sharp;
 }
 
-uint coarseTileAt(uint place, uvec2 size_tiles) { return pass.full_tiles.at[size_tiles.x * size_tiles.y - 1 - place]; }
+uint coarseTileAt(uint place, uvec2 size_tiles) { return Uints(TARGET.full_tiles).at[size_tiles.x * size_tiles.y - 1 - place]; }
 
 void main() [[subgroup_uniform_control_flow]] {
     const uint lanes = laneCount();
     const uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
-    const uint full_tiles = kMasked ? pass.counters.at[0].full_tiles : 0, coarse_tiles = kCoarse ? pass.counters.at[0].coarse_tiles : 0;
+    const uint full_tiles = kMasked ? TARGET.counters.full_tiles : 0, coarse_tiles = kCoarse ? TARGET.counters.coarse_tiles : 0;
     const uint coarse_groups = (coarse_tiles + kCellsPerTile - 1) / kCellsPerTile;  // the first ones, since they may take longest
     if (kMasked && group >= coarse_groups + full_tiles) { return; }
-    const uvec2 size_tiles = pass.eyes.at[pass.eye].size_tiles;
+    const uvec2 size_tiles = pass.eyes.at[gl_WorkGroupID.z].size_tiles;
+    const uint first_tile = TARGET.first_tile;
     bool is_coarse = kCoarse && group < coarse_groups;
     const uint place = group * kCellsPerTile + cellIndex();
     uint tile = is_coarse  ? coarseTileAt(min(place, coarse_tiles - 1), size_tiles)
-                : kMasked ? pass.full_tiles.at[spread(group - coarse_groups, full_tiles)]
+                : kMasked ? Uints(TARGET.full_tiles).at[spread(group - coarse_groups, full_tiles)]
                           : spread(gl_WorkGroupID.y, gl_NumWorkGroups.y) * gl_NumWorkGroups.x + gl_WorkGroupID.x;
     uint again = 0;  // cells whose coarse tile is to be blended in full
     [[dont_unroll]] do {
         const uvec2 tile_px = uvec2(tile % size_tiles.x, tile / size_tiles.x) * kTileSize;
-        const uvec2 range = is_coarse && place >= coarse_tiles ? uvec2(0) : pass.ranges.at[tile];
+        const uvec2 range = is_coarse && place >= coarse_tiles ? uvec2(0) : pass.ranges.at[first_tile + tile];
         const uvec2 in_cell = uvec2(indexInCell() % kCellSize, indexInCell() / kCellSize * kPixels);
         const uvec2 first_pixel = tile_px + kCellSize * uvec2(cellIndex() & 1, cellIndex() >> 1) + in_cell;
         blendTile(lanes, range, tile_px, is_coarse ? kSamplesApart * vec2(in_cell) + 0.5 : vec2(first_pixel - tile_px) + 0.5, is_coarse);
@@ -386,7 +392,7 @@ void main() [[subgroup_uniform_control_flow]] {
             again = fillTiles(tile, tile_px, range);
         } else {
             putTile(tile, range, first_pixel);
-            if (kCoarse && gl_LocalInvocationIndex == 0) { atomicAdd(pass.counters.at[0].sharp_pairs, range.y - range.x); }
+            if (kCoarse && gl_LocalInvocationIndex == 0) { atomicAdd(TARGET.counters.sharp_pairs, range.y - range.x); }
         }
         if (!kCoarse || again == 0) { break; }
         tile = coarseTileAt(group * kCellsPerTile + uint(findLSB(again)), size_tiles);

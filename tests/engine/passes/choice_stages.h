@@ -84,7 +84,7 @@ inline std::vector<Chosen> chooseOnDevice(Gpu& gpu, const std::vector<Tiles>& ey
         if (how.predicted) {
             commands.dispatch(price, gpu::PricePass{first, first_list, bins.address<gpu::uint>(), how.most_cost}, groups, 1, count);
         }
-        commands.dispatch(select, gpu::SelectPass{first, first_list, visible.address<gpu::ListState>()}, groups, 1, count);
+        commands.dispatch(select, gpu::SelectPass{first, first_list, visible.address<gpu::ListState>(), 1}, groups, 1, count);
     });
     targets = gpu.readBack<gpu::TargetState>(states, eyes.size());
     std::vector<Chosen> chosen;

@@ -106,7 +106,7 @@ inline gpu::ProjectedSplat toDevice(const reference::ProjectedSplat& splat) {
 // What project leaves for a list of splats, on the device.
 struct ProjectedOnDevice {
     std::uint32_t count;
-    Buffer list, order, splats, tile_sets, tile_counts, group_sums, pairs, counters;
+    Buffer list, order, splats, tile_sets, tile_counts, group_sums, pairs, target;
 };
 
 // `tile_mask`, if it is not null, has the bits of the tiles that count (shaders/lib/tile_mask.glsl).
@@ -116,6 +116,8 @@ inline ProjectedOnDevice projectOnDevice(Gpu& gpu, const SceneOnDevice& device, 
                                                     .masked = tile_mask.value != 0,
                                                     .splat_kind = device.scene.splatKind()});
     const std::size_t count = order.size();
+    gpu::TargetState state{};
+    state.tile_mask = tile_mask;
     ProjectedOnDevice result{static_cast<std::uint32_t>(count),
                              gpu.upload("list", std::vector{makeList(count)}),
                              gpu.upload("order", order),
@@ -124,7 +126,7 @@ inline ProjectedOnDevice projectOnDevice(Gpu& gpu, const SceneOnDevice& device, 
                              gpu.allocate<std::uint32_t>("tile counts", count),
                              gpu.allocate<std::uint32_t>("group sums", (count + gpu::kListBlock - 1) / gpu::kListBlock),
                              gpu.upload("pairs", std::vector{gpu::ListState{}}),
-                             gpu.upload("counters", std::vector{gpu::EyeCounters{}})};
+                             gpu.upload("target", std::vector{state})};
     gpu::ProjectPass pass{};
     pass.chunks = device.scene.chunks();
     pass.eyes = device.eyeViews();
@@ -136,8 +138,7 @@ inline ProjectedOnDevice projectOnDevice(Gpu& gpu, const SceneOnDevice& device, 
     pass.group_sums = result.group_sums.address<gpu::uint>();
     pass.pairs = result.pairs.address<gpu::ListState>();
     pass.capacity = pair_capacity;
-    pass.counters = result.counters.address<gpu::EyeCounters>();
-    pass.tile_mask = tile_mask;
+    pass.targets = result.target.address<gpu::TargetState>();
     pass.chunk_bits = device.scene.chunkBits();
     gpu.run([&](Commands& commands) { commands.dispatchIndirect(kernel, pass, result.list, offsetof(gpu::ListState, per_block)); });
     return result;

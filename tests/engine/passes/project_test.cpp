@@ -119,6 +119,7 @@ std::vector<TilePair> binOnDevice(Gpu& gpu, const ViewedScene& view, const TwinS
     const Buffer tiles = gpu.allocate<gpu::uint>("tiles", capacity), ranks = gpu.allocate<gpu::uint>("ranks", capacity);
     const Buffer large = gpu.allocate<gpu::uint>("large splats", capacity), begins = gpu.allocate<gpu::uint>("large begins", capacity);
     gpu::BinPass pass{};
+    pass.eyes = device.eyeViews();
     pass.splats = projected.splats.address<gpu::ProjectedSplat>();
     pass.tile_sets = projected.tile_sets.address<gpu::uvec2>();
     pass.tile_counts = projected.tile_counts.address<gpu::uint>();
@@ -129,10 +130,8 @@ std::vector<TilePair> binOnDevice(Gpu& gpu, const ViewedScene& view, const TwinS
     pass.ranks = ranks.address<gpu::uint>();
     pass.large_splats = large.address<gpu::uint>();
     pass.large_begins = begins.address<gpu::uint>();
-    pass.counters = projected.counters.address<gpu::EyeCounters>();
-    pass.tile_mask = tile_mask;
-    pass.size_tiles = (view.eye.size_px + 15u) / 16u;
-    pass.low_pass = viewOf(view.eye, 0.2).low_pass;
+    pass.targets = projected.target.address<gpu::TargetState>();
+    pass.all_tiles = static_cast<gpu::uint>(test::tileCount(view.eye.size_px));
     gpu.run([&](Commands& commands) {
         commands.dispatchIndirect(kernel, pass, projected.list, offsetof(gpu::ListState, per_block));
         commands.dispatch(large_kernel, pass, gpu::kBinLargeGroups);

@@ -26,33 +26,37 @@ Ranges rangesOnDevice(Gpu& gpu, const std::vector<std::uint32_t>& sorted_tiles, 
     const glm::uvec2 size_tiles = (size_px + 15u) / 16u;
     const std::size_t tile_count = std::size_t{size_tiles.x} * size_tiles.y;
     const Buffer tiles = gpu.upload("tiles", sorted_tiles), pairs = gpu.upload("pairs", std::vector{test::makeList(sorted_tiles.size())});
-    const Buffer list = gpu.upload("tile list", listed), masked = gpu.upload("masked tiles", std::vector{test::makeList(listed.size())});
+    const Buffer list = gpu.upload("tile list", listed);
     const Buffer ranges = gpu.upload("ranges", std::vector(tile_count, glm::uvec2(7)));
     const Buffer full = gpu.upload("full tiles", std::vector<gpu::uint>(tile_count, 7));
-    const Buffer counters = gpu.upload("counters", std::vector{gpu::EyeCounters{}});
     const Buffer colours = half_floats ? gpu.upload("colours", std::vector(pixels, glm::uvec2(0x47004700u)))
                                        : gpu.upload("colours", std::vector(pixels, glm::vec4(7.0f)));
     const Buffer depths = gpu.upload("depths", std::vector(pixels, 7.0f));
+    gpu::EyeView eye{};
+    eye.size_px = size_px;
+    eye.size_tiles = size_tiles;
+    gpu::TargetState state{};
+    state.colours = colours.address<gpu::vec4>();
+    state.depths = depths.address<float>();
+    state.tile_list = list.address<gpu::uint>();
+    state.full_tiles = full.address<gpu::uint>();
+    state.chosen_tiles = test::makeList(listed.size());
+    const Buffer target = gpu.upload("target", std::vector{state}), eyes = gpu.upload("eyes", std::vector{eye});
     gpu::TileRangesPass pass{};
+    pass.eyes = eyes.address<gpu::EyeView>();
     pass.tiles = tiles.address<gpu::uint>();
     pass.pairs = pairs.address<gpu::ListState>();
     pass.ranges = ranges.address<gpu::uvec2>();
-    pass.tile_list = list.address<gpu::uint>();
-    pass.masked_tiles = masked.address<gpu::ListState>();
-    pass.full_tiles = full.address<gpu::uint>();
-    pass.counters = counters.address<gpu::EyeCounters>();
-    pass.colours = colours.address<gpu::vec4>();
-    pass.depths = depths.address<float>();
+    pass.targets = target.address<gpu::TargetState>();
     pass.background = kBackground;
-    pass.size_px = size_px;
     gpu.run([&](Commands& commands) {
         if (is_masked) {
-            commands.dispatchIndirect(kernel, pass, masked, offsetof(gpu::ListState, per_item));
+            commands.dispatchIndirect(kernel, pass, target, offsetof(gpu::TargetState, chosen_tiles) + offsetof(gpu::ListState, per_item));
         } else {
             commands.dispatchOver(kernel, pass, tile_count);
         }
     });
-    const gpu::EyeCounters counted = gpu.readBack<gpu::EyeCounters>(counters, 1)[0];
+    const gpu::EyeCounters counted = gpu.readBack<gpu::TargetState>(target, 1)[0].counters;
     Ranges result{.ranges = gpu.readBack<glm::uvec2>(ranges, tile_count),
                   .full = gpu.readBack<gpu::uint>(full, counted.full_tiles),
                   .groups = {counted.per_full_tile.x, counted.per_full_tile.y, counted.per_full_tile.z},
@@ -81,7 +85,7 @@ struct Raster {
         pass.splats = splats_.address<gpu::ProjectedSplat>();
         pass.ranks = ranks_.address<gpu::uint>();
         pass.ranges = ranges_.address<gpu::uvec2>();
-        pass.colours = colours.address<glm::vec4>();
+        state.colours = colours.address<glm::vec4>();
         pass.depth_choice = gpu::kDepthInverse;
         pass.background = kBackground;
     }
@@ -99,6 +103,8 @@ struct Raster {
         variant.splat_kind = test::shapeOf(staged.view.scene);
         const Kernel& kernel = gpu_.kernel(variant);
         const glm::uvec2 size_tiles = tilesOf(staged.view.eye.size_px);
+        const Buffer target = gpu_.upload("target", std::vector{state});
+        pass.targets = target.address<gpu::TargetState>();
         gpu_.run([&](Commands& commands) { commands.dispatch(kernel, pass, size_tiles.x, size_tiles.y); });
     }
 
@@ -106,6 +112,7 @@ struct Raster {
     std::size_t pixels;
     Buffer colours;
     gpu::RasterizePass pass{};
+    gpu::TargetState state{};
 
 private:
     Gpu& gpu_;
@@ -117,9 +124,9 @@ constexpr gpu::uint kUnwritten = 0xcdcdcdcdu;
 std::vector<gpu::uint> wordsOnDevice(Gpu& gpu, Raster& raster, const RasterizeKernel& variant) {
     const std::size_t width = raster.staged.view.eye.size_px.x;
     const Buffer rows = gpu.upload("rows", std::vector<gpu::uint>(4 * raster.pixels, kUnwritten));
-    raster.pass.arrivals = rows.address<gpu::uint>();
-    raster.pass.moving = rows.address<gpu::uint>(width * sizeof(gpu::uint));
-    raster.pass.row_words = static_cast<gpu::uint>(4 * width);
+    raster.state.arrivals = rows.address<gpu::uint>();
+    raster.state.moving = rows.address<gpu::uint>(width * sizeof(gpu::uint));
+    raster.state.row_words = static_cast<gpu::uint>(4 * width);
     raster.run(variant);
     return gpu.readBack<gpu::uint>(rows, 4 * raster.pixels);
 }
