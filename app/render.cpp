@@ -129,7 +129,7 @@ void runRender(const RenderOptions& options) {
     if (path) {
         const double units_per_metre = 1.0 / options.run.metres_per_unit;
         const PathReport said{context.deviceName(), used, cameras,
-                              renderPath(frame, live, settings, cameras, units_per_metre, *path, files)};
+                              renderPath(frame, live, settings, cameras, stereo.axes, units_per_metre, *path, files)};
         report(said);
         warnOfBlindFrames(said, positions);
     } else {

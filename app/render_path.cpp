@@ -5,8 +5,10 @@
 #include "app/terminal/interrupt.h"
 #include "app/terminal/progress.h"
 #include "engine/error.h"
+#include "engine/frame/staying_axes.h"
 #include "engine/picture/image_io.h"
 #include "engine/picture/roi_picture.h"
+#include "engine/picture/turned.h"
 
 #include <fmt/format.h>
 
@@ -60,18 +62,24 @@ HeadPath readHeadPath(const RenderOptions& options) {
     return {std::move(motion), std::move(times_s)};
 }
 
-std::vector<PathFrame> renderPath(StereoFrame& frame, LiveScene* live, const FrameSettings& path_settings, const Cameras& start,
+std::vector<PathFrame> renderPath(StereoFrame& frame, LiveScene* live, const FrameSettings& path_settings, const Cameras& start, Axes kind,
                                   double units_per_metre, const HeadPath& path, OutputFiles& files) {
     FrameSettings settings = path_settings;
     settings.units_per_metre = units_per_metre;
     settings.keep_past = true;
-    const bool mono = settings.mode == Mode::kMono;
+    const bool stay = kind == Axes::kStay, mono = settings.mode == Mode::kMono;
     std::vector<PathFrame> frames;
+    StayingAxes axes(glm::radians(kAxesMarginDegrees));
     ProgressLine line(fmt::format("rendering {} frames", path.times_s.size()));
     for (const double time_s : path.times_s) {
         const Pose world_from_middle = path.motion.cameraAt(time_s, start.middle.world_from_camera, units_per_metre);
         const Cameras cameras = moveCameras(start, world_from_middle);
-        const std::span<const Eye> eyes = mono ? std::span(&cameras.middle, 1) : std::span<const Eye>(cameras.eyes);
+        const std::span<const Eye> views = mono ? std::span(&cameras.middle, 1) : std::span<const Eye>(cameras.eyes);
+        const std::span<const Eye> eyes = stay ? axes.follow(views) : views;
+        if (stay) {
+            settings.hidden_tiles = axes.hiddenTiles();
+            settings.gazes = turnGazes(path_settings.gazes, views, eyes);
+        }
         if (live != nullptr) {
             live->setTime(time_s - path.times_s.front());
             settle(*live, eyes);
@@ -84,7 +92,9 @@ std::vector<PathFrame> renderPath(StereoFrame& frame, LiveScene* live, const Fra
         int eye = 0;
         for (const std::string_view name : eyeNames(mono)) {
             stopIfInterrupted();
-            writePicture(files.staging() / pictureName(frames.size(), name), PictureKind::kDisplay, frame.readPicture(eye++));
+            writePicture(files.staging() / pictureName(frames.size(), name), PictureKind::kDisplay,
+                         showTurned(frame.readPicture(eye), eyes[static_cast<std::size_t>(eye)], views[static_cast<std::size_t>(eye)]));
+            ++eye;
         }
         frames.push_back({time_s, cameras, std::move(result)});
     }

@@ -23,7 +23,7 @@ HeadPath readHeadPath(const RenderOptions& options);
 
 // Renders every frame and stages its pictures in `files`; cameras begin at `start` and move with the head. Each frame waits until all that
 // it needs of a `live` scene is there (null: the scene is whole); a moving scene begins with its first frame.
-std::vector<PathFrame> renderPath(StereoFrame& frame, LiveScene* live, const FrameSettings& settings, const Cameras& start,
+std::vector<PathFrame> renderPath(StereoFrame& frame, LiveScene* live, const FrameSettings& settings, const Cameras& start, Axes kind,
                                   double units_per_metre, const HeadPath& path, OutputFiles& files);
 
 }  // namespace binosplat

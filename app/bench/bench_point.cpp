@@ -5,6 +5,7 @@
 #include "app/options/modes.h"
 #include "app/report/report.h"
 #include "app/terminal/interrupt.h"
+#include "engine/frame/staying_axes.h"
 #include "engine/reference/coarse.h"
 #include "engine/reference/reference.h"
 
@@ -168,7 +169,8 @@ StereoFrame& MethodFrames::frameFor(const BenchMethod& method) {
 }
 
 MethodFrames::Rendered MethodFrames::render(const Cameras& full_cameras, const CameraOptions& camera, const BenchMethod& method,
-                                            bool compared, bool keep_past, const std::optional<GovernedSettings>& chosen) {
+                                            bool compared, bool keep_past, const Cameras* views,
+                                            const std::optional<GovernedSettings>& chosen) {
     stopIfInterrupted();
     StereoOptions stereo = method.stereo;
     if (chosen) { stereo.warp.error_bound_db = chosen->error_bound_db; }
@@ -182,7 +184,13 @@ MethodFrames::Rendered MethodFrames::render(const Cameras& full_cameras, const C
     settings.keep_depth = false;       // nobody reads it here, so a mode pays for it only if it needs it itself
     StereoFrame& frame = frameFor(method);
     const std::span<const Eye> eyes = settings.mode == Mode::kMono ? std::span(&cameras.middle, 1) : std::span<const Eye>(cameras.eyes);
-    return {frame.render(eyes, settings), &frame, full_cameras.middle.size_px};
+    std::array<std::vector<std::uint8_t>, 2> hidden;
+    for (std::size_t e = 0; views != nullptr && e < eyes.size(); ++e) {
+        hidden[e] = hiddenFrom(views->eyes[e], eyes[e]);
+        settings.hidden_tiles[e] = hidden[e];
+    }
+    if (views != nullptr) { settings.gazes = turnGazes(gazesOf(*views, stereo), views->eyes, eyes); }
+    return {frame.render(eyes, settings), &frame, full_cameras.eyes[0].size_px};
 }
 
 std::uint64_t MethodFrames::peakAlone(const Cameras& cameras, const CameraOptions& camera, const BenchMethod& method) {

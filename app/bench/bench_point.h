@@ -33,9 +33,10 @@ public:
     };
     // `compared`: for pictures that are read and compared, with the origin of each pixel
     // and counters that cost time; otherwise as in the viewer. `keep_past`: see
-    // FrameSettings. `chosen`: in place of the method's resolution and bound.
+    // FrameSettings. `views`: if the cameras' pictures cover more than is seen, what is seen. `chosen`: in place of the method's
+    // resolution and bound.
     Rendered render(const Cameras& full_cameras, const CameraOptions& camera, const BenchMethod& method, bool compared = false,
-                    bool keep_past = false, const std::optional<GovernedSettings>& chosen = {});
+                    bool keep_past = false, const Cameras* views = nullptr, const std::optional<GovernedSettings>& chosen = {});
 
     // The program's peak memory, in bytes, while it holds only this method's buffers, as in the viewer. Frees the buffers of all other
     // methods.

@@ -2,6 +2,7 @@
 #include "app/bench/motion_point.h"
 
 #include "engine/picture/metrics.h"
+#include "engine/picture/turned.h"
 #include "engine/picture/visible_errors.h"
 
 #include <algorithm>
@@ -102,52 +103,74 @@ MotionPoint::MotionPoint(const Context& context, const GpuScene& scene, const Ru
         MethodHistory& sequence = sequences_.emplace_back(MethodHistory{method, {}});
         if (frame_ms > 0.0 && method.stereo.mode == Mode::kTemporal && method.resolution == 1.0) { sequence.governor.emplace(); }
     }
+    if (run.stereo.axes == Axes::kStay) { axes_.emplace(glm::radians(kAxesMarginDegrees)); }
+}
+
+MotionPoint::Posed MotionPoint::posed(const Cameras& cameras) {
+    Posed pose{cameras, cameras};
+    if (axes_) { std::ranges::copy(axes_->follow(cameras.eyes), pose.pictures.eyes.begin()); }
+    return pose;
+}
+
+MethodFrames::Rendered MotionPoint::render(const Posed& pose, const BenchMethod& method, bool keep_past,
+                                           const std::optional<GovernedSettings>& chosen) {
+    return frames_.render(pose.pictures, camera_, method, false, keep_past, axes_ ? &pose.views : nullptr, chosen);
+}
+
+Image MotionPoint::show(const Posed& pose, const MethodFrames::Rendered& rendered, int eye) const {
+    const auto e = static_cast<std::size_t>(eye);
+    Image picture = rendered.readPicture(eye);
+    return axes_ ? showTurned(picture, pose.pictures.eyes[e], pose.views.eyes[e]) : picture;
 }
 
 void MotionPoint::chooseAs(const MotionPoint& timed) {
     for (std::size_t i = 0; i < sequences_.size(); ++i) { sequences_[i].chosen = timed.sequences_[i].chosen; }
 }
 
-MethodFrames::Rendered MotionPoint::render(const Cameras& cameras, MethodHistory& sequence) {
-    if (!sequence.governor) { return frames_.render(cameras, camera_, sequence.method, false, true); }
+MethodFrames::Rendered MotionPoint::render(const Posed& pose, MethodHistory& sequence) {
+    if (!sequence.governor) { return render(pose, sequence.method, true); }
     Governor& governor = *sequence.governor;
     governor.wish(Quality::kBalanced, Mode::kTemporal, {sequence.method.stereo.warp.budget, 1.0});
     if (sequence.next == sequence.chosen.size()) { sequence.chosen.push_back(governor.settings()); }
-    MethodFrames::Rendered rendered = frames_.render(cameras, camera_, sequence.method, false, true, sequence.chosen[sequence.next++]);
+    MethodFrames::Rendered rendered = render(pose, sequence.method, true, sequence.chosen[sequence.next++]);
     governor.measure({.gpu_ms = rendered.result.gpu_total_ms, .period_ms = frame_ms_, .work = rendered.result.work_rendered});
     return rendered;
 }
 
 void MotionPoint::warm(const Cameras& cameras) {
-    for (const MethodHistory& sequence : sequences_) { frames_.render(cameras, camera_, sequence.method, false, true); }
+    const Posed pose = posed(cameras);
+    for (const MethodHistory& sequence : sequences_) { render(pose, sequence.method, true); }
 }
 
 std::vector<FrameResult> MotionPoint::time(const Cameras& cameras) {
     std::vector<FrameResult> results;
-    for (MethodHistory& sequence : sequences_) { results.push_back(render(cameras, sequence).result); }
+    const Posed pose = posed(cameras);
+    for (MethodHistory& sequence : sequences_) { results.push_back(render(pose, sequence).result); }
     return results;
 }
 
 void MotionPoint::pass(const Cameras& cameras) {
+    const Posed pose = posed(cameras);
     for (MethodHistory& sequence : sequences_) {
-        if (hasPast(sequence.method.stereo.mode)) { render(cameras, sequence); }
+        if (hasPast(sequence.method.stereo.mode)) { render(pose, sequence); }
     }
 }
 
 void MotionPoint::rememberStill(const Cameras& cameras) {
+    const Posed pose = posed(cameras);
     for (const MethodHistory& sequence : sequences_) {
         shared_.stereo.order = sequence.method.stereo.order;
         if (still_.contains(shared_.stereo.order)) { continue; }
-        const MethodFrames::Rendered still = frames_.render(cameras, camera_, shared_);
-        still_[shared_.stereo.order] = {still.readPicture(kLeft), still.readPicture(kRight)};
+        const MethodFrames::Rendered still = render(pose, shared_, false);
+        still_[shared_.stereo.order] = {show(pose, still, kLeft), show(pose, still, kRight)};
     }
 }
 
-MotionPoint::FullRender MotionPoint::renderFull(const Cameras& cameras) {
-    const MethodFrames::Rendered both = frames_.render(cameras, camera_, shared_);
-    FullRender full{{both.readPicture(kLeft), both.readPicture(kRight)}, {}, std::max(pairsOf(both.result), 1.0)};
+MotionPoint::FullRender MotionPoint::renderFull(const Posed& pose) {
+    const MethodFrames::Rendered both = render(pose, shared_, false);
+    FullRender full{{show(pose, both, kLeft), show(pose, both, kRight)}, {}, std::max(pairsOf(both.result), 1.0)};
     if (!camera_.headset.empty()) {
-        if (!lens_) { lens_.emplace(cameras); }
+        if (!lens_) { lens_.emplace(pose.views); }
         full.seen = lens_->show(full.eyes);
     }
     return full;
@@ -155,12 +178,13 @@ MotionPoint::FullRender MotionPoint::renderFull(const Cameras& cameras) {
 
 void MotionPoint::play(const Cameras& cameras, std::size_t number, double time_s, std::vector<MotionFrame>& result) {
     std::map<std::optional<Order>, FullRender> full_by_order;
+    const Posed pose = posed(cameras);
     for (MethodHistory& sequence : sequences_) {
         shared_.stereo.order = sequence.method.stereo.order;
         FullRender& full = full_by_order[shared_.stereo.order];
-        if (full.pairs == 0.0) { full = renderFull(cameras); }
+        if (full.pairs == 0.0) { full = renderFull(pose); }
         const FullRender& before = full_before_[shared_.stereo.order];
-        const MethodFrames::Rendered rendered = render(cameras, sequence);
+        const MethodFrames::Rendered rendered = render(pose, sequence);
         MotionFrame row;
         row.point = name_;
         row.method = sequence.method.name;
@@ -176,7 +200,7 @@ void MotionPoint::play(const Cameras& cameras, std::size_t number, double time_s
             const auto e = static_cast<std::size_t>(eye);
             row.full_change += 0.5 * meanChange(full.eyes[e], before.eyes[e]);
             if (row.exact) { continue; }
-            pictures[e] = rendered.readPicture(eye);
+            pictures[e] = show(pose, rendered, eye);
             Image error = subtract(pictures[e], full.eyes[e]);
             row.mean_square[e] = compare(pictures[e], full.eyes[e]).mean_square;
             row.flicker[e] = meanChange(error, sequence.error[e]);
@@ -186,7 +210,8 @@ void MotionPoint::play(const Cameras& cameras, std::size_t number, double time_s
             row.pixels_warped = pixelsWarped(rendered.result);
             row.visible = findVisibleErrors(pictures, full.eyes);
             if (lens_) { row.seen = lens_->find(lens_->show(pictures), full.seen); }
-            if (!sequence.governor) { row.bounded = boundedTilesOf(row.visible, *rendered.frame, sequence.method); }
+            // Where axes stay, tiles of the view are not the picture's.
+            if (!sequence.governor && !axes_) { row.bounded = boundedTilesOf(row.visible, *rendered.frame, sequence.method); }
             if (const auto still = still_.find(shared_.stereo.order); still != still_.end()) {
                 const Moved moved = compareMoved(pictures, full.eyes, still->second);
                 row.moved_share = moved.share;

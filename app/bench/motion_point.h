@@ -4,6 +4,7 @@
 #include "app/bench/bench_point.h"
 #include "app/bench/motion_results.h"
 #include "app/bench/seen_through_lens.h"
+#include "engine/frame/staying_axes.h"
 
 #include <array>
 #include <map>
@@ -48,14 +49,25 @@ private:
         double pairs = 0.0;
     };
 
+    // The cameras of a pose, and what its pictures cover: the same unless their axes stay.
+    struct Posed {
+        const Cameras& views;
+        Cameras pictures;
+    };
+    Posed posed(const Cameras& cameras);
     // A frame of a method, with what its governor chooses.
-    MethodFrames::Rendered render(const Cameras& cameras, MethodHistory& sequence);
-    // Renders the eyes at these cameras in full, in the order of shared_.
-    FullRender renderFull(const Cameras& cameras);
+    MethodFrames::Rendered render(const Posed& pose, MethodHistory& sequence);
+    MethodFrames::Rendered render(const Posed& pose, const BenchMethod& method, bool keep_past,
+                                  const std::optional<GovernedSettings>& chosen = {});
+    // As a wearer sees it.
+    [[nodiscard]] Image show(const Posed& pose, const MethodFrames::Rendered& rendered, int eye) const;
+    // Renders the eyes in full, in the order of shared_.
+    FullRender renderFull(const Posed& pose);
 
     CameraOptions camera_;
     BenchMethod shared_;
     MethodFrames frames_;
+    std::optional<StayingAxes> axes_;
     std::string name_;
     double frame_ms_;
     std::vector<MethodHistory> sequences_;

@@ -28,6 +28,12 @@ struct CameraOptions {
     glm::dvec3 background{0.0};
 };
 
+// What the axes of an eye's pictures follow.
+enum class Axes {
+    kView,  // the view, in every frame
+    kStay,  // nothing, until the view leaves the picture: StayingAxes
+};
+
 struct StereoOptions {
     Mode mode = Mode::kPredicted;
     Side dominant = kLeft;
@@ -35,8 +41,9 @@ struct StereoOptions {
     bool per_eye = false;
     StereoSettings warp{.move_cost = kDefaultMoveCost};
     std::optional<double> ipd_m;
-    double foveation_deg = 0.0;      // around the gaze, within which all errors count; 0: everywhere
-    bool half_periphery = false;     // with foveation: half resolution where the eyes would not see more
+    double foveation_deg = 0.0;   // around the gaze, within which all errors count; 0: everywhere
+    bool half_periphery = false;  // with foveation: half resolution where the eyes would not see more
+    Axes axes = Axes::kView;
     std::optional<glm::dvec3> gaze;  // in the head's axes: x right, y down, z forward; absent: at the lenses' centres
     bool operator==(const StereoOptions&) const = default;
 };
