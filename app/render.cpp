@@ -26,7 +26,7 @@ namespace {
 
 constexpr double kLongFrameMs = 2000.0;
 
-void writePictures(OutputFiles& files, StereoFrame& frame, const FrameSettings& settings) {
+void writePictures(OutputFiles& files, StereoFrame& frame, const FrameSettings& settings, PictureLayout layout) {
     const auto write = [&](const char* name, const Image& image) {
         stopIfInterrupted();
         writePicture(files.staging() / name, PictureKind::kFloat, image);
@@ -36,8 +36,12 @@ void writePictures(OutputFiles& files, StereoFrame& frame, const FrameSettings& 
         write("mono", frame.readPicture(0));
     } else {
         const std::array<Image, 2> pictures{frame.readPicture(kLeft), frame.readPicture(kRight)};
-        write("left", pictures[kLeft]);
-        write("right", pictures[kRight]);
+        if (layout == PictureLayout::kSeparate) {
+            write("left", pictures[kLeft]);
+            write("right", pictures[kRight]);
+        } else {
+            write("stereo", joined(pictures[kLeft], pictures[kRight], layout));
+        }
         // Tinted by how each tile was made; a mode that renders every eye in full has nothing to tint.
         const Image& affiliated = pictures[static_cast<std::size_t>(1 - settings.dominant)];
         writePicture(files.staging() / "roi", PictureKind::kDisplay,
@@ -138,7 +142,7 @@ void runRender(const RenderOptions& options) {
         if (live != nullptr) { settle(*live, eyes, ProgressLine("loading what is seen of " + live->name()).progress()); }
         FrameResult result = renderTimed(frame, eyes, settings);
         if (live != nullptr) { result.counters.streaming = streamingOf(*live); }
-        writePictures(files, frame, settings);
+        writePictures(files, frame, settings, options.layout);
         report(FrameReport{context.deviceName(), used, cameras, result});
         for (const std::string& phrase : result.left_out) { fmt::print("  left out: {}\n", phrase); }
         if (result.sees_nothing) {

@@ -7,12 +7,14 @@
 #include "engine/error.h"
 #include "engine/frame/staying_axes.h"
 #include "engine/picture/image_io.h"
+#include "engine/picture/join.h"
 #include "engine/picture/roi_picture.h"
 #include "engine/picture/turned.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <span>
 #include <string>
@@ -22,31 +24,34 @@ namespace binosplat {
 
 namespace {
 
+constexpr std::array<std::string_view, 4> kEyeNames{"left", "right", "mono", "stereo"};
+
 std::string pictureName(std::size_t number, std::string_view eye) { return fmt::format("frame_{:06}_{}", number, eye); }
 
-std::vector<std::string_view> eyeNames(bool mono) {
+std::vector<std::string_view> eyeNames(bool mono, PictureLayout layout) {
+    if (layout != PictureLayout::kSeparate) { return {"stereo"}; }
     return mono ? std::vector<std::string_view>{"mono"} : std::vector<std::string_view>{"left", "right"};
 }
 
 // True if a path of this many frames overwrites the picture of this name.
-bool isReplaced(std::string_view name, std::size_t frames, bool mono) {
+bool isReplaced(std::string_view name, std::size_t frames, const std::vector<std::string_view>& eyes) {
     static constexpr std::string_view kBegin = "frame_";
     const std::string_view number = name.substr(std::min(kBegin.size(), name.size()));
     std::size_t value = 0;
     const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
     if (error != std::errc{} || value >= frames) { return false; }
-    return std::ranges::any_of(eyeNames(mono), [&](std::string_view eye) { return name == pictureName(value, eye); });
+    return std::ranges::any_of(eyes, [&](std::string_view eye) { return name == pictureName(value, eye); });
 }
 
-void requireNoOthers(const std::filesystem::path& folder, std::size_t frames, bool mono) {
+void requireNoOthers(const std::filesystem::path& folder, std::size_t frames, const std::vector<std::string_view>& eyes) {
     const std::string extension = extensionOf(PictureKind::kDisplay);
     std::error_code ignored;
     for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
         const std::string name = entry.path().stem().string();
-        const bool numbered =
-            name.starts_with("frame_") && (name.ends_with("_left") || name.ends_with("_right") || name.ends_with("_mono"));
+        const bool numbered = name.starts_with("frame_") &&
+                              std::ranges::any_of(kEyeNames, [&](std::string_view eye) { return name.ends_with(fmt::format("_{}", eye)); });
         if (!numbered || entry.path().extension() != extension) { continue; }
-        check(isReplaced(name, frames, mono),
+        check(isReplaced(name, frames, eyes),
               "{}: is a frame of another path, which this one's {} frames would not replace; must be taken away", entry.path().string(),
               frames);
     }
@@ -54,12 +59,16 @@ void requireNoOthers(const std::filesystem::path& folder, std::size_t frames, bo
 
 }  // namespace
 
+Image joined(const Image& left, const Image& right, PictureLayout layout) {
+    return layout == PictureLayout::kSideBySide ? besideOneAnother(left, right) : aboveOneAnother(left, right);
+}
+
 HeadPath readHeadPath(const RenderOptions& options) {
     HeadMotion motion = readHeadMotion(options.path, options.path_axes, options.segment);
     if (!motion.note().empty()) { fmt::print(stderr, "binosplat: {}\n", motion.note()); }
     std::vector<double> times_s = frameTimes(motion, options.segment, options.path);
-    requireNoOthers(options.out, times_s.size(), options.run.stereo.mode == Mode::kMono);
-    return {std::move(motion), std::move(times_s)};
+    requireNoOthers(options.out, times_s.size(), eyeNames(options.run.stereo.mode == Mode::kMono, options.layout));
+    return {std::move(motion), std::move(times_s), options.layout};
 }
 
 std::vector<PathFrame> renderPath(StereoFrame& frame, LiveScene* live, const FrameSettings& path_settings, const Cameras& start, Axes kind,
@@ -89,12 +98,15 @@ std::vector<PathFrame> renderPath(StereoFrame& frame, LiveScene* live, const Fra
         line.show(static_cast<double>(frames.size()) / static_cast<double>(path.times_s.size()));
         FrameResult result = frame.render(eyes, settings);
         if (live != nullptr) { result.counters.streaming = streamingOf(*live); }
+        const auto shown = [&](int of) {
+            const auto e = static_cast<std::size_t>(of);
+            return showTurned(frame.readPicture(of), eyes[e], views[e]);
+        };
         int eye = 0;
-        for (const std::string_view name : eyeNames(mono)) {
+        for (const std::string_view name : eyeNames(mono, path.layout)) {
             stopIfInterrupted();
-            writePicture(files.staging() / pictureName(frames.size(), name), PictureKind::kDisplay,
-                         showTurned(frame.readPicture(eye), eyes[static_cast<std::size_t>(eye)], views[static_cast<std::size_t>(eye)]));
-            ++eye;
+            const Image picture = path.layout == PictureLayout::kSeparate ? shown(eye++) : joined(shown(kLeft), shown(kRight), path.layout);
+            writePicture(files.staging() / pictureName(frames.size(), name), PictureKind::kDisplay, picture);
         }
         frames.push_back({time_s, cameras, std::move(result)});
     }

@@ -4,6 +4,7 @@
 #include "app/options/camera_options.h"
 #include "app/options/options.h"
 #include "app/report/report.h"
+#include "engine/picture/image.h"
 #include "engine/setup/head_motion.h"
 #include "engine/setup/output_files.h"
 #include "engine/stream/live_scene.h"
@@ -15,7 +16,11 @@ namespace binosplat {
 struct HeadPath {
     HeadMotion motion;
     std::vector<double> times_s;  // of the frames, since the motion's first pose
+    PictureLayout layout;
 };
+
+// Both eyes' pictures in one, in a layout that is not separate.
+Image joined(const Image& left, const Image& right, PictureLayout layout);
 
 // --path, at each of its poses or --rate times a second. Throws Error if the file cannot be used, or if the output folder holds numbered
 // pictures that the new ones would not replace: nobody could tell them apart.

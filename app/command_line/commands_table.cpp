@@ -72,6 +72,9 @@ Options makeRender(const Settings& given) {
     render.scene = wordOf(line, "SCENE");
     render.run = readRun(line, {"view"}, line.contains("path") ? withPast() : RunOptions());
     render = readRows(renderRows(), line, render);
+    if (render.layout != PictureLayout::kSeparate && render.run.stereo.mode == Mode::kMono) {
+        throw Error(ExitCode::kUsage, "--layout and --mode mono contradict each other: there is one eye");
+    }
     for (const char* key : {"path-axes", "from", "seconds", "rate"}) {
         if (line.contains(key) && render.path.empty()) { throw Error(ExitCode::kUsage, fmt::format("--{} is given without --path", key)); }
     }

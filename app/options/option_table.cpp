@@ -179,6 +179,8 @@ const OptionRow<RunOptions>* findRunRow(std::string_view key) {
 std::span<const OptionRow<RenderOptions>> renderRows() {
     static const std::vector<OptionRow<RenderOptions>> rows{
         {{"out", "", kRender, "DIR", "directory for pictures and report.json", "", /*required*/ true}, field::file<&RenderOptions::out>()},
+        {{"layout", "", kRender, "KIND", "both eyes in pictures of their own, or in one: side by side, or top and bottom (the left eye's)"},
+         field::named<&RenderOptions::layout>({"separate", "sbs", "tb"})},
         {{"path", "", kRender, "POSES.csv", "head poses to render relative to the camera, one numbered frame after the other"},
          field::file<&RenderOptions::path>()},
         {{"path-axes", "", kRender, "AXES", "axes of --path"}, field::named<&RenderOptions::path_axes>({"openxr", "unity"})},

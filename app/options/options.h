@@ -75,6 +75,9 @@ struct RunOptions {
     std::string config;
 };
 
+// Both eyes' pictures: in files of their own, or in one, the left eye's on the left or above.
+enum class PictureLayout { kSeparate, kSideBySide, kTopBottom };
+
 struct RenderOptions {
     std::string scene;
     std::filesystem::path out;
@@ -82,6 +85,7 @@ struct RenderOptions {
     std::string path;                            // --path: head poses to render, relative to the camera; empty: one frame
     MotionAxes path_axes = MotionAxes::kOpenXr;  // --path-axes: of the recording
     MotionSegment segment;                       // --from, --seconds, --rate: of the path
+    PictureLayout layout = PictureLayout::kSeparate;
 };
 
 struct BenchOptions {

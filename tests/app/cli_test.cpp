@@ -1,5 +1,6 @@
 // Facts about the program as its user meets it: exit codes, one line for each error, and nothing left behind.
 #include "engine/picture/image_io.h"
+#include "engine/picture/join.h"
 #include "tests/run_program.h"
 
 SUITE(cli) {
@@ -149,6 +150,14 @@ TEST_CASE_FIXTURE(AtWork, "render writes its files and nothing else") {
         if (mode == "reproject") { CHECK(report["counters"]["tiles_patched"] == 0); }
         for (const std::string& name : work.files()) { CHECK(name.find("/.") == std::string::npos); }
     }
+    const auto eye = [&](const char* name) { return readPicture(work.path / "a" / "shared" / (name + display_extension)); };
+    for (const std::string layout : {"sbs", "tb"}) {
+        work.go("render builtin:one-splat --size 40x24 --mode shared --out both --layout " + layout);
+        const Image both = readPicture(work.path / "both" / ("stereo" + display_extension));
+        CHECK(both.size_px == (layout == "sbs" ? glm::uvec2(80, 24) : glm::uvec2(40, 48)));
+        CHECK(both.values == (layout == "sbs" ? besideOneAnother : aboveOneAnother)(eye("left"), eye("right")).values);
+    }
+    CHECK_FALSE(fs::exists(work.path / "both" / ("left" + display_extension)));
 }
 
 TEST_CASE_FIXTURE(AtWork, "the default mode is predicted, and the budget is a share of the work") {

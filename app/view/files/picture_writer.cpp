@@ -3,6 +3,7 @@
 
 #include "engine/error.h"
 #include "engine/picture/image_io.h"
+#include "engine/picture/join.h"
 #include "engine/setup/output_files.h"
 
 #include <fmt/format.h>
@@ -14,17 +15,6 @@
 namespace binosplat {
 
 namespace {
-
-Image besideOneAnother(const Image& left, const Image& right) {
-    Image both{{left.size_px.x + right.size_px.x, left.size_px.y}, left.channels, {}};
-    both.values.reserve(left.values.size() + right.values.size());
-    const auto row = static_cast<std::ptrdiff_t>(left.size_px.x) * left.channels;
-    for (auto l = left.values.begin(), r = right.values.begin(); l != left.values.end(); l += row, r += row) {
-        both.values.insert(both.values.end(), l, l + row);
-        both.values.insert(both.values.end(), r, r + row);
-    }
-    return both;
-}
 
 // Without its extension; pictures are never overwritten.
 std::string freePictureName(const std::filesystem::path& folder) {

@@ -1,0 +1,12 @@
+// Two pictures as one.
+#pragma once
+
+#include "engine/picture/image.h"
+
+namespace binosplat {
+
+// Of one size: the first one on the left, or above.
+Image besideOneAnother(const Image& left, const Image& right);
+Image aboveOneAnother(const Image& top, const Image& bottom);
+
+}  // namespace binosplat
