@@ -149,7 +149,7 @@ void DesktopShell::pressKey(int key) {
             requests.frame_step = key == GLFW_KEY_PERIOD ? 1 : -1;
             break;
         case GLFW_KEY_ESCAPE:
-            requests.quit = true;
+            (panel_.status().window->fills_screen ? requests.fill_screen : requests.quit) = true;
             break;
         default:
             return;

@@ -14,6 +14,7 @@ namespace {
 constexpr double kMotionMs = 25.0, kCoarsest = 0.25;
 // An sRGB format, so that the presenter writes encoded values; the images that the bytes go to are not decoded either.
 constexpr vk::Format kPresented = vk::Format::eR8G8B8A8Srgb, kBytes = vk::Format::eR8G8B8A8Unorm;
+constexpr std::uint32_t kRed = 0xff;  // of these
 
 }  // namespace
 
@@ -46,7 +47,8 @@ void DesktopPictures::makeRoom(glm::uvec2 size_px, std::size_t eyes) {
     }
 }
 
-void DesktopPictures::render(StereoFrame& frame, const std::vector<Eye>& eyes, const FrameSettings& settings, bool tint, bool waits) {
+void DesktopPictures::render(StereoFrame& frame, const std::vector<Eye>& eyes, const FrameSettings& settings, const Look& look,
+                             bool waits) {
     const glm::uvec2 size_px = eyes.front().size_px;
     makeRoom(size_px, eyes.size());
     frame.makeRoom(eyes, settings);
@@ -54,13 +56,14 @@ void DesktopPictures::render(StereoFrame& frame, const std::vector<Eye>& eyes, c
     const auto present = [&](Commands& commands) {
         for (std::size_t e = 0; e < eyes.size(); ++e) {
             const vk::Image image = *images_[e]->image;
-            const WarpBuffers* const tinted_by = tint ? frame.chosenTiles(static_cast<int>(e)) : nullptr;
+            const WarpBuffers* const tinted_by = look.tint ? frame.chosenTiles(static_cast<int>(e)) : nullptr;
             presenter_.record(commands,
                               {.picture = &frame.picture(static_cast<int>(e)),
                                .size_px = size_px,
                                .tinted_by = tinted_by,
                                .colour = image,
                                .depth = {},
+                               .kept_bits = look.anaglyph && e == kRight ? kRed : 0,
                                .see_through = false},
                               settings.near);
             changeLayout(commands, image, vk::ImageLayout::eColorAttachmentOptimal, vk::ImageLayout::eTransferSrcOptimal);

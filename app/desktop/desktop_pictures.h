@@ -27,11 +27,16 @@ private:
 
 class DesktopPictures {
 public:
+    struct Look {
+        bool tint = false;
+        bool anaglyph = false;  // the right eye's image has the left one's red
+    };
+
     explicit DesktopPictures(const Context& context);
 
     // Renders these eyes, all of one size. With `waits` the picture is whole when this returns; otherwise it does not wait, and may lack
     // splats. Throws Error if memory is short.
-    void render(StereoFrame& frame, const std::vector<Eye>& eyes, const FrameSettings& settings, bool tint, bool waits);
+    void render(StereoFrame& frame, const std::vector<Eye>& eyes, const FrameSettings& settings, const Look& look, bool waits);
     // Records the parts' pictures, scaled, into a window that was cleared.
     void compose(Commands& commands, vk::Image window, const std::vector<EyePart>& parts);
 

@@ -204,7 +204,8 @@ void DesktopShell::render(double scale, bool at_rest) {
     const glm::uvec2 size_px = glm::max(glm::uvec2(glm::round(scale * glm::dvec2(drawn_.part_px))), glm::uvec2(16));
     FrameSettings settings = frameSettingsNow(at_rest);
     settings.mark = static_cast<std::uint64_t>(std::lround(1000.0 * scale));
-    pictures_.render(scenes_.frame(), eyesOf(mover_.camera(), windowSight(), size_px), settings, state_.settings().tint, at_rest);
+    pictures_.render(scenes_.frame(), eyesOf(mover_.camera(), windowSight(), size_px), settings,
+                     {state_.settings().tint, state_.settings().window_stereo == WindowStereo::kAnaglyph}, at_rest);
     const FrameResult& last = pictures_.lastFrame();
     motion_.measure(0.001 * static_cast<double>(last.mark), last.gpu_total_ms);
     ++scene_frames_;

@@ -23,7 +23,7 @@ std::vector<EyePart> partsOf(WindowStereo stereo, glm::uvec2 area_px) {
         case WindowStereo::kAnaglyph:
             break;
     }
-    return {{kLeft, none, area}, {kRight, none, area}};
+    return {{kRight, none, area}};  // its image has the other one's red
 }
 
 std::optional<EyePart> partAt(const std::vector<EyePart>& parts, const glm::dvec2& place_px) {

@@ -18,9 +18,9 @@ struct EyePart {
 };
 
 [[nodiscard]] bool showsTwoEyes(WindowStereo stereo);
-// Parts of equal size that fill an area; both eyes' are the same for an anaglyph.
+// Parts of equal size that fill an area; one for an anaglyph.
 std::vector<EyePart> partsOf(WindowStereo stereo, glm::uvec2 area_px);
-// The part that a pixel of the area is in, if any: for an anaglyph the left eye's.
+// The part that a pixel of the area is in, if any.
 std::optional<EyePart> partAt(const std::vector<EyePart>& parts, const glm::dvec2& place_px);
 
 // How the eyes look at the scene.

@@ -54,6 +54,7 @@ void Presenter::record(Commands& commands, const PresentedEye& eye, double near)
     pass.blue_first = blue_first_ ? 1 : 0;
     pass.linear = linear_ ? 1 : 0;
     pass.see_through = eye.see_through ? 1 : 0;
+    pass.kept_bits = eye.kept_bits;
     commands.beginPass({Role::kNone, PresentKernel::kStage, PresentKernel::kShader});
     commands.dispatch(kernels_.get(PresentKernel{.half_colours = eye.picture->half_floats}), pass, (eye.size_px.x + 15) / 16,
                       (eye.size_px.y + 7) / 8);

@@ -64,6 +64,10 @@ std::vector<std::uint32_t> presentOver(std::span<const glm::dvec4> rgba, std::sp
     return words;
 }
 
+void keepBits(std::span<std::uint32_t> words, std::span<const std::uint32_t> before, std::uint32_t kept_bits) {
+    for (std::size_t i = 0; i < words.size(); ++i) { words[i] = (words[i] & ~kept_bits) | (before[i] & kept_bits); }
+}
+
 std::vector<double> presentDepths(std::span<const glm::dvec4> rgba, std::span<const double> depth_sums, const Presentation& presentation) {
     std::vector<double> shares;
     for (std::size_t i = 0; i < rgba.size(); ++i) {

@@ -19,6 +19,8 @@ struct Presentation {
 
 // A word a pixel, the first channel lowest: nearest of 0 to 255, NaN as 0; opaque, or with the pixel's own alpha.
 std::vector<std::uint32_t> present(std::span<const glm::dvec4> rgba, const Presentation& presentation);
+// Words of which the bits that are kept stay as they were before.
+void keepBits(std::span<std::uint32_t> words, std::span<const std::uint32_t> before, std::uint32_t kept_bits);
 // The same over `behind`, such words; splats do not show where what is there is nearer, by its depths as presentDepths has them, if there
 // are any.
 std::vector<std::uint32_t> presentOver(std::span<const glm::dvec4> rgba, std::span<const double> depth_sums,

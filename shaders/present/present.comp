@@ -79,7 +79,9 @@ void main() {
     if (linear || see_through) { colour = alpha * decode(colour); }
     if (see_through && !linear) { colour = encode(colour); }
     const uvec3 bytes = uvec3(colour * 255 + 0.5);
-    pass.pixels.at[i] = (pass.blue_first != 0 ? bytes.b | bytes.g << 8 | bytes.r << 16 : bytes.r | bytes.g << 8 | bytes.b << 16) | uint(left_alpha * 255 + 0.5) << 24;
+    const uint word = (pass.blue_first != 0 ? bytes.b | bytes.g << 8 | bytes.r << 16 : bytes.r | bytes.g << 8 | bytes.b << 16) | uint(left_alpha * 255 + 0.5) << 24;
+    const uint kept = pass.kept_bits;
+    pass.pixels.at[i] = kept == 0 ? word : (word & ~kept) | (pass.pixels.at[i] & kept);
     if (isThere(uvec2(pass.device_depths))) {
         // Infinitely far where there is nothing; of a pixel with a mesh, the depth of what is more of it.
         const bool is_shown = inverse_depth > 0 && pixel.a >= (has_mesh ? 0.5 : kMinAlpha);

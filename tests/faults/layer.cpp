@@ -1,13 +1,11 @@
 // A Vulkan layer in which a call fails, or a signal comes, at a place that a test names: what machines do at a place nobody knows.
-// BINOSPLAT_FAULT=CALL:N:FAULT with CALL submit, wait, present or allocate, N from 1, and FAULT lost, surface-lost, no-device-memory,
-// no-device-memory-once, no-host-memory, type-full, SIGINT or SIGTERM. From the Nth such call on what is lost stays lost and memory stays
-// full; signals come once. Of a lost device no wait until it is idle succeeds. type-full: buffers may lie in one more type of memory, and
-// the first type has no more of it.
-// BINOSPLAT_FAULT_TICKS=N: timestamps are N ticks apart, however long the work between them took.
-// BINOSPLAT_FAULT_TRACE=FILE: a line for each submission and each wait, in their order, with the fence: "submit 55d0", "wait 55d0";
-// "wait all" where the queue or the device is waited for.
-// BINOSPLAT_FAULT_LIVE=FILE: what is alive, see live.h. BINOSPLAT_FAULT_LOAD=...: how long frames take, see load.h.
-// BINOSPLAT_FAULT_WAITS=FILE: what frames do that may wait, see waits.h.
+// BINOSPLAT_FAULT=CALL:N:FAULT with CALL submit, wait, present or allocate, N from 1, and FAULT lost, surface-lost, surface-lost-once,
+// no-device-memory, no-device-memory-once, no-host-memory, type-full, SIGINT or SIGTERM. From the Nth such call on what is lost stays lost
+// and memory stays full; signals come once. Of a lost device no wait until it is idle succeeds. type-full: buffers may lie in one more type
+// of memory, and the first type has no more of it. BINOSPLAT_FAULT_TICKS=N: timestamps are N ticks apart, however long the work between
+// them took. BINOSPLAT_FAULT_TRACE=FILE: a line for each submission and each wait, in their order, with the fence: "submit 55d0", "wait
+// 55d0"; "wait all" where the queue or the device is waited for. BINOSPLAT_FAULT_LIVE=FILE: what is alive, see live.h.
+// BINOSPLAT_FAULT_LOAD=...: how long frames take, see load.h. BINOSPLAT_FAULT_WAITS=FILE: what frames do that may wait, see waits.h.
 #include "tests/faults/live.h"
 #include "tests/faults/load.h"
 #include "tests/faults/waits.h"
@@ -69,6 +67,7 @@ VkResult strike(const char* call) {
         return VK_ERROR_DEVICE_LOST;
     }
     if (plan.fault == "no-device-memory-once") { return number == plan.number ? VK_ERROR_OUT_OF_DEVICE_MEMORY : VK_SUCCESS; }
+    if (plan.fault == "surface-lost-once") { return number == plan.number ? VK_ERROR_SURFACE_LOST_KHR : VK_SUCCESS; }
     if (plan.fault == "surface-lost") { return VK_ERROR_SURFACE_LOST_KHR; }
     if (plan.fault == "no-device-memory" || plan.fault == "type-full") { return VK_ERROR_OUT_OF_DEVICE_MEMORY; }
     if (plan.fault == "no-host-memory") { return VK_ERROR_OUT_OF_HOST_MEMORY; }

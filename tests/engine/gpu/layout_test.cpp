@@ -83,7 +83,7 @@ std::vector<Layout> hostLayouts() {
         LAYOUT(SortCountPass, keys, histograms, run_sums, digit_begins, list, shift, digits),
         LAYOUT(SortScatterPass, keys_in, values_in, keys_out, values_out, histograms, run_sums, digit_begins, list, shift, digits),
         LAYOUT(PresentPass, colours, half_colours, depths, words, tile_kinds, pixel_classes, pixels, device_depths, mesh_depths, size_px,
-               depth_scale, depth_offset, blue_first, linear, see_through, over),
+               depth_scale, depth_offset, blue_first, linear, see_through, over, kept_bits),
     };
 }
 

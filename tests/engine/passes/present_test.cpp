@@ -16,7 +16,8 @@ struct Shown {
     std::vector<float> depth_sums = {};
     std::vector<gpu::uint> words = {}, tile_kinds = {}, pixel_classes = {};
     bool halves = false;
-    Bytes behind = {};  // and what is before and behind it
+    Bytes behind = {};            // and what is before and behind it
+    std::uint32_t kept_bits = 0;  // of `behind`, which is then not blended with: these stay
     std::vector<float> mesh_depths = {};
 };
 
@@ -45,11 +46,12 @@ Presented runPresent(Gpu& gpu, const Shown& shown, const reference::Presentation
     pass.size_px = shown.size_px;
     pass.depth_scale = static_cast<float>(how.near);
     pass.depth_offset = static_cast<float>(how.depth_offset);
-    pass.over = shown.behind.empty() ? 0 : 1;
+    pass.over = shown.behind.empty() || shown.kept_bits != 0 ? 0 : 1;
     if (!shown.mesh_depths.empty()) { pass.mesh_depths = depths.address<float>(); }
     pass.blue_first = how.blue_first ? 1 : 0;
     pass.linear = how.linear ? 1 : 0;
     pass.see_through = how.see_through ? 1 : 0;
+    pass.kept_bits = shown.kept_bits;
     const Kernel& kernel = gpu.kernel(PresentKernel{.half_colours = shown.halves});
     gpu.run([&](Commands& commands) { commands.dispatch(kernel, pass, (shown.size_px.x + 15) / 16, (shown.size_px.y + 7) / 8); });
     return {gpu.readBack<std::uint32_t>(pixels, count), gpu.readBack<float>(depths, with_depth ? count : 0)};
@@ -94,6 +96,17 @@ TEST_CASE_FIXTURE(Gpu, "pictures of floats or half floats become the bytes of th
             CHECK(runPresent(*this, shown, how).pixels == actual);
         }
     }
+}
+
+TEST_CASE_FIXTURE(Gpu, "of a picture over another's words only the bits that are not kept change") {
+    Shown shown{{20, 10}, makeColours({20, 10})};
+    Bytes expected = reference::present(asDoubles(shown.colours), {});
+    shown.behind.assign(expected.rbegin(), expected.rend());
+    shown.kept_bits = 0xff0000ffu;
+    reference::keepBits(expected, shown.behind, shown.kept_bits);
+    const Bytes actual = runPresent(*this, shown).pixels;
+    CHECK(countOff(actual, expected, 1) == 0);
+    for (std::size_t i = 0; i < actual.size(); ++i) { CHECK(((actual[i] ^ shown.behind[i]) & shown.kept_bits) == 0); }
 }
 
 TEST_CASE_FIXTURE(Gpu, "tints say what made a pixel, and nothing of tiles that no lens shows") {
