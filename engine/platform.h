@@ -44,8 +44,6 @@ std::vector<std::string> programArguments(int count, const char* const* argument
 bool isStartedByClick();
 // A line for standard error, which is also shown in a window if a click started the program.
 void tellUser(const std::string& line);
-// Asks in a window if a click started the program; false if the answer is no, or if nobody can be asked.
-bool askUser(const std::string& question);
 
 // With rights over the whole machine, so that it may not go by what its user's environment says.
 bool runsAsAdministrator();

@@ -80,8 +80,6 @@ bool isStartedByClick() { return false; }
 
 void tellUser(const std::string& line) { fmt::print(stderr, "{}\n", line); }
 
-bool askUser(const std::string&) { return false; }
-
 const char* const kVulkanHint = "install a Vulkan driver, e.g. mesa-vulkan-drivers, and look at `vulkaninfo --summary`";
 
 bool runsAsAdministrator() { return ::geteuid() == 0; }

@@ -125,11 +125,6 @@ void tellUser(const std::string& line) {
     if (isStartedByClick()) { ::MessageBoxW(nullptr, wide(line).c_str(), L"binosplat", MB_OK | MB_ICONERROR | MB_SETFOREGROUND); }
 }
 
-bool askUser(const std::string& question) {
-    return isStartedByClick() &&
-           ::MessageBoxW(nullptr, wide(question).c_str(), L"binosplat", MB_YESNO | MB_ICONQUESTION | MB_SETFOREGROUND) == IDYES;
-}
-
 const char* const kVulkanHint = "install the newest driver of the graphics card from its maker (NVIDIA, AMD, Intel): Vulkan comes with it";
 
 bool runsAsAdministrator() { return ::IsUserAnAdmin() != 0; }
