@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """The table of gpu.md from the kernels.json of several devices: gpu_table.py NAME=kernels.json ...
 
-A row is a kernel, in the worst of its specializations. A cell: vector registers, then what AMD's driver says of waves a SIMD, or `-`;
-then what is spilled and the bytes of scratch memory a thread, only where that is not 0; then bytes of shared memory, where it is told.
+A row is a kernel, in the worst of its specializations. A cell: vector registers, then what AMD's driver says of waves a SIMD, or Adreno's of
+waves a core, or `-`; then what is spilled (on Adreno: instructions that do so) and the bytes of scratch memory a thread, only where that is not
+0; then bytes of shared memory, where it is told.
 """
 import json
 import sys
@@ -17,9 +18,9 @@ def cell(variants):
         values = [first(v["statistics"], *names) for v in variants]
         return max((v for v in values if v is not None), default=None)
 
-    registers = worst("VGPRs", "Number of GPRs")
-    waves = min((v["statistics"]["Subgroups per SIMD"] for v in variants if "Subgroups per SIMD" in v["statistics"]), default=None)
-    scalar, vector = worst("Spilled SGPRs") or 0, worst("Spilled VGPRs") or 0
+    registers = worst("VGPRs", "Number of GPRs", "Registers used")
+    waves = min((w for v in variants if (w := first(v["statistics"], "Subgroups per SIMD", "Max Waves Per Core")) is not None), default=None)
+    scalar, vector = worst("Spilled SGPRs") or 0, worst("Spilled VGPRs", "STP Count") or 0
     scratch, shared = worst("Scratch size", "SLM Size") or 0, worst("LDS size")
     parts = [f"{registers}" + (f" / {waves}" if waves is not None else "")]
     if scalar or vector:
