@@ -3,6 +3,7 @@
 #include "app/commands.h"
 #include "app/terminal/interrupt.h"
 #include "engine/error.h"
+#include "engine/passes/contribute.h"
 #include "engine/passes/passes.h"
 #include "engine/passes/past_passes.h"
 #include "engine/passes/present.h"
@@ -27,6 +28,7 @@ KernelTable allKernels(const Context& context) {
     append(table, warpKernels(context));
     append(table, pastKernels(context.isSoftware()));
     append(table, presentKernels());
+    append(table, contributeKernels());
     return table;
 }
 

@@ -141,7 +141,24 @@ Options makeInfo(const Settings& line) { return InfoOptions{wordOf(line, "SCENE"
 Options makeScene(const Settings& line) { return readRows(sceneRows(), line, SceneOptions{.name = wordOf(line, "NAME"), .out = {}}); }
 
 Options makeConvert(const Settings& line) {
-    return readRows(convertRows(), line, ConvertOptions{wordOf(line, "SCENE"), runOptions(line).load, wordOf(line, "OUT"), {}});
+    const RunOptions run = runOptions(line);
+    const auto convert =
+        readRows(convertRows(), line,
+                 ConvertOptions{wordOf(line, "SCENE"), run.load, wordOf(line, "OUT"), {}, {}, run.camera.cameras_file, run.device});
+    for (const char* key : {"cameras", "device"}) {
+        if (line.contains(key) && !convert.keep && !convert.isStreamed()) {
+            throw Error(ExitCode::kUsage, fmt::format("--{} is given without --keep", key));
+        }
+    }
+    for (const char* key : {"levels", "chunk-splats"}) {
+        if (line.contains(key) && !convert.isStreamed()) {
+            throw Error(ExitCode::kUsage, fmt::format("--{} is given, but OUT is not a lod-meta.json", key));
+        }
+    }
+    if (convert.keep && convert.keep->unit == Keep::kBytes && convert.isStreamed()) {
+        throw Error(ExitCode::kUsage, "--keep is a size, but OUT is a folder: must be a share or a number of splats");
+    }
+    return convert;
 }
 
 Options makeCompare(const Settings& line) {
@@ -190,8 +207,8 @@ std::span<const Command> commands() {
          makeScene},
         {"convert",
          kConvert,
-         "Write a scene as a PLY, an SPZ or a SOG file",
-         {scene, {"OUT", "file to write, by its name: .ply, .spz or .sog"}},
+         "Write a scene as a PLY, an SPZ or a SOG file, or with levels of detail as streamed SOG",
+         {scene, {"OUT", "file to write, by its name: .ply, .spz, .sog, or FOLDER/lod-meta.json"}},
          describe(convertRows()),
          makeConvert},
         {"compare",

@@ -1,10 +1,13 @@
 // Every option, once.
 #include "app/options/option_table.h"
 
+#include "engine/error.h"
 #include "engine/picture/flip.h"
 #include "engine/scene/scene.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 namespace binosplat {
 
@@ -21,6 +24,24 @@ constexpr std::uint64_t kMaxSplats = std::uint64_t{1} << 31;
 constexpr std::uint64_t kMaxFrames = 1'000'000'000;
 constexpr std::uint64_t kMaxStep = 1'000'000;
 constexpr double kMaxSeconds = 1e6, kMaxRateHz = 10'000.0;
+
+// A share, a number of splats, or a size such as 50MB.
+Keep readKeep(const Setting& setting) {
+    constexpr std::array<std::pair<std::string_view, double>, 3> kUnits{{{"KB", 1e3}, {"MB", 1e6}, {"GB", 1e9}}};
+    const std::string text = setting.text();
+    for (const auto& [unit, bytes] : kUnits) {
+        if (!text.ends_with(unit)) { continue; }
+        const std::optional<double> number = parseNumber(std::string_view(text).substr(0, text.size() - unit.size()));
+        if (number && *number > 0.0) { return {*number * bytes, Keep::kBytes}; }
+    }
+    const std::optional<double> number = parseNumber(text);
+    if (number && *number > 0.0 && *number <= 1.0) { return {*number, Keep::kShare}; }
+    if (number && *number > 1.0 && *number <= static_cast<double>(kMaxSplats) && *number == std::floor(*number)) {
+        return {*number, Keep::kSplats};
+    }
+    fail("{} is {}, must be a share of the splats up to 1, a number of them, or a size such as 50MB", setting.origin,
+         text.empty() ? "empty" : text);
+}
 
 constexpr unsigned kPictures = kRender | kBench;          // commands that make pictures without a headset
 constexpr unsigned kWearer = kPictures | kView;           // commands that show a scene to two eyes
@@ -68,7 +89,7 @@ std::span<const OptionRow<RunOptions>> runRows() {
          field::number<kCamera, &CameraOptions::fov_x_deg>(0.1, 179.0)},
         {{"size", "camera", kPictures, "WxH", "pixels per eye", "1024x1024, or that of --cameras or --headset"},
          field::make<kCamera, &CameraOptions::size_px>(fmt::format("1 to {} each", kMaxSide), readSize)},
-        {{"cameras", "camera", kWearer, "FILE", "cameras.json of a 3DGS or 2DGS training",
+        {{"cameras", "camera", kWearer | kConvert, "FILE", "cameras.json of a 3DGS or 2DGS training",
           "with --view, the one beside SCENE or in its folder"},
          field::file<kCamera, &CameraOptions::cameras_file>()},
         {{"view", "camera", kWearer, "N", "which camera of --cameras, from 0"}, field::count<kCamera, &CameraOptions::view>(0, kAny32)},
@@ -165,7 +186,7 @@ std::span<const OptionRow<RunOptions>> runRows() {
         // Run.
         {{"memory-limit", "run", kWearer, "MIB", "device memory that may be used", "all there is"},
          noneIfZero(field::count<&RunOptions::memory_limit_mib>(1, kMaxMemoryMib))},
-        {{"device", "run", kDevices, "NAME|INDEX", "GPU to use: part of its name, or its number", "the most capable"},
+        {{"device", "run", kDevices | kConvert, "NAME|INDEX", "GPU to use: part of its name, or its number", "the most capable"},
          field::text<&RunOptions::device>()},
     };
     return rows;
@@ -255,6 +276,23 @@ std::span<const OptionRow<ConvertOptions>> convertRows() {
     static const std::vector<OptionRow<ConvertOptions>> rows{
         {{"crop", "", kConvert, "x,y,z,r", "keep the splats whose centres lie in this sphere, in scene units"},
          field::make<&ConvertOptions::crop>("", readSphere)},
+        {{"keep", "", kConvert, "SHARE|N|SIZE",
+          "keep a share of the splats (0.5), a number (100000), or as many as fit into a file (50MB): those that show most, which take "
+          "over "
+          "what the others showed",
+          "all of them"},
+         {.read = [](const Setting& setting, ConvertOptions& convert) { convert.keep = readKeep(setting); },
+          .value = [](const ConvertOptions&) { return OptionValue(); },
+          .range = "",
+          .least = {},
+          .most = {},
+          .slider_most = {},
+          .choices = {}}},
+        {{"levels", "", kConvert, "N", "levels of detail of OUT/lod-meta.json, each of half the splats",
+          "until fewer than 50,000 are left"},
+         noneIfZero(field::count<&ConvertOptions::levels>(1, 16))},
+        {{"chunk-splats", "", kConvert, "N", "splats in a chunk of OUT/lod-meta.json, at most", "524288"},
+         noneIfZero(field::count<&ConvertOptions::chunk_splats>(4096, 16777216))},
     };
     return rows;
 }

@@ -134,11 +134,24 @@ struct SceneOptions {
     std::filesystem::path out;
 };
 
+// How much of a scene is kept.
+struct Keep {
+    double amount = 1.0;
+    enum Unit { kShare, kSplats, kBytes } unit = kShare;
+};
+
 struct ConvertOptions {
     std::string scene;
     LoadOptions load;
     std::filesystem::path out;
     std::optional<glm::dvec4> crop;  // --crop: centre and radius of the sphere that is kept, in scene units
+    std::optional<Keep> keep;        // --keep: those that show most; absent: all splats
+    std::string cameras_file;        // --cameras: from which they are judged; empty: from where a person could stand
+    std::string device;
+    // Of a streamed scene, lod-meta.json:
+    std::uint32_t levels = 0;        // --levels; 0: as many as the scene asks for
+    std::uint64_t chunk_splats = 0;  // --chunk-splats: at most, in a file; 0: the usual number
+    [[nodiscard]] bool isStreamed() const { return out.filename() == "lod-meta.json"; }
 };
 
 struct CompareOptions {

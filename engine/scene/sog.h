@@ -25,6 +25,8 @@ Scene readSogFile(InputFile& file, LoadNotes& notes, const Progress& progress);
 void writeSog(const Scene& scene, const std::string& path, const Progress& progress = {});
 // The same with the splats in the scene's order, for a chunk whose parts somebody names by their places.
 void writeSogInOrder(const Scene& scene, const std::string& path, const Progress& progress = {});
+// The same as the files of a folder, which is made: meta.json and pictures. A failure leaves what was written so far.
+void writeSogFolder(const Scene& scene, const std::string& folder, const Progress& progress = {});
 // How many rows of harmonics at most.
 std::size_t sogPaletteSize(const Scene& scene);
 

@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <filesystem>
 #include <numeric>
 #include <thread>
 
@@ -119,11 +120,15 @@ std::vector<std::uint32_t> ownOrder(const SogPlaces& places) {
     return order;
 }
 
-void write(const Scene& scene, const std::string& path, const Progress& progress,
-           std::vector<std::uint32_t> (*orderOf)(const SogPlaces& places)) {
+using OrderOf = std::vector<std::uint32_t>(const SogPlaces& places);
+
+void requireWritable(const Scene& scene, const std::string& path) {
     check(canDecodeWebp(), "{}: this build cannot write SOG: configure with BINOSPLAT_SOG=ON, or write PLY or SPZ", path);
     check(!scene.is_linear, "{}: cannot hold colours of linear light ({}), must be written from a display-encoded scene", path, scene.name);
-    PartFile file(path);
+}
+
+// The files of a scene; meta.json comes last.
+std::vector<NamedBytes> pack(const Scene& scene, const std::string& path, const Progress& progress, OrderOf* orderOf) {
     const glm::uvec2 size_px = choosePictureSize(scene.size(), path);
     const SogPlaces places = findSogPlaces(scene);
     const std::vector<std::uint32_t> order = orderOf(places);
@@ -171,7 +176,13 @@ void write(const Scene& scene, const std::string& path, const Progress& progress
     const std::string text = meta.dump();
     const auto bytes = std::as_bytes(std::span(text));
     all.push_back({"meta.json", {bytes.begin(), bytes.end()}});
-    const std::vector<std::byte> bundle = packSogBundle(all, path);
+    return all;
+}
+
+void write(const Scene& scene, const std::string& path, const Progress& progress, OrderOf* orderOf) {
+    requireWritable(scene, path);
+    PartFile file(path);
+    const std::vector<std::byte> bundle = packSogBundle(pack(scene, path, progress, orderOf), path);
     file.write(bundle.data(), bundle.size());
     file.commit();
     if (progress) { progress(1.0); }
@@ -185,5 +196,18 @@ std::size_t sogPaletteSize(const Scene& scene) { return std::min(std::bit_floor(
 void writeSog(const Scene& scene, const std::string& path, const Progress& progress) { write(scene, path, progress, mortonOrder); }
 
 void writeSogInOrder(const Scene& scene, const std::string& path, const Progress& progress) { write(scene, path, progress, ownOrder); }
+
+void writeSogFolder(const Scene& scene, const std::string& folder, const Progress& progress) {
+    requireWritable(scene, folder);
+    std::error_code error;
+    std::filesystem::create_directory(folder, error);
+    check(!error, "{}: cannot be written: {}", folder, error.message());
+    for (const NamedBytes& named : pack(scene, folder, progress, ownOrder)) {
+        PartFile file((std::filesystem::path(folder) / named.name).string());
+        file.write(named.bytes.data(), named.bytes.size());
+        file.commit();
+    }
+    if (progress) { progress(1.0); }
+}
 
 }  // namespace binosplat

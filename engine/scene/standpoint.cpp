@@ -264,7 +264,8 @@ Standpoint judgeStandpoint(const Scene& scene, const StandpointWish& wish) {
                 fmt::format("inside: what stands there surrounds its middle in {} of {} directions; {:.3g} units above the floor, {:.3g} "
                             "from the densest part, which is looked at",
                             sectors, kSectors, eye_height, glm::length(look - eye)),
-                up_why};
+                up_why,
+                true};
         }
     }
     const Lie seen = lieOf(samples, axes, floor);

@@ -19,6 +19,7 @@ struct Standpoint {
     View view;
     std::string why;     // half a sentence: "inside: ...", "outside: ..."
     std::string up_why;  // where up is from, likewise: "of the floor: ..."
+    bool is_inside = false;
 };
 
 // A scene that surrounds its middle, a room or a street, is entered: at eye height over its floor, near the middle of the dense part but

@@ -235,6 +235,17 @@ BINOSPLAT_CONSTANT float kMaxSpread = 4.0f;
 // ratio: a wall that continues beyond the border is as deep as what is repeated there, and rounding must not decide.
 BINOSPLAT_CONSTANT float kInFrontRatio = 1.01f;
 
+// contribute sums in fixed point, so that the order of threads does not matter: steps of 2^-20. What a pixel adds is at most
+// kMaxPixelError, so that a tile's sum stays within 31 bits. A splat's sums, in this order; without a wanted picture the weight alone.
+BINOSPLAT_CONSTANT float kContributionSteps = 1048576.0f;
+BINOSPLAT_CONSTANT uint kSumWeight = 0;       // w
+BINOSPLAT_CONSTANT uint kSumMissing = 1;      // w times what the pixel lacks: three channels
+BINOSPLAT_CONSTANT uint kSumOpacityPull = 4;  // how the squared error falls with the logarithm of the opacity: w D . missing,
+BINOSPLAT_CONSTANT uint kSumOpacityHold = 5;  // w D . D, where D is how far the splat's colour is from what lies behind it
+BINOSPLAT_CONSTANT uint kSumSizePull = 6;     // and with that of its size: rho times the former,
+BINOSPLAT_CONSTANT uint kSumSizeHold = 7;     // and rho^2 times
+BINOSPLAT_CONSTANT uint kContributionSums = 8;
+
 // Depths are counted in bins of 1/32 octave, from 2^-16 to 2^16 scene units.
 BINOSPLAT_CONSTANT uint kDepthBins = 1024;
 // Tiles that a workgroup of depth_bounds counts: 16 pixels per invocation, which clears eight bins and adds up eight.

@@ -114,6 +114,20 @@ struct RasterizePass {
     uint is_light;      // 1: colours and background are light, to be encoded once they are blended
 };
 
+// contribute: how much of an eye's picture each splat makes up and, against a picture that is wanted in its place, which way the splat's
+// colour, opacity and size should go. Only where scenes are thinned out (engine/levels).
+struct ContributePass {
+    EyeViews eyes;
+    ProjectedSplats splats;
+    Uints ranks;
+    UVec2s ranges;
+    Uints order;           // the splats' indices in the scene
+    FloatColours picture;  // as rasterized; null without `wanted`
+    FloatColours wanted;
+    Uints sums;  // in and out: of each splat of the scene one or kContributionSums of 64 bits, the lower word first, in kContributionSteps
+    uint eye;
+};
+
 // weigh: predicted: which tiles are cheaper to render than to warp, and whether warping anything pays.
 struct WeighPass {
     WarpViews warp;

@@ -78,6 +78,33 @@ TEST_CASE_FIXTURE(Converted, "a sphere can be cut out of a scene, and keeps all 
     CHECK(files() == Files{"a.ply"});
 }
 
+TEST_CASE_FIXTURE(Converted, "a share, a number or a size of the splats can be kept, the same bytes on every run") {
+    write("cameras.json", R"([{"position":[0,0,0],"rotation":[[1,0,0],[0,1,0],[0,0,1]],"width":64,"height":64,"fx":40,"fy":40}])");
+    const std::string wall = "convert builtin:slanted-wall ", cameras = " --cameras cameras.json";
+    const Outcome outcome = go(wall + "a.ply --keep 0.25" + cameras);
+    CHECK(outcome.output.find("420 of 1681 splats are kept, those that show most") != std::string::npos);
+    static_cast<void>(go(wall + "b.ply --keep 420" + cameras));
+    CHECK(bytesOf("a.ply") == bytesOf("b.ply"));
+    static_cast<void>(go(wall + "b.ply --keep 20KB" + cameras));
+    CHECK(std::filesystem::file_size(path / "b.ply") <= 20000);
+    CHECK(std::filesystem::file_size(path / "b.ply") > 18000);
+    const std::string expected = ", must be a share of the splats up to 1, a number of them, or a size such as 50MB";
+    for (const char* wrong : {"0", "1.5", "-3", "half", "MB"}) {
+        checkRefused(fmt::format("{}c.ply --keep={}", wall, wrong), 1, fmt::format("--keep is {}{}", wrong, expected));
+    }
+    checkRefused(wall + "c.ply" + cameras, 2, "--cameras is given without --keep");
+    checkRefused(wall + "c.ply --levels 2", 2, "--levels is given, but OUT is not a lod-meta.json");
+#ifdef BINOSPLAT_SOG
+    static_cast<void>(go(wall + "scene/lod-meta.json --levels 3" + cameras));
+    for (const auto& [level, splats] : {std::pair("0", 1681), std::pair("1", 840), std::pair("2", 420)}) {
+        CHECK(go(fmt::format("info scene --lod {}", level)).output.find(fmt::format("{} ", splats)) != std::string::npos);
+    }
+    checkRefused(wall + "scene/lod-meta.json", 1, "scene: is there already, must be absent or empty");
+    std::filesystem::remove_all(path / "scene");
+#endif
+    CHECK(files() == Files{"a.ply", "b.ply", "cameras.json"});
+}
+
 TEST_CASE_FIXTURE(Converted, "what cannot be converted leaves nothing behind") {
     std::filesystem::create_directory(path / "folder.spz");
     write("file", "");

@@ -1,5 +1,6 @@
 // The structs that C++ and GLSL share have the same fields at the same offsets in both: what the compiled shaders say of them is
 // held against offsetof and sizeof. Also what shaders do with their constants, and with structs of addresses.
+#include "engine/passes/contribute.h"
 #include "engine/passes/passes.h"
 #include "engine/passes/past_passes.h"
 #include "engine/passes/present.h"
@@ -65,6 +66,7 @@ std::vector<Layout> hostLayouts() {
                splats_apart, all_tiles),
         LAYOUT(TileRangesPass, eyes, tiles, pairs, ranges, visible, targets, background),
         LAYOUT(RasterizePass, eyes, splats, ranks, ranges, targets, background, depth_choice, is_light),
+        LAYOUT(ContributePass, eyes, splats, ranks, ranges, order, picture, wanted, sums, eye),
         LAYOUT(WeighPass, warp, ranges, moving, tile_kinds, tile_costs, tile_errors, tile_depths, tile_mask, price_bins, shown_mask,
                visible, masked_tiles, counters, kinds_given),
         LAYOUT(DepthBoundsPass, warp, colours, half_colours, moving, bins),
@@ -148,6 +150,7 @@ TEST_CASE_FIXTURE(Gpu, "every kernel reads each constant that it is compiled for
     append(table, warpKernels(context()));
     append(table, pastKernels(context().isSoftware()));
     append(table, presentKernels());
+    append(table, contributeKernels());
     std::set<std::string> made;
     for (const KernelVariant& variant : table) { made.insert(variant.shader); }
     const std::map<std::string, ListedPass> listed = listedPasses();

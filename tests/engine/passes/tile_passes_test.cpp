@@ -1,4 +1,5 @@
 // Facts about the passes over tiles, tile_ranges and rasterize, each started from what the twin's pass before it left.
+#include "engine/reference/contribute.h"
 #include "tests/engine/passes/pass_stages.h"
 #include "tests/engine/passes/stereo_cases.h"
 
@@ -245,6 +246,63 @@ TEST_CASE_FIXTURE(Gpu, "rasterize leaves the word that each pixel moves by, and 
     // A hit that rounding takes away or adds moves a pixel of the cloud farthest.
     CHECK(test::share(other, pixels) <= 0.001);
     CHECK(test::share(other_spread, pixels) <= 0.0005);
+}
+
+// Of each splat by rank, from one run of contribute.
+std::vector<std::array<double, gpu::kContributionSums>> contributionsOnDevice(Gpu& gpu, const Raster& raster, const Buffer& wanted) {
+    const std::size_t splats = raster.staged.twin.splats.size();
+    std::vector<gpu::uint> order(splats);
+    std::iota(order.begin(), order.end(), 0u);
+    const Buffer ranks = gpu.upload("order", order);
+    const Buffer sums = gpu.upload("sums", std::vector<std::int64_t>(splats * gpu::kContributionSums));
+    const gpu::ContributePass pass{raster.pass.eyes,
+                                   raster.pass.splats,
+                                   raster.pass.ranks,
+                                   raster.pass.ranges,
+                                   ranks.address<gpu::uint>(),
+                                   raster.state.colours,
+                                   wanted.address<gpu::vec4>(),
+                                   sums.address<gpu::uint>(),
+                                   0};
+    const Kernel& kernel = gpu.kernel(ContributeKernel{.splat_kind = test::shapeOf(raster.staged.view.scene), .fits = 1});
+    const glm::uvec2 size_tiles = tilesOf(raster.staged.view.eye.size_px);
+    gpu.run([&](Commands& commands) { commands.dispatch(kernel, pass, size_tiles.x, size_tiles.y); });
+    std::vector<std::array<double, gpu::kContributionSums>> found(splats);
+    const auto steps = gpu.readBack<std::int64_t>(sums, splats * gpu::kContributionSums);
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+        found[i / gpu::kContributionSums][i % gpu::kContributionSums] = static_cast<double>(steps[i]) / gpu::kContributionSteps;
+    }
+    return found;
+}
+
+TEST_CASE_FIXTURE(Gpu, "contribute finds what each splat makes up of a picture and which way it should go, the same on every run") {
+    for (const test::StagedScene& staged : test::stagedScenes()) {
+        CAPTURE(staged.view.name);
+        Raster raster(*this, staged);
+        raster.run({});
+        const reference::Picture truth = raster.makeTwin();
+        std::vector<glm::dvec3> wanted;
+        for (const glm::dvec4& shown : truth.rgba) { wanted.push_back(0.5 * glm::dvec3(shown) + glm::dvec3(0.3, 0.1, 0.0)); }
+        std::vector<glm::vec4> colours;
+        for (const glm::dvec3& colour : wanted) { colours.emplace_back(glm::vec3(colour), 1.0f); }
+        const Buffer picture = upload("wanted", colours);
+        const auto found = contributionsOnDevice(*this, raster, picture);
+        CHECK(contributionsOnDevice(*this, raster, picture) == found);
+        const auto expected = reference::contribute(staged.twin.splats, staged.twin.sorted_pairs, staged.twin.ranges, staged.view.eye,
+                                                    kSettings, truth, wanted);
+        std::array<double, gpu::kContributionSums> off{}, all{};
+        for (std::size_t i = 0; i < found.size(); ++i) {
+            const reference::Contribution& e = expected[i];
+            const std::array sums{e.weight,       e.missing.x,    e.missing.y, e.missing.z,
+                                  e.opacity_pull, e.opacity_hold, e.size_pull, e.size_hold};
+            for (std::size_t s = 0; s < sums.size(); ++s) { off[s] += std::abs(found[i][s] - sums[s]), all[s] += std::abs(sums[s]); }
+        }
+        for (std::size_t s = 0; s < off.size(); ++s) {
+            CAPTURE(s);
+            // Colours are half floats, of which sums of either sign keep what does not cancel.
+            CHECK(off[s] <= 1e-3 * all[s] + (s == gpu::kSumWeight ? 0.0 : 2e-4 * all[gpu::kSumWeight]));
+        }
+    }
 }
 
 }  // SUITE(tile_passes)

@@ -1,0 +1,107 @@
+// Frames of one eye whose lists stay for a second look.
+#include "engine/levels/splat_meter.h"
+
+#include "engine/error.h"
+#include "engine/passes/eye_view.h"
+
+#include <algorithm>
+#include <cassert>
+
+namespace binosplat {
+
+namespace {
+
+constexpr double kRoomMade = 1.25;
+constexpr std::uint32_t kFirstPairs = 1u << 18;
+
+std::uint32_t roomFor(std::uint32_t needed) { return static_cast<std::uint32_t>(std::min<double>(kRoomMade * needed, gpu::kMaxItems)); }
+
+}  // namespace
+
+SplatMeter::SplatMeter(const Context& context)
+    : context_(context),
+      passes_(context),
+      contribute_passes_(context),
+      readback_(context, "frame state read-back", sizeof(FrameState), MemoryKind::kReadback),
+      commands_(context) {}
+
+void SplatMeter::show(const GpuScene& scene, bool fits) {
+    scene_ = &scene;
+    fits_ = fits;
+    const FrameCapacity before = buffers_.capacity();
+    buffers_ = makeFrameBuffers(context_, scene.splatCount());
+    growFrameBuffers(context_, buffers_, {std::max(scene.splatCount(), 1u), std::max(before.pairs, kFirstPairs)});
+    sums_ = {};
+    sums_ = Buffer(context_, "contributions",
+                   std::max<std::uint64_t>(scene.splatCount(), 1) * ContributePasses::sumsPerSplat(fits) * sizeof(std::int64_t));
+    commands_.begin();
+    commands_.fillZero(sums_);
+    commands_.submitAndWait();
+}
+
+void SplatMeter::render(const Eye& eye, double near, Picture& picture) { run(eye, near, picture, false, nullptr); }
+
+void SplatMeter::measure(const Eye& eye, double near, Picture& picture, const Picture* wanted) {
+    assert(fits_ == (wanted != nullptr));
+    run(eye, near, picture, true, wanted);
+}
+
+void SplatMeter::run(const Eye& eye, double near, Picture& picture, bool measures, const Picture* wanted) {
+    const std::uint64_t pixels = std::uint64_t{eye.size_px.x} * eye.size_px.y;
+    const glm::uvec2 tiles = tilesOf(eye.size_px);
+    const std::uint64_t range_bytes = std::uint64_t{tiles.x} * tiles.y * sizeof(gpu::uvec2);
+    if (picture.size_px != eye.size_px) {
+        picture = {};
+        picture.size_px = eye.size_px;
+        picture.colours = Buffer(context_, "colours", pixels * sizeof(gpu::vec4));
+    }
+    if (buffers_.tile_ranges.bytes() != range_bytes) { buffers_.tile_ranges = Buffer(context_, "tile ranges", range_bytes); }
+    // Lists without room are empty, and so is what such a frame adds.
+    do { record(eye, near, picture, measures, wanted); } while (!hadRoom());
+}
+
+void SplatMeter::record(const Eye& eye, double near, const Picture& picture, bool measures, const Picture* wanted) {
+    FrameState state{};
+    state.views[0] = viewOf(eye, near);
+    EyesOfList eyes;
+    if (scene_->usualOrder() == Order::kDistance) { eyes.middle = placeOf(eye.world_from_camera.position); }
+    Targets targets;
+    targets.size_tiles = tilesOf(eye.size_px);
+    targets.all_tiles = targets.size_tiles.x * targets.size_tiles.y;
+    targets.pairs = buffers_.pairs.arrays();
+    state.targets[0].colours = picture.colours.address<gpu::vec4>();
+    commands_.begin();
+    commands_.update(buffers_.state, &state, sizeof(state));
+    passes_.recordCull(commands_, *scene_, buffers_, eyes, Role::kNone);
+    passes_.recordOrder(commands_, *scene_, buffers_, eyes, Role::kNone);
+    passes_.recordPictures(commands_, *scene_, buffers_, targets, Role::kNone);
+    if (measures) { contribute_passes_.record(commands_, *scene_, buffers_, targets, picture, wanted, sums_); }
+    commands_.endPass();
+    commands_.copy(buffers_.state, readback_, sizeof(FrameState));
+    commands_.submitAndWait();
+}
+
+bool SplatMeter::hadRoom() {
+    const FrameState& state = readback_.mapped<FrameState>()[0];
+    const gpu::uint needed = state.targets[0].pairs.needed;  // every splat has room
+    check(needed <= gpu::kMaxItems, "the scene's splats meet too many tiles of a picture to be judged");
+    if (needed <= buffers_.pairs.capacity()) { return true; }
+    growFrameBuffers(context_, buffers_, {buffers_.visible.capacity(), roomFor(needed)});
+    return false;
+}
+
+template <typename T>
+std::vector<T> SplatMeter::read(const Buffer& buffer) {
+    const Buffer readback(context_, "read-back", buffer.bytes(), MemoryKind::kReadback);
+    commands_.begin();
+    commands_.copy(buffer, readback, buffer.bytes());
+    commands_.submitAndWait();
+    const auto values = readback.mapped<T>();
+    return {values.begin(), values.end()};
+}
+
+std::vector<std::int64_t> SplatMeter::sums() { return read<std::int64_t>(sums_); }
+
+std::vector<float> SplatMeter::pixels(const Picture& picture) { return read<float>(picture.colours); }
+
+}  // namespace binosplat

@@ -1,0 +1,47 @@
+// Pictures of a scene, one eye after the other, and what each splat makes up of them.
+#pragma once
+
+#include "engine/geometry.h"
+#include "engine/passes/contribute.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace binosplat {
+
+class SplatMeter {
+public:
+    explicit SplatMeter(const Context& context);
+    SplatMeter(const SplatMeter&) = delete;
+    SplatMeter& operator=(const SplatMeter&) = delete;
+
+    // The following are of this scene, which stays as it is and must outlive them. All sums are zero. `fits`: see measure.
+    void show(const GpuScene& scene, bool fits);
+    // Renders an eye into `picture`, on black, and then adds to the sums what each splat makes up of it. `near` is in scene units.
+    // `wanted`: what the picture should be, if the scene is shown to be fitted.
+    void measure(const Eye& eye, double near, Picture& picture, const Picture* wanted = nullptr);
+    // The same without sums.
+    void render(const Eye& eye, double near, Picture& picture);
+    // The sums so far, in gpu::kContributionSteps: of each splat its weight alone or kContributionSums.
+    [[nodiscard]] std::vector<std::int64_t> sums();
+    [[nodiscard]] std::vector<float> pixels(const Picture& picture);
+
+private:
+    void run(const Eye& eye, double near, Picture& picture, bool measures, const Picture* wanted);
+    void record(const Eye& eye, double near, const Picture& picture, bool measures, const Picture* wanted);
+    // False: the lists had no room, now they have.
+    bool hadRoom();
+    template <typename T>
+    std::vector<T> read(const Buffer& buffer);
+
+    const Context& context_;
+    Passes passes_;
+    ContributePasses contribute_passes_;
+    const GpuScene* scene_ = nullptr;
+    FrameBuffers buffers_;
+    Buffer sums_, readback_;
+    bool fits_ = false;
+    Commands commands_;  // last: it waits before what it uses is freed
+};
+
+}  // namespace binosplat

@@ -1,0 +1,145 @@
+// Choosing by weight, widening, and fitting by the sums of `contribute`.
+#include "engine/levels/thin_out.h"
+
+#include "engine/scene/pick_splats.h"
+#include "engine/scene/sh_basis.h"
+#include "engine/scene/standing_views.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace binosplat {
+
+namespace {
+
+// Splats that stay are wider by this power of the share that does not.
+constexpr double kWidening = -0.125;
+// A step of the fit looks from every fourth eye: all eyes in four steps, each of which goes nearly as far as one from all of them.
+constexpr std::size_t kParts = 4;
+constexpr int kSteps = 16;
+// Of the way to where a splat alone would mend what is missing under it. Colours go all of it: where splats overlap, weights add up to 1 at
+// most. Opacities and sizes share what is missing with these and with each other.
+constexpr double kOpacityRate = 0.6, kSizeRate = 0.4;
+constexpr double kMostGrowth = 0.25;   // of a logarithm in a step
+constexpr double kLeastWeight = 0.01;  // in pixels: of what is seen less, little is known
+constexpr double kLeastHold = 1e-3;
+constexpr float kFaintest = 1.25f / 255.0f, kDensest = 0.999f;
+
+// The sums of one splat, in pixels.
+struct SplatSums {
+    std::span<const std::int64_t> steps;
+    double operator[](std::size_t i) const { return static_cast<double>(steps[i]) / static_cast<double>(gpu::kContributionSteps); }
+
+    // How far a logarithm goes.
+    [[nodiscard]] double growth(std::size_t pull, std::size_t hold) const {
+        return (*this)[pull] / ((*this)[hold] + kLeastHold * ((*this)[gpu::kSumWeight] + 1.0));
+    }
+};
+
+// Moves each splat by what its sums say; those that no eye sees stay.
+void takeStep(Scene& scene, std::span<const std::int64_t> sums) {
+    const auto width = static_cast<std::size_t>(3 * shCoefficientCount(scene.sh_degree));
+    const double constant_band = shBasis({0.0, 0.0, 1.0})[0];
+    for (std::size_t i = 0; i < scene.size(); ++i) {
+        const SplatSums of{sums.subspan(i * gpu::kContributionSums, gpu::kContributionSums)};
+        const double weight = of[gpu::kSumWeight];
+        if (weight <= 0.0) { continue; }
+        for (std::size_t channel = 0; channel < 3; ++channel) {
+            const double missing = of[gpu::kSumMissing + channel] / (weight + kLeastWeight);
+            scene.sh[i * width + channel] += static_cast<float>(missing / constant_band);
+        }
+        const auto growthOf = [&](std::size_t pull, std::size_t hold, double share) {
+            return static_cast<float>(std::exp(std::clamp(share * of.growth(pull, hold), -kMostGrowth, kMostGrowth)));
+        };
+        const float denser = growthOf(gpu::kSumOpacityPull, gpu::kSumOpacityHold, kOpacityRate);
+        scene.opacities[i] = std::clamp(scene.opacities[i] * denser, kFaintest, kDensest);
+        const float wider = growthOf(gpu::kSumSizePull, gpu::kSumSizeHold, kSizeRate);
+        scene.scales[i] *= wider;
+        if (scene.isGaussian3d()) { scene.thicknesses[i] *= wider; }
+    }
+}
+
+}  // namespace
+
+std::vector<Eye> standingEyes(const Scene& scene, std::size_t count, std::size_t first, gpu::uint side_px) {
+    std::vector<Eye> eyes;
+    for (const View& view : standingViews(scene, count, first)) {
+        const glm::uvec2 size_px(side_px);
+        eyes.push_back({lookAt(view.eye, view.look, view.up), intrinsicsFromFovX(glm::radians(view.fov_x_deg), size_px), size_px});
+    }
+    return eyes;
+}
+
+ThinOut::ThinOut(const Context& context, const Scene& scene, std::vector<Eye> eyes, double near, const Progress& progress)
+    : context_(context), scene_(scene), eyes_(std::move(eyes)), near_(near), meter_(context), wanted_(eyes_.size()) {
+    const GpuScene whole(context, scene);
+    meter_.show(whole, false);
+    for (std::size_t i = 0; i < eyes_.size(); ++i) {
+        meter_.measure(eyes_[i], near_, wanted_[i]);
+        if (progress) { progress(static_cast<double>(i + 1) / static_cast<double>(eyes_.size())); }
+    }
+    weights_ = meter_.sums();
+    weights_.resize(scene.size());
+}
+
+std::vector<std::uint32_t> ThinOut::choose(std::uint64_t count) const {
+    std::vector<std::uint32_t> order(scene_.size());
+    std::iota(order.begin(), order.end(), 0u);
+    // What no eye sees goes first, and of that the smallest and faintest.
+    const auto sizeOf = [&](std::uint32_t splat) { return scene_.opacities[splat] * scene_.scales[splat].x * scene_.scales[splat].y; };
+    const auto showsMore = [&](std::uint32_t a, std::uint32_t b) {
+        if (weights_[a] != weights_[b]) { return weights_[a] > weights_[b]; }
+        const float size_a = sizeOf(a), size_b = sizeOf(b);
+        return size_a != size_b ? size_a > size_b : a < b;
+    };
+    const auto kept = static_cast<std::ptrdiff_t>(std::min<std::uint64_t>(count, order.size()));
+    std::nth_element(order.begin(), order.begin() + kept, order.end(), showsMore);
+    order.resize(static_cast<std::size_t>(kept));
+    std::ranges::sort(order);
+    return order;
+}
+
+Scene ThinOut::keep(std::uint64_t count, const Progress& progress) {
+    Scene scene = pickSplats(scene_, choose(count));
+    if (scene.size() == 0 || scene.size() == scene_.size()) { return scene; }
+    const double kept = static_cast<double>(scene.size()) / static_cast<double>(scene_.size());
+    const auto wider = static_cast<float>(std::pow(kept, kWidening));
+    for (glm::vec2& scale : scene.scales) { scale *= wider; }
+    for (float& thickness : scene.thicknesses) { thickness *= wider; }
+    fit(scene, progress);
+    return scene;
+}
+
+void ThinOut::fit(Scene& scene, const Progress& progress) {
+    Picture picture;
+    for (int step = 0; step < kSteps; ++step) {
+        const GpuScene shown(context_, scene);
+        meter_.show(shown, true);
+        for (std::size_t i = static_cast<std::size_t>(step) % kParts; i < eyes_.size(); i += kParts) {
+            meter_.measure(eyes_[i], near_, picture, &wanted_[i]);
+            if (progress) { progress((step + static_cast<double>(i) / static_cast<double>(eyes_.size())) / kSteps); }
+        }
+        takeStep(scene, meter_.sums());
+    }
+}
+
+double ThinOut::errorOf(const Scene& scene) {
+    const GpuScene shown(context_, scene);
+    meter_.show(shown, false);
+    Picture picture;
+    double sum = 0.0;
+    std::size_t values = 0;
+    for (std::size_t i = 0; i < eyes_.size(); ++i) {
+        meter_.render(eyes_[i], near_, picture);
+        const std::vector<float> is = meter_.pixels(picture), should = meter_.pixels(wanted_[i]);
+        for (std::size_t at = 0; at < is.size(); ++at) {
+            if (at % 4 == 3) { continue; }
+            const double off = static_cast<double>(is[at]) - static_cast<double>(should[at]);
+            sum += off * off, ++values;
+        }
+    }
+    return values > 0 ? sum / static_cast<double>(values) : 0.0;
+}
+
+}  // namespace binosplat

@@ -1,0 +1,32 @@
+// Every array of a scene, by the same indices.
+#include "engine/scene/pick_splats.h"
+
+namespace binosplat {
+
+Scene pickSplats(const Scene& scene, std::span<const std::uint32_t> splats) {
+    Scene picked;
+    const auto pick = [&](const auto& from, auto& to, std::size_t width) {
+        to.reserve(splats.size() * width);
+        for (const std::uint32_t splat : splats) {
+            const auto begin = from.begin() + static_cast<std::ptrdiff_t>(splat * width);
+            to.insert(to.end(), begin, begin + static_cast<std::ptrdiff_t>(width));
+        }
+    };
+    pick(scene.positions, picked.positions, 1);
+    pick(scene.rotations, picked.rotations, 1);
+    pick(scene.scales, picked.scales, 1);
+    if (scene.isGaussian3d()) { pick(scene.thicknesses, picked.thicknesses, 1); }
+    pick(scene.opacities, picked.opacities, 1);
+    pick(scene.sh, picked.sh, static_cast<std::size_t>(3 * shCoefficientCount(scene.sh_degree)));
+    picked.name = scene.name;
+    picked.sh_degree = scene.sh_degree;
+    picked.origin = scene.origin;
+    picked.antialiased = scene.antialiased;
+    picked.by_distance = scene.by_distance;
+    picked.y_up = scene.y_up;
+    picked.vertical_axis = scene.vertical_axis;
+    picked.is_linear = scene.is_linear;
+    return picked;
+}
+
+}  // namespace binosplat
