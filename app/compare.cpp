@@ -1,12 +1,12 @@
 // `binosplat compare`: the difference of two pictures, in the same scores as `bench`.
 #include "app/commands.h"
+#include "app/scores/flip.h"
+#include "app/scores/lpips.h"
+#include "app/scores/metrics.h"
+#include "app/scores/ssim.h"
 #include "app/terminal/progress.h"
 #include "engine/error.h"
-#include "engine/picture/flip.h"
 #include "engine/picture/image_io.h"
-#include "engine/picture/lpips.h"
-#include "engine/picture/metrics.h"
-#include "engine/picture/ssim.h"
 
 #include <filesystem>
 #include <optional>

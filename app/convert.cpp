@@ -4,8 +4,8 @@
 #include "app/load.h"
 #include "app/terminal/progress.h"
 #include "engine/error.h"
-#include "engine/scene/scene_targets.h"
-#include "engine/scene/streamed_write.h"
+#include "engine/files/scene_targets.h"
+#include "engine/files/streamed_write.h"
 
 #include <filesystem>
 

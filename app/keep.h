@@ -2,10 +2,10 @@
 #pragma once
 
 #include "app/options/options.h"
+#include "engine/files/scene_targets.h"
 #include "engine/geometry.h"
 #include "engine/gpu/context.h"
 #include "engine/levels/thin_out.h"
-#include "engine/scene/scene_targets.h"
 
 #include <memory>
 #include <vector>

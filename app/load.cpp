@@ -3,11 +3,12 @@
 
 #include "app/terminal/interrupt.h"
 #include "app/terminal/progress.h"
+#include "engine/address.h"
 #include "engine/error.h"
+#include "engine/files/load_scene.h"
+#include "engine/files/scene_series.h"
+#include "engine/files/web/web_files.h"
 #include "engine/gpu/gpu_scene.h"
-#include "engine/scene/address.h"
-#include "engine/scene/scene_series.h"
-#include "engine/web/web_files.h"
 
 #include <fmt/format.h>
 

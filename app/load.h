@@ -2,8 +2,8 @@
 #pragma once
 
 #include "app/options/options.h"
+#include "engine/files/load_scene.h"
 #include "engine/frame/counters.h"
-#include "engine/scene/scene.h"
 #include "engine/stream/moving_scene.h"
 #include "engine/stream/scene_stream.h"
 

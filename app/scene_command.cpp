@@ -2,7 +2,7 @@
 #include "app/commands.h"
 #include "app/terminal/progress.h"
 #include "engine/error.h"
-#include "engine/scene/ply.h"
+#include "engine/files/ply.h"
 #include "engine/scene/procedural.h"
 
 #include <filesystem>

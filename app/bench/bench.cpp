@@ -6,8 +6,8 @@
 #include "app/options/device_options.h"
 #include "app/terminal/interrupt.h"
 #include "app/terminal/progress.h"
+#include "engine/address.h"
 #include "engine/error.h"
-#include "engine/scene/address.h"
 #include "engine/setup/output_files.h"
 
 #include <algorithm>

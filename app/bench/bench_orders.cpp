@@ -4,11 +4,11 @@
 #include "app/bench/order_results.h"
 #include "app/load.h"
 #include "app/options/camera_options.h"
+#include "app/scores/metrics.h"
 #include "app/terminal/interrupt.h"
 #include "app/terminal/progress.h"
-#include "engine/picture/metrics.h"
-#include "engine/reference/reference.h"
 #include "engine/setup/output_files.h"
+#include "engine/twin/reference.h"
 
 #include <fmt/format.h>
 

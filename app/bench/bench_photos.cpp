@@ -4,11 +4,11 @@
 #include "app/bench/bench_point.h"
 #include "app/load.h"
 #include "app/options/device_options.h"
+#include "app/scores/metrics.h"
 #include "app/terminal/interrupt.h"
 #include "app/terminal/progress.h"
 #include "engine/error.h"
 #include "engine/picture/image_io.h"
-#include "engine/picture/metrics.h"
 #include "engine/scene/standpoint.h"
 #include "engine/setup/output_files.h"
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "app/bench/bench_methods.h"
-#include "engine/picture/lpips.h"
+#include "app/scores/lpips.h"
 
 #include <glm/glm.hpp>
 

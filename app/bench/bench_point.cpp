@@ -6,8 +6,8 @@
 #include "app/report/report.h"
 #include "app/terminal/interrupt.h"
 #include "engine/frame/staying_axes.h"
-#include "engine/reference/coarse.h"
-#include "engine/reference/reference.h"
+#include "engine/twin/coarse.h"
+#include "engine/twin/reference.h"
 
 #include <algorithm>
 #include <array>

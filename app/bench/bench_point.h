@@ -4,9 +4,9 @@
 #include "app/bench/bench_plan.h"
 #include "app/bench/bench_results.h"
 #include "app/options/camera_options.h"
+#include "app/scores/resize.h"
 #include "app/view/governor/governor.h"
 #include "engine/frame/stereo_frame.h"
-#include "engine/picture/resize.h"
 #include "engine/scene/scene.h"
 #include "engine/stream/live_scene.h"
 

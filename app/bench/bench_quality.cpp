@@ -1,11 +1,11 @@
 // How far the affiliated eye's picture is from its own full render.
 #include "app/bench/bench_quality.h"
 
+#include "app/scores/flip.h"
+#include "app/scores/metrics.h"
+#include "app/scores/ssim.h"
 #include "engine/passes/frame_buffers.h"
-#include "engine/picture/flip.h"
-#include "engine/picture/metrics.h"
 #include "engine/picture/roi_picture.h"
-#include "engine/picture/ssim.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // How far the affiliated eye's picture is from its own full render: over all pixels, and by their origin.
 #pragma once
 
-#include "engine/picture/lpips.h"
+#include "app/scores/lpips.h"
 
 #include <cstdint>
 #include <optional>

@@ -1,9 +1,9 @@
 // The costs of a frame of each method, and the distance of its pictures from full renders.
 #include "app/bench/motion_point.h"
 
-#include "engine/picture/metrics.h"
+#include "app/scores/metrics.h"
+#include "app/scores/visible_errors.h"
 #include "engine/picture/turned.h"
-#include "engine/picture/visible_errors.h"
 
 #include <algorithm>
 #include <cmath>

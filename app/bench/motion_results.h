@@ -3,9 +3,9 @@
 
 #include "app/bench/bench_results.h"
 #include "app/bench/bounded_tiles.h"
+#include "app/scores/visible_errors.h"
 #include "app/view/governor/governor.h"
 #include "engine/frame/counters.h"
-#include "engine/picture/visible_errors.h"
 
 #include <algorithm>
 #include <array>
@@ -59,7 +59,7 @@ struct MotionRun {
 
 std::string motionCsv(const MotionRun& run);
 // Medians, 95th and 99th percentiles and worst frames by point and method; for the error the PSNR that as many frames reach in both eyes,
-// and the run's, from both eyes' mean square; and what shows of them (engine/picture/visible_errors.h), with a headset also through its
+// and the run's, from both eyes' mean square; and what shows of them (app/scores/visible_errors.h), with a headset also through its
 // lenses. Errors are of all frames after the tenth, or of all if there are no more.
 std::string motionJson(const MotionRun& run);
 std::string motionTable(const MotionRun& run);

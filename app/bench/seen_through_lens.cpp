@@ -1,7 +1,7 @@
 // A headset's lenses, and the eyes behind them.
 #include "app/bench/seen_through_lens.h"
 
-#include "engine/reference/coarse.h"
+#include "engine/twin/coarse.h"
 
 #include <algorithm>
 #include <cmath>

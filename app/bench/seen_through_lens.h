@@ -3,8 +3,8 @@
 #pragma once
 
 #include "app/options/camera_options.h"
-#include "engine/picture/lens_view.h"
-#include "engine/picture/visible_errors.h"
+#include "app/scores/lens_view.h"
+#include "app/scores/visible_errors.h"
 
 #include <array>
 

@@ -4,7 +4,7 @@
 #include "app/command_line/option_documents.h"
 #include "app/options/option_layers.h"
 #include "engine/error.h"
-#include "engine/scene/scene_folder.h"
+#include "engine/files/scene_folder.h"
 
 #include <algorithm>
 #include <iterator>

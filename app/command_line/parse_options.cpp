@@ -3,8 +3,8 @@
 
 #include "app/command_line/commands_table.h"
 #include "app/terminal/version.h"
+#include "engine/address.h"
 #include "engine/error.h"
-#include "engine/scene/address.h"
 
 #include <CLI/CLI.hpp>
 

@@ -1,8 +1,8 @@
 // Every option, once.
 #include "app/options/option_table.h"
 
+#include "app/scores/flip.h"
 #include "engine/error.h"
-#include "engine/picture/flip.h"
 #include "engine/scene/scene.h"
 
 #include <algorithm>
@@ -228,7 +228,8 @@ std::span<const OptionRow<BenchOptions>> benchRows() {
         {{"rate", "", kBench, "HZ", "frames in a second of --motion, between its poses", "one for each pose"},
          field::number<kMotionSegment, &MotionSegment::rate_hz>(0.001, kMaxRateHz)},
         {{"frame-time", "", kBench, "MS",
-          "with --motion: what a frame of temporal may take; the viewer's controller (balanced) chooses size and bound for it; 0: no limit"},
+          "with --motion: what a frame of temporal may take; the viewer's controller (balanced) chooses size and bound for it; 0: no "
+          "limit"},
          field::number<&BenchOptions::frame_ms>(0.0, 10000.0)},
         {{"photos", "", kBench, "DIR", "photographs of the cameras of --cameras, to compare with"},
          field::file<&BenchOptions::photos_folder>()},

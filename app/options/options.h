@@ -1,9 +1,9 @@
 // The user's settings, typed and checked: the command line over the config file over the defaults.
 #pragma once
 
+#include "app/scores/flip.h"
 #include "engine/geometry.h"
 #include "engine/passes/stereo_settings.h"
-#include "engine/picture/flip.h"
 #include "engine/setup/head_motion.h"
 #include "engine/setup/settings.h"
 

@@ -3,8 +3,8 @@
 
 #include "app/options/camera_options.h"
 #include "engine/error.h"
+#include "engine/files/scene_folder.h"
 #include "engine/scene/floor_choice.h"
-#include "engine/scene/scene_folder.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // The results of `stability`: a table, all figures, and a plot for each family of cases.
 #pragma once
 
-#include "engine/stability/run_case.h"
+#include "app/stability_cases/run_case.h"
 
 #include <string>
 #include <utility>

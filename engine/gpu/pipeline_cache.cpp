@@ -1,8 +1,8 @@
 // Reading and writing the file. Drivers need not survive wrong bytes, so these are checked first.
 #include "engine/gpu/pipeline_cache.h"
 
+#include "engine/part_file.h"
 #include "engine/platform.h"
-#include "engine/scene/part_file.h"
 
 #include <fmt/format.h>
 

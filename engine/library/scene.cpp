@@ -1,9 +1,9 @@
 // Scenes: loaded on threads of their own.
+#include "engine/files/web/web_files.h"
 #include "engine/library/objects.h"
 #include "engine/library/structures.h"
 #include "engine/scene/procedural.h"
 #include "engine/scene/standpoint.h"
-#include "engine/web/web_files.h"
 
 #include <limits>
 

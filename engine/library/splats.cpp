@@ -1,6 +1,6 @@
 // A program's arrays as a scene, on the way that files take.
+#include "engine/files/scene_builder.h"
 #include "engine/library/objects.h"
-#include "engine/scene/scene_builder.h"
 
 #include <cmath>
 #include <limits>

@@ -6,8 +6,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -61,28 +59,8 @@ struct LoadNotes {
     std::vector<std::string> lines;           // one sentence each, for the user
 };
 
-// The choice among several levels of detail.
-struct LevelChoice {
-    std::optional<std::uint32_t> level;  // 0: the finest; an error if there is no such level
-    // Without `level`: true if so many splats fit. The finest level that does is loaded, or the coarsest; absent: the finest.
-    std::function<bool(std::uint64_t splats, int sh_degree)> fits;
-};
-
 // Called now and then with the share done, 0 to 1.
 using Progress = std::function<void(double)>;
-
-// Loads `source`: a file; a directory, which is a SOG scene, a training's output, of which the newest scene is taken, a moving scene, of
-// which the first frame is, or has one scene file; or builtin:NAME (then `builtin_splats` sets the size, 0 for its default).
-// Needs at most twice the scene's own size in host memory. Throws Error with file, place, what is wrong and what was expected.
-Scene loadScene(const std::string& source, std::uint64_t builtin_splats = 0, LoadNotes* notes = nullptr, const Progress& progress = {},
-                const LevelChoice& level = {});
-
-// The format of the scene in a file, by the beginning of its content; empty if it is none. Throws Error if that cannot be read.
-std::string formatOfFile(const std::string& path);
-
-// The same for an open file, wherever its scene's other files are.
-class InputFile;
-Scene loadScene(std::unique_ptr<InputFile> file, LoadNotes& notes, const Progress& progress = {}, const LevelChoice& level = {});
 
 // Removes the bands of colours above `sh_degree`, and says so in `notes` if there are any.
 void limitShDegree(Scene& scene, int sh_degree, LoadNotes& notes);

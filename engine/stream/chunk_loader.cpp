@@ -2,8 +2,8 @@
 #include "engine/stream/chunk_loader.h"
 
 #include "engine/error.h"
+#include "engine/files/scene_builder.h"
 #include "engine/parallel.h"
-#include "engine/scene/scene_builder.h"
 
 #include <algorithm>
 #include <array>

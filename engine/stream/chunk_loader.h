@@ -1,8 +1,8 @@
 // Loads parts of a streamed scene beside the frames: what is requested, in that order, on threads of its own.
 #pragma once
 
+#include "engine/files/sog_splats.h"
 #include "engine/gpu/packed_splats.h"
-#include "engine/scene/sog_splats.h"
 #include "engine/stream/chunk_source.h"
 #include "engine/stream/level_chooser.h"
 

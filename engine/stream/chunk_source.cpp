@@ -1,9 +1,9 @@
 // Folders, files and addresses.
 #include "engine/stream/chunk_source.h"
 
-#include "engine/scene/address.h"
+#include "engine/address.h"
+#include "engine/files/streamed_sog.h"
 #include "engine/scene/procedural.h"
-#include "engine/scene/streamed_sog.h"
 
 #include <filesystem>
 #include <system_error>

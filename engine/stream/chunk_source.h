@@ -1,8 +1,8 @@
 // The place of a streamed scene: a folder, its lod-meta.json, or the address of one. Its tree, and its chunks one by one.
 #pragma once
 
-#include "engine/scene/streamed_chunks.h"
-#include "engine/web/web_files.h"
+#include "engine/files/streamed_chunks.h"
+#include "engine/files/web/web_files.h"
 
 #include <cstdint>
 #include <memory>

@@ -6,8 +6,8 @@
 // not at all where splats lie closer than pixels; so splats end up as dense on the screen everywhere as the budget allows.
 #pragma once
 
+#include "engine/files/lod_tree.h"
 #include "engine/geometry.h"
-#include "engine/scene/lod_tree.h"
 
 #include <cstddef>
 #include <cstdint>

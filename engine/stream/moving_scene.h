@@ -1,8 +1,8 @@
 // A scene that moves, as frames see it: the scene frame of the time, or an interpolation between two.
 #pragma once
 
+#include "engine/files/scene_series.h"
 #include "engine/gpu/resident_scene.h"
-#include "engine/scene/scene_series.h"
 #include "engine/stream/live_scene.h"
 #include "engine/stream/series_loader.h"
 

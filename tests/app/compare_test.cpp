@@ -1,6 +1,6 @@
 // `binosplat compare`, run as a program. Pictures are PFM and PPM, which every build reads.
 #include "engine/picture/netpbm.h"
-#include "tests/engine/picture/lpips_weights.h"
+#include "tests/app/scores/lpips_weights.h"
 #include "tests/engine/picture/pictures.h"
 #include "tests/run_program.h"
 

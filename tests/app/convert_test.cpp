@@ -1,5 +1,5 @@
 // `binosplat convert`, run as a program.
-#include "engine/scene/scene.h"
+#include "engine/files/load_scene.h"
 #include "tests/run_program.h"
 
 SUITE(convert) {

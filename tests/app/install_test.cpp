@@ -1,5 +1,5 @@
 // Facts about an installed program: it needs nothing of the folder it was built in.
-#include "tests/engine/web/web_server.h"
+#include "tests/engine/files/web/web_server.h"
 #include "tests/run_program.h"
 
 #include <regex>

@@ -1,6 +1,6 @@
 // Facts about rendering along a path: numbered frames of both eyes, between poses too, and nothing half-written.
+#include "app/scores/metrics.h"
 #include "engine/picture/image_io.h"
-#include "engine/picture/metrics.h"
 #include "tests/run_program.h"
 
 SUITE(path) {

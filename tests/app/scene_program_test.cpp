@@ -1,11 +1,12 @@
 // What the program says of a scene, and how it takes one of several levels.
+#include "app/scores/metrics.h"
+#include "engine/files/load_scene.h"
+#include "engine/files/ply.h"
 #include "engine/picture/image_io.h"
-#include "engine/picture/metrics.h"
-#include "engine/scene/ply.h"
 #include "engine/scene/procedural.h"
 #include "tests/run_program.h"
 #ifdef BINOSPLAT_SOG
-#include "tests/engine/scene/streamed_scenes.h"
+#include "tests/engine/files/streamed_scenes.h"
 #endif
 
 SUITE(scene_program) {

@@ -1,8 +1,8 @@
 // Commands whose SCENE is an address, run as a program.
+#include "engine/files/ply.h"
 #include "engine/picture/image_io.h"
-#include "engine/scene/ply.h"
 #include "engine/scene/procedural.h"
-#include "tests/engine/web/web_runs.h"
+#include "tests/engine/files/web/web_runs.h"
 #include "tests/run_program.h"
 
 SUITE(web_program) {

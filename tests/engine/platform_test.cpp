@@ -1,7 +1,7 @@
 // Facts about what the operating system is asked for, and about files prepared by somebody else: links, pipes, long ones.
 
+#include "engine/part_file.h"
 #include "engine/picture/image_io.h"
-#include "engine/scene/part_file.h"
 #include "engine/setup/camera_file.h"
 #include "engine/setup/data_folders.h"
 #include "engine/setup/head_motion.h"

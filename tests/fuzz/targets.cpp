@@ -2,17 +2,17 @@
 #include "tests/fuzz/targets.h"
 
 #include "engine/error.h"
+#include "engine/files/load_scene.h"
+#include "engine/files/lod_meta.h"
+#include "engine/files/scene_targets.h"
+#include "engine/files/sog_meta.h"
 #include "engine/platform.h"
-#include "engine/scene/lod_meta.h"
-#include "engine/scene/scene.h"
-#include "engine/scene/scene_targets.h"
-#include "engine/scene/sog_meta.h"
 #include "engine/scene/survey.h"
 #include "engine/setup/camera_file.h"
 #include "engine/setup/head_motion.h"
 #include "engine/setup/headset.h"
 #include "engine/setup/settings.h"
-#include "tests/engine/scene/packed_bytes.h"
+#include "tests/engine/files/packed_bytes.h"
 #ifdef BINOSPLAT_OPENXR
 #include "xr/simulated/script/script_files.h"
 #endif

@@ -2,8 +2,8 @@
 #include "app/view/scenes/recent_scenes.h"
 
 #include "app/view/settings/view_files.h"
+#include "engine/address.h"
 #include "engine/error.h"
-#include "engine/scene/address.h"
 #include "engine/scene/procedural.h"
 #include "engine/setup/output_files.h"
 #include "engine/setup/text_file.h"

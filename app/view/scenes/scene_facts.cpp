@@ -1,8 +1,8 @@
 // Numbers about a scene, in units that are read at a glance.
 #include "app/view/scenes/scene_facts.h"
 
+#include "engine/address.h"
 #include "engine/gpu/gpu_scene.h"
-#include "engine/scene/address.h"
 #include "engine/scene/procedural.h"
 #include "engine/scene/standpoint.h"
 

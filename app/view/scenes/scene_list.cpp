@@ -5,8 +5,8 @@
 #include "app/view/scenes/recent_scenes.h"
 #include "app/view/scenes/scene_facts.h"
 #include "app/view/scenes/view_scenes.h"
+#include "engine/address.h"
 #include "engine/platform.h"
-#include "engine/scene/address.h"
 #include "engine/scene/procedural.h"
 
 #include <algorithm>

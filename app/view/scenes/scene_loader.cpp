@@ -6,8 +6,8 @@
 #include "app/view/placement/placement.h"
 #include "app/view/scenes/scene_up.h"
 #include "app/view/settings/view_files.h"
+#include "engine/address.h"
 #include "engine/error.h"
-#include "engine/scene/address.h"
 #include "engine/scene/procedural.h"
 
 #include <utility>

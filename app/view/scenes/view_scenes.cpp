@@ -2,10 +2,10 @@
 #include "app/view/scenes/view_scenes.h"
 
 #include "app/view/scenes/natural_order.h"
-#include "engine/scene/address.h"
-#include "engine/scene/packed_scene.h"
+#include "engine/address.h"
+#include "engine/files/packed_scene.h"
+#include "engine/files/scene_folder.h"
 #include "engine/scene/procedural.h"
-#include "engine/scene/scene_folder.h"
 
 #include <algorithm>
 #include <filesystem>

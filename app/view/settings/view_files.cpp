@@ -2,9 +2,9 @@
 #include "app/view/settings/view_files.h"
 
 #include "app/options/option_layers.h"
+#include "engine/address.h"
 #include "engine/error.h"
 #include "engine/platform.h"
-#include "engine/scene/address.h"
 #include "engine/scene/procedural.h"
 #include "engine/setup/output_files.h"
 

@@ -1,7 +1,7 @@
 // Facts about what `bench` measures of frames: alone, along a head's motion, and beside photographs.
 #include "engine/picture/image_io.h"
 #include "tests/app/bench/benches.h"
-#include "tests/engine/picture/lpips_weights.h"
+#include "tests/app/scores/lpips_weights.h"
 
 SUITE(bench_runs) {
 

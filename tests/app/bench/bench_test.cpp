@@ -2,8 +2,9 @@
 #include "app/bench/bench_results.h"
 #include "app/bench/bounded_tiles.h"
 #include "app/load.h"
+#include "engine/files/load_scene.h"
 #include "tests/app/bench/benches.h"
-#include "tests/engine/picture/lpips_weights.h"
+#include "tests/app/scores/lpips_weights.h"
 
 SUITE(bench) {
 

@@ -1,8 +1,9 @@
 // Facts about the eyes of a picture: where one stands at first, at a camera that lies with the scene or where the options say.
 #include "app/options/start_view.h"
 #include "app/options/camera_options.h"
-#include "engine/scene/ply.h"
-#include "engine/scene/scene_folder.h"
+#include "engine/files/load_scene.h"
+#include "engine/files/ply.h"
+#include "engine/files/scene_folder.h"
 #include "engine/setup/output_files.h"
 #include "tests/app/options/parsed.h"
 #include "tests/run_program.h"

@@ -1,8 +1,8 @@
 // Running `binosplat view` in the simulated headset, and reading what its wearer saw and what the runtime noted down.
 #pragma once
 
+#include "app/scores/metrics.h"
 #include "engine/picture/image_io.h"
-#include "engine/picture/metrics.h"
 #include "tests/run_program.h"
 
 #include <glm/glm.hpp>

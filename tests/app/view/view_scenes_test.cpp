@@ -1,6 +1,7 @@
 // Facts about what is to be seen: the next scene, streamed and moving ones, the room behind, pictures, which way is up.
 #include "app/options/start_view.h"
 #include "app/view/scenes/scene_up.h"
+#include "engine/files/load_scene.h"
 #include "tests/app/view/view_acts.h"
 #include "tests/engine/stream/moving_frames.h"
 #ifdef BINOSPLAT_SOG

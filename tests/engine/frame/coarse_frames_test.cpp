@@ -1,5 +1,5 @@
 // Facts about frames whose tiles are coarse where the eye would not see more: against the twin, and against the same frames in full.
-#include "engine/reference/coarse.h"
+#include "engine/twin/coarse.h"
 #include "tests/engine/passes/past_stages.h"
 
 SUITE(coarse_frames) {

@@ -1,8 +1,8 @@
 // Running whole frames in tests: one call, and all that they leave.
 #pragma once
 
+#include "app/scores/metrics.h"
 #include "engine/frame/stereo_frame.h"
-#include "engine/picture/metrics.h"
 #include "tests/engine/frame/gpu_scenes.h"
 #include "tests/engine/gpu/gpu_fixture.h"
 

@@ -1,7 +1,8 @@
 // Facts about whole frames against the twin: pictures, depth and moments of real, built-in and analytic scenes.
+#include "engine/files/load_scene.h"
 #include "engine/picture/image_io.h"
-#include "engine/reference/reach.h"
 #include "engine/srgb.h"
+#include "engine/twin/reach.h"
 #include "tests/engine/frame/frame_runs.h"
 #include "tests/engine/passes/pass_stages.h"
 #include "tests/shared_data.h"

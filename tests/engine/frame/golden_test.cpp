@@ -1,9 +1,9 @@
 // Pictures that must not change, in golden/: the twin's of a few scenes, and the last pair of a walk.
 #include "engine/picture/image_io.h"
-#include "engine/reference/coarse.h"
 #include "engine/stream/moving_scene.h"
+#include "engine/twin/coarse.h"
+#include "tests/engine/files/ply_files.h"
 #include "tests/engine/frame/frame_runs.h"
-#include "tests/engine/scene/ply_files.h"
 #include "tests/engine/stream/moving_frames.h"
 
 SUITE(golden) {

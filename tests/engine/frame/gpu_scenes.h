@@ -4,7 +4,7 @@
 #include "engine/picture/image.h"
 #include "engine/scene/procedural.h"
 #include "shaders/shared/constants.h"
-#include "tests/engine/reference/reference_scenes.h"
+#include "tests/engine/twin/reference_scenes.h"
 
 namespace binosplat::test {
 

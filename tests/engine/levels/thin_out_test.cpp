@@ -1,5 +1,6 @@
 // Facts about thinning a scene out.
 #include "engine/levels/thin_out.h"
+#include "engine/files/load_scene.h"
 
 #include "engine/scene/pick_splats.h"
 #include "engine/scene/procedural.h"

@@ -1,6 +1,6 @@
 // Facts about libbinosplat as other programs meet it: what it exports, its pictures, and what it says where something is wrong.
+#include "engine/files/ply.h"
 #include "engine/picture/image_io.h"
-#include "engine/scene/ply.h"
 #include "engine/scene/procedural.h"
 #include "tests/engine/library/earlier_program.h"
 #include "tests/run_program.h"

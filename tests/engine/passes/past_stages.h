@@ -1,7 +1,7 @@
 // Frames that are made from the ones before, and what the device knows of them, as the twin goes on from it.
 #pragma once
 
-#include "engine/reference/past.h"
+#include "engine/twin/past.h"
 #include "tests/engine/frame/frame_runs.h"
 #include "tests/engine/passes/stereo_cases.h"
 

@@ -1,6 +1,6 @@
 // Facts about pictures on their way to a headset: the pass against its float64 twin, on the device, and the images that they become.
 #include "engine/passes/present.h"
-#include "engine/reference/present.h"
+#include "engine/twin/present.h"
 #include "tests/engine/gpu/device_image.h"
 #include "tests/engine/passes/stereo_cases.h"
 

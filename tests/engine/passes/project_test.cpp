@@ -1,5 +1,5 @@
 // Facts about project and bin, each started from what the twin's pass before it left.
-#include "engine/reference/splat.h"
+#include "engine/twin/splat.h"
 #include "tests/engine/passes/pass_stages.h"
 #include "tests/engine/passes/stereo_cases.h"
 

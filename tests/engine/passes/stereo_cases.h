@@ -1,7 +1,7 @@
 // Dominant pictures and pairs of eyes that the stereo passes are tested on, and the twin's arrays as the device holds them.
 #pragma once
 
-#include "engine/reference/stereo.h"
+#include "engine/twin/stereo.h"
 #include "tests/engine/frame/affiliated_frames.h"
 
 #include <glm/gtc/packing.hpp>

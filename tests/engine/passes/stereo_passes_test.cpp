@@ -1,8 +1,8 @@
 // Facts about the passes that make one eye's picture from the other's, reproject and newcomers (resample: resample_test.cpp), each started
 // from what the twin's pass before it left. Where a place lies on the border of a pixel, float32 may round to either side: such flips have
 // a budget.
+#include "app/scores/metrics.h"
 #include "engine/picture/image_io.h"
-#include "engine/picture/metrics.h"
 #include "tests/engine/passes/pass_stages.h"
 #include "tests/engine/passes/stereo_cases.h"
 #include "tests/engine/passes/stereo_stages.h"

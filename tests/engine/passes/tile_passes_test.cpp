@@ -1,5 +1,5 @@
 // Facts about the passes over tiles, tile_ranges and rasterize, each started from what the twin's pass before it left.
-#include "engine/reference/contribute.h"
+#include "engine/twin/contribute.h"
 #include "tests/engine/passes/pass_stages.h"
 #include "tests/engine/passes/stereo_cases.h"
 

@@ -1,4 +1,5 @@
 // Which way is up: what a scene stands on, whichever axis of the file is up, and what the file says of it.
+#include "engine/files/load_scene.h"
 #include "engine/scene/floor_choice.h"
 #include "tests/engine/scene/captures.h"
 #include "tests/shared_data.h"

@@ -1,8 +1,9 @@
 // Scenes at random, and what two of them have in common.
 #pragma once
 
-#include "engine/scene/ply.h"
-#include "tests/engine/scene/ply_files.h"
+#include "engine/files/load_scene.h"
+#include "engine/files/ply.h"
+#include "tests/engine/files/ply_files.h"
 
 namespace binosplat::test {
 

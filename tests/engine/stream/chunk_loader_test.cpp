@@ -1,12 +1,13 @@
 // Parts of streamed scenes beside whoever wants them: what is wished for and nothing else, in that order, whatever files and servers do.
 #include "engine/stream/chunk_loader.h"
+#include "engine/files/load_scene.h"
 
 #include "engine/scene/procedural.h"
-#include "tests/engine/scene/streamed_scenes.h"
+#include "tests/engine/files/streamed_scenes.h"
 #include "tests/engine/stream/split_scene.h"
 #include "tests/run_program.h"
 #ifdef BINOSPLAT_WEB_TESTS
-#include "tests/engine/web/web_runs.h"
+#include "tests/engine/files/web/web_runs.h"
 #endif
 
 SUITE(chunk_loader) {

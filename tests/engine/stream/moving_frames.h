@@ -1,7 +1,7 @@
 // Films: numbered files in a folder, and the scenes in them.
 #pragma once
 
-#include "engine/scene/ply.h"
+#include "engine/files/ply.h"
 #include "engine/scene/procedural.h"
 #include "tests/suite.h"
 

@@ -2,8 +2,8 @@
 #include "tests/engine/stream/split_scene.h"
 
 #include "engine/error.h"
-#include "engine/scene/sog.h"
-#include "engine/scene/sog_pack.h"
+#include "engine/files/sog.h"
+#include "engine/files/sog_pack.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,6 @@
 // split_scene SCENE FOLDER [LEAF_SPLATS [LEVELS [CHUNK_SPLATS]]]: a streamed SOG scene out of a whole one, to try streaming with.
 #include "engine/error.h"
+#include "engine/files/load_scene.h"
 #include "tests/engine/stream/split_scene.h"
 
 #include <cstdio>

@@ -10,7 +10,7 @@
 #include "app/view/scenes/viewpoints.h"
 #include "app/view/settings/view_files.h"
 #include "app/view/settings/view_state.h"
-#include "engine/scene/scene_folder.h"
+#include "engine/files/scene_folder.h"
 #include "tests/run_program.h"
 
 #include <sys/stat.h>

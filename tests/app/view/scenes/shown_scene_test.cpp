@@ -5,12 +5,13 @@
 #include "app/view/panel/panel_content.h"
 #include "app/view/panel/panel_style.h"
 #include "app/view/settings/view_files.h"
+#include "engine/files/load_scene.h"
 #include "engine/scene/procedural.h"
 #include "tests/engine/gpu/device_image.h"
 #include "tests/run_program.h"
 
 #ifdef BINOSPLAT_SOG
-#include "tests/engine/scene/sog_scenes.h"
+#include "tests/engine/files/sog_scenes.h"
 #endif
 
 #include <sys/stat.h>

@@ -1,8 +1,9 @@
 // Scenes that move, on the device: the frame of the time, what lies between two, and what is late or broken.
 #include "engine/stream/moving_scene.h"
+#include "engine/files/load_scene.h"
 
+#include "tests/engine/files/ply_files.h"
 #include "tests/engine/frame/frame_runs.h"
-#include "tests/engine/scene/ply_files.h"
 #include "tests/engine/stream/moving_frames.h"
 
 SUITE(moving_scene) {

@@ -1,12 +1,13 @@
 // Streamed scenes on the device: something to see at once, all that the eyes ask for in the end, and never more than there is room for.
 #include "engine/stream/scene_stream.h"
+#include "engine/files/load_scene.h"
 
+#include "tests/engine/files/streamed_scenes.h"
 #include "tests/engine/frame/frame_runs.h"
-#include "tests/engine/scene/streamed_scenes.h"
 #include "tests/engine/stream/split_scene.h"
 #include "tests/run_program.h"
 #ifdef BINOSPLAT_WEB_TESTS
-#include "tests/engine/web/web_runs.h"
+#include "tests/engine/files/web/web_runs.h"
 #endif
 
 SUITE(scene_stream) {

@@ -1,0 +1,25 @@
+// The leaves of a streamed SOG scene: the place of each, and the splats that show it at each level of detail.
+#pragma once
+
+#include "engine/files/sog_meta.h"
+
+#include <glm/glm.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace binosplat {
+
+// At least one splat of a chunk, which is named by its index in the scene's list of chunks.
+struct LodRange {
+    std::uint32_t level = 0;  // 0 is the scene's finest
+    std::uint32_t file = 0;
+    SplatRange splats;
+};
+
+struct LodLeaf {
+    glm::vec3 low{0.0f}, high{0.0f};  // the corners of its box, scene units; finite, and low <= high
+    std::vector<LodRange> levels;     // at least one, the finest first; a leaf need not have every level of the scene
+};
+
+}  // namespace binosplat

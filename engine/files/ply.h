@@ -1,0 +1,29 @@
+// PLY files of Gaussian splats from 2DGS and 3DGS trainings: reading and writing.
+#pragma once
+
+#include "engine/files/input_file.h"
+#include "engine/scene/scene.h"
+
+#include <string>
+
+namespace binosplat {
+
+// True if the file is a PLY, by its first line.
+bool isPly(InputFile& file);
+
+// Reads element `vertex` with x y z, f_dc_0..2, f_rest_0.. (none, 9, 24, 45 or, without the highest band, 72; channel-major), opacity
+// (logit), scale_0 scale_1 [scale_2] (logarithms), rot_0..3 (w, x, y, z), each also as scalar_NAME; any order, any scalar types, ascii or
+// binary. Of splats that move the still of one moment is read. Anything else in the file is ignored, except a comment that asks for
+// antialiasing. Throws Error that says so for a point cloud, a mesh or anchors.
+Scene readPly(InputFile& file, LoadNotes& notes, const Progress& progress);
+
+// The Scene::origin that the reader of that file will choose.
+glm::dvec3 originOfPly(InputFile& file);
+
+// Writes the 2DGS layout in binary little-endian: x y z nx ny nz f_dc f_rest opacity scale_0 scale_1 rot_0..3, the normal along t_w; of
+// an antialiased scene with the comment that says so.
+// Positions are float64, and count from 0 again, where the scene has an origin.
+// Opacities 0 and 1 and scale 0 are stored as large finite numbers that read back exactly. The file appears whole or not at all.
+void writePly(const Scene& scene, const std::string& path, const Progress& progress = {});
+
+}  // namespace binosplat

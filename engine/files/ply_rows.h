@@ -1,0 +1,36 @@
+// The rows of a PLY element as float32 columns, whatever the encoding and the property types.
+#pragma once
+
+#include "engine/files/ply_header.h"
+#include "engine/files/stored_block.h"
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace binosplat::ply {
+
+// The target of a property: `attribute` of a StoredBlock.
+struct Column {
+    std::size_t property;
+    int attribute;
+};
+
+class RowReader {
+public:
+    virtual ~RowReader() = default;
+    // Fills `block` with its next rows (block.rows of them). Throws Error with the splat's number if the file ends or a value is no number.
+    virtual void read(StoredBlock& block) = 0;
+    // Fills `block` with some rows, before the first is read: from all over the element, or the first ones of an ascii file.
+    virtual void sample(StoredBlock& block) const = 0;
+    // From now on positions that the file has in float64 count from there.
+    virtual void countFrom(const glm::dvec3& origin) = 0;
+};
+
+// Moves `file` past an element that is of no interest.
+void skipElement(InputFile& file, Encoding encoding, const Element& element);
+
+// Checks the element's size against the rest of the file, then returns its reader. The element must have no list.
+std::unique_ptr<RowReader> openRows(InputFile& file, const Header& header, const Element& element, std::vector<Column> columns);
+
+}  // namespace binosplat::ply

@@ -1,0 +1,71 @@
+// The files of a scene on the web: kept copies that have not changed there, and otherwise what the server sends.
+#pragma once
+
+#include "engine/files/load_scene.h"
+#include "engine/files/scene_files.h"
+#include "engine/files/web/address.h"
+#include "engine/files/web/fetcher.h"
+
+#include <filesystem>
+#include <functional>
+#include <future>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace binosplat {
+
+struct WebSettings {
+    std::filesystem::path cache_folder;  // empty: nothing is kept beyond the run
+    std::uint64_t cache_bytes = std::uint64_t{4} << 30;
+    FetchSettings fetch;
+};
+
+// Where scenes from the web are kept: web/ in the program's folder in the user's folder of caches; empty if there is none.
+std::filesystem::path webCacheFolder();
+
+// For one thread. Files of the cache stay while it lives, unless another program needs the room; then they are fetched again.
+class WebFiles final : public SceneFiles {
+public:
+    // `waiting` is called now and then while a file is waited for, with the share done of everything requested; it may throw. Throws
+    // Error if `address` is none, in a build without network, and if the cache cannot be written.
+    WebFiles(const std::string& address, const WebSettings& settings, Progress waiting = {});
+    WebFiles(const WebFiles&) = delete;
+    WebFiles& operator=(const WebFiles&) = delete;
+    ~WebFiles() override;
+
+    std::unique_ptr<InputFile> open(const std::string& name, std::uint64_t most_bytes = kAnyLength) override;
+    void expect(const std::vector<std::string>& names, std::uint64_t most_bytes = kAnyLength) override;
+    std::string place(const std::string& name) const override { return addressOf(address_, name); }
+
+    // A sentence if a server did not answer and copies were taken for its files; else empty.
+    [[nodiscard]] const std::string& stale() const { return stale_; }
+    // How many files could not be had so far: they may be had later.
+    [[nodiscard]] std::uint64_t failedCount() const { return failed_count_; }
+
+private:
+    void ask(const std::string& address, std::uint64_t most_bytes);
+    // Until there is a copy in the cache, or not. Throws Error if there is none.
+    void settle(const std::string& address);
+
+    Address address_;
+    Progress waiting_;
+    std::uint64_t cache_bytes_;
+    std::optional<TemporaryFolder> own_folder_;
+    std::filesystem::path folder_;
+    WebCache cache_;
+    std::map<std::string, std::future<Fetched>> asked_;
+    std::set<std::string> settled_;
+    std::string stale_;
+    std::uint64_t failed_count_ = 0;
+    bool is_unreachable_ = false;  // kept copies are taken as they are
+    Fetcher fetcher_;              // destroyed first
+};
+
+// Loads `source`, which is an address or whatever loadScene takes.
+Scene loadSceneFromAnywhere(const std::string& source, std::uint64_t builtin_splats, LoadNotes& notes, const Progress& progress,
+                            const LevelChoice& level, const WebSettings& settings);
+
+}  // namespace binosplat

@@ -1,0 +1,64 @@
+// Zip archives, through libzip; a build without SOG has none.
+#pragma once
+
+#include "engine/files/input_file.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace binosplat {
+
+class ZipArchive {
+public:
+#ifdef BINOSPLAT_SOG
+    static constexpr bool kIsBuiltIn = true;
+#else
+    static constexpr bool kIsBuiltIn = false;
+#endif
+    using Open = std::function<std::unique_ptr<InputFile>()>;
+    struct Entry {
+        std::string place;  // for messages
+        std::uint64_t index = 0, size_bytes = 0;
+    };
+
+    // `path` and `expected` are for messages. The file is opened when it is needed.
+    ZipArchive(std::string path, std::string expected, Open open);
+    ~ZipArchive();
+
+    // Of all entries, folders among them, in the archive's order. Throws Error if it is no whole archive.
+    [[nodiscard]] std::vector<std::string> names() const;
+    // Throws Error if there is none of that name, or it is encrypted.
+    [[nodiscard]] Entry find(const std::string& name) const;
+    // Until it is needed again.
+    void close();
+
+private:
+    friend class ZipReader;
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+// An entry from front to back; its archive stays open meanwhile.
+class ZipReader {
+public:
+    ZipReader(const ZipArchive& archive, const ZipArchive::Entry& entry);
+    ~ZipReader();
+    ZipReader(const ZipReader&) = delete;
+    ZipReader& operator=(const ZipReader&) = delete;
+
+    // Fills `target` as far as the entry goes and returns how many bytes it gave. Throws Error if the entry is broken; its checksum is
+    // compared where it ends.
+    std::size_t read(std::span<std::byte> target);
+
+private:
+    struct State;
+    std::string place_;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace binosplat

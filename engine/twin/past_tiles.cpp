@@ -1,0 +1,104 @@
+// price and rasterize, with a past: the errors expected of its tiles, and what they turn out to have been.
+#include "engine/twin/past_view.h"
+
+namespace binosplat::reference {
+namespace {
+
+constexpr double kChannels = 3.0, kCellPixels = kCell * kCell, kTilePixels = kTileSize * kTileSize;
+constexpr double kMeasuredShare = 0.5, kUnseenGrowth = 0.05;
+constexpr double kMostChangedError = 0.5, kMostWorth = 2000.0, kStep = 0x1p-20;
+constexpr std::uint64_t kPairsOfTile = 16, kMostCost = 0x1fffff;
+
+std::optional<MovingPixel> pixelOf(const Picture& full, std::size_t i) {
+    return movingPixel(full, i, {.choice = TileChoice::kPredicted, .depth_choice = DepthChoice::kInverse});
+}
+
+}  // namespace
+
+void growErrors(std::span<PastTile> tiles) {
+    for (PastTile& tile : tiles) {
+        for (std::size_t q = 0; q < 4; ++q) {
+            const double expected = std::sqrt(tile.grown[q] / (kChannels * kCellPixels));
+            const double measured = tile.growth[q] > 0.0 && expected < kUnseenGrowth ? kMeasuredShare : 0.0;
+            tile.errors[q] += (1.0 - measured) * expected + measured * tile.growth[q];
+        }
+    }
+}
+
+PastTile withLoss(const PastTile& tile, double share) {
+    PastTile seen = tile;
+    if (share * kChannels * kTilePixels * tile.lost * tile.lost >= 0.01 * 0.01 * kTilePixels) {
+        for (double& error : seen.errors) { error += tile.lost; }
+    }
+    return seen;
+}
+
+void markChanged(std::span<PastTile> tiles, glm::uvec2 size_px, std::span<const ChangedRect> rects) {
+    const std::size_t columns = tileGrid(size_px).x;
+    std::vector<std::array<double, 4>> more(tiles.size());
+    for (const ChangedRect& rect : rects) {
+        std::vector<std::array<bool, 4>> meets(tiles.size());
+        for (std::size_t y = rect.begin_px.y; y < std::min(rect.end_px.y, size_px.y); ++y) {
+            for (std::size_t x = rect.begin_px.x; x < std::min(rect.end_px.x, size_px.x); ++x) {
+                meets[y / kTileSize * columns + x / kTileSize][y / kCell % 2 * 2 + x / kCell % 2] = true;
+            }
+        }
+        for (std::size_t t = 0; t < tiles.size(); ++t) {
+            for (std::size_t q = 0; q < 4; ++q) { more[t][q] += meets[t][q] ? rect.error : 0.0; }
+        }
+    }
+    for (std::size_t t = 0; t < tiles.size(); ++t) {
+        for (std::size_t q = 0; q < 4; ++q) {
+            if (more[t][q] > 0.0) { tiles[t].errors[q] = std::min(tiles[t].errors[q] + more[t][q], kMostChangedError); }
+        }
+    }
+}
+
+std::uint32_t priceUnderBound(std::uint32_t price, const PastTile& tile, double error_bound) {
+    double unseen = 0.0;  // in pixels; one that the past did not see has an error of 1
+    for (const double grown : tile.grown) { unseen += std::min(grown, kCellPixels); }
+    if (unseen >= 0.25 * kTilePixels) { return kNewPrice; }
+    const bool is_over = std::ranges::any_of(tile.errors, [&](double error) { return error > error_bound; });
+    return std::min((is_over ? kOverPrice : 0) + price / 2, kNewPrice - 1);
+}
+
+double worthOf(const PastTile& tile) {
+    double squares = 0.0;
+    for (const double error : tile.errors) { squares += kChannels * kCellPixels * error * error; }
+    return squares > 0.0 ? std::max(std::min(squares * std::max(tile.age, 1u), kMostWorth), kStep) : 0.0;
+}
+
+std::uint64_t costOf(const PastTile& tile) { return std::min(tile.cost + kPairsOfTile, kMostCost); }
+
+void renderTiles(Past& warped, const Picture& full, std::span<const std::uint64_t> costs, std::span<const TileKind> kinds) {
+    const std::size_t width = warped.eye.size_px.x, columns = tileGrid(warped.eye.size_px).x;
+    std::vector<std::array<double, 4>> squares(kinds.size(), std::array<double, 4>{});
+    for (std::size_t i = 0; i < warped.rgba.size(); ++i) {
+        const std::size_t tile = i / width / kTileSize * columns + i % width / kTileSize;
+        if (kinds[tile] == TileKind::kNone || kinds[tile] == TileKind::kHidden) { continue; }
+        const std::size_t quarter = i / width % kTileSize / kCell * 2 + i % width % kTileSize / kCell;
+        squares[tile][quarter] += squareOf(glm::length(glm::dvec3(full.rgba[i] - warped.rgba[i])));
+        warped.rgba[i] = full.rgba[i];
+        warped.pixels[i] = pixelOf(full, i);
+    }
+    for (std::size_t t = 0; t < kinds.size(); ++t) {
+        if (kinds[t] == TileKind::kNone || kinds[t] == TileKind::kHidden) { continue; }
+        const std::uint32_t age = warped.tiles[t].age;
+        const std::array<double, 4> grown = warped.tiles[t].grown;
+        warped.tiles[t] = {costs[t], 0, {}, {}, {}};
+        if (costs[t] == 0 || age == 0) { continue; }
+        for (std::size_t q = 0; q < 4; ++q) {
+            if (std::sqrt(grown[q] / (kChannels * kCellPixels)) >= kUnseenGrowth) { continue; }
+            warped.tiles[t].growth[q] = std::sqrt(squares[t][q] / (kChannels * kCellPixels)) / age;
+        }
+    }
+}
+
+Past pastOf(const Eye& eye, const Picture& full, std::span<const std::uint64_t> costs) {
+    Past past{eye, full.rgba, {}, {}};
+    for (std::size_t i = 0; i < full.rgba.size(); ++i) { past.pixels.push_back(pixelOf(full, i)); }
+    for (const std::uint64_t cost : costs) { past.tiles.push_back({cost, 0, {}, {}, {}}); }
+    return past;
+}
+
+}  // namespace binosplat::reference

@@ -1,0 +1,100 @@
+// A past as warp_past and warp_pixels see it.
+#pragma once
+
+#include "engine/twin/eye_change.h"
+#include "engine/twin/past.h"
+#include "engine/twin/splat.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace binosplat::reference {
+
+inline constexpr int kCell = kTileSize / 2;
+inline constexpr glm::ivec2 kPastBlock{4, 8};
+inline constexpr double kMostSpreadPx = 4.0, kOwnSpread = 0.5;
+inline constexpr double kMostPixelError = 4.0;  // squared, of three channels
+inline constexpr double kLeastGrowth = 1.9e-7;  // squared, of three channels, of a pixel that is made from another
+inline constexpr double kSameDepthPx = 0.25;    // content whose depths move it apart by no more moves as one
+inline constexpr double kAgreesPx = 0.51;       // a pixel of the past this close to where it is wanted is what is seen there
+
+inline double squareOf(double amplitude) { return std::min(amplitude * amplitude, kMostPixelError); }
+
+class PastView {
+public:
+    PastView(const Past& past, const Eye& now)
+        : past_from_now(past.eye, now),
+          now_from_past(now, past.eye),
+          last(glm::ivec2(past.eye.size_px) - 1),
+          columns_(tileGrid(past.eye.size_px).x),
+          past_(past) {}
+
+    [[nodiscard]] bool isInside(const glm::dvec2& place_px) const {
+        return glm::all(glm::greaterThanEqual(place_px, glm::dvec2(0.0))) && glm::all(glm::lessThan(place_px, glm::dvec2(last) + 1.0));
+    }
+    // Where a pixel lies in the past. A place off a pixel by rounding alone is that pixel: a head that stands still sees what it saw.
+    [[nodiscard]] EyeChange::Moved place(const glm::dvec2& pixel_px, double inverse_depth) const {
+        EyeChange::Moved moved = past_from_now.move(pixel_px, inverse_depth);
+        for (int axis = 0; axis < 2; ++axis) {
+            if (std::abs(moved.place_px[axis] - pixel_px[axis]) < 1e-9) { moved.place_px[axis] = pixel_px[axis]; }
+        }
+        return moved;
+    }
+    [[nodiscard]] std::size_t indexOf(const glm::ivec2& pixel) const {
+        const glm::ivec2 held = glm::clamp(pixel, glm::ivec2(0), last);
+        return static_cast<std::size_t>(held.y) * static_cast<std::size_t>(last.x + 1) + static_cast<std::size_t>(held.x);
+    }
+    [[nodiscard]] const glm::dvec4& colour(int x, int y) const { return past_.rgba[indexOf({x, y})]; }
+    [[nodiscard]] std::optional<MovingPixel> pixel(const glm::ivec2& at) const {
+        const glm::uvec2 tile = glm::uvec2(glm::clamp(at, glm::ivec2(0), last)) / unsigned{kTileSize};
+        const bool is_hidden = !past_.hidden.empty() && past_.hidden[std::size_t{tile.y} * columns_ + tile.x] != 0;
+        return is_hidden ? std::nullopt : past_.pixels[indexOf(at)];
+    }
+
+    // Whether it was hidden or not.
+    [[nodiscard]] std::optional<MovingPixel> own(const glm::ivec2& at) const { return past_.pixels[indexOf(at)]; }
+
+    // What the past shows at a place.
+    struct Seen {
+        std::optional<MovingPixel> pixel;
+        double inverse_depth = 0.0;  // as the picture that is made sees it
+        glm::dvec2 lands_px{0.0};    // where the pixel's middle comes to lie
+    };
+    [[nodiscard]] Seen look(const glm::dvec2& place_px) const {
+        const glm::ivec2 at(glm::floor(glm::clamp(place_px, glm::dvec2(0.0), glm::dvec2(last))));
+        const std::optional<MovingPixel> found = pixel(at);
+        const EyeChange::Moved moved = now_from_past.move(glm::dvec2(at) + 0.5, found ? found->inverse_depth : 0.0);
+        if (!moved.in_front) { return {}; }
+        return {found, moved.inverse_depth, moved.place_px};
+    }
+
+    // How far a pixel's place may be off if its inverse depth is off by `spread`.
+    [[nodiscard]] glm::dvec2 uncertainMove(const glm::dvec2& pixel_px, double spread) const {
+        const glm::dvec2 move_px = spread * past_from_now.disparity(pixel_px);
+        const double length = glm::length(move_px);
+        return length > kMostSpreadPx ? move_px * (kMostSpreadPx / length) : move_px;
+    }
+
+    EyeChange past_from_now, now_from_past;
+    glm::ivec2 last;  // pixel of the past
+
+private:
+    std::size_t columns_;
+    const Past& past_;
+};
+
+// With six taps each way.
+glm::dvec4 sampleSmoothly(const PastView& view, const glm::dvec2& place_px);
+// The squared error expected of that, `t` after the pixel `wanted`, if the place may be off by `off_px`.
+double lossAt(const PastView& view, const glm::ivec2& wanted, const glm::dvec2& t, const glm::dvec2& off_px);
+
+// warp_pixels: a pixel by itself. `near` and `far`: inverse depths around it.
+struct PixelFromPast {
+    glm::dvec4 colour;
+    MovingPixel pixel;
+    bool seen;
+    double error;  // squared, as expected
+};
+PixelFromPast makePixel(const PastView& view, const glm::dvec2& wanted_px, double near, double far);
+
+}  // namespace binosplat::reference

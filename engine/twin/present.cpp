@@ -1,0 +1,81 @@
+// present: pictures in bytes.
+#include "engine/twin/present.h"
+
+#include "engine/srgb.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace binosplat::reference {
+namespace {
+
+std::uint32_t byteOf(double value, bool linear) {
+    if (!(value > 0.0)) { return 0; }  // NaN, too
+    const double shown = std::min(value, 1.0);
+    return static_cast<std::uint32_t>(std::floor((linear ? lightOf(shown) : shown) * 255.0 + 0.5));
+}
+
+// For a blended, encoded value with this share: the light of the colour itself, multiplied by the share.
+std::uint32_t seenThrough(double value, double share, bool linear) {
+    if (!(value > 0.0) || share == 0.0) { return 0; }
+    const double light = share * lightOf(std::min(value / share, 1.0));
+    return byteOf(linear ? light : encodedOf(light), false);
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> present(std::span<const glm::dvec4> rgba, const Presentation& presentation) {
+    std::vector<std::uint32_t> words;
+    for (const glm::dvec4& pixel : rgba) {
+        const double share = !presentation.see_through ? 1.0 : pixel.a > 0.0 ? std::min(pixel.a, 1.0) : 0.0;
+        const auto channel = [&](double value) {
+            return presentation.see_through ? seenThrough(value, share, presentation.linear) : byteOf(value, presentation.linear);
+        };
+        const std::uint32_t red = channel(pixel.r), green = channel(pixel.g), blue = channel(pixel.b);
+        const auto alpha = static_cast<std::uint32_t>(std::floor(share * 255.0 + 0.5));
+        const std::uint32_t first = presentation.blue_first ? blue : red, third = presentation.blue_first ? red : blue;
+        words.push_back(first | green << 8 | third << 16 | alpha << 24);
+    }
+    return words;
+}
+
+std::vector<std::uint32_t> presentOver(std::span<const glm::dvec4> rgba, std::span<const double> depth_sums,
+                                       std::span<const std::uint32_t> behind, std::span<const double> mesh_depths,
+                                       const Presentation& presentation) {
+    std::vector<glm::dvec4> mixed;
+    std::vector<double> shares;
+    for (std::size_t i = 0; i < rgba.size(); ++i) {
+        const bool hidden =
+            !mesh_depths.empty() && !(presentation.near * rgba[i].a / depth_sums[i] > mesh_depths[i] - presentation.depth_offset);
+        const glm::dvec4 pixel = hidden ? glm::dvec4(0.0) : rgba[i];
+        const double left = 1.0 - std::clamp(pixel.a, 0.0, 1.0);
+        glm::dvec4& result = mixed.emplace_back();
+        for (int c = 0; c < 3; ++c) {
+            const int place = presentation.blue_first ? 2 - c : c;
+            const double there = ((behind[i] >> (8 * place)) & 255) / 255.0;
+            result[c] = std::clamp(pixel[c], 0.0, 1.0) + left * (presentation.linear ? encodedOf(there) : there);
+        }
+        shares.push_back(1.0 - left + left * (behind[i] >> 24) / 255.0);
+    }
+    std::vector<std::uint32_t> words = present(mixed, presentation);
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        words[i] = (words[i] & 0xffffff) | static_cast<std::uint32_t>(std::floor(shares[i] * 255.0 + 0.5)) << 24;
+    }
+    return words;
+}
+
+void keepBits(std::span<std::uint32_t> words, std::span<const std::uint32_t> before, std::uint32_t kept_bits) {
+    for (std::size_t i = 0; i < words.size(); ++i) { words[i] = (words[i] & ~kept_bits) | (before[i] & kept_bits); }
+}
+
+std::vector<double> presentDepths(std::span<const glm::dvec4> rgba, std::span<const double> depth_sums, const Presentation& presentation) {
+    std::vector<double> shares;
+    for (std::size_t i = 0; i < rgba.size(); ++i) {
+        const bool anything = rgba[i].a >= 1.0 / 255.0 && depth_sums[i] > 0.0;
+        const double own = anything ? presentation.near * rgba[i].a / depth_sums[i] : 0.0;
+        shares.push_back(std::clamp(own + presentation.depth_offset, 0.0, 1.0));
+    }
+    return shares;
+}
+
+}  // namespace binosplat::reference

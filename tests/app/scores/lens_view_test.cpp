@@ -1,0 +1,203 @@
+// Facts about pictures as they reach an eye through a lens, and about what it sees of their errors.
+#include "app/scores/lens_view.h"
+#include "app/scores/visible_errors.h"
+#include "tests/engine/picture/pictures.h"
+
+SUITE(lens_view) {
+
+const glm::dvec3 kAhead(0.0, 0.0, 1.0);
+
+// 96 degrees wide and high, and 4 pixels a degree in the middle.
+std::array<Eye, 2> wideEyes(double canting_rad = 0.0) {
+    const glm::uvec2 size_px(512, 512);
+    std::array<Eye, 2> eyes;
+    for (const int side : {kLeft, kRight}) {
+        const double turn = side == kLeft ? -canting_rad : canting_rad;
+        eyes[static_cast<std::size_t>(side)] = {{glm::angleAxis(turn, glm::dvec3(0.0, 1.0, 0.0)), {side == kLeft ? -0.03 : 0.03, 0.0, 0.0}},
+                                                intrinsicsFromFovX(glm::radians(96.0), size_px),
+                                                size_px};
+    }
+    return eyes;
+}
+
+struct Lens {
+    explicit Lens(double canting_rad = 0.0) : view(wideEyes(canting_rad), {kAhead, kAhead}) {
+        const glm::uvec2 tiles = view.sizePx() / 16u;
+        for (const int side : {kLeft, kRight}) {
+            Sight& sight = sights[static_cast<std::size_t>(side)];
+            sight.rendered_tiles = view.tilesOf(side);
+            // All that is within 20 degrees is seen, and a hundredth of the rest.
+            for (unsigned tile = 0; tile < tiles.x * tiles.y; ++tile) {
+                const glm::dvec3 direction = view.directionAt(16.0 * (glm::dvec2(tile % tiles.x, tile / tiles.x) + 0.5), side);
+                sight.shares.push_back(direction.z > std::cos(glm::radians(20.0)) ? 1.0 : 0.01);
+            }
+        }
+    }
+    [[nodiscard]] std::array<Image, 2> show(const Image& left, const Image& right) const {
+        return {view.show(asShown(left), kLeft), view.show(asShown(right), kRight)};
+    }
+    [[nodiscard]] VisibleErrors find(const std::array<Image, 2>& pictures, const Image& full) const {
+        return findSeenErrors(pictures, show(full, full), sights);
+    }
+
+    LensView view;
+    std::array<Sight, 2> sights;
+};
+
+// Stripes with strong edges, and a fine pattern on them.
+float stripesAt(std::uint32_t x, std::uint32_t y) {
+    return (x / 12 % 2 == 0 ? 0.35f : 0.6f) + 0.05f * std::sin(1.1f * static_cast<float>(x) + 0.9f * static_cast<float>(y));
+}
+
+// Changed where `isThere`.
+template <typename Place, typename Change>
+Image draw(Place&& isThere, Change&& change) {
+    return makePicture({512, 512},
+                       [&](std::uint32_t x, std::uint32_t y) { return glm::vec3(isThere(x, y) ? change(x, y) : stripesAt(x, y)); });
+}
+bool nowhere(std::uint32_t, std::uint32_t) { return false; }
+bool inTheMiddle(std::uint32_t x, std::uint32_t y) { return x >= 224 && x < 288 && y >= 224 && y < 288; }
+bool atTheBorder(std::uint32_t x, std::uint32_t y) { return x >= 16 && x < 80 && y >= 224 && y < 288; }
+float shifted(std::uint32_t x, std::uint32_t y) { return stripesAt(x + 6, y); }
+float brighter(std::uint32_t x, std::uint32_t y) { return stripesAt(x, y) + (x / 16 % 2 == 0 ? 0.02f : 0.0f); }
+
+TEST_CASE("every pixel of the lens's picture is as wide in angle as one in the middle of the flat picture") {
+    const Lens lens;
+    const double focal_px = wideEyes()[0].intrinsics.fx;
+    CHECK(lens.view.pixelRad() == doctest::Approx(1.0 / focal_px));
+    // 48 degrees on both sides, in whole tiles.
+    const double half_px = focal_px * glm::radians(48.0);
+    CHECK(lens.view.sizePx() == glm::uvec2(32 * static_cast<unsigned>(std::ceil(half_px / 16.0))));
+    const glm::dvec2 middle_px = glm::dvec2(lens.view.sizePx()) / 2.0;
+    for (const double angle_deg : {0.0, 10.0, 30.0, 47.0}) {
+        const glm::dvec3 there = lens.view.directionAt(middle_px + glm::dvec2(glm::radians(angle_deg) * focal_px, 0.0), kLeft);
+        CHECK(glm::degrees(std::atan2(there.x, there.z)) == doctest::Approx(angle_deg));
+        CHECK(std::abs(there.y) < 1e-12);
+        // As what lies beside two pixels: their directions in radians.
+        const double across = angle_deg > 0.0 ? std::sin(glm::radians(angle_deg)) / glm::radians(angle_deg) : 1.0;
+        CHECK(lens.view.solidAngleAt(middle_px + glm::dvec2(0.0, glm::radians(angle_deg) * focal_px)) ==
+              doctest::Approx(across / (focal_px * focal_px)));
+    }
+    // Flat pictures have their corners beyond the lens's: nothing is shown in the grid's.
+    CHECK(lens.view.tilesOf(kLeft).front() == LensView::kNowhere);
+    const std::size_t middle = static_cast<std::size_t>(middle_px.y) * lens.view.sizePx().x + static_cast<std::size_t>(middle_px.x);
+    CHECK(lens.view.tilesOf(kLeft).at(middle) == 16 * 32 + 16);
+}
+
+TEST_CASE("a picture keeps its colours through the lens: a pixel is the mean of what it covers") {
+    const Lens lens;
+    const glm::uvec2 middle = lens.view.sizePx() / 2u;
+    const Image flat = lens.view.show(makeFlat({512, 512}, {0.25f, 0.5f, 0.75f}, 4), kLeft);
+    CHECK(flat.channels == 3);
+    CHECK(glm::length(colourOf(flat, middle.x, middle.y) - glm::vec3(0.25f, 0.5f, 0.75f)) < 1e-6f);
+    CHECK(glm::length(colourOf(flat, middle.x, 20) - glm::vec3(0.25f, 0.5f, 0.75f)) < 1e-6f);
+    CHECK(colourOf(flat, 0, 0) == glm::vec3(0.0f));
+    // At 45 degrees, 256 * tan(45) / tan(48) = 230 of the flat picture's pixels from its middle.
+    const Image ramp = lens.view.show(
+        makePicture({512, 512}, [](std::uint32_t x, std::uint32_t) { return glm::vec3(static_cast<float>(x) / 512.0f); }), kLeft);
+    const double focal_px = wideEyes()[0].intrinsics.fx;
+    for (const double angle_deg : {-45.0, -20.0, 20.0, 45.0}) {
+        const auto at = static_cast<std::uint32_t>(middle.x + focal_px * glm::radians(angle_deg));
+        const double place_px = focal_px * std::tan((at + 0.5 - middle.x) / focal_px);
+        CHECK(colourOf(ramp, at, middle.y).x == doctest::Approx(0.5 + (place_px - 0.5) / 512.0).epsilon(0.001));
+    }
+    // Stripes a pixel wide: at 45 degrees a pixel of the lens's covers two of them, so little is left there.
+    const Image fine =
+        lens.view.show(makePicture({512, 512}, [](std::uint32_t x, std::uint32_t) { return glm::vec3(x % 2 == 0 ? 0.0f : 1.0f); }), kLeft);
+    const auto contrastFrom = [&](std::uint32_t first) {
+        double sum = 0.0;
+        for (std::uint32_t x = first; x < first + 16; ++x) {
+            sum += std::abs(static_cast<double>(colourOf(fine, x, middle.y).x) - 0.5) / 16;
+        }
+        return sum;
+    };
+    CHECK(contrastFrom(middle.x) > 0.4);
+    CHECK(contrastFrom(middle.x + static_cast<std::uint32_t>(focal_px * glm::radians(45.0)) - 8) < 0.2);
+    CHECK_THROWS_AS(lens.view.show(makeGrey({512, 511}, 3, 0.5f), kLeft), Error);
+}
+
+TEST_CASE("of equal pictures nothing is seen, whatever lies beyond the lens's border") {
+    const Lens lens;
+    const Image full = draw(nowhere, shifted);
+    const VisibleErrors none = lens.find(lens.show(full, full), full);
+    CHECK(!none.tile_squares.empty());
+    CHECK(std::ranges::all_of(none.tile_squares, [](float square) { return square == 0.0f; }));
+    CHECK((none.badShare() == 0.0 && none.edge == 0.0 && none.seam == 0.0 && none.rival == 0.0));
+    CHECK(worstTiles(none.tile_squares, 0.001) == 0.0);
+}
+
+TEST_CASE("an error in the middle counts through the lens as without one, at the border less, or not at all") {
+    const Lens lens;
+    const Image full = draw(nowhere, shifted), middle = draw(inTheMiddle, shifted), border = draw(atTheBorder, shifted);
+    const VisibleErrors flat_middle = findVisibleErrors({middle, middle}, {full, full}),
+                        flat_border = findVisibleErrors({border, border}, {full, full});
+    const VisibleErrors seen_middle = lens.find(lens.show(middle, middle), full), seen_border = lens.find(lens.show(border, border), full);
+    const auto badTiles = [](const VisibleErrors& errors) { return errors.badShare() * static_cast<double>(errors.tile_squares.size()); };
+    CHECK(badTiles(flat_middle) == doctest::Approx(2 * 16));
+    CHECK(badTiles(seen_middle) == doctest::Approx(2 * 16));
+    CHECK(worstTiles(seen_middle.tile_squares, 0.001) == doctest::Approx(worstTiles(flat_middle.tile_squares, 0.001)).epsilon(0.1));
+    CHECK(seen_middle.edge > 0.5 * flat_middle.edge);
+    CHECK(badTiles(flat_border) == doctest::Approx(2 * 16));
+    CHECK(badTiles(seen_border) == 0.0);
+    CHECK(seen_border.edge == 0.0);
+    CHECK(worstTiles(seen_border.tile_squares, 0.001) < 0.02 * worstTiles(flat_border.tile_squares, 0.001));
+    CHECK(worstTiles(seen_border.tile_squares, 0.001) > 0.0);
+    // Less than a hundredth of the contrast is left of this: nobody notices it there.
+    const auto faint = [](std::uint32_t x, std::uint32_t y) { return stripesAt(x, y) + 0.02f; };
+    const auto worst = [&](const Image& picture) { return worstTiles(lens.find(lens.show(picture, picture), full).tile_squares, 0.001); };
+    CHECK(worst(draw(atTheBorder, faint)) == 0.0);
+    CHECK(worst(draw(inTheMiddle, faint)) > 1e-4);
+}
+
+TEST_CASE("steps between rendered tiles are seen where these meet through the lens, and less at the border") {
+    const Lens lens;
+    const Image full = draw(nowhere, brighter), middle = draw(inTheMiddle, brighter), border = draw(atTheBorder, brighter);
+    const double seam_middle = lens.find(lens.show(middle, middle), full).seam,
+                 seam_border = lens.find(lens.show(border, border), full).seam;
+    CHECK(seam_middle > 5e-5);
+    CHECK(std::abs(seam_border) < 0.2 * seam_middle);
+    // The same steps within tiles are none.
+    const auto moved = [](std::uint32_t x, std::uint32_t y) { return brighter(x + 8, y) - stripesAt(x + 8, y) + stripesAt(x, y); };
+    const Image within = draw([](std::uint32_t x, std::uint32_t y) { return x >= 232 && x < 280 && y >= 232 && y < 280; }, moved);
+    CHECK(lens.find(lens.show(within, within), full).seam < 0.0);
+    // Nor is an error that is everywhere alike, although its steps are seen less towards the border, where tiles are small:
+    // a hundredth of them.
+    const Image noisy = makePicture({512, 512}, [&](std::uint32_t x, std::uint32_t y) {
+        return glm::vec3(brighter(x, y) + ((x * 7919 + y * 104729) % 101 < 50 ? 0.04f : -0.04f));
+    });
+    CHECK(std::abs(lens.find(lens.show(noisy, noisy), full).seam) < 0.01 * 0.04);
+}
+
+TEST_CASE("blur in one eye alone is rivalry, in both eyes none, and canted eyes look at the same") {
+    for (const double canting_deg : {0.0, 5.0}) {
+        const Lens lens(glm::radians(canting_deg));
+        const auto blurred = [](std::uint32_t x, std::uint32_t y) { return 0.5f + 0.3f * (stripesAt(x, y) - 0.5f); };
+        const Image full = draw(nowhere, blurred), middle = draw(inTheMiddle, blurred), border = draw(atTheBorder, blurred);
+        const double one = lens.find(lens.show(middle, full), full).rival;
+        CHECK(one > 0.1);
+        CHECK(lens.find(lens.show(border, full), full).rival < 0.2 * one);
+        if (canting_deg == 0.0) { CHECK(lens.find(lens.show(middle, middle), full).rival == 0.0); }
+        // What is far ahead is in the middle of both eyes.
+        const glm::dvec2 middle_px = glm::dvec2(lens.view.sizePx()) / 2.0;
+        for (const int side : {kLeft, kRight}) {
+            const glm::dvec3 ahead =
+                glm::mat3_cast(wideEyes(glm::radians(canting_deg))[static_cast<std::size_t>(side)].world_from_camera.orientation) *
+                lens.view.directionAt(middle_px, side);
+            CHECK(glm::length(ahead - kAhead) < 1e-9);
+        }
+        const Image other = draw(inTheMiddle, shifted);
+        CHECK(lens.find(lens.show(other, full), full).badShare() > 0.0);
+    }
+}
+
+TEST_CASE("lenses that have no middle, and sights of another size, are refused") {
+    std::array<Eye, 2> eyes = wideEyes();
+    CHECK_THROWS_AS(LensView(eyes, {kAhead, -kAhead}), Error);
+    eyes[1].world_from_camera.orientation = glm::angleAxis(3.14159265, kAhead);
+    CHECK_THROWS_AS(LensView(eyes, {kAhead, kAhead}), Error);
+    const Lens lens;
+    const Image full = draw(nowhere, shifted);
+    CHECK_THROWS_AS(findSeenErrors({full, full}, {full, full}, lens.sights), Error);
+}
+
+}  // SUITE(lens_view)

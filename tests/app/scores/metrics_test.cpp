@@ -1,0 +1,137 @@
+// Facts about the picture comparer, among them that it fails what must fail.
+#include "app/scores/metrics.h"
+#include "app/scores/resize.h"
+#include "app/scores/visible_errors.h"
+#include "tests/engine/picture/pictures.h"
+
+SUITE(metrics) {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// What a test of a GPU picture asks: close nearly everywhere, with a budget of flips at thresholds.
+bool passesBudget(const Image& a, const Image& b) {
+    const Difference difference = compare(a, b);
+    return difference.psnrDb() > 50.0 && difference.shareOff() < 0.001 && difference.not_finite == 0;
+}
+
+TEST_CASE("a constant difference of 0.1 is 20 dB, and values beyond 0 to 1 are compared as they are") {
+    // PSNR = -10 log10(0.1^2).
+    const Difference difference = compare(makeGrey({4, 4}, 4, 0.5f), makeGrey({4, 4}, 4, 0.6f));
+    CHECK(difference.psnrDb() == doctest::Approx(20.0).epsilon(1e-6));
+    CHECK(difference.largest == doctest::Approx(0.1).epsilon(1e-6));
+    CHECK(difference.shareOff() == 1.0);
+    const Difference beyond = compare(makeGrey({2, 2}, 3, 2.0f), makeGrey({2, 2}, 3, 3.0f));
+    CHECK(beyond.psnrDb() == doctest::Approx(0.0));
+    CHECK(beyond.largest == 1.0);
+}
+
+TEST_CASE("a value is off only beyond the threshold, and in the channels asked for") {
+    Image a = makeGrey({10, 1}, 1, 0.0f), b = a;
+    b.values[3] = 1.9f / 255.0f;
+    b.values[4] = 2.1f / 255.0f;
+    CHECK(compare(a, b, 1).off == 1);
+    CHECK(compare(a, b, 1).shareOff() == doctest::Approx(0.1));
+    CHECK(compare(a, b, 1, 0.0).off == 2);
+    a = makeGrey({3, 3}, 4, 0.5f);
+    b = makeFlat({3, 3}, glm::vec3(0.5f), 4);
+    CHECK(compare(a, makeGrey({3, 3}, 3, 0.5f), 3).largest == 0.0);
+    CHECK(compare(a, b, 3).largest == 0.0);
+    CHECK(compare(a, b, 4).largest == 0.5);
+}
+
+TEST_CASE("one value that is not finite fails, even if both pictures have it") {
+    for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+        Image a = makeGrey({100, 100}, 3, 0.5f);
+        const Image good = a;
+        a.values[1234] = bad;
+        for (const Image& b : {good, a}) {
+            const Difference difference = compare(a, b);
+            CHECK(difference.not_finite == 1);
+            CHECK(difference.off == 1);
+            CHECK(difference.largest == kInfinity);
+            CHECK(difference.psnrDb() == -kInfinity);
+            CHECK_FALSE(passesBudget(a, b));
+        }
+    }
+}
+
+TEST_CASE("float noise and a rare flip pass the budget of a GPU picture, a shift and swapped eyes do not") {
+    const Image a = makeWaves({64, 64}, 1.5), other_eye = makeWaves({64, 64}, -1.5);
+    Image noisy = a;
+    for (std::size_t i = 0; i < noisy.values.size(); ++i) { noisy.values[i] += i % 2 == 0 ? 1e-5f : -1e-5f; }
+    noisy.values[400] += 0.01f;
+    CHECK(passesBudget(a, noisy));
+    CHECK_FALSE(passesBudget(a, makeWaves({64, 64}, 2.5)));
+    CHECK_FALSE(passesBudget(a, makeWaves({64, 64}, 1.6)));
+    CHECK_FALSE(passesBudget(a, other_eye));
+    CHECK_FALSE(passesBudget(other_eye, a));
+}
+
+TEST_CASE("pictures of other sizes or too few channels are refused") {
+    CHECK_THROWS_AS(compare(makeGrey({4, 4}, 3, 0.0f), makeGrey({4, 5}, 3, 0.0f)), Error);
+    CHECK_THROWS_AS(compare(makeGrey({4, 4}, 3, 0.0f), makeGrey({4, 4}, 1, 0.0f)), Error);
+}
+
+TEST_CASE("each way to be wrong that a wearer notices has a figure of its own") {
+    // A wall with a pattern, and an edge every 40 pixels.
+    const auto patternAt = [](std::uint32_t x) {
+        return x / 40 % 2 == 1 ? 0.5f + 0.02f * std::sin(1.5707963f * static_cast<float>(x)) : 0.375f;
+    };
+    const auto draw = [&](auto&& change) {
+        return makePicture({128, 64}, [&](std::uint32_t x, std::uint32_t y) { return glm::vec3(change(x, y, patternAt(x))); });
+    };
+    const Image full = draw([](std::uint32_t, std::uint32_t, float grey) { return grey; });
+    const auto errorsOf = [&](const Image& left, const Image& right) { return findVisibleErrors({left, right}, {full, full}); };
+
+    const VisibleErrors none = errorsOf(full, full);
+    CHECK(none.tile_squares == std::vector<float>(64, 0.0f));
+    CHECK((none.badShare() == 0.0 && none.edge == 0.0 && none.seam == 0.0 && none.rival == 0.0));
+
+    const Image shifted = draw([&](std::uint32_t x, std::uint32_t, float) { return x / 40 % 2 == 1 ? patternAt(x) : patternAt(x + 1); });
+    const VisibleErrors edges = errorsOf(shifted, shifted);
+    CHECK(edges.edge > 0.3);
+    CHECK(edges.badShare() == 0.0);
+    CHECK(edges.seam < 1e-4);
+    CHECK(edges.rival == 0.0);
+
+    const auto isTile = [](std::uint32_t x, std::uint32_t y) { return x / 16 == 3 && y / 16 == 1; };
+    const Image blurred = draw([&](std::uint32_t x, std::uint32_t y, float grey) { return isTile(x, y) ? 0.5f : grey; });
+    const VisibleErrors rivals = errorsOf(blurred, full);
+    CHECK(rivals.rival > 0.3);
+    CHECK(rivals.badShare() == 0.0);
+    CHECK(rivals.edge == 0.0);
+    CHECK(rivals.seam < 4e-4);  // a tenth of a step of 255
+    CHECK(errorsOf(blurred, blurred).rival == 0.0);
+
+    const Image stepped =
+        draw([](std::uint32_t x, std::uint32_t y, float grey) { return grey + ((x / 16 + y / 16) % 2 == 0 ? 0.02f : 0.0f); });
+    const VisibleErrors seams = errorsOf(stepped, stepped);
+    CHECK(seams.seam == doctest::Approx(0.02).epsilon(0.02));  // 5 steps of 255
+    CHECK(seams.badShare() == 0.0);
+    CHECK(seams.edge == 0.0);
+    CHECK(seams.rival < 0.01);
+
+    const Image streaked = draw([](std::uint32_t x, std::uint32_t y, float grey) { return x < 16 ? (y % 8 < 4 ? 0.3f : 0.5f) : grey; });
+    const VisibleErrors streaks = errorsOf(streaked, streaked);
+    CHECK(streaks.badShare() == doctest::Approx(1.0 / 8.0));
+    CHECK(worstTiles(streaks.tile_squares, 1.0 / 8.0) > kBadTileSquare);
+    CHECK(worstTiles(streaks.tile_squares, 1.0) == doctest::Approx(worstTiles(streaks.tile_squares, 1.0 / 8.0) / 8.0));
+    CHECK(streaks.edge < 0.01);
+    CHECK(streaks.rival == 0.0);
+}
+
+TEST_CASE("a picture is scaled up by a cubic that keeps constants, and ramps within its borders") {
+    CHECK(scaleUp(makeWaves({17, 9}, 0.0), {17, 9}).values == makeWaves({17, 9}, 0.0).values);
+    const Image ramp =
+        makePicture({20, 10}, [](std::uint32_t x, std::uint32_t y) { return glm::vec3(glm::dvec3(0.02 * x, 0.03 * y, 0.5)); });
+    const Image scaled = scaleUp(ramp, {50, 25});
+    CHECK(scaled.size_px == glm::uvec2(50, 25));
+    for (const glm::uvec2 at : {glm::uvec2(10, 10), glm::uvec2(23, 12), glm::uvec2(40, 17)}) {
+        const glm::vec3 expected(glm::dvec3(0.02 * ((at.x + 0.5) * 0.4 - 0.5), 0.03 * ((at.y + 0.5) * 0.4 - 0.5), 0.5));
+        CHECK(glm::length(colourOf(scaled, at.x, at.y) - expected) < 1e-6f);
+    }
+    CHECK(colourOf(scaled, 0, 0).z == doctest::Approx(0.5f));
+    CHECK_THROWS_AS(scaleUp(ramp, {19, 25}), Error);
+}
+
+}  // SUITE(metrics)

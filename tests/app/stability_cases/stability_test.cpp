@@ -1,0 +1,125 @@
+// Facts about extreme cases: the catalogue of `binosplat stability` but for its largest picture, and its sequences.
+#include "app/stability_cases/extreme_scenes.h"
+#include "app/stability_cases/run_case.h"
+#include "tests/engine/frame/frame_runs.h"
+
+SUITE(stability) {
+
+using namespace binosplat::stability;
+
+test::PairOfValues render(const Context& context, const Stage& stage, Mode mode) {
+    FrameSettings settings;
+    settings.mode = mode;
+    settings.near = stage.near;
+    const auto pictures = test::renderPair(context, stage.scene, stage.eyes, settings).pictures;
+    return {pictures[kLeft].values, pictures[kRight].values};
+}
+
+// The first `count` splats of a scene without SH bands.
+Stage keepFirst(Stage stage, std::size_t count) {
+    stage.scene.positions.resize(count);
+    stage.scene.rotations.resize(count);
+    stage.scene.scales.resize(count);
+    if (stage.scene.isGaussian3d()) { stage.scene.thicknesses.resize(count); }
+    stage.scene.opacities.resize(count);
+    stage.scene.sh.resize(3 * count);
+    return stage;
+}
+
+void checkSeesOnlyTheFirst(const Context& context, const Stage& stage, std::size_t count) {
+    for (const Mode mode : {Mode::kShared, Mode::kPredicted}) {
+        CHECK(render(context, stage, mode) == render(context, keepFirst(stage, count), mode));
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu, "every case is finite, repeats and keeps to its bounds beside the twin, in every mode" * nightly()) {
+    std::set<std::string> names;
+    CaseRunner runner(context());
+    for (const Case& one : makeCatalogue()) {
+        CHECK(names.insert(one.name()).second);
+        CHECK(std::min(one.rendered.psnr_db, one.moved.psnr_db) > 10.0);  // less is no bound
+        if (one.large) { continue; }
+        const CaseScore score = runner.run(one);
+        CHECK(score.pictures.size() == 11);
+        for (const PictureScore& picture : score.pictures) {
+            INFO(one.name() << ", " << nameOf(picture.mode) << ", " << picture.eye << ": " << picture.psnr_db << " dB");
+            CHECK(picture.not_finite == 0);
+            CHECK(picture.repeats);
+            CHECK(picture.passes);
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu, "an eye that goes through discs and along their planes sees no more change at a time than the twin's" * nightly()) {
+    CaseRunner runner(context());
+    for (const Path& path : makePaths()) {
+        const PathScore score = runner.run(path);
+        CAPTURE(path.name);
+        CHECK(score.not_finite == 0);
+        CHECK(score.passes);
+        CHECK(score.psnr_db >= 50.0);
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu, "pictures that are made from the ones before keep to their bounds beside full renders, however long" * nightly()) {
+    CaseRunner runner(context());
+    for (const Sequence& sequence : makeSequences()) {
+        const SequenceScore score = runner.run(sequence);
+        INFO(sequence.title() << ": worst " << score.psnr_db << " dB");
+        CHECK(score.not_finite == 0);
+        CHECK(score.repeats);
+        CHECK(score.frames.size() >= 20);
+        CHECK(score.passes);
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu, "splats with a broken attribute, or of which dimming leaves nothing, change no byte, of discs and of 3D Gaussians" *
+                           nightly()) {
+    for (const double broken : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
+        for (const bool gaussians : {false, true}) {
+            const Stage stage = gaussians ? makeBrokenGaussians(broken) : makeBrokenAttributes(broken);
+            const std::size_t broken_splats = 3 + 3 + 4 + 2 + 1 + (gaussians ? 1 : 0);
+            checkSeesOnlyTheFirst(context(), stage, stage.scene.size() - broken_splats);
+        }
+    }
+    // Points and lines, after the wall and the clutter.
+    for (const double flat_axes : {2.0, 3.0}) {
+        const Stage stage = asDimmed(makeFlatAxes(flat_axes));
+        checkSeesOnlyTheFirst(context(), stage, stage.scene.size() - 60);
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu, "rotations of any length are those of length one" * nightly()) {
+    const auto unit = render(context(), makeQuaternions(1.0), Mode::kShared);
+    for (const double length : {std::ldexp(1.0, -60), 0.25, std::ldexp(1.0, 60)}) {  // powers of two round nothing
+        CHECK(render(context(), makeQuaternions(length), Mode::kShared) == unit);
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu, "what misses a bound fails") {
+    CaseRunner runner(context());
+    Case one = makeCatalogue().front();
+    one.moved = {0.0, 1.0, HUGE_VAL, 1.0};
+    for (const Bound& bound : {Bound{200.0, 1.0}, Bound{0.0, 1.0, 0.0}}) {
+        one.rendered = bound;
+        CHECK_FALSE(runner.run(one).passes());
+    }
+    one.rendered = {0.0, 1.0};
+    CHECK(runner.run(one).passes());
+    Sequence walk = makeSequences().front();
+    walk.frames = 4;
+    walk.equal_from = {};
+    CHECK(runner.run(walk).passes);
+    const auto misses = [&](const std::function<void(Sequence&)>& tighten) {
+        Sequence tight = walk;
+        tighten(tight);
+        return !runner.run(tight).passes;
+    };
+    CHECK(misses([](Sequence& s) { s.psnr_db = 100.0; }));
+    CHECK(misses([](Sequence& s) { s.drift_db = -100.0; }));
+    CHECK(misses([](Sequence& s) { s.beyond = 0.0; }));
+    CHECK(misses([](Sequence& s) { s.bias = 0.0; }));
+    CHECK(misses([](Sequence& s) { s.equal_from = 3; }));
+}
+
+}  // SUITE(stability)

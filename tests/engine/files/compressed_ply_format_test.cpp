@@ -1,0 +1,115 @@
+// PlayCanvas compressed PLY: values worked out by hand, a real file, and headers that do not fit.
+#include "engine/files/load_scene.h"
+#include "tests/engine/files/hostile_scenes.h"
+#include "tests/shared_data.h"
+
+SUITE(compressed_ply_format) {
+
+double shown(const Scene& scene, std::size_t at) { return 0.5 + 0.28209479 * static_cast<double>(scene.sh[at]); }
+
+TEST_CASE_FIXTURE(InFolder, "words lie between the bounds of their chunk") {
+    LoadNotes notes;
+    // x: all of 11 bits; y: none of 10; z: all of 11.
+    const CompressedPly packed{.splats = 257, .position = 0x7ffu << 21 | 0x7ffu, .colour = 0xff0080ffu};
+    const Scene scene = loadScene(folder.write("a.ply", packed.bytes()), 0, &notes);
+    REQUIRE(scene.size() == 257);
+    CHECK(scene.positions[0] == glm::vec3(1.0f, -2.0f, 8.0f));
+    CHECK(scene.positions[255] == glm::vec3(1.0f, -2.0f, 8.0f));
+    CHECK(scene.positions[256] == glm::vec3(2.0f, -2.0f, 8.0f));
+    // Scales exp(-6), exp(-5), exp(-4): the first is dropped, the two others follow it.
+    CHECK(scene.scales[0].x == doctest::Approx(std::exp(-5.0)));
+    CHECK(scene.scales[0].y == doctest::Approx(std::exp(-4.0)));
+    CHECK(scene.opacities[0] == 1.0f);
+    // Colour between bounds: r all of -0.5 to 1.5, g none of 0 to 1, b 128/255 of 0 to 2.
+    CHECK(shown(scene, 0) == doctest::Approx(1.5));
+    CHECK(shown(scene, 1) == doctest::Approx(0.0));
+    CHECK(shown(scene, 2) == doctest::Approx(256.0 / 255.0));
+    CHECK(notes.three_scales);
+    CHECK(notes.median_flatness == doctest::Approx(std::exp(-1.0)));
+    CHECK(notes.sh_degree_in_file == 0);
+
+    // Colours without bounds are from 0 to 1; zero opacity stays zero.
+    const Scene plain = loadScene(folder.write("a.ply", CompressedPly{.colour = 0xff008000u, .has_colour_bounds = false}.bytes()));
+    CHECK(shown(plain, 0) == doctest::Approx(1.0));
+    CHECK(shown(plain, 1) == doctest::Approx(0.0));
+    CHECK(shown(plain, 2) == doctest::Approx(128.0 / 255.0));
+    CHECK(plain.opacities[0] == 0.0f);
+}
+
+TEST_CASE_FIXTURE(InFolder, "rotation words name their largest component") {
+    for (std::uint32_t largest = 0; largest < 4; ++largest) {
+        // Scales -2, -1, -4 at their bounds keep z the shortest, so that the quaternion is the stored one.
+        const CompressedPly packed{.rotation = largest << 30 | CompressedPly().rotation, .scale = 0x7ffu << 21 | 0x3ffu << 11};
+        const glm::quat q = loadScene(folder.write("a.ply", packed.bytes())).rotations[0];
+        const float stored[] = {q.w, q.x, q.y, q.z};
+        for (std::uint32_t i = 0; i < 4; ++i) {
+            CHECK(stored[i] == doctest::Approx(i == largest ? 1.0 : 0.5 / 1023 * std::sqrt(2.0)).epsilon(1e-4));
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(InFolder, "SH bytes stand for the middle of their interval within -4 to 4") {
+    std::vector<int> rest(24, 0);
+    rest[1] = 255, rest[8] = 64, rest[23] = 200;  // red of coefficient 2, green of 1, blue of 8
+    const Scene scene = loadScene(folder.write("a.ply", CompressedPly{.splats = 3, .rest = rest}.bytes()));
+    REQUIRE(scene.sh_degree == 2);
+    const float* sh = scene.sh.data() + 2 * 27;
+    CHECK(sh[3 * 1 + 0] == -4.0f);
+    CHECK(sh[3 * 2 + 0] == 4.0f);
+    CHECK(sh[3 * 1 + 1] == 8.0f * (64.5f / 256.0f - 0.5f));
+    CHECK(sh[3 * 8 + 2] == 8.0f * (200.5f / 256.0f - 0.5f));
+}
+
+TEST_CASE("a real compressed PLY gives the values another decoder gave" * needsSharedData()) {
+    const auto data = sharedData();
+    if (!data) { return; }
+    const auto [notes, scene] = readScene((*data / "guitar/guitar.compressed.ply").string());
+    REQUIRE(scene.size() == 90854);
+    CHECK(notes.skipped_not_finite + notes.skipped_zero_rotation == 0);
+    CHECK(glm::distance(scene.positions[300], {-0.4802096f, -4.1130406f, -0.0136646f}) < 1e-6f);
+    CHECK(std::min(scene.scales[300].x, scene.scales[300].y) == doctest::Approx(0.0022113659));
+    CHECK(std::max(scene.scales[300].x, scene.scales[300].y) == doctest::Approx(0.0109744594));
+    CHECK(scene.opacities[300] == doctest::Approx(0.9450980));
+    CHECK(shown(scene, 3 * 300) == doctest::Approx(0.0945961));
+    CHECK(glm::distance(scene.positions[90853], {0.4553929f, -0.6415753f, 0.7538047f}) < 1e-6f);
+    CHECK(notes.median_flatness > 0.0);
+    CHECK(notes.median_flatness < 1.0);
+}
+
+TEST_CASE_FIXTURE(InFolder, "headers and counts that do not fit are named; a comment asks for antialiasing here, too") {
+    const std::string good = CompressedPly{.splats = 300, .rest = std::vector<int>(9, 1)}.bytes();
+    CHECK_FALSE(loadScene(folder.write("plain.ply", good)).antialiased);
+    const std::string said = replaced(good, "comment made for a test", "comment SplatRenderMode: mip");
+    CHECK(loadScene(folder.write("said.ply", said)).antialiased);
+    const std::vector<Fault> faults{{"element chunk 2", "element chunk 3", "3 chunks for 300 splats"},
+                                    {"element chunk 2", "element chunks 2", "expected chunk, vertex and perhaps sh"},
+                                    {"element sh 300", "element sh 299", "299 rows of element sh for 300 splats"},
+                                    {"property uchar f_rest_8\n", "", "has 8 properties"},
+                                    {"uchar f_rest_8", "float f_rest_8", "expected uchar"},
+                                    {"float min_x", "double min_x", "expected float"},
+                                    {"float min_x", "float max_x", "max_x of element chunk twice"},
+                                    {"float min_x", "float other", "no property min_x"},
+                                    {"property float min_x", "property list uchar float min_x", "is a list"},
+                                    {"uint packed_scale", "int packed_scale", "expected uint"},
+                                    {"binary_little_endian", "ascii", "expected binary_little_endian"}};
+    checkFaults(faults, [&](const Fault& fault) {
+        const std::string message = loadError(folder, replaced(good, fault.from, fault.to));
+        CHECK(contains(message, "broken.ply: "));
+        return message;
+    });
+    std::string many = replaced(good, "element chunk 2", "element chunk 72057594037927936");
+    many = replaced(replaced(many, "element vertex 300", "element vertex 18446744073709551615"), "element sh 300",
+                    "element sh 18446744073709551615");
+    CHECK(contains(loadError(folder, many), "bytes are left for 72057594037927936 chunks"));
+}
+
+TEST_CASE_FIXTURE(InFolder, "chunks with bounds that are no numbers lose their splats alone") {
+    std::string bytes = CompressedPly{.splats = 257}.bytes();
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    std::memcpy(bytes.data() + bytes.find("end_header\n") + 11, &nan, sizeof(nan));
+    LoadNotes notes;
+    CHECK(loadScene(folder.write("a.ply", bytes), 0, &notes).size() == 1);
+    CHECK(notes.skipped_not_finite == 256);
+}
+
+}  // SUITE(compressed_ply_format)

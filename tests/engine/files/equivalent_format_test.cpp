@@ -1,0 +1,146 @@
+// The same scene as SOG and as PLY: what each format keeps of it.
+#include "engine/files/load_scene.h"
+#include "engine/files/scene_targets.h"
+#include "engine/files/sog.h"
+#include "engine/files/sog_files.h"
+#include "engine/picture/webp.h"
+#include "engine/scene/survey.h"
+#include "engine/twin/reference.h"
+#include "tests/engine/scene/scene_measures.h"
+#include "tests/shared_data.h"
+
+namespace binosplat::test::equivalent_format_suite {
+
+double norm(const glm::dmat3& matrix) {
+    return std::sqrt(glm::dot(matrix[0], matrix[0]) + glm::dot(matrix[1], matrix[1]) + glm::dot(matrix[2], matrix[2]));
+}
+
+Scene loadFlat(const std::filesystem::path& path) {
+    LoadNotes notes;
+    Scene scene = loadScene(path.string(), 0, &notes);
+    flatten(scene, notes);
+    return scene;
+}
+
+// The two shortest axes of such a splat have the same length, so that either may be the one to drop: the scales agree, the discs do not.
+bool tiesAllowBoth(const Scene& a, const Scene& b, std::size_t splat) {
+    const auto sorted = [](glm::vec2 scale) { return glm::vec2(std::min(scale.x, scale.y), std::max(scale.x, scale.y)); };
+    return glm::distance(sorted(a.scales[splat]), sorted(b.scales[splat])) <= 1e-5f * a.scales[splat].x;
+}
+
+// Of one in `share` splats another axis may have been dropped.
+void checkSame(const Scene& a, const Scene& b, double most_opacity, std::size_t share) {
+    REQUIRE(a.size() == b.size());
+    REQUIRE(a.sh_degree == b.sh_degree);
+    double position = 0.0, opacity = 0.0, sh = 0.0, disc = 0.0;  // the largest differences; of discs relative to their size
+    std::size_t other_axis_dropped = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        position = std::max<double>(position, glm::distance(a.positions[i], b.positions[i]));
+        opacity = std::max<double>(opacity, std::abs(a.opacities[i] - b.opacities[i]));
+        const double of_disc = norm(covarianceOf(a, i) - covarianceOf(b, i)) / norm(covarianceOf(b, i));
+        if (of_disc > 1e-4 && tiesAllowBoth(a, b, i)) {
+            ++other_axis_dropped;
+        } else {
+            disc = std::max(disc, of_disc);
+        }
+    }
+    for (std::size_t i = 0; i < a.sh.size(); ++i) { sh = std::max<double>(sh, std::abs(a.sh[i] - b.sh[i])); }
+    CHECK(position < 1e-6);
+    CHECK(opacity < most_opacity);
+    CHECK(sh < 1e-6);
+    CHECK(disc < 1e-4);
+    CHECK(other_axis_dropped < a.size() / share);
+}
+
+// Of the float64 twin's pictures, against a peak of 1.
+double psnrDb(const Scene& a, const Scene& b, const glm::dvec3& place, const glm::dvec3& look) {
+    Eye eye;
+    eye.size_px = {320, 320};
+    eye.intrinsics = intrinsicsFromFovX(glm::radians(60.0), eye.size_px);
+    eye.world_from_camera = lookAt(place, look, {0, -1, 0});
+    const reference::Picture first = reference::render(a, eye, {}), second = reference::render(b, eye, {});
+    double squares = 0.0;
+    for (std::size_t i = 0; i < first.rgba.size(); ++i) {
+        const glm::dvec3 difference(first.rgba[i] - second.rgba[i]);
+        squares += glm::dot(difference, difference);
+    }
+    return -10.0 * std::log10(squares / (3.0 * static_cast<double>(first.rgba.size())));
+}
+
+TEST_CASE("playbot and angel are the same scenes as SOG and as PLY, whose writer kept opacities off 1" * needsSharedData()) {
+    const auto data = sharedData();
+    if (!data) { return; }
+    const Scene playbot = loadFlat(*data / "playbot/playbot_lod3_2dgs_sh2.ply"), angel = loadFlat(*data / "statues/angel_2dgs_sh0.ply");
+    const Scene playbot_sog = loadFlat(*data / "playbot/playbot_lod3_sog"), angel_sog = loadFlat(*data / "statues/angel.sog");
+    checkSame(playbot_sog, playbot, 1e-5, 200);
+    checkSame(angel_sog, angel, 2e-4, 100);
+    CHECK(psnrDb(playbot, playbot_sog, {0, -0.6, -1.6}, {0, -0.4, 0}) > 55.0);
+    CHECK(psnrDb(angel, angel_sog, {0, -2, -5}, {0, -2, 0}) > 55.0);
+}
+
+TEST_CASE("a bundle has the files and keys that other writers' have" * needsSharedData()) {
+    const auto data = sharedData();
+    if (!data) { return; }
+    const Folder folder;
+    writeSog(loadScene((*data / "playbot/playbot_lod3_sog").string()), folder.file("a.sog"));
+    const InputFile bundle(folder.file("a.sog"));
+    const auto metaOf = [](SogFiles& files) {
+        const std::vector<std::byte> text = files.read("meta.json", 1 << 22);
+        return nlohmann::json::parse(reinterpret_cast<const char*>(text.data()), reinterpret_cast<const char*>(text.data() + text.size()));
+    };
+    const std::unique_ptr<SogFiles> theirs = openSogFolder((*data / "playbot/playbot_lod3_sog").string()), ours = openSogBundle(bundle);
+    const nlohmann::json our_meta = metaOf(*ours).flatten(), their_meta = metaOf(*theirs).flatten();
+    for (const auto& [key, value] : their_meta.items()) {
+        CAPTURE(key);
+        REQUIRE(our_meta.contains(key));
+        CHECK(our_meta[key].is_number() == value.is_number());
+        if (value.is_string() && !key.ends_with("generator")) { CHECK(our_meta[key] == value); }
+    }
+    for (const char* picture : {"means_l", "means_u", "scales", "quats", "sh0", "shN_centroids", "shN_labels"}) {
+        const auto sizeIn = [&](SogFiles& files) {
+            const std::string name = std::string(picture) + ".webp";
+            return webpSize(files.read(name, 1 << 24), name);
+        };
+        CAPTURE(picture);
+        CHECK(sizeIn(*theirs) == sizeIn(*ours));
+    }
+}
+
+void checkFormats(const std::vector<std::string>& sources, const std::vector<glm::dvec3>& directions) {
+    const auto data = sharedData();
+    if (!data) { return; }
+    for (const std::string& source : sources) {
+        const Scene scene = loadScene((*data / source).string(), 0, nullptr, {},
+                                      {source.ends_with("streamed") ? std::optional<std::uint32_t>(4) : std::nullopt, {}});
+        const SceneSurvey survey = surveyScene(scene);
+        const double away = 1.5 * std::max(survey.size, 0.5);
+        for (const auto& [name, least_db] :
+             {std::pair("a.ply", 100.0), std::pair("a.spz", scene.isGaussian3d() ? 40.0 : 42.0), std::pair("a.sog", 45.0)}) {
+            INFO("source ", source, ", name ", name);
+            const Folder folder;
+            findSceneTarget(name).write(scene, folder.file(name), {});
+            LoadNotes notes;
+            Scene back = loadScene(folder.file(name), 0, &notes);
+            if (name == std::string("a.spz") && !scene.isGaussian3d()) { flatten(back, notes); }
+            REQUIRE(back.size() == scene.size());
+            CHECK(back.isGaussian3d() == scene.isGaussian3d());
+            for (const glm::dvec3& direction : directions) {
+                CHECK(psnrDb(scene, back, survey.middle + away * glm::normalize(direction), survey.middle) > least_db);
+            }
+        }
+    }
+}
+
+TEST_CASE("scenes of every format that is read go through every format that is written, as the same pictures" * needsSharedData()) {
+    std::vector<std::string> sources{"formats/minimal.ksplat", "formats/minimal.splat", "playbot/playbot_streamed"};
+    sources.emplace_back("formats/khr_extensible_fallback.gltf");
+    checkFormats(sources, {{0.8, -0.5, 0.5}});
+}
+
+TEST_CASE("larger scenes go through every format that is written, as the same pictures from three sides" * needsSharedData() * nightly()) {
+    checkFormats({"guitar/guitar.compressed.ply", "statues/angel.sog", "statues/angel_2dgs_sh0.ply", "playbot/playbot_streamed",
+                  "playbot/playbot_lod2_2dgs_sh2.ply", "playbot/playbot_lod3_2dgs_sh2.ply", "playbot/playbot_lod3_sog"},
+                 {{0, -0.3, -1}, {0.8, -0.5, 0.5}, {-1, 0.2, 0.3}});
+}
+
+}  // namespace binosplat::test::equivalent_format_suite

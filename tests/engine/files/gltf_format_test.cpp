@@ -1,0 +1,378 @@
+// glTF with KHR_gaussian_splatting: values, nodes, buffers, what is left out and what is refused.
+#include "engine/files/load_scene.h"
+#include "engine/files/quantized.h"
+#include "engine/files/scene_series.h"
+#include "engine/files/spz.h"
+#include "engine/srgb.h"
+#include "engine/twin/harmonics.h"
+#include "tests/engine/files/gltf_files.h"
+#include "tests/engine/scene/scene_measures.h"
+#include "tests/shared_data.h"
+
+#include <glm/gtc/matrix_transform.hpp>
+
+SUITE(gltf_format) {
+
+std::string quoted(const glm::dmat4& matrix) {
+    std::string text;
+    for (int i = 0; i < 16; ++i) { text += fmt::format("{}{:.17g}", i == 0 ? "[" : ",", matrix[i / 4][i % 4]); }
+    return text + "]";
+}
+
+// The splats of `scene` are those of `plain`, placed by `world_from_node`.
+void checkPlaced(const Scene& scene, const Scene& plain, const glm::dmat4& world_from_node, double epsilon) {
+    REQUIRE(scene.size() == plain.size());
+    const glm::dmat3 linear(world_from_node);
+    for (std::size_t i = 0; i < plain.size(); ++i) {
+        const glm::dvec3 position(world_from_node * glm::dvec4(glm::dvec3(plain.positions[i]), 1.0));
+        CHECK(glm::length(position - glm::dvec3(scene.positions[i])) < epsilon);
+        const glm::dmat3 covariance = linear * covarianceOf(plain, i) * glm::transpose(linear);
+        CHECK(largest(covariance - covarianceOf(scene, i)) < epsilon * largest(covariance));
+    }
+}
+
+void checkAlike(const Scene& a, const Scene& b) {
+    CHECK(a.sh_degree == b.sh_degree);
+    checkPlaced(a, b, glm::dmat4(1.0), 1e-6);
+    CHECK(a.positions == b.positions);
+    for (std::size_t i = 0; i < a.sh.size(); ++i) { CHECK(a.sh[i] == doctest::Approx(b.sh[i]).epsilon(1e-5)); }
+    for (std::size_t i = 0; i < a.size(); ++i) { CHECK(a.opacities[i] == doctest::Approx(b.opacities[i]).epsilon(1e-6)); }
+}
+
+TEST_CASE_FIXTURE(InFolder, "a glTF holds what a PLY of the same splats holds, whatever its buffers are") {
+    for (const int rest_count : {0, 9, 24, 45}) {
+        const Scene expected = loadScene(folder.write("same.ply", makePly(rest_count, true).bytes()));
+        const GltfText gltf = makeGltf(rest_count);
+        const auto [notes, scene] = readScene(folder.write("a.glb", gltf.glb()));
+        checkAlike(scene, expected);
+        CHECK(scene.by_distance);
+        CHECK(scene.y_up);
+        CHECK(scene.vertical_axis == 1);
+        CHECK(notes.lines.empty());
+        CHECK(notes.three_scales);
+        checkAlike(loadScene(folder.write("in_its_text", gltf.embedded())), expected);
+        (void)folder.write("its splats.bin", gltf.binary());
+        checkAlike(loadScene(folder.write("beside.gltf", gltf.json(R"(,"uri":"its%20splats.bin")"))), expected);
+    }
+}
+
+TEST_CASE_FIXTURE(InFolder, "a file with its values in turn, and one with other things in it, is read as well") {
+    const Scene expected = loadScene(folder.write("same.ply", makePly(0, true).bytes()));
+    // One row of 56 bytes a splat: position, rotation, scale, opacity, colour.
+    const GltfText gltf = makeGltf(0);
+    std::string rows, views, accessors;
+    const std::size_t widths[] = {12, 16, 12, 4, 12}, starts[] = {0, 36, 84, 120, 132};
+    for (std::size_t splat = 0; splat < 3; ++splat) {
+        for (std::size_t i = 0; i < 5; ++i) { rows += gltf.binary().substr(starts[i] + splat * widths[i], widths[i]); }
+    }
+    const char* types[] = {"VEC3", "VEC4", "VEC3", "SCALAR", "VEC3"};
+    for (std::size_t i = 0, offset = 0; i < 5; offset += widths[i], ++i) {
+        accessors += fmt::format(R"({}{{"bufferView":0,"byteOffset":{},"componentType":5126,"count":3,"type":"{}"}})", i == 0 ? "" : ",",
+                                 offset, types[i]);
+    }
+    std::string json = gltf.json("");
+    const auto cut = [&](const std::string& from, const std::string& to) {
+        const std::size_t begin = json.find(from);
+        json.replace(begin, json.find(']', begin) - begin + 1, to);
+    };
+    cut("\"bufferViews\":[", R"("bufferViews":[{"buffer":0,"byteLength":168,"byteStride":56}])");
+    cut("\"accessors\":[", "\"accessors\":[" + accessors + "]");
+    checkAlike(loadScene(folder.write("rows.glb", GltfText::makeGlb(json, rows))), expected);
+
+    GltfText more = makeGltf(0);
+    more.other_primitives = R"(,{"attributes":{"POSITION":0}},{"mode":0,"attributes":{"POSITION":0}})";
+    more.other_keys =
+        R"(,"materials":[{"name":"x"}],"images":[{"uri":"nowhere.png"}],"textures":[{"source":0}],"animations":"broken","extras":{"a":[[[]]]})";
+    LoadNotes notes;
+    checkAlike(loadScene(folder.write("more.glb", more.glb()), 0, &notes), expected);
+    checkSays(notes.lines, "2 primitives without KHR_gaussian_splatting (meshes, points) were left out");
+}
+
+TEST_CASE_FIXTURE(InFolder, "nodes place their splats: positions, shapes and colours go along, mirrored or not") {
+    const Scene plain = loadScene(folder.write("plain.glb", makeGltf(45).glb()));
+    const glm::dmat4 turned = glm::mat4_cast(glm::angleAxis(0.9, glm::normalize(glm::dvec3(1.0, -2.0, 0.5))));
+    const glm::dmat4 moved = glm::translate(glm::dmat4(1.0), {3, -4, 5});
+    const auto scaled = [](double x, double y, double z) { return glm::scale(glm::dmat4(1.0), {x, y, z}); };
+    for (const glm::dmat4& placed : {moved, turned, moved * scaled(2.5, 2.5, 2.5), turned * scaled(-1, 1, 1), scaled(-3, -3, -3) * turned,
+                                     moved * turned * scaled(0.5, -0.5, 0.5)}) {
+        GltfText gltf = makeGltf(45);
+        gltf.nodes = R"([{"mesh":0,"matrix":)" + quoted(placed) + "}]";
+        const auto [notes, scene] = readScene(folder.write("placed.glb", gltf.glb()));
+        CHECK(notes.lines.empty());
+        checkPlaced(scene, plain, placed, 1e-5);
+        for (std::size_t i = 0; i < 3; ++i) {
+            for (const glm::dvec3 direction :
+                 {glm::dvec3(1, 0, 0), glm::dvec3(0.2, -0.7, 0.4), glm::dvec3(-1, 2, 3), glm::dvec3(0, 0, -1)}) {
+                const auto colourOf = [&](const Scene& of, const glm::dvec3& seen_along) {
+                    return reference::evaluateHarmonics(of.sh.data() + 48 * i, 3, glm::normalize(seen_along));
+                };
+                const glm::dvec3 colour = colourOf(plain, direction);
+                CHECK(glm::length(colour - colourOf(scene, glm::dmat3(placed) * direction)) < 1e-5 * glm::length(colour));
+            }
+        }
+    }
+    // Stretched unevenly: the ellipsoids are stretched exactly.
+    GltfText gltf = makeGltf(0);
+    gltf.nodes = R"([{"children":[1],"scale":[2,1,-0.25]},{"mesh":0,"rotation":[0.5,0.5,0.5,0.5],"translation":[1,2,3]}])";
+    const auto [notes, scene] = readScene(folder.write("stretched.glb", gltf.glb()));
+    checkSays(notes.lines, "unevenly");
+    const glm::dmat4 inner = glm::translate(glm::dmat4(1.0), {1, 2, 3}) * glm::mat4_cast(glm::dquat(0.5, 0.5, 0.5, 0.5));
+    checkPlaced(scene, plain, scaled(2, 1, -0.25) * inner, 1e-5);
+}
+
+TEST_CASE("a node that lies far from 0, as those of 3D Tiles do, keeps its splats' detail: they count from an origin near them") {
+    const Folder folder;
+    const Scene plain = loadScene(folder.write("plain.glb", makeGltf(9).glb()));
+    const glm::dvec3 away(4'485'123.25, -1'870'456.5, 0.0);
+    const glm::dquat turn = glm::angleAxis(0.9, glm::normalize(glm::dvec3(1.0, -2.0, 0.5)));
+    GltfText gltf = makeGltf(9);
+    gltf.nodes = R"([{"mesh":0,"matrix":)" + quoted(glm::translate(glm::dmat4(1.0), away) * glm::mat4_cast(turn)) + "}]";
+    LoadNotes notes;
+    const Scene scene = loadScene(folder.write("far.glb", gltf.glb()), 0, &notes);
+    CHECK(glm::distance(scene.origin, away) < 10.0);
+    CHECK(scene.origin.z == 0.0);
+    CHECK(scene.origin == glm::round(scene.origin));
+    checkSays(notes.lines, "count from " + describeOrigin(scene));
+    for (std::size_t i = 0; i < 3; ++i) {
+        const glm::dvec3 expected = turn * glm::dvec3(plain.positions[i]) + away;
+        CHECK(glm::distance(glm::dvec3(scene.positions[i]) + scene.origin, expected) < 1e-6);
+    }
+    // All files of a moving scene count from the first one's.
+    (void)folder.write("f1.glb", gltf.glb());
+    (void)folder.write("f2.glb", gltf.glb());
+    const std::string all = std::filesystem::path(folder.file("f1.glb")).parent_path().string();
+    CHECK(SceneSeries(all).load(1, notes).origin == scene.origin);
+    // Nearer than that it stays where it is.
+    gltf.nodes = R"([{"mesh":0,"translation":[100,0,-9000]}])";
+    CHECK(loadScene(folder.write("near.glb", gltf.glb())).origin == glm::dvec3(0.0));
+}
+
+TEST_CASE_FIXTURE(InFolder, "several primitives and nodes are one scene, of the highest degree among them") {
+    GltfText gltf = makeGltf(9);
+    const std::string attributes = R"("POSITION":0,"KHR_gaussian_splatting:ROTATION":1,"KHR_gaussian_splatting:SCALE":2,)"
+                                   R"("KHR_gaussian_splatting:OPACITY":3,"KHR_gaussian_splatting:SH_DEGREE_0_COEF_0":4)";
+    gltf.other_primitives =
+        R"(,{"mode":0,"attributes":{)" + attributes + R"(},"extensions":{"KHR_gaussian_splatting":)" + gltf.extension + "}}";
+    gltf.nodes = R"([{"mesh":0},{"children":[2]},{"mesh":0,"translation":[10,0,0]},{"mesh":0}])";
+    gltf.roots = "[1,0]";  // the last node is in no scene
+    const Scene scene = loadScene(folder.write("several.glb", gltf.glb()));
+    REQUIRE(scene.size() == 12);
+    CHECK(scene.sh_degree == 1);
+    CHECK(scene.positions[0].x == 11.0f);
+    CHECK(scene.positions[6].x == 1.0f);
+    CHECK(scene.sh[3] != 0.0f);           // of the first primitive
+    CHECK(scene.sh[3 * 12 + 3] == 0.0f);  // of the second, which has the constant band alone
+    CHECK(scene.sh[3 * 12 + 1] == scene.sh[1]);
+}
+
+TEST_CASE_FIXTURE(InFolder, "what the extension's keys say is kept, and what they say that is not known is told") {
+    LoadNotes notes;
+    const auto loadWith = [&](const std::string& keys) {
+        GltfText gltf = makeGltf(0);
+        gltf.extension = "{" + keys + "}";
+        return loadScene(folder.write("keys.glb", gltf.glb()), 0, &notes);
+    };
+    const std::string usual = R"("kernel":"ellipse","colorSpace":"srgb_rec709_display")";
+    CHECK(loadWith(usual + R"(,"sortingMethod":"cameraDistance","projection":"perspective")").by_distance);
+    CHECK(notes.axes == "x left, y up, z front; right-handed (glTF's own)");
+    CHECK(notes.colour_space == "srgb_rec709_display (named by the file)");
+    CHECK(notes.lines.empty());
+    CHECK_FALSE(loadWith(usual + R"(,"sortingMethod":"zDepth")").by_distance);
+    CHECK(notes.lines.empty());
+    CHECK(loadWith(R"("kernel":"cube","colorSpace":"p3","sortingMethod":"none","projection":"fisheye")").by_distance);
+    CHECK(notes.lines.size() == 4);
+    CHECK(loadWith("").size() == 3);
+    CHECK(notes.lines.empty());
+    const Scene light = loadWith(R"("kernel":"ellipse","colorSpace":"lin_rec709_display")");
+    CHECK(light.is_linear);
+    checkSays(notes.lines, "linear light");
+    for (const bool as_ply : {true, false}) {
+        CHECK_THROWS_WITH_AS(as_ply ? writePly(light, folder.file("out.ply")) : writeSpz(light, folder.file("out.spz")),
+                             doctest::Contains("cannot hold colours of linear light"), Error);
+    }
+    CHECK(folder.fileCount() == 1);
+}
+
+TEST_CASE_FIXTURE(InFolder, "of splats in two colour spaces the fewer are converted, and as many are blended as the display shows them") {
+    const std::string linear = R"({"kernel":"ellipse","colorSpace":"lin_rec709_display"})";
+    for (const int linear_parts : {1, 2}) {
+        GltfText gltf = makeGltf(0);
+        for (int k = 0; k < 3; ++k) { gltf.add(fmt::format("SH_DEGREE_1_COEF_{}", k), "VEC3", {.02, 0, .03, 0, .01, 0, .03, .02, .01}); }
+        const Scene plain = loadScene(folder.write("plain.glb", gltf.glb()));
+        const std::string json = gltf.json("");
+        const std::size_t begin = json.find(R"({"mode":0)"), end = json.find("]}],\"buffers\"");
+        const std::string other = replaced(json.substr(begin, end - begin), gltf.extension, linear);
+        for (int part = 0; part < linear_parts; ++part) { gltf.other_primitives += "," + other; }
+        const auto [notes, scene] = readScene(folder.write("both.glb", gltf.glb()));
+        REQUIRE(scene.size() == 3u + 3u * static_cast<std::size_t>(linear_parts));
+        CHECK(scene.is_linear == (linear_parts == 2));
+        CHECK(std::ranges::count_if(notes.lines, [](const std::string& line) { return contains(line, "3 of "); }) == 1);
+        for (std::size_t i = 0; i < scene.size(); ++i) {
+            const bool was_linear = i >= 3;
+            for (const glm::dvec3 direction : {glm::dvec3(1, 0, 0), glm::dvec3(0, 0.6, -0.8), glm::dvec3(0, -1, 0)}) {
+                const glm::dvec3 before = 0.5 + reference::evaluateHarmonics(plain.sh.data() + 12 * (i % 3), 1, direction);
+                const glm::dvec3 expected = was_linear == scene.is_linear ? before : was_linear ? encodedOf(before) : lightOf(before);
+                const glm::dvec3 colour = 0.5 + reference::evaluateHarmonics(scene.sh.data() + 12 * i, 1, direction);
+                CHECK(glm::length(colour - expected) < (was_linear == scene.is_linear ? 1e-6 : 2e-3));
+            }
+        }
+    }
+}
+
+TEST_CASE("the fifteen cases of the conformance matrix give the values that they hold" * needsSharedData()) {
+    const auto data = sharedData();
+    if (!data) { return; }
+    const Folder folder;
+    const std::string path = (*data / "formats/khr_conformance_matrix.glb").string();
+    const auto [mixed, all] = readScene(path);
+    CHECK(all.is_linear);
+    CHECK(std::ranges::count_if(mixed.lines, [](const std::string& line) {
+              return contains(line, "1 of 15 splats have colours in srgb_rec709_display and were converted to lin_rec709_display");
+          }) == 1);
+    CHECK(mixed.colour_space == "lin_rec709_display (named by the file)");
+    const std::string glb = textIn(path);
+    std::uint32_t text_bytes = 0;
+    std::memcpy(&text_bytes, glb.data() + 12, 4);
+    nlohmann::json document = nlohmann::json::parse(glb.substr(20, text_bytes));
+    int cases = 0;
+    for (std::size_t node = 0; node < document["nodes"].size(); ++node) {
+        if (!document["nodes"][node].contains("mesh")) { continue; }
+        const std::string name = document["nodes"][node]["name"];
+        CAPTURE(name);
+        ++cases;
+        document["scenes"][0]["nodes"] = {node};
+        const auto [notes, scene] = readScene(folder.write("one.glb", GltfText::makeGlb(document.dump(), glb.substr(28 + text_bytes))));
+        REQUIRE(scene.size() == 1);
+        for (std::size_t i = 0; i < 48; ++i) {
+            const double stored = i < scene.sh.size() ? static_cast<double>(scene.sh[i]) : 0.0;
+            const double in_all = scene.is_linear ? stored : (lightOf(0.5 + kShConstant * stored) - 0.5) / kShConstant;
+            CHECK(all.sh[48 * node + i] == doctest::Approx(i < 3 ? in_all : stored).epsilon(1e-5));
+        }
+        CHECK(scene.is_linear == (name != "scale_f32"));
+        CHECK(scene.positions[0] == glm::vec3(1.0f, 2.0f, 3.0f));
+        // Half a turn about x, which changes no covariance along the axes; all scales are logarithms of the draft.
+        const std::map<std::string, glm::dvec3> scales{{"scale_f32", {0.2, -0.1, 0.7}},
+                                                       {"scale_i8", {1, -2, 3}},
+                                                       {"scale_i8_norm", {1, 0, -1}},
+                                                       {"scale_i16", {2, -3, 4}},
+                                                       {"scale_i16_norm", {1, 0, -1}}};
+        const glm::dvec3 logs = scales.contains(name) ? scales.at(name) : glm::dvec3(0.0, 0.5, -0.5);
+        const glm::dmat3 covariance = covarianceOf(scene, 0);
+        for (int i = 0; i < 9; ++i) {
+            const double expected = i % 4 == 0 ? std::exp(2.0 * logs[i / 3]) : 0.0;
+            CHECK(covariance[i / 3][i % 3] == doctest::Approx(expected).epsilon(1e-5));
+        }
+        const std::map<std::string, double> opacities{
+            {"opacity_f32", 0.75}, {"opacity_u8_norm", 64.0 / 255.0}, {"opacity_u16_norm", 16384.0 / 65535.0}};
+        CHECK(scene.opacities[0] == doctest::Approx(opacities.contains(name) ? opacities.at(name) : 0.25).epsilon(1e-6));
+        CHECK(scene.sh_degree == (name.starts_with("sh_degree") ? name.back() - '0' : 0));
+        for (std::size_t k = 0; k < scene.sh.size() / 3; ++k) {
+            for (std::size_t channel = 0; channel < 3; ++channel) {
+                CHECK(scene.sh[3 * k + channel] == doctest::Approx(static_cast<double>(k) + 0.1 * static_cast<double>(channel + 1)));
+            }
+        }
+        CHECK(std::ranges::count_if(notes.lines, [](const std::string& line) { return contains(line, "logarithms"); }) == 1);
+    }
+    CHECK(cases == 15);
+}
+
+TEST_CASE("an unknown kernel and colour space are drawn as what is known, and COLOR_0 stands in for harmonics" * needsSharedData()) {
+    const auto data = sharedData();
+    if (!data) { return; }
+    const auto [notes, scene] = readScene((*data / "formats/khr_extensible_fallback.gltf").string());
+    REQUIRE(scene.size() == 1);
+    CHECK(scene.opacities[0] == 0.5f);
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+        CHECK(scene.sh[channel] == doctest::Approx(1.0 + static_cast<double>(channel)).epsilon(1e-5));
+    }
+    REQUIRE(notes.lines.size() == 2);
+    CHECK(contains(notes.lines[0] + notes.lines[1], "customShape"));
+    CHECK(contains(notes.lines[0] + notes.lines[1], "custom_space_display"));
+}
+
+TEST_CASE_FIXTURE(InFolder, "a small file whose nodes name many primitives many times is refused before it fills the memory") {
+    const auto errorOf = [&](std::size_t nodes, std::size_t primitives) {
+        GltfText gltf = makeGltf(0);
+        gltf.nodes = R"([{"mesh":0})", gltf.roots = "[0";
+        for (std::size_t i = 1; i < nodes; ++i) {
+            gltf.nodes += R"(,{"mesh":0})";
+            gltf.roots += fmt::format(",{}", i);
+        }
+        gltf.nodes += "]", gltf.roots += "]";
+        for (std::size_t i = 1; i < primitives; ++i) { gltf.other_primitives += ",{}"; }
+        return loadError(folder.write("a.glb", gltf.glb()));
+    };
+    CHECK(errorOf(512, 512).empty());
+    CHECK(contains(errorOf(513, 512), "a.glb: its nodes have 262656 primitives and more, expected at most 262144"));
+}
+
+TEST_CASE_FIXTURE(InFolder, "a glTF that does not fit is named with its place") {
+    const auto glbError = [&](const std::string& bytes) { return loadError(folder.write("broken.glb", bytes)); };
+    const std::string prefix = "KHR_gaussian_splatting:";
+    for (const auto& [left_out, message] : {std::pair("SCALE", "has no attribute KHR_gaussian_splatting:SCALE"),
+                                            std::pair("SH_DEGREE_1_COEF_1", "expected all of its degree"),
+                                            std::pair("SH_DEGREE_0_COEF_0", "degree 1, but none of degree 0")}) {
+        GltfText gltf = makeGltf(9);
+        gltf.remove(prefix + left_out);
+        CHECK(contains(glbError(gltf.glb()), message));
+    }
+    const auto errorWithOpacity = [&](const char* type, const std::vector<double>& values, int component = kGltfFloat) {
+        GltfText gltf = makeGltf(9);
+        gltf.add("OPACITY", type, values, component);
+        return glbError(gltf.glb());
+    };
+    CHECK(contains(errorWithOpacity("SCALAR", {1, 2, 3}, kGltfUint8), "holds integers, expected floats or normalized"));
+    CHECK(contains(errorWithOpacity("VEC3", {1, 2, 3}), "has 3 components a splat, expected 1"));
+    CHECK(contains(errorWithOpacity("SCALAR", {1, 2}), "has 3 positions and 2 values"));
+
+    const GltfText gltf = makeGltf(9);
+    const std::string json = gltf.json(""), nodes = R"("nodes":[{"mesh":0}])", extension = R"("extensions":{"KHR_gaussian_splatting":)";
+    const std::vector<Fault> faults{
+        {R"("mode":0)", R"("mode":4)", "meshes[0].primitives[0]: its mode is another, expected 0"},
+        {extension + gltf.extension, extension + "[]", "KHR_gaussian_splatting: is array, expected an object"},
+        {nodes, R"("nodes":[{}])", "a glTF without splats"},
+        {nodes, R"("nodes":[{"children":[1]},{"children":[0]}])", "is a child twice"},
+        {nodes, R"("nodes":[{"mesh":1}])", "nodes[0]: names mesh 1 of 1"},
+        {nodes, R"("nodes":[{"mesh":0,"scale":[1,1,0]}])", "has no inverse"},
+        {nodes, R"("nodes":[{"mesh":0,"matrix":[1,2]}])", "matrix: has 2 entries, expected 16"},
+        {R"("extensionsUsed")", R"("extensionsRequired":["EXT_meshopt_compression"],"extensionsUsed")",
+         "requires the extension EXT_meshopt_compression"},
+        {extension + "{", extension + R"({"extensions":{"KHR_gaussian_splatting_compression_spz_2":{"bufferView":0}},)",
+         "compressed by KHR_gaussian_splatting_compression_spz_2"},
+        {R"("byteOffset":0)", R"("byteOffset":-4)", "bufferViews[0].byteOffset: is -4, expected a whole number"},
+        {R"("byteOffset":0)", R"("byteOffset":0,"byteStride":256)", "bufferViews[0]: byteStride is 256, expected 4 to 252"},
+        {R"("byteOffset":36)", R"("byteOffset":99999)", "ends beyond its buffer"},
+        {R"("count":3)", R"("count":4)", "do not fit"},
+        {R"("count":3)", R"("count":18446744073709551615)", "do not fit"},
+        {R"("bufferView":0,)", "", "has no bufferView"},
+        {R"("buffers":[{"byteLength":)", R"("buffers":[{"byteLength":9)", "bytes are there"},
+        {nodes, R"("nodes":[{"mesh":0,"scale":[1,"1",1]}])", "scale: is [1,\"1\",1], expected numbers under 1e30"},
+        {nodes, R"("nodes":[{"mesh":0,"children":[7]}])", "nodes[0]: names node 7 of 1"},
+        {R"("buffer":0)", R"("buffer":1)", "bufferViews[0]: names buffer 1 of 1"},
+        {R"("type":"VEC3")", R"("type":"VEC5")", "accessors[0]: type is VEC5"},
+        {R"("componentType":5126)", R"("componentType":5124)", "componentType is 5124"},
+        {R"("version":"2.0")", R"("version":2)", "asset.version: is number, expected a text"},
+        {R"("version":"2.0")", R"("version":"1.0")", "asset.version is 1.0, expected 2.0"}};
+    checkFaults(faults,
+                [&](const Fault& fault) { return glbError(GltfText::makeGlb(replaced(json, fault.from, fault.to), gltf.binary())); });
+    CHECK(contains(glbError(gltf.glb().substr(0, 15)), "expected a GLB's header of 20"));
+    CHECK(contains(glbError(replaced(gltf.glb(), std::string("glTF\2", 5), std::string("glTF\1", 5))), "version 1, expected 2"));
+    std::vector<std::pair<std::string, std::string>> uris{{"gone.bin", "gone.bin: no such file"},
+                                                          {"data:x,y", "buffers[0]: uri begins with 'data:x,y'"},
+                                                          {"data:;base64,AAA", "buffers[0]: uri begins with 'data:;base64,AAA'"},
+                                                          {"data:;base64,A*AA", "buffers[0]: uri begins with"},
+                                                          {"data:;base64,AAA=", "byteLength is"}};
+    for (const char* uri : {"../x.bin", "/etc/passwd", "a%2", "http://a/b", ""}) {
+        uris.emplace_back(uri, "expected a path within the folder");
+    }
+    for (const auto& [uri, message] : uris) {
+        CHECK(contains(loadError(folder.write("out.gltf", gltf.json(fmt::format(",\"uri\":\"{}\"", uri)))), message));
+    }
+    CHECK(contains(loadError(folder.write("out.gltf", json)), "buffers[0]: has no uri"));
+    CHECK(contains(loadError(folder.write("long.gltf", json + std::string(std::size_t{32} << 20, ' '))),
+                   "bytes of JSON, expected at most 33554432"));
+    CHECK(contains(glbError(GltfText::makeGlb(json + std::string(std::size_t{32} << 20, ' '), gltf.binary())),
+                   "bytes of JSON, expected at most"));
+}
+
+}  // SUITE(gltf_format)

@@ -1,0 +1,239 @@
+// Broken scene files of every format: each loads into a whole scene or is refused in one line.
+#include "engine/files/load_scene.h"
+#include "engine/files/sog.h"
+#include "tests/engine/files/gltf_files.h"
+#include "tests/engine/files/hostile_scenes.h"
+#include "tests/engine/files/ksplat_files.h"
+#include "tests/hostile.h"
+#ifdef BINOSPLAT_SOG
+#include "tests/engine/files/streamed_scenes.h"
+#endif
+
+SUITE(hostile_scene) {
+
+// A good file, or a part of one, that is broken, and how.
+struct Target {
+    std::string name, good;
+    int changes = 1000;                  // bits are flipped so many times, and bytes are spliced as often
+    std::size_t numbers = 0, lines = 0;  // of so many bytes the numbers are replaced and the lines shuffled
+    bool must_be_whole = true;           // cut off at any length it is refused
+    std::function<std::string(const std::string&)> wrap = [](const std::string& bytes) { return bytes; };
+    std::string file = "broken", source = "broken";  // what is written, and what is loaded then
+    std::size_t most_splats = 1000;
+    std::vector<std::string> more{};
+};
+
+Target partOf(Target target, std::size_t begin, std::size_t end = std::string::npos) {
+    const std::string before = target.good.substr(0, begin), behind = target.good.substr(std::min(end, target.good.size()));
+    target.good = target.good.substr(begin, end - begin);
+    target.wrap = [before, behind](const std::string& bytes) { return before + bytes + behind; };
+    target.must_be_whole = target.must_be_whole && behind.empty();
+    return target;
+}
+
+void checkWhole(const Scene& scene, std::size_t most_splats) {
+    const std::size_t splats = scene.size();
+    bool whole = splats <= most_splats && scene.rotations.size() == splats && scene.scales.size() == splats &&
+                 scene.opacities.size() == splats &&
+                 scene.sh.size() == splats * 3 * static_cast<std::size_t>(shCoefficientCount(scene.sh_degree));
+    for (std::size_t i = 0; whole && i < splats; ++i) {
+        const glm::vec3& p = scene.positions[i];
+        whole = std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z) && std::isfinite(scene.scales[i].x) &&
+                std::isfinite(scene.scales[i].y) && scene.scales[i].x >= 0.0f && scene.scales[i].y >= 0.0f &&
+                std::abs(glm::length(scene.rotations[i]) - 1.0f) < 1e-4f && scene.opacities[i] >= 0.0f && scene.opacities[i] <= 1.0f;
+    }
+    for (const float value : scene.sh) { whole = whole && std::isfinite(value); }
+    if (!whole) { FAIL_CHECK("a scene with values that are not to be"); }
+}
+
+// Of what could be broken one in `stride` is; of all more than one in `share` is to be refused.
+void attack(const Folder& folder, const std::vector<Target>& targets, std::size_t stride, std::size_t share, long most_mebibytes) {
+    std::size_t inputs = 0, refused = 0;
+    for (const Target& target : targets) {
+        (void)folder.write(target.file, target.wrap(target.good));
+        CHECK_MESSAGE(loadError(folder.file(target.source)).empty(), target.name);
+        if (const char* const seeds = std::getenv("BINOSPLAT_WRITE_SEEDS")) {  // a folder, for tests/fuzz/run.sh --keep
+            std::ofstream(std::filesystem::path(seeds) / target.name, std::ios::binary) << target.wrap(target.good);
+        }
+        Tally tally;
+        std::size_t count = 0, step = stride * (1 + target.good.size() / 2000);  // a long file is cut off at fewer lengths
+        const Attempt attempt = [&](const std::string& what, const std::string& bytes) {
+            if (count++ % step != 0) { return; }
+            (void)folder.write(target.file, target.wrap(bytes));
+            tally.attempt(target.name + ", " + what, [&] { checkWhole(loadScene(folder.file(target.source)), target.most_splats); });
+        };
+        truncate(target.good, attempt);
+        if (target.must_be_whole) { CHECK_MESSAGE(tally.read == 0, target.name); }
+        step = stride;
+        flipBits(target.good, target.changes, attempt);
+        spliceBytes(target.good, target.changes, attempt);
+        replaceNumbers(target.good, target.numbers, attempt);
+        shuffleLines(target.good, target.lines, attempt);
+        for (const std::string& bytes : target.more) { count = 0, attempt("one more", bytes); }
+        MESSAGE(fmt::format("{}: {} broken files, {} loaded, {} refused", target.name, tally.inputs, tally.read, tally.refused));
+        inputs += tally.inputs, refused += tally.refused;
+    }
+    CHECK(refused > inputs / share);
+    CHECK(peakMebibytes() < most_mebibytes);
+}
+
+std::vector<Target> sceneTargets() {
+    std::vector<Target> targets;
+    for (const Encoding encoding : kEncodings) {
+        PlyText ply = makePly(9, encoding == Encoding::kLittle);
+        ply.encoding = encoding;
+        ply.header_before = "element strip 1\nproperty list uchar short index\n";
+        for (const auto& [type, value] : {std::pair("uchar", 2.0), std::pair("short", 1.0), std::pair("short", 2.0)}) {
+            appendTyped(ply.data_before, type, value, encoding);
+        }
+        if (encoding == Encoding::kAscii) { ply.data_before += "\n"; }
+        const std::string good = ply.bytes();
+        const std::size_t end = good.find("end_header");
+        targets.push_back({fmt::format("PLY {}", static_cast<int>(encoding)), good, 1000, end + 200, end + 12});
+    }
+    const std::string packed = makeCompressedPly();
+    targets.push_back({"compressed PLY", packed, 1500, packed.find("end_header"), packed.find("end_header") + 12});
+    targets.push_back({.name = ".splat", .good = makeSplatFile(), .must_be_whole = false});
+    for (const int level : {0, 1, 2}) {
+        KsplatText text;
+        text.level = level;
+        text.degrees = {1, 2};
+        // Most of the headers is empty: what is not is attacked.
+        const Target whole{.name = fmt::format(".ksplat {}", level), .good = text.bytes()};
+        for (const std::size_t begin : {0, 4096, 4096 + 1024}) { targets.push_back(partOf(whole, begin, begin + 44)); }
+        targets.push_back(partOf(whole, 4096 + 2048));
+        targets.back().changes = 200;
+    }
+    for (const std::uint32_t version : {2u, 3u}) {
+        const std::string plain = makeSpz(version).bytes(), name = fmt::format("SPZ {}", version);
+        targets.push_back({name + " in gzip", gzip(plain), 500});
+        targets.push_back({.name = name + " within gzip", .good = plain, .wrap = gzip});
+        targets.push_back({name, plain, 500});
+    }
+    SpzText spz = makeSpz(3);
+    spz.version = 4;
+    targets.push_back({"SPZ 4", makeSpzContainer(spz)});
+    spz.flags = 2;
+    targets.push_back({.name = "records of SPZ 4",
+                       .good = spzRecord(7, "another's") + spzAxesRecord(10),
+                       .changes = 400,
+                       .must_be_whole = false,
+                       .wrap = [spz](const std::string& records) { return makeSpzContainer(spz, records); }});
+    GltfText gltf = makeGltf(9);
+    gltf.nodes = R"([{"children":[1,2]},{"mesh":0,"rotation":[0.5,0.5,0.5,0.5],"scale":[1,2,-3]},{"mesh":0,"translation":[1,2,3]}])";
+    gltf.other_primitives = R"(,{"mode":4,"attributes":{"POSITION":0}})";
+    const std::string json = gltf.json(""), embedded = gltf.embedded();
+    targets.push_back({"GLB", gltf.glb(), 2000});
+    targets.push_back({.name = "JSON of a GLB", .good = json, .numbers = json.size(), .wrap = [gltf](const std::string& text) {
+                           return GltfText::makeGlb(text, gltf.binary());
+                       }});
+    targets.push_back({.name = "glTF", .good = embedded});
+    targets.back().more = {
+        R"({"asset":)" + std::string(100'000, '['),
+        replaced(embedded, R"("nodes":[)", R"("extras":)" + std::string(60, '[') + std::string(60, ']') + R"(,"nodes":[)")};
+    return targets;
+}
+
+constexpr std::size_t kFew = kSanitized ? 1 : 7;  // no divisor of what there is of each kind
+
+TEST_CASE("broken files of every format but SOG, some of them") { attack(Folder(), sceneTargets(), kFew, 4, 512); }
+TEST_CASE("broken files of every format but SOG" * nightly()) { attack(Folder(), sceneTargets(), 1, 4, 512); }
+
+#ifdef BINOSPLAT_SOG
+
+// With codebooks of two entries, which keep the text short.
+SogText withShortText(SogText files) {
+    std::string& meta = files["meta.json"];
+    for (std::size_t at = 0; (at = meta.find("\"codebook\":[", at)) != std::string::npos; ++at) {
+        meta.replace(at + 12, meta.find(']', at) - at - 12, "-3,1");
+    }
+    return files;
+}
+
+std::vector<Target> sogTargets(const Folder& folder) {
+    std::vector<Target> targets;
+    for (const int version : {1, 2}) {
+        const SogText files = withShortText(makeSog(version));
+        const std::string good = files.at("meta.json"), name = fmt::format("sog{}", version);
+        (void)writeSogFolder(folder, name, files);
+        targets.push_back({.name = fmt::format("meta.json of version {}", version),
+                           .good = good,
+                           .changes = 800,
+                           .numbers = good.size(),
+                           .file = name + "/meta.json",
+                           .source = name,
+                           .most_splats = 9,
+                           .more = {std::string(1'000'000, '['),
+                                    R"({"version":2,"count":)" + std::string(100'000, '[') + std::string(100'000, ']') + "}"}});
+    }
+    const std::string levels = makeLodMeta();
+    (void)writeStreamed(folder, "streamed", levels);
+    targets.push_back(
+        {.name = "lod-meta.json",
+         .good = levels,
+         .changes = 800,
+         .numbers = levels.size(),
+         .file = "streamed/lod-meta.json",
+         .source = "streamed",
+         .most_splats = 32,  // of four chunks
+         .more = {std::string(1'000'000, '['), R"({"lodLevels":1,"tree":)" + std::string(100'000, '[') + std::string(100'000, ']') + "}"}});
+    for (const std::string picture : {"l.webp", "n.webp", "q.webp", "p.webp"}) {
+        (void)writeSogFolder(folder, picture, makeSog());
+        targets.push_back({.name = picture,
+                           .good = makeSog().at(picture),
+                           .changes = 400,
+                           .must_be_whole = false,  // its last byte may be there to make an even number
+                           .file = picture + "/" + picture,
+                           .source = picture,
+                           .most_splats = 9});
+        if (picture == "p.webp") { continue; }
+        targets.push_back(targets.back());
+        const auto stored = std::as_bytes(std::span(targets.back().good));
+        const std::vector<std::uint8_t> rgba = decodeWebp(stored, picture).rgba;
+        targets.back().name = "pixels of " + picture;
+        targets.back().good.assign(rgba.begin(), rgba.end());
+        targets.back().wrap = [](const std::string& pixels) {
+            std::vector<std::uint8_t> nine(pixels.begin(), pixels.end());
+            nine.resize(36);
+            return makeWebp(3, 3, nine);
+        };
+    }
+    for (const bool are_deflated : {false, true}) {
+        const Target whole{.name = are_deflated ? "deflated bundle" : "stored bundle",
+                           .good = makeZip(withShortText(makeSog(2, false)), are_deflated),
+                           .most_splats = 9};
+        targets.push_back(whole);
+        targets.push_back(partOf(whole, whole.good.find("PK\x01\x02")));  // most of the harm is done in the directory at the end
+        targets.back().changes = 800;
+    }
+    // As `convert` writes them, alone and as chunks.
+    writeSog(loadScene(writeSogFolder(folder, "sog", makeSog())), folder.file("a.sog"));
+    const std::string written = textIn(folder.file("a.sog"));
+    targets.push_back({.name = "written bundle", .good = written, .changes = 600, .most_splats = 40});
+    std::filesystem::create_directories(folder.file("bundles"));
+    std::string of_bundles = levels;
+    for (const char* chunk : {"a", "b", "c", "env"}) {
+        of_bundles = replaced(of_bundles, fmt::format("\"{}/meta.json\"", chunk), fmt::format("\"{}.sog\"", chunk));
+        (void)folder.write(fmt::format("bundles/{}.sog", chunk), written);
+    }
+    (void)folder.write("bundles/lod-meta.json", of_bundles);
+    CHECK(loadScene(folder.file("bundles")).size() == 24);
+    targets.push_back({.name = "a written bundle as a chunk",
+                       .good = written,
+                       .changes = 300,
+                       .file = "bundles/b.sog",
+                       .source = "bundles",
+                       .most_splats = 40});
+    return targets;
+}
+
+void attackSog(std::size_t stride) {
+    const Folder folder;
+    attack(folder, sogTargets(folder), stride, 8, 768);
+}
+
+TEST_CASE("broken SOG scenes, some of them") { attackSog(kFew); }
+TEST_CASE("broken SOG scenes" * nightly()) { attackSog(1); }
+#endif
+
+}  // SUITE(hostile_scene)

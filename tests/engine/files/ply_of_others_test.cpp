@@ -1,0 +1,217 @@
+// PLY files as other programs write them: what is read of each, what is said of it, and what is no scene.
+#include "engine/files/load_scene.h"
+#include "tests/engine/scene/scene_measures.h"
+
+SUITE(ply_of_others) {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+TEST_CASE_FIXTURE(InFolder, "properties come in any order, of any type, among others") {
+    const Scene expected = loadScene(folder.write("plain.ply", makePly(9).bytes()));
+    std::uint32_t state = 1;
+    for (int round = 0; round < 12; ++round) {
+        PlyText ply = makeIn(kEncodings[round % 3], 9);
+        for (std::size_t i = ply.columns.size(); i > 1; --i) {
+            state = state * 1664525u + 1013904223u;
+            std::swap(ply.columns[i - 1], ply.columns[state % i]);
+        }
+        for (const char* name : {"x", "f_rest_3", "rot_1", "opacity"}) { ply[name].type = round % 2 == 0 ? "double" : "float64"; }
+        for (const auto& [name, type] :
+             {std::pair("f_rest_0", "short"), std::pair("f_rest_1", "uint16"), std::pair("f_rest_2", "int32"), std::pair("z", "uchar"),
+              std::pair("scale_0", "int8"), std::pair("rot_2", "char"), std::pair("rot_0", "uint")}) {
+            ply[name].type = type;
+        }
+        ply.columns.insert(ply.columns.begin() + round, {"red", "uchar", {255.0, 0.0, 17.0}});
+        ply.columns.push_back({"confidence", "ushort", {1.0, 2.0, 3.0}});
+        checkSameScene(loadScene(folder.write("shuffled.ply", ply.bytes())), expected);
+    }
+}
+
+TEST_CASE("other elements are passed over, with and without lists, before and after the splats, as are line breaks of Windows") {
+    const Folder folder;
+    const Scene expected = loadScene(folder.write("plain.ply", makePly().bytes()));
+    for (const Encoding encoding : kEncodings) {
+        PlyText ply = makeIn(encoding);
+        ply.line_break = "\r\n";
+        checkSameScene(loadScene(folder.write("windows.ply", ply.bytes())), expected);
+        ply.line_break = "\n";
+        ply.header_before =
+            "element camera 2\nproperty float a\nproperty uchar b\nelement strip 2\nproperty list uchar int index\nproperty double "
+            "w\nelement none 5\n";
+        ply.header_after = "element face 1\nproperty list uchar int vertex_indices\n";
+        const std::string line_end = encoding == Encoding::kAscii ? "\n" : "";
+        for (const double row : {1.0, 2.0}) {
+            appendTyped(ply.data_before, "float", row, encoding);
+            appendTyped(ply.data_before, "uchar", 3.0, encoding);
+            ply.data_before += line_end;
+        }
+        for (const int count : {3, 0}) {
+            appendTyped(ply.data_before, "uchar", count, encoding);
+            for (int i = 0; i < count; ++i) { appendTyped(ply.data_before, "int", i, encoding); }
+            appendTyped(ply.data_before, "double", 0.5, encoding);
+            ply.data_before += line_end;
+        }
+        ply.data_after = "whatever follows";
+        checkSameScene(loadScene(folder.write("more.ply", ply.bytes())), expected);
+    }
+}
+
+TEST_CASE_FIXTURE(InFolder, "a comment names the vertical axis, and writing keeps it") {
+    for (const auto& [comment, axis] : {std::pair("comment Vertical axis: z\n", 2),
+                                        {"comment vertical AXIS:  X\n", 0},
+                                        {"comment Vertical axis: y\n", -1},
+                                        {"comment Vertical axis: w\n", -1},
+                                        {"comment Vertical axis:\n", -1},
+                                        {"comment the Vertical axis: z\n", -1}}) {
+        CAPTURE(comment);
+        LoadNotes notes;
+        const Scene scene =
+            loadScene(folder.write("said.ply", replaced(makePly(0).bytes(), "comment made for a test\n", comment)), 0, &notes);
+        CHECK(scene.vertical_axis == axis);
+        CHECK(writtenAndRead(folder, scene).vertical_axis == axis);
+        CHECK(notes.axes == (axis < 0 ? "" : fmt::format("{} is vertical (named by the file)", "xyz"[axis])));
+    }
+}
+
+TEST_CASE_FIXTURE(InFolder, "a PLY that looks as if its activations had been applied is loaded as usual, with one line that says so") {
+    for (const bool three_scales : {false, true}) {
+        PlyText ply = makePly(0, three_scales);
+        ply["opacity"].values = {0.0, 1.0, 0.5};
+        ply["scale_0"].values = {0.01, 0.5, 2.0};
+        ply["scale_1"].values = {0.02, 0.5, 1e-6};
+        if (three_scales) { ply["scale_2"].values = {0.001, 0.1, 3.0}; }
+        for (Column& column : ply.columns) { column.values.resize(700, column.values[0]); }
+        const auto linesOf = [&] {
+            LoadNotes notes;
+            CHECK(loadScene(folder.write("applied.ply", ply.bytes()), 0, &notes).size() == 700);
+            return std::ranges::count_if(notes.lines, [](const std::string& line) { return contains(line, "activations applied"); });
+        };
+        CHECK(linesOf() == 1);
+        CHECK(loadScene(folder.file("applied.ply")).opacities[1] == doctest::Approx(1.0 / (1.0 + std::exp(-1.0))));
+        for (const auto& [name, usual] : {std::pair("opacity", 1.01), std::pair("opacity", -0.01), std::pair("scale_1", 0.0)}) {
+            const double before = std::exchange(ply[name].values[650], usual);  // one splat in the last block
+            CHECK(linesOf() == 0);
+            ply[name].values[650] = before;
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(InFolder, "a byte order mark, CloudCompare's names and harmonics of degree 4 are passed over") {
+    LoadNotes notes;
+    const Scene plain = loadScene(folder.write("plain.ply", makePly(45, true).bytes()));
+    checkSameScene(loadScene(folder.write("marked.ply", "\xef\xbb\xbf" + makePly(45, true).bytes())), plain);
+    PlyText renamed = makePly(45, true);
+    for (Column& column : renamed.columns) { column.name.insert(0, column.name.size() > 2 ? "scalar_" : ""); }
+    renamed.columns.push_back({"scalar_x", "float", {7.0, 8.0, 9.0}});  // not the position
+    checkSameScene(loadScene(folder.write("renamed.ply", renamed.bytes()), 0, &notes), plain);
+    CHECK(notes.lines.empty());
+    // Of each channel's 24 values the first 15.
+    PlyText larger = makePly(72, true);
+    for (int i = 0; i < 72; ++i) {
+        std::vector<double>& values = larger[fmt::format("f_rest_{}", i)].values;
+        values = i % 24 < 15 ? makePly(45)[fmt::format("f_rest_{}", i / 24 * 15 + i % 24)].values : std::vector<double>{kNan, 1.0, 2.0};
+    }
+    checkSameScene(loadScene(folder.write("larger.ply", larger.bytes()), 0, &notes), plain);
+    checkSays(notes.lines, "larger.ply: SH of degree 4 were left out, degree 3 is kept");
+}
+
+TEST_CASE_FIXTURE(InFolder, "positions of float64 far from 0 keep their detail, and are written back to where they were") {
+    for (const Encoding encoding : kEncodings) {
+        PlyText ply = makeIn(encoding, 9, true);
+        for (const char* name : {"x", "y", "z"}) { ply[name].type = "double"; }
+        ply["x"].values = {431250.001, 431250.002, 431249.5};
+        ply["y"].values = {-5412000.1, -5412000.1001, -5412001.0};
+        ply["z"].values = {210.5, 211.25, 209.0};
+        const auto [notes, scene] = readScene(folder.write("far.ply", ply.bytes()));
+        CHECK(scene.origin == glm::dvec3(431250.0, -5412000.0, 0.0));
+        checkSays(notes.lines, "count from 431250,-5412000,0");
+        writePly(scene, folder.file("again.ply"));
+        const Scene again = loadScene(folder.file("again.ply"));
+        CHECK(again.origin == scene.origin);
+        CHECK(again.rotations == scene.rotations);
+        CHECK(again.sh == scene.sh);
+        REQUIRE(again.size() == 3);
+        for (std::size_t i = 0; i < 3; ++i) {
+            const glm::dvec3 expected = glm::dvec3(ply["x"].values[i], ply["y"].values[i], ply["z"].values[i]) - scene.origin;
+            CHECK(glm::distance(glm::dvec3(scene.positions[i]), expected) < 1e-7);
+            CHECK(glm::distance(glm::dvec3(again.positions[i]), expected) < 1e-7);
+        }
+        if (encoding == Encoding::kAscii) {  // a blank line is none
+            std::string text = ply.bytes();
+            text.insert(text.find("end_header\n") + 11, "\n");
+            CHECK(loadScene(folder.write("blank.ply", text)).positions == scene.positions);
+        }
+        // What is float32 in the file has lost its detail already, and stays where it is.
+        for (const char* name : {"x", "y", "z"}) { ply[name].type = "float"; }
+        const Scene near = loadScene(folder.write("float.ply", ply.bytes()));
+        CHECK(near.origin == glm::dvec3(0.0));
+        CHECK(near.positions[2] == glm::vec3(431249.5f, -5412001.0f, 209.0f));
+    }
+}
+
+TEST_CASE_FIXTURE(InFolder, "of splats that move and fade the still of one moment is shown, and a note says which") {
+    const auto load = [&](const PlyText& ply, const std::string& note) {
+        const auto [notes, scene] = readScene(folder.write("moving.ply", ply.bytes()));
+        checkSays(notes.lines, note);
+        return scene;
+    };
+    for (const Encoding encoding : kEncodings) {
+        PlyText ply = makeIn(encoding, 9, true);
+        const auto add = [&](const std::string& name, double a, double b, double c) { ply.columns.push_back({name, "float", {a, b, c}}); };
+        add("trbf_center", 0.25, 0.5, 1.0);  // shown at the median
+        add("trbf_scale", std::log(0.25), 0.0, 0.0);
+        add("motion_0", 2.0, 9.0, 4.0);  // the speed along x, the square along z, the cube along y
+        add("motion_5", 16.0, 9.0, 0.0);
+        add("motion_7", 0.0, 9.0, 8.0);
+        add("omega_1", 8.0, 9.0, 0.0);
+        const Scene scene =
+            load(ply, "(trbf_center, trbf_scale, motion_0, motion_5, motion_7, omega_1): shown as the still of one moment, 0.5");
+        const auto opacity = [](double logit, double seen) { return doctest::Approx(seen / (1.0 + std::exp(-logit))).epsilon(1e-5); };
+        CHECK(scene.positions == std::vector<glm::vec3>{{1.5f, 0.5f, 5.0f}, {2.0f, 0.25f, 5.0f}, {-5.0f, -0.875f, 6.0f}});
+        CHECK(scene.opacities[0] == opacity(0.0, std::exp(-1.0)));
+        CHECK(scene.opacities[1] == opacity(2.0, 1.0));
+        CHECK(scene.opacities[2] == opacity(-2.0, std::exp(-0.25)));
+        CHECK(scene.sh == loadScene(folder.write("still.ply", makeIn(encoding, 9, true).bytes())).sh);
+        CHECK(scene.rotations[1] == loadScene(folder.file("still.ply")).rotations[1]);
+        CHECK(std::abs(glm::dot(scene.rotations[0], loadScene(folder.file("still.ply")).rotations[0])) == doctest::Approx(std::sqrt(0.5)));
+    }
+    PlyText fading = makePly();
+    fading.columns.push_back({"t", "float", {0.0, 1.0, 3.0}});
+    fading.columns.push_back({"scale_t", "float", {0.0, 0.0, std::log(2.0)}});
+    const Scene faded = load(fading, "(t, scale_t): shown as the still of one moment, 1");
+    CHECK(faded.opacities[0] == doctest::Approx(0.5 * std::exp(-0.5)));
+    CHECK(faded.opacities[2] == doctest::Approx(std::exp(-0.5) / (1.0 + std::exp(2.0))));
+    // Without harmonics Spacetime Gaussians store colours, or their logits.
+    PlyText coloured = makePly();
+    coloured.columns.push_back({"trbf_center", "float", {0.0, 0.0, 0.0}});
+    const auto shown = [](const Scene& scene, std::size_t i) { return 0.5 + 0.28209479177387814 * double(scene.sh[i]); };
+    CHECK(shown(load(coloured, "(trbf_center): all"), 1) == doctest::Approx(0.25));
+    coloured.columns.push_back({"f_dc_3", "float", {0.0, 0.0, 0.0}});
+    CHECK(shown(load(coloured, "; its colours lack what a network"), 4) == doctest::Approx(1.0 / (1.0 + std::exp(-0.5))));
+    PlyText unknown = makePly();
+    unknown.columns.push_back({"motion_0", "float", {1.0, 2.0, 3.0}});
+    checkSameScene(load(unknown, "(motion_0): all are shown at once"), loadScene(folder.write("still.ply", makePly().bytes())));
+}
+
+TEST_CASE_FIXTURE(InFolder, "a point cloud or a mesh is named as what it is, with the place where a training leaves its splats") {
+    for (const Encoding encoding : kEncodings) {
+        PlyText ply;
+        ply.encoding = encoding;
+        for (const char* name : {"x", "y", "z"}) { ply.columns.push_back({name, "float", {1.0, 2.0}}); }
+        const auto error = [&] { return loadError(folder.write("points3D.ply", ply.bytes())); };
+        CHECK(contains(error(), "points3D.ply: a point cloud (2 points), not a splat scene"));
+        for (const char* name : {"nx", "ny", "nz"}) { ply.columns.push_back({name, "float", {0.0, 1.0}}); }
+        for (const char* name : {"red", "green", "blue"}) { ply.columns.push_back({name, "uchar", {0.0, 255.0}}); }
+        CHECK(contains(error(), "a point cloud (2 points, with colours, with normals)"));
+        CHECK(contains(error(), "point_cloud/iteration_N/point_cloud.ply"));
+        ply.header_after = "element face 1\nproperty list uchar int vertex_indices\n";
+        CHECK(contains(error(), "a mesh (2 vertices, with colours, with normals)"));
+        ply.columns.push_back({"opacity", "float", {0.0, 1.0}});  // a splat scene that lacks the rest
+        CHECK(contains(error(), "no property f_dc_0"));
+    }
+    PlyText anchors = makePly();
+    anchors.columns.push_back({"f_anchor_feat_0", "float", {0.0, 1.0, 2.0}});
+    CHECK(contains(loadError(folder, anchors.bytes()), "broken.ply: anchors of Scaffold-GS"));
+}
+
+}  // SUITE(ply_of_others)

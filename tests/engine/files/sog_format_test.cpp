@@ -1,0 +1,231 @@
+// SOG: values worked out by hand in both versions and both wrappings, and everything that does not fit.
+#include "engine/files/load_scene.h"
+#include "tests/engine/files/streamed_scenes.h"
+
+SUITE(sog_format) {
+
+void checkContents(const Scene& scene, const LoadNotes& notes, bool version1) {
+    REQUIRE(scene.size() == 8);
+    CHECK(notes.skipped_not_finite + notes.skipped_zero_rotation == 0);
+    for (std::size_t i = 0; i < 8; ++i) {
+        const double x = -1.0 + 2.0 * (32.0 * static_cast<double>(i) * 256.0 / 65535.0);  // in the logarithmic space
+        CHECK(scene.positions[i].x == doctest::Approx(std::copysign(std::expm1(std::abs(x)), x)));
+        CHECK(scene.positions[i].y == doctest::Approx(-std::expm1(2.0)));
+        CHECK(scene.positions[i].z == doctest::Approx(1.0));
+        // The first of three growing scales is dropped.
+        CHECK(scene.scales[i].x == doctest::Approx(std::exp(-8.0 + (10.0 * static_cast<double>(i) + 1) / 32.0)));
+        CHECK(scene.scales[i].y == doctest::Approx(std::exp(-8.0 + (10.0 * static_cast<double>(i) + 2) / 32.0)));
+        const double byte = static_cast<double>(255 * i / 8);
+        CHECK(scene.opacities[i] ==
+              doctest::Approx(version1 ? 1.0 / (1.0 + std::exp(10.0 - byte * 20.0 / 255.0)) : byte / 255.0).epsilon(1e-4));
+        for (std::size_t channel = 0; channel < 3; ++channel) {
+            const auto level = static_cast<double>(20 * i + channel);
+            CHECK(scene.sh[12 * i + channel] == doctest::Approx(-2.0 + level / 64.0).epsilon(1e-4));
+        }
+        for (std::size_t k = 0; k < 3; ++k) {
+            const double red = i % 2 == 0 ? 65.0 : 1.0;
+            CHECK(scene.sh[12 * i + 3 * (k + 1) + 0] == doctest::Approx(-2.0 + red / 64.0).epsilon(1e-4));
+            CHECK(scene.sh[12 * i + 3 * (k + 1) + 1] == doctest::Approx(-2.0 + static_cast<double>(k) / 64.0).epsilon(1e-4));
+            CHECK(scene.sh[12 * i + 3 * (k + 1) + 2] == doctest::Approx(-2.0 + 100.0 / 64.0).epsilon(1e-4));
+        }
+    }
+    CHECK(notes.three_scales);
+    CHECK(notes.median_flatness == doctest::Approx(std::exp(-1.0 / 32.0)).epsilon(1e-4));
+}
+
+TEST_CASE("a WebP picture among other chunks is found, and gives back the bytes that were stored") {
+    std::mt19937 random(3);
+    for (const glm::uvec2 size_px : {glm::uvec2(1, 1), glm::uvec2(5, 7), glm::uvec2(192, 7)}) {
+        std::vector<std::uint8_t> rgba;
+        for (std::uint32_t i = 0; i < 4 * size_px.x * size_px.y; ++i) { rgba.push_back(static_cast<std::uint8_t>(random())); }
+        for (std::size_t i = 3; i < rgba.size(); i += 8) { rgba[i] = 0; }  // the colours below are data, too
+        const std::string plain = makeWebp(size_px.x, size_px.y, rgba);
+        const std::string chunks = "WEBPVP8X" + littleWord(10) + littleWord(0x10) + littleWord(size_px.x - 1, 3) +
+                                   littleWord(size_px.y - 1, 3) + "ICCP" + littleWord(3) + std::string(4, 'i') + plain.substr(12);
+        for (const std::string& file : {plain, "RIFF" + littleWord(chunks.size()) + chunks}) {
+            const auto bytes = std::as_bytes(std::span(file.data(), file.size()));
+            CHECK(webpSize(bytes, "x") == size_px);
+            CHECK(decodeWebp(bytes, "x").rgba == rgba);
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(InFolder, "both versions mean what their tables say, in a directory, a bundle, and by their meta.json") {
+    for (const int version : {1, 2}) {
+        CAPTURE(version);
+        const SogText files = makeSog(version);
+        const std::string source = writeSogFolder(folder, "scene", files);
+        LoadNotes notes;
+        const Scene scene = loadScene(source, 0, &notes);
+        checkContents(scene, notes, version == 1);
+        checkSameScene(scene, loadScene(source + "/meta.json"));
+        for (const bool deflated : {false, true}) {
+            checkSameScene(scene, loadScene(folder.write("bundle.sog", makeZip(files, deflated))));
+            for (const char* within : {"within/", ".\\within\\"}) {
+                checkSameScene(scene, loadScene(folder.write("bundle.bin", makeZip(files, deflated, within))));
+            }
+        }
+        // As some writers have them: a byte order mark, a number with a point, paths of Windows.
+        SogText odd = files;
+        std::string& meta = odd["meta.json"];
+        meta = "\xef\xbb\xbf" + replaced(replaced(meta, "\"q.webp\"", R"(".\\q.webp")"), "\"l.webp\"", "\"./l.webp\"");
+        meta = version == 2 ? replaced(meta, "\"count\":8", "\"count\":8.0") : replaced(meta, "[8,3]", "[8.0,3.0]");
+        checkSameScene(scene, loadScene(writeSogFolder(folder, "odd", odd)));
+        checkSameScene(scene, loadScene(folder.file("odd/meta.json")));
+    }
+}
+
+TEST_CASE_FIXTURE(InFolder, "rotations name their largest component; splats that use what is not there are skipped and counted") {
+    SogText files = makeSog();
+    // Scales with the third the shortest keep the quaternion as it is stored.
+    files["s.webp"] = makeNine([](int) { return std::array{9, 9, 0, 9}; });
+    const Scene scene = loadScene(writeSogFolder(folder, "scene", files));
+    for (std::size_t i = 0; i < 8; ++i) {
+        const glm::quat q = scene.rotations[i];
+        const float stored[] = {q.w, q.x, q.y, q.z};
+        for (std::size_t k = 0; k < 4; ++k) {
+            CHECK(stored[k] == doctest::Approx(k == i % 4 ? 1.0 : (128.0 / 255.0 * 2 - 1) / std::sqrt(2.0)).epsilon(1e-4));
+        }
+    }
+    files["q.webp"] = makeNine([](int i) { return std::array{128, 128, 128, i < 3 ? 251 : 252}; });
+    files["meta.json"] = replaced(files["meta.json"], "\"count\":128", "\"count\":65");  // even splats use entry 65
+    LoadNotes notes;
+    CHECK(loadScene(writeSogFolder(folder, "scene", files), 0, &notes).size() == 3);  // 3, 5, 7
+    CHECK(notes.skipped_not_finite == 4);
+    CHECK(notes.skipped_zero_rotation == 1);
+}
+
+TEST_CASE_FIXTURE(InFolder, "a key asks for antialiasing, by the name of old writers or of new ones, or says that the scene is of discs") {
+    LoadNotes notes;
+    const auto loadWith = [&](const std::string& key) {
+        SogText files = makeSog();
+        files["meta.json"] = replaced(files["meta.json"], "{", "{" + key);
+        return loadScene(writeSogFolder(folder, "said", files), 0, &notes);
+    };
+    const Scene gaussians = loadWith("");
+    CHECK(gaussians.isGaussian3d());
+    CHECK_FALSE(gaussians.antialiased);
+    CHECK(loadWith("\"antialias\":true,").antialiased);
+    CHECK_FALSE(loadWith("\"antialias\":false,").antialiased);
+    CHECK(loadWith("\"model\":\"antialiased\",").antialiased);
+    // A streamed scene is, where one of its chunks is.
+    const std::string streamed = writeStreamed(folder, "streamed", makeLodMeta());
+    CHECK_FALSE(loadScene(streamed).antialiased);
+    SogText chunk = makeChunk(2);
+    chunk["meta.json"] = replaced(chunk["meta.json"], "{", "{\"antialias\":true,");
+    (void)writeSogFolder(folder, "streamed/a", chunk);
+    CHECK(loadScene(streamed).antialiased);
+    const Scene discs = loadWith("\"model\":\"2dgs\",");
+    CHECK_FALSE(discs.antialiased);
+    CHECK_FALSE(discs.isGaussian3d());
+    CHECK_FALSE(notes.three_scales);
+    CHECK(discs.scales == gaussians.scales);
+    CHECK(discs.rotations == gaussians.rotations);
+}
+
+TEST_CASE_FIXTURE(InFolder, "a meta.json that does not fit is named with its key") {
+    SogText files = makeSog();
+    const std::string good = files["meta.json"];
+    files["meta.json"] = replaced(good, "[-8,", "[null,");  // in front of a codebook it continues the row
+    LoadNotes notes;
+    CHECK(loadScene(writeSogFolder(folder, "scene", files), 0, &notes).size() == 8);
+    CHECK(notes.skipped_not_finite == 0);
+
+    std::vector<Fault> faults{{"{\"version\"", "\"version\"", "meta.json: not JSON"},
+                              {"\"version\":2", "\"version\":3", "version: is 3, expected 1 or 2"},
+                              {"\"version\":2", "\"version\":2,\"antialias\":1", "antialias: is number, expected true or false"},
+                              {"\"count\":8", "\"count\":-8", "count: is -8, expected a whole number"},
+                              {"\"count\":8", "\"count\":8.5", "count: is 8.5, expected a whole number"},
+                              {"\"count\":8", "\"count\":\"8\"", "count: is string"},
+                              {"\"count\":8", "\"count\":10", "has 9 pixels, expected one for each of 10 splats"},
+                              {"\"count\":8", "\"count\":9223372036854775808", "has 9 pixels"},
+                              {"\"count\":8", "\"count\":1e19", "count: is 1e+19"},
+                              {"\"mins\":[-1,-2,0]", "\"mins\":[-1,-2]", "means.mins: has 2 entries, expected 3"},
+                              {"\"mins\":[-1,-2,0]", "\"mins\":[-1,-2,\"0\"]", "means.mins[2]: is string"},
+                              {"\"mins\":[-1,-2,0]", "\"mins\":[-1,-2,1e200]", "expected a float32 number"},
+                              {"\"mins\":[-1,-2,0]", "\"mins\":[-1,-2,1e999]", "not JSON"},
+                              {"\"quats\":{\"files\":[\"q.webp\"]}", "\"quats\":[]", "quats: is array, expected an object"},
+                              {"\"quats\":", "\"quat\":", "has no quats"},
+                              {"\"codebook\":[-8,", "\"codebook\":[-8,1,", "has 257 entries, expected 1 to 256"},
+                              {"\"bands\":1", "\"bands\":4", "shN.bands: is 4"},
+                              {"\"bands\":1", "\"bands\":2", "is 192 pixels wide"},
+                              {"\"count\":128", "\"count\":129", "room for 128 entries"},
+                              {"q.webp", "absent.webp", "absent.webp: no such file"},
+                              {"q.webp", "meta.json", "not a WebP file"}};
+    for (const char* path : {"../q.webp", "/etc/passwd", "", "..", "a\\\\b", "sub/q.webp", "q.webp\\u0000"}) {
+        faults.push_back({"q.webp", path, "expected a plain file name"});
+    }
+    checkFaults(faults, [&](const Fault& fault) {
+        files["meta.json"] = replaced(good, fault.from, fault.to);
+        const std::string message = loadError(writeSogFolder(folder, "scene", files));
+        CHECK(contains(message, "scene/"));
+        return message;
+    });
+}
+
+TEST_CASE_FIXTURE(InFolder, "pictures of the wrong size or kind are named, and those that are there to fill the memory are refused") {
+    SogText files = makeSog();
+    const std::vector<std::uint8_t> bytes(191 * 8, 255);
+    const std::string whole = files.at("u.webp");
+    const std::vector<Fault> faults{
+        {"q.webp", makeWebp(4, 4, std::vector<std::uint8_t>(64, 255)), "is 4 x 4, expected 3 x 3 as l.webp"},
+        {"q.webp", "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n", "is a Git LFS pointer"},
+        {"p.webp", makeWebp(191, 2, bytes), "191 pixels wide, expected 192, 512 or 960"},
+        {"u.webp", "RIFF\x0c" + std::string(3, '\0') + "WEBPVP8 " + std::string(30, '\0'), "a lossy or moving WebP"},
+        {"u.webp", "not a picture at all, but long enough", "not a WebP file"},
+        {"u.webp", whole.substr(0, whole.size() - 2), "bytes of its picture"},
+        {"meta.json", files.at("meta.json") + std::string(5'000'000, ' '), "meta.json: is 50"}};
+    checkFaults(faults, [&](const Fault& fault) {
+        SogText broken = files;
+        broken[fault.from] = fault.to;
+        const std::string message = loadError(writeSogFolder(folder, "scene", broken));
+        CHECK(contains(message, "scene/" + fault.from));
+        return message;
+    });
+    // An entry of 20 MB of blanks in a few KB.
+    SogText blank = files;
+    blank["q.webp"] = std::string(20'000'000, ' ');
+    CHECK(contains(loadError(folder.write("a.sog", makeZip(blank, true))), "q.webp: is 20000000 bytes long, expected at most"));
+    // 16383 x 16383 pixels stated in a few hundred bytes.
+    for (const char* name : {"l.webp", "u.webp", "s.webp", "q.webp", "c.webp", "n.webp"}) {
+        std::string& picture = files[name];
+        picture.replace(21, 3, "\xff\xff\xff");
+        picture[24] = static_cast<char>(picture[24] | 0x0f);
+    }
+    CHECK(contains(loadError(writeSogFolder(folder, "scene", files)), "expected fewer than 256 per byte"));
+}
+
+TEST_CASE_FIXTURE(InFolder, "a bundle's files may come in any order, and among others; archives that are not whole are refused") {
+    const SogText files = makeSog();
+    std::vector<std::pair<std::string, std::string>> entries(files.begin(), files.end());
+    const Scene scene = loadScene(writeSogFolder(folder, "scene", files));
+    for (int turn = 0; turn < 8; ++turn) {
+        std::ranges::rotate(entries, entries.begin() + 1);
+        checkSameScene(scene, loadScene(folder.write("a.sog", makeZip(entries, turn % 2 == 0))));
+        std::ranges::reverse(entries);
+        checkSameScene(scene, loadScene(folder.write("a.sog", makeZip(entries, turn % 2 == 0, "in/a folder/"))));
+    }
+    // The scene is where the path of meta.json is shortest.
+    entries.insert(entries.begin(), {"older/meta.json", "{}"});
+    entries.emplace_back("__MACOSX/meta.json", "");
+    entries.emplace_back("not-meta.json", "");
+    checkSameScene(scene, loadScene(folder.write("a.sog", makeZip(entries))));
+
+    for (const auto& [missing, message] : {std::pair("meta.json", "files without a scene or the meta.json of one"),
+                                           std::pair("q.webp", "a.sog: q.webp: not in the archive")}) {
+        SogText less = files;
+        less.erase(missing);
+        CHECK(contains(loadError(folder.write("a.sog", makeZip(less))), message));
+    }
+    std::string changed = makeZip(files);
+    changed[changed.find("RIFF") + 40] ^= 1;  // the checksum no longer fits
+    CHECK(contains(loadError(folder.write("a.sog", changed)), "cannot be read"));
+    CHECK(contains(loadError(folder.write("a.sog", std::string("PK\x03\x04") + std::string(100, 'x'))), "not a whole zip archive"));
+    std::string locked = makeZip(files);
+    for (const auto& [header, flags] : {std::pair("PK\x03\x04", 6u), std::pair("PK\x01\x02", 8u)}) {
+        for (std::size_t at = 0; (at = locked.find(header, at)) != std::string::npos; ++at) { locked[at + flags] = 1; }
+    }
+    CHECK(contains(loadError(folder.write("a.sog", locked)), "a.sog: meta.json: is encrypted and asks for a password"));
+}
+
+}  // SUITE(sog_format)

@@ -1,0 +1,79 @@
+// .splat files: values worked out by hand, and what is not taken for one.
+#include "engine/files/load_scene.h"
+#include "tests/engine/files/hostile_scenes.h"
+
+SUITE(splat_format) {
+
+const std::string kPlain = splatRow({1, 2, 3}, {0.5f, 0.25f, 0.125f}, {255, 0, 51, 204, 255, 128, 128, 128});
+
+std::string repeat(const std::string& row, int count) {
+    std::string rows;
+    for (int i = 0; i < count; ++i) { rows += row; }
+    return rows;
+}
+
+TEST_CASE_FIXTURE(InFolder, "a .splat is read row by row, whatever its name") {
+    LoadNotes notes;
+    const std::string turned = splatRow({-4, 5, -6}, {0.125f, 0.5f, 0.25f}, {0, 255, 102, 255, 218, 38, 128, 128});
+    const Scene scene = loadScene(folder.write("scene.bin", repeat(kPlain, 300) + turned), 0, &notes);
+    REQUIRE(scene.size() == 301);
+    CHECK(scene.positions[299] == glm::vec3(1, 2, 3));
+    CHECK(scene.scales[299].x == doctest::Approx(0.5));
+    CHECK(scene.scales[299].y == doctest::Approx(0.25));
+    CHECK(scene.opacities[299] == doctest::Approx(0.8));
+    CHECK(scene.rotations[299].w == doctest::Approx(1.0));
+    CHECK(0.5f + 0.28209479f * scene.sh[3 * 299 + 0] == doctest::Approx(1.0));
+    CHECK(0.5f + 0.28209479f * scene.sh[3 * 299 + 2] == doctest::Approx(0.2));
+    CHECK(scene.positions[300] == glm::vec3(-4, 5, -6));
+    CHECK(scene.opacities[300] == 1.0f);
+    // The x axis is the shortest: t_w lies along it. (w, x) = (90, -90)/128 turns about x, which leaves that axis alone.
+    const glm::vec3 normal = scene.rotations[300] * glm::vec3(0, 0, 1);
+    CHECK(glm::distance(normal, glm::vec3(1, 0, 0)) < 1e-5f);
+    CHECK(notes.three_scales);
+    CHECK(notes.median_flatness == doctest::Approx(0.5));
+    CHECK(scene.sh_degree == 0);
+}
+
+TEST_CASE_FIXTURE(InFolder, "rotations of length 2 are normalised, and those of length zero turn nothing, even in every row") {
+    const std::string none = splatRow({1, 2, 3}, {1, 1, 0.5f}, {0, 0, 0, 0, 128, 128, 128, 128}),
+                      is_long = splatRow({1, 2, 3}, {1, 1, 0.5f}, {0, 0, 0, 0, 255, 0, 0, 0});
+    for (const auto& [rows, expected] : {std::pair(repeat(none, 20), glm::quat(1.0f, 0.0f, 0.0f, 0.0f)),
+                                         std::pair(repeat(is_long, 20), glm::normalize(glm::quat(127.0f, -128.0f, -128.0f, -128.0f)))}) {
+        const auto [notes, scene] = readScene(folder.write("a.splat", rows));
+        REQUIRE(scene.size() == 20);
+        CHECK(std::abs(glm::dot(scene.rotations[19], expected)) == doctest::Approx(1.0));
+        CHECK(notes.lines.empty());
+    }
+}
+
+TEST_CASE_FIXTURE(InFolder, "a few broken splats are skipped and counted") {
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    std::string rows = repeat(kPlain, 50);
+    rows += splatRow({nan, 0, 0}, {1, 1, 1}, {0, 0, 0, 0, 255, 128, 128, 128});
+    rows += splatRow({0, 0, 0}, {-1, 1, 1}, {0, 0, 0, 0, 255, 128, 128, 128});
+    LoadNotes notes;
+    CHECK(loadScene(folder.write("a.splat", rows), 0, &notes).size() == 50);
+    CHECK(notes.skipped_not_finite == 2);
+}
+
+TEST_CASE_FIXTURE(InFolder, "a .splat that ends within a splat says so") {
+    const std::string whole = repeat(kPlain, 3);
+    for (std::size_t length = 0; length < whole.size(); ++length) {
+        const std::string message = loadError(folder, whole.substr(0, length));
+        if (length % 32 == 0 && length > 0) {
+            CHECK(message.empty());
+        } else {
+            const std::string place = fmt::format("data: ends in splat {}: {} bytes, expected 32 per splat", length / 32, length);
+            CHECK(contains(message, "broken.ply: " + (length > 32 ? place : "")));
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(InFolder, "other files are not taken for a .splat") {
+    for (const std::string& bytes : {std::string(64, '\0'), std::string(96, '\xff'), repeat("0123456789abcdefghijklmnopqrstuv", 40),
+                                     repeat("{\"a\": [0.5, 0.25, 0.125, 1.0]}\n ", 40)}) {
+        CHECK(contains(loadError(folder, bytes), "not a scene file"));
+    }
+}
+
+}  // SUITE(splat_format)

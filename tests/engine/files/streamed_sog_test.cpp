@@ -1,0 +1,333 @@
+// Streamed SOG: a level is its chunks, splat by splat; the choice of a level; progress; and what does not fit.
+#include "engine/files/load_scene.h"
+#include "engine/files/lod_meta.h"
+#include "tests/engine/files/streamed_scenes.h"
+#include "tests/suite.h"
+
+#ifndef _WIN32
+#include <sys/resource.h>
+#endif
+
+SUITE(streamed_sog) {
+
+struct Streamed : InFolder {
+    const std::string source = writeStreamed(folder, "scene", makeLodMeta());
+};
+
+Scene loadLevel(const std::string& source, std::uint32_t level, LoadNotes* notes = nullptr) {
+    return loadScene(source, 0, notes, {}, {level, {}});
+}
+
+// Splats `first` to `first + count` of `part`, behind those of `whole`; rows of SH get the whole's width, zeros where the part has less.
+void addSplats(Scene& whole, const Scene& part, std::size_t first, std::size_t count) {
+    const auto addTo = [&](auto& values, const auto& more) {
+        values.insert(values.end(), more.begin() + static_cast<std::ptrdiff_t>(first),
+                      more.begin() + static_cast<std::ptrdiff_t>(first + count));
+    };
+    addTo(whole.positions, part.positions);
+    addTo(whole.rotations, part.rotations);
+    addTo(whole.scales, part.scales);
+    addTo(whole.thicknesses, part.thicknesses);
+    addTo(whole.opacities, part.opacities);
+    const auto width = [](const Scene& scene) { return static_cast<std::size_t>(3 * shCoefficientCount(scene.sh_degree)); };
+    for (std::size_t splat = first; splat < first + count; ++splat) {
+        for (std::size_t i = 0; i < width(whole); ++i) { whole.sh.push_back(i < width(part) ? part.sh[splat * width(part) + i] : 0.0f); }
+    }
+}
+
+void addWhole(Scene& whole, const Scene& part) { addSplats(whole, part, 0, part.size()); }
+
+TEST_CASE_FIXTURE(Streamed, "a level is its chunks in their order, with the environment behind") {
+    const Scene a = loadScene(source + "/a"), b = loadScene(source + "/b"), c = loadScene(source + "/c"), env = loadScene(source + "/env");
+    REQUIRE(a.positions[0] != b.positions[0]);
+    REQUIRE(a.sh_degree == 1);
+    REQUIRE(b.sh_degree == 0);
+
+    Scene finest;
+    finest.sh_degree = 1;
+    for (const Scene* part : {&a, &b, &env}) { addWhole(finest, *part); }
+    LoadNotes notes;
+    checkSameScene(loadLevel(source, 0, &notes), finest);
+    CHECK(notes.level == 0);
+    CHECK(notes.level_splats == std::vector<std::uint64_t>{16, 8});
+    CHECK(notes.environment_splats == 8);
+    CHECK(notes.splats_in_file == 24);
+    checkSameScene(loadScene(source), finest);
+    checkSameScene(loadScene(source + "/lod-meta.json"), finest);
+    std::filesystem::rename(source + "/lod-meta.json", source + "/other");
+    checkSameScene(loadScene(source + "/other"), finest);
+    CHECK(loadScene(source + "/other").name == source + "/other");
+    std::filesystem::rename(source + "/other", source + "/lod-meta.json");
+
+    // One leaf has no splats at the other level, whose chunks alone need be there.
+    for (const char* chunk : {"/a", "/b"}) { std::filesystem::remove_all(source + chunk); }
+    Scene coarse;
+    coarse.sh_degree = 1;
+    for (const Scene* part : {&c, &env}) { addWhole(coarse, *part); }
+    checkSameScene(loadLevel(source, 1, &notes), coarse);
+    CHECK(notes.level == 1);
+    CHECK(contains(notes.lines.back(), "level of detail 1 of 0 (the finest) to 1; 1 of 3 leaves have no splats at this level"));
+    CHECK_THROWS_AS(loadLevel(source, 0), Error);
+}
+
+TEST_CASE("the tree says where each leaf lies and which splats show it, the finest level first") {
+    // Of each leaf its box, and of each of its levels the chunk and which of its splats.
+    const auto told = [](const std::string& text) {
+        const LodMeta meta = parseLodMeta(std::as_bytes(std::span(text)), "lod-meta.json");
+        std::string leaves = fmt::format("{}:", meta.leaves);
+        for (const LodLeaf& leaf : meta.tree) {
+            leaves += fmt::format(" ({},{},{} to {},{},{}", leaf.low.x, leaf.low.y, leaf.low.z, leaf.high.x, leaf.high.y, leaf.high.z);
+            for (const auto& [level, file, splats] : leaf.levels) {
+                leaves += fmt::format("; {}: {} from {} of {}", level, splats.count, splats.first, file);
+            }
+            leaves += ")";
+        }
+        return leaves;
+    };
+    const std::string two =
+        "3: (-1,-2,0 to 1,0.5,2; 0: 3 from 5 of 0; 1: 6 from 0 of 2) (-1,-2,0 to 1,0.5,2; 0: 5 from 0 of 0; 1: 2 from 6 of 2)";
+    CHECK(told(makeLodMeta()) == two + " (-1,-2,0 to 1,0.5,2; 0: 8 from 0 of 1)");
+    // A leaf without splats has no place, and counts as a leaf.
+    CHECK(told(replaced(makeLodMeta(), R"({"0":{"file":1,"offset":0,"count":8}})", "{}")) == two);
+}
+
+TEST_CASE("a leaf that has no splats at a level shows the next coarser one, if it has one; without its environment a scene is shown, too") {
+    const Folder folder;
+    // The first leaf has level 1 alone; the third has, as before, level 0 alone.
+    const std::string less = replaced(makeLodMeta(), R"("0":{"file":0,"offset":5,"count":3},)", "");
+    const std::string source = writeStreamed(folder, "scene", less);
+    const Scene a = loadScene(source + "/a"), b = loadScene(source + "/b"), c = loadScene(source + "/c"), env = loadScene(source + "/env");
+    Scene expected;
+    expected.sh_degree = 1;
+    addSplats(expected, a, 0, 5);
+    addWhole(expected, b);
+    addSplats(expected, c, 0, 6);
+    Scene with_environment = expected;
+    addWhole(with_environment, env);
+    LoadNotes notes;
+    checkSameScene(loadLevel(source, 0, &notes), with_environment);
+    CHECK(notes.level_splats == std::vector<std::uint64_t>{19, 8});
+    CHECK(contains(notes.lines.back(), "; 1 of 3 leaves have no splats at this level, 1 of them show a coarser one"));
+    CHECK(loadLevel(source, 1).size() == 16);
+
+    std::filesystem::remove_all(source + "/env");
+    checkSameScene(loadLevel(source, 0, &notes), expected);
+    CHECK(notes.environment_splats == 0);
+    CHECK(contains(notes.lines.back(), "scene: is shown without its environment: "));
+    CHECK(contains(notes.lines.back(), "scene/env/meta.json is not there"));
+}
+
+TEST_CASE_FIXTURE(Streamed, "chunks and the environment may be bundles") {
+    const Scene fine = loadLevel(source, 0), coarse = loadLevel(source, 1);
+    for (const std::vector<std::string>& bundles : {std::vector<std::string>{"a"}, {"env"}, {"a", "b", "c", "env"}}) {
+        (void)writeStreamed(folder, "scene", makeLodMeta(), bundles);
+        LoadNotes notes;
+        checkSameScene(loadLevel(source, 0, &notes), fine);
+        CHECK(notes.environment_splats == 8);
+        checkSameScene(loadLevel(source, 1), coarse);
+    }
+    (void)folder.write("scene/b.sog", "no archive");
+    CHECK(contains(loadError(source), "scene/b.sog: not a whole zip archive"));
+#ifndef _WIN32  // where links take a privilege
+    std::filesystem::remove(source + "/b.sog");
+    std::filesystem::create_symlink("a.sog", source + "/b.sog");
+    CHECK(contains(loadError(source), "b.sog is a link to a chunk that is named already"));
+#endif
+}
+
+#ifndef _WIN32
+TEST_CASE("a scene may have more bundles than a program may have open files") {
+    constexpr int kChunks = 100;
+    const Folder folder;
+    std::string names, leaves;
+    for (int i = 0; i < kChunks; ++i) {
+        (void)folder.write(fmt::format("{}.sog", i), makeZip(makeChunk(2)));
+        names += fmt::format("{}\"{}.sog\"", i == 0 ? "" : ",", i);
+        leaves += fmt::format(R"({}{{"bound":{{"min":[0,0,0],"max":[1,1,1]}},"lods":{{"0":{{"file":{},"offset":0,"count":8}}}}}})",
+                              i == 0 ? "" : ",", i);
+    }
+    (void)folder.write(
+        "lod-meta.json",
+        fmt::format(R"({{"lodLevels":1,"filenames":[{}],"tree":{{"bound":{{"min":[0,0,0],"max":[1,1,1]}},"children":[{}]}}}})", names,
+                    leaves));
+    rlimit before{};
+    REQUIRE(getrlimit(RLIMIT_NOFILE, &before) == 0);
+    const rlimit few{64, before.rlim_max};
+    REQUIRE(setrlimit(RLIMIT_NOFILE, &few) == 0);
+    const std::string message = loadError(folder.file("."));
+    REQUIRE(setrlimit(RLIMIT_NOFILE, &before) == 0);
+    CHECK(message == "");
+    CHECK(loadScene(folder.file(".")).size() == 8 * kChunks);
+}
+#endif
+
+TEST_CASE_FIXTURE(InFolder, "what a leaf names is counted in stored splats, broken ones among them") {
+    // Of the chunk only splats 2 to 4 and 6 are wanted; 3 and 7 are broken.
+    std::string meta = replaced(makeLodMeta(), R"("offset":5,"count":3)", R"("offset":6,"count":1)");
+    meta = replaced(meta, R"("offset":0,"count":5)", R"("offset":2,"count":3)");
+    const std::string source = writeStreamed(folder, "scene", meta);
+    const Scene a = loadScene(source + "/a");
+    (void)folder.write("scene/a/q.webp", makeNine([](int i) { return std::array{128, 128, 128, i == 3 || i == 7 ? 251 : 252 + i % 4}; }));
+
+    Scene expected;
+    expected.sh_degree = 1;
+    for (const std::size_t splat : {2u, 4u, 6u}) { addSplats(expected, a, splat, 1); }
+    for (const char* part : {"/b", "/env"}) { addWhole(expected, loadScene(source + part)); }
+    LoadNotes notes;
+    checkSameScene(loadScene(source, 0, &notes), expected);
+    CHECK(notes.skipped_zero_rotation == 1);
+    CHECK(notes.splats_in_file == 20);
+}
+
+TEST_CASE("files of the first writers, without version, counts and environment, are read; progress runs from 0 to 1 over all chunks") {
+    const Folder folder;
+    std::vector<double> shares;
+    (void)loadScene(writeStreamed(folder, "scene", makeLodMeta()), 0, nullptr, [&](double share) { shares.push_back(share); });
+    CHECK(shares == std::vector<double>{0.0, 0.0, 8.0 / 24, 16.0 / 24, 1.0});
+    std::string meta = replaced(makeLodMeta(), R"("version":1,"asset":{"generator":"a test"},"count":24,"counts":[16,8],)", "");
+    meta = replaced(meta, R"("lodErrors":true,"environment":"env/meta.json")", R"("environment":null)");
+    CHECK(loadScene(writeStreamed(folder, "scene", meta)).size() == 16);
+}
+
+TEST_CASE_FIXTURE(Streamed, "the finest level that fits is chosen, or the coarsest") {
+    std::vector<std::pair<std::uint64_t, int>> asked;
+    const auto levelWithin = [&](std::uint64_t most) {
+        LoadNotes notes;
+        asked.clear();
+        const auto fits = [&](std::uint64_t splats, int sh_degree) {
+            asked.emplace_back(splats, sh_degree);
+            return splats <= most;
+        };
+        const Scene scene = loadScene(source, 0, &notes, {}, {std::nullopt, fits});
+        CHECK(scene.size() == (notes.level == 0 ? 24 : 16));
+        CHECK(contains(notes.lines.back(), "the finest that fits the memory limit") == (notes.level == 1 && most > 0));
+        CHECK(contains(notes.lines.back(), "as none fits the memory limit") == (most == 0));
+        return notes.level;
+    };
+    CHECK(levelWithin(24) == 0);
+    CHECK(asked == std::vector<std::pair<std::uint64_t, int>>{{24, 1}});
+    CHECK(levelWithin(23) == 1);
+    CHECK(levelWithin(0) == 1);
+}
+
+TEST_CASE_FIXTURE(Streamed, "a level that a scene does not have is refused") {
+    const auto errorAt = [](const std::string& scene, std::uint32_t level) { return errorOf([&] { (void)loadLevel(scene, level); }); };
+    CHECK(contains(errorAt(source, 2), "scene/lod-meta.json: lod is 2, expected one of the scene's levels of detail, 0 (the finest) to 1"));
+    CHECK(contains(errorAt(source, 0xffffffff), "lod is 4294967295"));
+    CHECK(contains(errorAt(source + "/a", 0), "a: lod is 0, but a scene of this kind (SOG (directory)) has no levels of detail"));
+    CHECK(contains(errorAt("builtin:one-splat", 1), "builtin:one-splat: lod is 1, but a scene of this kind (built-in)"));
+}
+
+TEST_CASE_FIXTURE(InFolder, "a lod-meta.json that does not fit is named with its key") {
+    CHECK(loadError(writeStreamed(folder, "scene", makeLodMeta())).empty());
+    const auto loadMeta = [&](const std::string& meta) {
+        (void)folder.write("scene/lod-meta.json", meta);
+        const std::string message = loadError(folder.file("scene"));
+        CHECK(contains(message, "scene/lod-meta.json: "));
+        return message;
+    };
+    CHECK(contains(loadMeta(""), "not JSON"));
+    CHECK(contains(loadMeta(makeLodMeta().substr(0, 300)), "expected the levels of a streamed SOG scene"));
+    CHECK(contains(loadMeta("[]"), "is array, expected an object"));
+    CHECK(contains(loadMeta("{}"), "has no lodLevels, expected one"));
+    CHECK(contains(loadMeta(R"({"lodLevels":1,"filenames":[],"tree":{"bound":{"min":[0,0,0],"max":[0,0,0]},"children":[]}})"),
+                   "tree.children: is empty"));
+    const std::string within = "expected a path within the folder of this file", b = "\"b/meta.json\"";
+    std::vector<Fault> faults{
+        {R"("version":1)", R"("version":2)", "version: is 2, expected 1"},
+        {R"("lodLevels":2)", R"("lodLevels":0)", "lodLevels: is 0, expected 1 to 64"},
+        {R"("lodLevels":2)", R"("lodLevels":18446744073709551615)", "expected 1 to 64"},
+        {R"("lodLevels":2)", R"("lodLevels":1)", "lods.1: is no level, expected 0 to 0"},
+        {R"("1":{)", R"("01":{)", "lods.01: is no level, expected 0 to 1"},
+        {R"("filenames":)", R"("files":)", "has no filenames"},
+        {R"("tree":)", R"("trees":)", "has no tree"},
+        {R"("children":)", R"("child":)", "tree: has neither children nor lods"},
+        {R"("children":)", R"("lods":{},"children":)", "tree: has both children and lods"},
+        {R"("lods":{)", R"("lods":7,"lod":{)", "tree.children[0].lods: is number, expected an object"},
+        {R"("min":[-4,)", R"("min":[NaN,)", "not JSON"},
+        {R"("min":[-4,)", R"("min":[1e300,)", "tree.bound.min[0]: is 1e+300, expected a float32 number"},
+        {R"("min":[-4,)", R"("min":[null,)", "tree.bound.min[0]: is null, expected a number"},
+        {R"("min":[-4,)", R"("min":[)", "tree.bound.min: has 2 entries, expected 3"},
+        {R"("bound":)", R"("box":)", "tree: has no bound"},
+        {R"("min":[-1,-2,0],"max":[1,)", R"("min":[2,-2,0],"max":[1,)",
+         "tree.children[0].lods: lies in no box, expected a bound whose min is at most its max"},
+        // Names of what lies elsewhere, is no chunk or is there already.
+        {"b/meta.json", "b.sog", "b.sog is not there, expected a chunk of the scene"},
+        {b, "7", "filenames[1]: is number, expected a text"},
+        {"env/meta.json", "../env/meta.json", "environment: names \"../env/meta.json\""},
+        {"b/meta.json", "a/meta.json", "filenames[1]: names a/meta.json once more, expected each chunk once"},
+        {"b/meta.json", ".//a/./meta.json", "filenames[1]: names a/meta.json once more"},
+        {"b/meta.json", ".\\\\a\\\\meta.json", "filenames[1]: names a/meta.json once more"},
+        {"env/meta.json", "a/meta.json", "environment: names a/meta.json once more"},
+        // Ranges that overlap, lead beyond their chunk or name no chunk.
+        {R"("offset":5,"count":3)", R"("offset":4,"count":4)",
+         "tree: two leaves name splat 4 of filenames[0] (a/meta.json), expected each splat once"},
+        {R"("offset":0,"count":5)", R"("offset":5,"count":3)", "two leaves name splat 5"},
+        {R"("offset":5,"count":3)", R"("offset":5,"count":4)", "tree: a leaf names splat 8 of filenames[0] (a/meta.json), which has 8"},
+        {R"("file":0)", R"("file":3)", "lods.0.file: is 3, expected less than the 3 of filenames"},
+        {R"("file":0)", R"("file":-1)", "lods.0.file: is -1, expected a whole number from 0 on"},
+        {R"("file":0,)", "", "lods.0: has no file"},
+        {R"("offset":5)", R"("offset":18446744073709551615)", "expected at most 1099511627776"},
+        {R"("count":3)", R"("count":9223372036854775808)", "lods.0.count: is 9223372036854775808"}};
+    for (const char* path : {"../a/meta.json", "x/../../a/meta.json", "./x/../a//meta.json", "/etc/meta.json", "..\\\\a\\\\meta.json",
+                             "c:meta.json", "a/meta.json\\u0000", "../b.sog", "/b.sog", "\\\\b.sog"}) {
+        faults.push_back({"b/meta.json", path, within});
+    }
+    for (const char* path : {"", "a", "a/other.json", "a/meta.json/"}) {
+        faults.push_back({"b/meta.json", path, "expected the meta.json or the .sog of a chunk"});
+    }
+    checkFaults(faults, [&](const Fault& fault) { return loadMeta(replaced(makeLodMeta(), fault.from, fault.to)); });
+
+    const auto nest = [](int nodes) {
+        std::string meta = R"({"lodLevels":1,"filenames":["a/meta.json"],"tree":)";
+        for (int i = 1; i < nodes; ++i) { meta += R"({"bound":{"min":[0,0,0],"max":[1,1,1]},"children":[)"; }
+        meta += R"({"bound":{"min":[0,0,0],"max":[1,1,1]},"lods":{"0":{"file":0,"offset":0,"count":8}}})";
+        for (int i = 1; i < nodes; ++i) { meta += "]}"; }
+        return meta + "}";
+    };
+    CHECK(loadScene(writeStreamed(folder, "scene", nest(64))).size() == 8);
+    for (const std::string& deep : {nest(70), nest(100'000), std::string(1'000'000, '[')}) {
+        CHECK(contains(loadMeta(deep), "nested more than 132 levels deep"));
+    }
+}
+
+#ifndef _WIN32  // where links take a privilege
+TEST_CASE_FIXTURE(Streamed, "links that lead out of the folder or to the same chunk are refused") {
+    std::filesystem::rename(source + "/b", folder.file("elsewhere"));
+    std::filesystem::create_directory_symlink(folder.file("elsewhere"), source + "/b");
+    std::string message = loadError(source);
+    CHECK(contains(message, "scene/lod-meta.json: filenames[1]: "));
+    CHECK(contains(message, "elsewhere/meta.json, expected a place within"));
+    std::filesystem::remove(source + "/b");
+    std::filesystem::create_directory_symlink("a", source + "/b");
+    message = loadError(source);
+    CHECK(contains(message, "filenames[1]: "));
+    CHECK(contains(message, "is a link to a chunk that is named already"));
+    // A link to the whole scene leads nowhere else.
+    std::filesystem::remove(source + "/b");
+    std::filesystem::rename(folder.file("elsewhere"), source + "/b");
+    std::filesystem::create_directory_symlink("scene", folder.file("linked"));
+    CHECK(loadScene(folder.file("linked")).size() == 24);
+}
+#endif
+
+TEST_CASE_FIXTURE(Streamed, "chunks that are missing or broken are named before any is decoded") {
+    const std::string meta = makeSog().at("meta.json");
+    const auto error = [&] {
+        std::vector<double> shares;
+        const std::string message = errorOf([&] { (void)loadScene(source, 0, nullptr, [&](double share) { shares.push_back(share); }); });
+        CHECK(shares == std::vector<double>{0.0});
+        return message;
+    };
+    std::filesystem::remove(source + "/env/q.webp");
+    CHECK(contains(error(), "scene/env/q.webp: no such file"));
+    std::filesystem::remove(source + "/b/meta.json");
+    CHECK(contains(error(), "scene/lod-meta.json: filenames[1]: "));
+    CHECK(contains(error(), "scene/b/meta.json is not there, expected a chunk of the scene"));
+    (void)folder.write("scene/a/meta.json", replaced(meta, "\"count\":8", "\"count\":4294967296"));
+    CHECK(contains(error(), "scene/a/meta.json: count: is 4294967296, expected fewer than 256 for each"));
+    (void)folder.write("scene/a/meta.json", "{");
+    CHECK(contains(error(), "scene/a/meta.json: not JSON"));
+}
+
+}  // SUITE(streamed_sog)

@@ -1,0 +1,385 @@
+// Servers that are busy, cut off, lie, lead elsewhere or vanish: the scene all the same, or one plain line and nothing left behind.
+#include "engine/files/load_scene.h"
+#include "tests/engine/files/gltf_files.h"
+#include "tests/engine/files/web/web_runs.h"
+
+SUITE(web_fetch) {
+
+const std::string kPly = makePly(45).bytes();
+
+WebAnswer cutAfter(std::size_t bytes, WebAnswer::Then then = WebAnswer::Then::kClose) {
+    WebAnswer whole = answer("200 OK", "", kPly);
+    whole.bytes.resize(whole.bytes.size() - kPly.size() + bytes);
+    whole.then = then;
+    return whole;
+}
+
+// Part of a file with the version "1".
+WebAnswer partOf(const std::string& whole, std::size_t from, std::size_t end, const std::string& total, const std::string& etag = "\"1\"") {
+    return answer("206 Partial Content", fmt::format("ETag: {}\r\nContent-Range: bytes {}-{}/{}\r\n", etag, from, end - 1, total),
+                  whole.substr(from, end - from));
+}
+
+// As a server that does not know how long it is, or says something else.
+WebAnswer withLength(const std::string& header, const std::string& body) {
+    return {fmt::format("HTTP/1.1 200 OK\r\n{}\r\n{}", header, body), WebAnswer::Then::kClose};
+}
+
+// The error, of a server that gives every request this answer; nothing is left in the cache then.
+std::string errorOf(const WebAnswer& given, WebSettings (*settings)(const Folder&) = webSettings, std::size_t attempts = 1) {
+    const Folder folder;
+    const WebServer server([given](const WebRequest&) { return given; });
+    std::string message = webError(server.at("/a.ply"), settings(folder));
+    CHECK(server.asked().size() == attempts);
+    CHECK(filesIn(folder.file("cache")).empty());
+    return message.substr(std::min(message.size(), server.at("/a.ply: ").size()));
+}
+
+TEST_CASE("a server that is busy or cuts off is asked again") {
+    const Folder folder;
+    const Scene scene = loadScene(folder.write("a.ply", kPly));
+    for (const WebAnswer& first :
+         {answer("429 Too Many Requests", "Retry-After: 0\r\n"), answer("500 Internal Server Error", "", "sorry"),
+          answer("503 Service Unavailable"), cutAfter(0), cutAfter(kPly.size() / 2), cutAfter(kPly.size() - 1),
+          WebAnswer{"", WebAnswer::Then::kClose}, WebAnswer{"HTTP/1.1 200 OK\r\nContent-", WebAnswer::Then::kClose}}) {
+        CAPTURE(first.bytes.substr(0, 40));
+        const WebServer server([&](const WebRequest& request) { return request.number < 2 ? first : answer("200 OK", "", kPly); });
+        checkSameScene(scene, loadFromWeb(server.at("/a.ply"), webSettings(folder)));
+        CHECK(server.asked().size() == 3);
+        std::filesystem::remove_all(folder.file("cache"));
+    }
+}
+
+TEST_CASE("a file that broke off goes on where it ended, if it is still the same") {
+    const Folder folder;
+    const Scene scene = loadScene(folder.write("a.ply", kPly));
+    const std::size_t half = kPly.size() / 2;
+    const auto rest = [&](std::size_t from, const char* etag) {
+        return partOf(kPly, from, kPly.size(), std::to_string(kPly.size()), etag);
+    };
+    const auto whole = [](const char* headers) { return answer("200 OK", headers, kPly); };
+    // The rest, but for its last byte.
+    WebAnswer shorter =
+        answer("206 Partial Content", fmt::format("ETag: \"1\"\r\nContent-Range: bytes {}-{}/{}\r\n", half, kPly.size() - 1, kPly.size()),
+               kPly.substr(half, kPly.size() - 1 - half));
+    using Asked = std::vector<std::string>;
+    const std::string asks = fmt::format("bytes={}- \"1\"", half);
+    struct {
+        const char* etag;  // of the first half
+        WebAnswer second;  // after which the whole file is sent
+        Asked asked;       // what was asked for then
+    } const breaks[]{{"\"1\"", rest(half, "\"1\""), {" ", asks}},
+                     // A server that sends the whole, of this version or another.
+                     {"\"1\"", whole("ETag: \"1\"\r\n"), {" ", asks}},
+                     {"\"1\"", whole("ETag: \"2\"\r\n"), {" ", asks}},
+                     // A rest that is none, or of another version: the whole is asked for.
+                     {"\"1\"", rest(half, "\"2\""), {" ", asks, " "}},
+                     {"\"1\"", rest(half + 1, "\"1\""), {" ", asks, " "}},
+                     {"\"1\"", rest(0, "\"1\""), {" ", asks, " "}},
+                     {"\"1\"", answer("206 Partial Content", "ETag: \"1\"\r\n", kPly.substr(half)), {" ", asks, " "}},
+                     {"\"1\"", answer("206 Partial Content", "ETag: \"1\"\r\nContent-Range: bytes */9\r\n", "x"), {" ", asks, " "}},
+                     {"\"1\"", answer("416 Range Not Satisfiable"), {" ", asks, " "}},
+                     // A rest that is too short is one more break; nothing goes on from a busy server's answer.
+                     {"\"1\"", shorter, {" ", asks, fmt::format("bytes={}- \"1\"", kPly.size() - 1)}},
+                     {"\"1\"", answer("503 Service Unavailable", "", "busy"), {" ", asks, asks}},
+                     {"\"1\"", {"HTTP/1.1 200 OK\r\nContent-", WebAnswer::Then::kClose}, {" ", asks, asks}},
+                     // Without a version that says that every byte is the same, nothing is put together.
+                     {"W/\"1\"", whole(""), {" ", " "}}};
+    for (const auto& one : breaks) {
+        CAPTURE(one.second.bytes.substr(0, 120));
+        Asked asked;
+        WebAnswer first = cutAfter(half);
+        first.bytes.insert(first.bytes.find("\r\n") + 2, fmt::format("ETag: {}\r\n", one.etag));
+        const WebServer server([&](const WebRequest& request) {
+            asked.push_back(request.header("range") + " " + request.header("if-range"));
+            return request.number == 0 ? first : request.number == 1 ? one.second : whole("ETag: \"3\"\r\n");
+        });
+        checkSameScene(scene, loadFromWeb(server.at("/a.ply"), webSettings(folder)));
+        CHECK(asked == one.asked);
+        CHECK(filesIn(folder.file("cache")).size() == 2);
+        std::filesystem::remove_all(folder.file("cache"));
+    }
+}
+
+TEST_CASE("a file of unknown length goes on only to the length that the rest tells") {
+    const std::string chunk = fmt::format("{:x}\r\n{}", kPly.size(), kPly.substr(0, 300)), total = std::to_string(kPly.size());
+    const WebAnswer cut{"HTTP/1.1 200 OK\r\nETag: \"1\"\r\nTransfer-Encoding: chunked\r\n\r\n" + chunk, WebAnswer::Then::kClose};
+    for (const auto& [second, requests] :
+         {std::pair(partOf(kPly, 300, kPly.size(), total), 2u), {partOf(kPly, 300, 500, total), 3u}, {partOf(kPly, 300, 500, "*"), 3u}}) {
+        const Folder folder;
+        const Scene scene = loadScene(folder.write("a.ply", kPly));
+        const WebServer server([&, &rest = second](const WebRequest& request) {
+            if (request.number < 2) { return request.number == 0 ? cut : rest; }
+            return request.headers.contains("range") ? partOf(kPly, 500, kPly.size(), total) : answer("200 OK", "ETag: \"1\"\r\n", kPly);
+        });
+        checkSameScene(scene, loadFromWeb(server.at("/a.ply"), webSettings(folder)));
+        CHECK(server.asked().size() == requests);
+    }
+}
+
+TEST_CASE("a large file may break off more often than attempts are made") {
+    constexpr std::size_t kPiece = 1 << 20;
+    std::string large(7 * kPiece / 2, ' ');
+    std::mt19937 random(1);
+    for (char& letter : large) { letter = static_cast<char>(random()); }
+    const WebServer server([&](const WebRequest& request) {
+        const std::string range = request.header("range");
+        const std::size_t from = range.empty() ? 0 : std::stoul(range.substr(6));
+        return WebAnswer{fmt::format("HTTP/1.1 {}\r\nContent-Length: {}\r\nETag: \"1\"\r\nContent-Range: bytes {}-{}/{}\r\n\r\n{}",
+                                     from > 0 ? "206 Partial Content" : "200 OK", large.size() - from, from, large.size() - 1, large.size(),
+                                     large.substr(from, kPiece)),
+                         WebAnswer::Then::kClose};
+    });
+    const Folder folder;
+    WebSettings settings = webSettings(folder);
+    settings.fetch.attempts = 2;
+    const std::vector<std::byte> got = WebFiles(server.at("/a"), settings).open("")->readWhole(large.size());
+    CHECK(std::ranges::equal(got, std::as_bytes(std::span(large))));
+    CHECK(server.asked().size() == 4);
+}
+
+TEST_CASE("a few attempts are enough") {
+    CHECK(errorOf(answer("503 Service Unavailable"), webSettings, 4) ==
+          "the server cannot serve it (it answers 503), after 4 attempts; try again later");
+    CHECK(errorOf(cutAfter(100), webSettings, 4) ==
+          fmt::format("was cut off after 100 of {} bytes, after 4 attempts; try again later", kPly.size()));
+    CHECK(errorOf(WebAnswer{"", WebAnswer::Then::kClose}, webSettings, 4).starts_with("the server hangs up ("));
+    // One that asks for an hour gets no second request.
+    CHECK(errorOf(answer("429 Too Many Requests", "Retry-After: 3600\r\n")) == "the server asks to wait 3600 s; try again then");
+}
+
+TEST_CASE("a file that is not there, not for everybody, empty or no scene is refused at once") {
+    CHECK(errorOf(answer("404 Not Found", "", "<html>")) == "is not there (the server answers 404), expected the address of a scene file");
+    CHECK(errorOf(answer("403 Forbidden")) == "may not be read (the server answers 403), expected an address that anybody may read");
+    CHECK(errorOf(answer("204 No Content")).starts_with("cannot be had (the server answers 204)"));
+    CHECK(errorOf(answer("304 Not Modified")).starts_with("cannot be had (the server answers 304)"));
+    // Whatever comes with it, and however much.
+    CHECK(errorOf(answer("404 Not Found", "", std::string(1 << 20, 'x'))).starts_with("is not there"));
+    CHECK(errorOf({"hello\r\n\r\n", WebAnswer::Then::kClose}).starts_with("cannot be had ("));
+    const Folder folder;
+    const WebServer server({{"/empty", ""}, {"/page", "<!DOCTYPE html><html><body>A scene!</body></html>"}});
+    CHECK(contains(webError(server.at("/empty"), webSettings(folder)), "is empty, expected a scene file"));
+    CHECK(contains(webError(server.at("/page"), webSettings(folder)), "a web page (HTML), not a splat scene"));
+}
+
+TEST_CASE("what a server says of a file's length is not believed") {
+    // Longer than it is: cut off.
+    CHECK(errorOf(withLength(fmt::format("Content-Length: {}\r\n", kPly.size() + 1), kPly), webSettings, 4)
+              .starts_with(fmt::format("was cut off after {} of {} bytes", kPly.size(), kPly.size() + 1)));
+    // Longer than any disk: not even begun.
+    CHECK(errorOf(withLength("Content-Length: 9000000000000000000\r\n", kPly))
+              .starts_with("is 9000000000000000000 bytes long, expected at most"));
+    // More than may be taken.
+    const auto little = [](const Folder& folder) {
+        WebSettings settings = webSettings(folder);
+        settings.fetch.most_bytes = kPly.size() - 1;
+        return settings;
+    };
+    const std::string chunked = "Transfer-Encoding: chunked\r\n", chunk = fmt::format("{:x}\r\n{}\r\n0\r\n\r\n", kPly.size(), kPly);
+    const std::string most = fmt::format("{} bytes, which is the most that is taken", kPly.size() - 1);
+    CHECK(errorOf(withLength("", kPly), little) == "is longer than " + most);
+    CHECK(errorOf(withLength(chunked, chunk), little) == "is longer than " + most);
+    // Chunks that break off are no end of the file.
+    CHECK(errorOf(withLength(chunked, chunk.substr(0, chunk.find('\n') + 1 + 300)), webSettings, 4)
+              .starts_with("was cut off after 300 bytes"));
+
+    // Shorter: the scene ends early, whoever is to blame.
+    const Folder folder;
+    const WebServer server([](const WebRequest&) { return withLength(fmt::format("Content-Length: {}\r\n", kPly.size() - 9), kPly); });
+    CHECK(contains(webError(server.at("/a.ply"), webSettings(folder)), "a.ply: "));
+
+    // Of unknown length, all the same the scene.
+    const Scene scene = loadScene(folder.write("a.ply", kPly));
+    for (const WebAnswer& given :
+         {withLength("", kPly), withLength("Content-Length: 99999999999999999999999\r\n", kPly), withLength(chunked, chunk)}) {
+        const WebServer other([given](const WebRequest&) { return given; });
+        checkSameScene(scene, loadFromWeb(other.at("/a.ply"), webSettings(folder)));
+    }
+}
+
+TEST_CASE("redirects are followed on the web, and never to a file") {
+    const auto leadTo = [](const std::string& place) { return answer("302 Found", "Location: " + place + "\r\n"); };
+    {
+        const Folder folder;
+        const Scene scene = loadScene(folder.write("a.ply", kPly));
+        const WebServer end({{"/in/a.ply", kPly}});
+        const WebServer server([&](const WebRequest& request) { return leadTo(request.path == "/1" ? "/2" : end.at("/in/a.ply")); });
+        checkSameScene(scene, loadFromWeb(server.at("/1"), webSettings(folder)));
+        CHECK(server.asked() == std::vector<std::string>{"/1", "/2"});
+    }
+    for (const std::string& place : {std::string("file://" BINOSPLAT_SOURCE_DIR "/README.md"), std::string("file:///etc/passwd"),
+                                     std::string("ftp://127.0.0.1/a"), std::string("gopher://127.0.0.1/")}) {
+        CAPTURE(place);
+        CHECK(errorOf(leadTo(place)) ==
+              "redirects to an address that may not be followed, expected one of http or https, and of https after https");
+    }
+    CHECK(errorOf(leadTo("/a.ply"), webSettings, 6) == "redirects more than 5 times, expected a file");
+    CHECK_FALSE(contains(errorOf(leadTo("http://me:secret@127.0.0.1/a.ply")), "secret"));
+}
+
+TEST_CASE("no redirect leads from the public web to a machine of this network") {
+    const Folder folder;
+    const WebServer server([&](const WebRequest& request) {
+        return request.path == "/1" ? answer("302 Found", "Location: /a.ply\r\n") : answer("200 OK", "", kPly);
+    });
+    struct {
+        bool first_is_private, second_is_private, is_followed;
+    } const ways[]{{false, false, true}, {true, false, true}, {true, true, true}, {false, true, false}};
+    for (const auto& way : ways) {
+        WebSettings settings = webSettings(folder);
+        settings.fetch.is_private = [&way, servers = 0](const std::string& ip) mutable {
+            CHECK(ip == "127.0.0.1");
+            return servers++ == 0 ? way.first_is_private : way.second_is_private;
+        };
+        const std::string message = webError(server.at("/1"), settings);
+        CHECK(message.empty() == way.is_followed);
+        if (!way.is_followed) {
+            CHECK(contains(message, "leads from the public web to 127.0.0.1, which is on a private network, expected a public server"));
+        }
+    }
+    CHECK(server.asked() == std::vector<std::string>{"/1", "/a.ply", "/1", "/a.ply", "/1", "/a.ply", "/1"});
+}
+
+TEST_CASE("a scene that began on the public web stays there: in further attempts, and in further files") {
+    const Folder folder;
+    const WebServer server([&](const WebRequest& request) {
+        if (request.number == 0) { return answer("503 Service Unavailable"); }
+        return answer("200 OK", "", makeGltf().json(R"(,"uri":"a.bin")"));
+    });
+    for (const auto& [address, requests] : {std::pair("/a.ply", 1u), std::pair("/a.gltf", 2u)}) {
+        WebSettings settings = webSettings(folder);
+        settings.fetch.is_private = [servers = 0](const std::string&) mutable { return servers++ > 0; };
+        CHECK_THROWS_WITH_AS((void)loadFromWeb(server.at(address), settings), doctest::Contains("leads from the public web to 127.0.0.1"),
+                             Error);
+        CHECK(server.asked().size() == requests);
+    }
+}
+
+TEST_CASE("through a proxy, servers are judged by the addresses that name them in numbers, and not by the proxy's") {
+    const Folder folder;
+    std::string target;
+    const WebServer proxy([&](const WebRequest& request) {
+        return request.path.ends_with("/1") ? answer("302 Found", "Location: " + target + "\r\n") : answer("200 OK", "", kPly);
+    });
+    const auto fetch = [&](const std::string& first, const std::string& second) {
+        const WebSettings settings = webSettings(folder);
+        std::filesystem::remove_all(settings.cache_folder);
+        target = second;
+        setEnvironment("http_proxy", proxy.at(""));
+        const std::string message = webError(first, settings);
+        setEnvironment("http_proxy", "");
+        return message;
+    };
+    CHECK(fetch("http://scenes.example/1", "http://other.example/a.ply").empty());
+    CHECK(fetch("http://8.8.8.8/1", "http://other.example/a.ply").empty());
+    CHECK(fetch("http://10.0.0.1/1", "http://10.0.0.2/a.ply").empty());
+    CHECK(fetch("http://localhost/1", "http://[fe80::1]/a.ply").empty());
+    CHECK(proxy.asked().size() == 8);
+    for (const std::string within : {"10.0.0.1", "169.254.169.254", "[::1]", "[64:ff9b::a00:1]", "localhost", "LOCALHOST.",
+                                     "a.localhost:99", "0xa.1", "167772161", "10.1:8080"}) {
+        const std::string message = fetch("http://scenes.example/1", fmt::format("http://{}/a.ply", within));
+        CHECK_MESSAGE(contains(message, "leads from the public web to "), within);
+        CHECK(proxy.asked().back() == "http://scenes.example/1");
+    }
+}
+
+TEST_CASE("a body that is packed on its way is unpacked, and never resumed") {
+    const Folder folder;
+    const Scene scene = loadScene(folder.write("a.ply", kPly));
+    for (const auto& [encoding, window_bits] :
+         {std::pair("gzip", MAX_WBITS + 16), {"x-gzip", MAX_WBITS + 16}, {"deflate", MAX_WBITS}, {"deflate", -MAX_WBITS}}) {
+        const std::string packed = deflated(kPly, window_bits);
+        const WebServer server([&, &name = encoding](const WebRequest& request) {
+            CHECK(request.header("accept-encoding") == "identity");
+            CHECK(request.header("range").empty());
+            WebAnswer given = answer("200 OK", fmt::format("ETag: \"1\"\r\nContent-Encoding: {}\r\n", name), packed);
+            if (request.number == 0) { given = {given.bytes.substr(0, given.bytes.size() - 20), WebAnswer::Then::kClose}; }
+            return given;
+        });
+        LoadNotes notes;
+        checkSameScene(scene, loadFromWeb(server.at("/a.ply"), webSettings(folder), &notes));
+        CHECK(server.asked().size() == 2);
+        CHECK(std::ranges::count_if(notes.lines, [](const std::string& line) { return contains(line, "came by http, so that others"); }) ==
+              1);
+        std::filesystem::remove_all(folder.file("cache"));
+    }
+    std::string broken = deflated(kPly, MAX_WBITS + 16);
+    broken[broken.size() - 6] ^= 1;  // of the checksum, behind all of the file
+    CHECK(errorOf(answer("200 OK", "Content-Encoding: gzip\r\n", broken)).starts_with("cannot be had ("));
+}
+
+TEST_CASE("a body that is not packed as the server says, or in no way that is known, is taken as it comes, and resumed") {
+    const Folder folder;
+    const Scene scene = loadScene(folder.write("a.ply", kPly));
+    for (const char* encoding : {"aws-chunked", "UTF-8", "gzip", "gzip, unknown"}) {
+        CAPTURE(encoding);
+        const std::string header = fmt::format("Content-Encoding: {}\r\n", encoding);
+        const WebServer server([&](const WebRequest& request) {
+            WebAnswer given = answer("200 OK", header + "ETag: \"1\"\r\n", kPly);
+            if (request.number == 2) {
+                CHECK(request.header("range") == "bytes=300-");
+                return answer("206 Partial Content",
+                              header + fmt::format("ETag: \"1\"\r\nContent-Range: bytes 300-{0}/{0}\r\n", kPly.size()), kPly.substr(300));
+            }
+            if (request.number == 1) { given = {given.bytes.substr(0, given.bytes.size() - kPly.size() + 300), WebAnswer::Then::kClose}; }
+            return given;
+        });
+        WebSettings settings = webSettings(folder);
+        settings.fetch.attempts = 2;
+        checkSameScene(scene, loadFromWeb(server.at("/a.ply"), settings));
+        CHECK(server.asked().size() == 3);
+        std::filesystem::remove_all(folder.file("cache"));
+    }
+    CHECK(errorOf(answer("404 Not Found", "Content-Encoding: unknown\r\n", "no such page"), webSettings, 2).starts_with("is not there"));
+    const auto little = [](const Folder& place) {
+        WebSettings settings = webSettings(place);
+        settings.fetch.most_bytes = kPly.size() - 1;
+        return settings;
+    };
+    CHECK(errorOf(answer("200 OK", "Content-Encoding: unknown\r\n", kPly), little, 2) ==
+          fmt::format("is {} bytes long, expected at most {}", kPly.size(), kPly.size() - 1));
+}
+
+TEST_CASE("a server that falls silent is given up") {
+    const auto impatient = [](const Folder& folder) {
+        WebSettings settings = webSettings(folder);
+        settings.fetch.patience = std::chrono::milliseconds(100);
+        settings.fetch.attempts = 2;
+        return settings;
+    };
+    for (const std::size_t bytes : {std::size_t{0}, std::size_t{200}}) {
+        CHECK(errorOf(cutAfter(bytes, WebAnswer::Then::kHang), impatient, 2) ==
+              fmt::format("the server has fallen silent after {} bytes, after 2 attempts; try again later", bytes));
+    }
+    CHECK(errorOf({"", WebAnswer::Then::kHang}, impatient, 2).starts_with("the server has fallen silent after 0 bytes"));
+}
+
+TEST_CASE("a server that vanishes in the middle of a file, or was never there, is named") {
+    const Folder folder;
+    std::function<void()> vanish;
+    WebServer server([&](const WebRequest&) {
+        vanish();
+        return cutAfter(100);
+    });
+    vanish = [&] { server.refuse(); };
+    CHECK(contains(webError(server.at("/a.ply"), webSettings(folder)), "cannot be reached ("));
+    CHECK(contains(webError(server.at("/a.ply"), webSettings(folder)), "look at the network and at the address"));
+    CHECK(server.asked().size() == 1);
+    CHECK(filesIn(folder.file("cache")).empty());
+}
+
+TEST_CASE("who waits for a file may give up at any time") {
+    const Folder folder;
+    const WebServer server([](const WebRequest&) { return cutAfter(100, WebAnswer::Then::kHang); });
+    struct Enough {};
+    int told = 0;
+    const auto giveUp = [&](double share) {
+        CHECK(share >= 0.0);
+        CHECK(share <= 0.7);
+        if (++told == 3) { throw Enough(); }
+    };
+    CHECK_THROWS_AS((void)loadFromWeb(server.at("/a.ply"), webSettings(folder), nullptr, {}, giveUp), Enough);
+    CHECK(filesIn(folder.file("cache")).empty());
+}
+
+}  // SUITE(web_fetch)

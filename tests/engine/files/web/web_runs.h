@@ -1,0 +1,63 @@
+// Loading scenes from a test's server.
+#pragma once
+
+#include "engine/files/load_scene.h"
+#include "engine/files/web/web_files.h"
+#include "tests/engine/files/ply_files.h"
+#include "tests/engine/files/web/web_server.h"
+
+namespace binosplat::test {
+
+// Without pauses between attempts, into a cache in the folder of the test.
+inline WebSettings webSettings(const Folder& folder) {
+    setEnvironment("no_proxy", "127.0.0.1");
+    WebSettings settings;
+    settings.cache_folder = folder.file("cache");
+    settings.fetch.first_pause = std::chrono::milliseconds(0);
+    return settings;
+}
+
+inline Scene loadFromWeb(const std::string& address, const WebSettings& settings, LoadNotes* notes = nullptr, const LevelChoice& level = {},
+                         const Progress& progress = {}) {
+    LoadNotes ignored;
+    return loadSceneFromAnywhere(address, 0, notes != nullptr ? *notes : ignored, progress, level, settings);
+}
+
+// The message of the Error that it gives, one line that begins with the address; empty if there is none.
+inline std::string webError(const std::string& address, const WebSettings& settings) {
+    try {
+        (void)loadFromWeb(address, settings);
+    } catch (const Error& error) {
+        const std::string message = error.what();
+        CHECK(error.code() == ExitCode::kBadInput);
+        CHECK(message.starts_with(address));
+        return message;
+    }
+    return {};
+}
+
+inline std::vector<std::string> filesIn(const std::filesystem::path& folder) {
+    std::vector<std::string> names;
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, error)) { names.push_back(entry.path().filename().string()); }
+    std::ranges::sort(names);
+    return names;
+}
+
+// All that lies in a folder, by its path behind `prefix`.
+inline WebPages filesOf(const std::filesystem::path& folder, const std::string& prefix = "/") {
+    WebPages files;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+        if (!entry.is_regular_file()) { continue; }
+        files[prefix + std::filesystem::relative(entry.path(), folder).generic_string()] = textIn(entry.path());
+    }
+    return files;
+}
+
+inline std::uint64_t bytesIn(const std::filesystem::path& folder) {
+    std::uint64_t sum = 0;
+    for (const std::string& name : filesIn(folder)) { sum += std::filesystem::file_size(folder / name); }
+    return sum;
+}
+
+}  // namespace binosplat::test
