@@ -133,7 +133,7 @@ private:
     void dropAll() noexcept;
 
     std::vector<std::unique_ptr<binosplat::StereoFrame>> parts_;  // the first one owns the kernels of all
-    binosplat::Targets targets_;
+    binosplat::TargetImages targets_;
     std::uint64_t last_number_ = 0;
     std::map<std::uint64_t, Lent> lent_;
     std::unique_ptr<binosplat::Submission> idle_submission_;

@@ -65,9 +65,9 @@ void checkTarget(const bsp_target& target, bool half_floats, bool has_background
           "depth_scale of a bsp_target is {}, must not be 0", target.depth_scale);
 }
 
-Targets::Targets(const Context& context) : context_(context), kernels_(context, presentKernels()) {}
+TargetImages::TargetImages(const Context& context) : context_(context), kernels_(context, presentKernels()) {}
 
-void Targets::record(Commands& commands, const Picture& picture, const bsp_target& target) {
+void TargetImages::record(Commands& commands, const Picture& picture, const bsp_target& target) {
     const auto grow = [&](Buffer& buffer, const char* name) {
         const std::uint64_t bytes = std::uint64_t{4} * picture.size_px.x * picture.size_px.y;
         if (buffer.bytes() < bytes) { buffer = Buffer(context_, name, bytes); }

@@ -10,9 +10,9 @@ namespace binosplat {
 // Throws Error if it makes no sense, alone or with such pictures.
 void checkTarget(const bsp_target& target, bool half_floats, bool has_background);
 
-class Targets {
+class TargetImages {
 public:
-    explicit Targets(const Context& context);
+    explicit TargetImages(const Context& context);
     // Makes its kernel before it is needed.
     void makeKernels(bool half_floats) { kernels_.get(PresentKernel{.half_colours = half_floats}); }
     // Records it; all views share the buffers that it goes through.
