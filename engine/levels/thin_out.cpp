@@ -3,6 +3,7 @@
 
 #include "engine/scene/pick_splats.h"
 #include "engine/scene/sh_basis.h"
+#include "engine/files/sog_pack.h"
 #include "engine/scene/standing_views.h"
 
 #include <algorithm>
@@ -60,6 +61,27 @@ void takeStep(Scene& scene, std::span<const std::int64_t> sums) {
     }
 }
 
+// What of a splat stays, 0 to 1. What no eye sees has hardly a share.
+double shareOf(std::int64_t weight, double factor) { return std::min(1.0, factor * (static_cast<double>(weight) + 1.0)); }
+
+// With which all shares add up to `count`, fewer than there are.
+double factorFor(std::span<const std::int64_t> weights, std::uint64_t count) {
+    double low = 1e-18, high = 1.0;  // at 1 all of each stays
+    for (int i = 0; i < 100; ++i) {
+        const double middle = std::sqrt(low * high);
+        double sum = 0.0;
+        for (const std::int64_t weight : weights) { sum += shareOf(weight, middle); }
+        (sum < static_cast<double>(count) ? low : high) = middle;
+    }
+    return high;
+}
+
+std::vector<std::uint32_t> wholeOf(std::size_t splats) {
+    std::vector<std::uint32_t> all(splats);
+    std::iota(all.begin(), all.end(), 0u);
+    return all;
+}
+
 }  // namespace
 
 std::vector<Eye> standingEyes(const Scene& scene, std::size_t count, std::size_t first, gpu::uint side_px) {
@@ -83,21 +105,21 @@ ThinOut::ThinOut(const Context& context, const Scene& scene, std::vector<Eye> ey
     weights_.resize(scene.size());
 }
 
+// Along a curve through the scene each splat adds its share, and one stays wherever these add up to another whole: where splats are alike,
+// as many stay everywhere, and none of those that show far more than others goes.
 std::vector<std::uint32_t> ThinOut::choose(std::uint64_t count) const {
-    std::vector<std::uint32_t> order(scene_.size());
-    std::iota(order.begin(), order.end(), 0u);
-    // What no eye sees goes first, and of that the smallest and faintest.
-    const auto sizeOf = [&](std::uint32_t splat) { return scene_.opacities[splat] * scene_.scales[splat].x * scene_.scales[splat].y; };
-    const auto showsMore = [&](std::uint32_t a, std::uint32_t b) {
-        if (weights_[a] != weights_[b]) { return weights_[a] > weights_[b]; }
-        const float size_a = sizeOf(a), size_b = sizeOf(b);
-        return size_a != size_b ? size_a > size_b : a < b;
-    };
-    const auto kept = static_cast<std::ptrdiff_t>(std::min<std::uint64_t>(count, order.size()));
-    std::nth_element(order.begin(), order.begin() + kept, order.end(), showsMore);
-    order.resize(static_cast<std::size_t>(kept));
-    std::ranges::sort(order);
-    return order;
+    const std::vector<std::uint32_t> order = mortonOrder(findSogPlaces(scene_));
+    if (count >= order.size()) { return wholeOf(order.size()); }
+    const double factor = factorFor(weights_, count);
+    std::vector<std::uint32_t> kept;
+    double sum = 0.5;
+    for (std::size_t i = 0; i < order.size() && kept.size() < count; ++i) {
+        sum += shareOf(weights_[order[i]], factor);
+        const bool needs_all = order.size() - i <= count - kept.size();  // rounding may leave one too few
+        if (sum >= 1.0 || needs_all) { kept.push_back(order[i]), sum -= 1.0; }
+    }
+    std::ranges::sort(kept);
+    return kept;
 }
 
 Scene ThinOut::keep(std::uint64_t count, const Progress& progress) {

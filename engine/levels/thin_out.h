@@ -22,7 +22,7 @@ public:
     // Renders `scene`, which outlives this, from all eyes, which `progress` is told of. `near` is in scene units.
     ThinOut(const Context& context, const Scene& scene, std::vector<Eye> eyes, double near, const Progress& progress = {});
 
-    // The indices of the `count` splats whose blending weights over all pixels of all eyes have the greatest sums; ascending.
+    // The indices of `count` splats, more of those whose blending weights over all pixels of all eyes have greater sums; ascending.
     [[nodiscard]] std::vector<std::uint32_t> choose(std::uint64_t count) const;
     // The scene with these splats alone, wider, and fitted so that the eyes see what the whole scene shows them: in colour, opacity and
     // size. The same on every run on one device.
