@@ -2,10 +2,6 @@
 #include "app/view/settings/device_defaults.h"
 #include "tests/suite.h"
 
-#include <doctest/doctest.h>
-
-namespace binosplat {
-
 SUITE(device_defaults) {
 
 constexpr std::uint64_t kGiB = std::uint64_t{1} << 30;
@@ -24,5 +20,3 @@ TEST_CASE("small is what a headset's processor holds, or a GPU within a processo
 }
 
 }  // SUITE(device_defaults)
-
-}  // namespace binosplat
