@@ -41,7 +41,12 @@ gpu::uint tileCountOf(const TargetPlan& target) {
 
 }  // namespace
 
-void FrameRecorder::begin(Commands& commands, const FramePlan& plan) const {
+void FrameRecorder::begin(Commands& commands) const {
+    commands.begin();
+    if (changes_known) { scene.recordChanges(commands); }
+}
+
+void FrameRecorder::describeFrame(Commands& commands, const FramePlan& plan) const {
     FrameState state{};
     for (std::size_t t = 0; t < plan.targets.size(); ++t) {
         const TargetPlan& target = plan.targets[t];
@@ -59,8 +64,6 @@ void FrameRecorder::begin(Commands& commands, const FramePlan& plan) const {
             warpViewOf(target.warp->relation, target.eye.size_px, wordsOf(plan, static_cast<int>(t)).row_words, settings);
         state.targets[t].warp_counters = firstCountersOf(settings, target.eye.size_px);
     }
-    commands.begin();
-    if (changes_known) { scene.recordChanges(commands); }
     commands.update(room.lists().state, &state, sizeof(state));
 }
 
@@ -98,15 +101,17 @@ void FrameRecorder::describe(const FramePlan& plan, int index, TargetState& stat
 }
 
 void FrameRecorder::recordCulling(Commands& commands, const FramePlan& plan) const {
-    begin(commands, plan);
+    begin(commands);
+    describeFrame(commands, plan);
     for (const ListPlan& list : plan.lists) {
         if (list.culls) { passes.recordCull(commands, scene, room.lists(), list.eyes, Role::kNone); }
     }
 }
 
 void FrameRecorder::record(Commands& commands, const FramePlan& plan) const {
-    begin(commands, plan);
-    room.recordShown(commands);
+    begin(commands);
+    room.recordShown(commands);  // which says where the masks are
+    describeFrame(commands, plan);
     for (const Step& step : plan.steps) {
         switch (step.kind) {
             case Step::Kind::kList: {

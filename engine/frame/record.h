@@ -37,7 +37,9 @@ struct FrameRecorder {
     void recordReport(Commands& commands, const Buffer& readback) const { commands.copy(room.lists().state, readback, sizeof(FrameState)); }
 
 private:
-    void begin(Commands& commands, const FramePlan& plan) const;
+    void begin(Commands& commands) const;
+    // Writes FrameState.
+    void describeFrame(Commands& commands, const FramePlan& plan) const;
     // Tells the device of a target where it lies, and what becomes of it.
     void describe(const FramePlan& plan, int index, TargetState& state) const;
     void recordWarp(Commands& commands, const FramePlan& plan, int index) const;
