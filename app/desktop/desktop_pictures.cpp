@@ -63,8 +63,7 @@ void DesktopPictures::render(StereoFrame& frame, const std::vector<Eye>& eyes, c
                                .tinted_by = tinted_by,
                                .colour = image,
                                .depth = {},
-                               .kept_bits = look.anaglyph && e == kRight ? kRed : 0,
-                               .see_through = false},
+                               .kept_bits = look.anaglyph && e == kRight ? kRed : 0},
                               settings.near);
             changeLayout(commands, image, vk::ImageLayout::eColorAttachmentOptimal, vk::ImageLayout::eTransferSrcOptimal);
         }

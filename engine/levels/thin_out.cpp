@@ -1,9 +1,9 @@
 // Choosing by weight, widening, and fitting by the sums of `contribute`.
 #include "engine/levels/thin_out.h"
 
+#include "engine/files/sog_pack.h"
 #include "engine/scene/pick_splats.h"
 #include "engine/scene/sh_basis.h"
-#include "engine/files/sog_pack.h"
 #include "engine/scene/standing_views.h"
 
 #include <algorithm>

@@ -13,8 +13,8 @@ struct PresentedEye {
     const WarpBuffers* tinted_by = nullptr;  // of the affiliated eye, to tint its pixels by how they came about; or null
     vk::Image colour;                        // where the picture goes; 8-bit RGBA or BGRA
     vk::Image depth;                         // where its depth goes, D32: near / depth, 0 where there is nothing; or null
-    std::uint32_t kept_bits = 0;             // of each word: stay as the eye before left them, as for an anaglyph
     bool see_through = false;                // its alpha is output, too, multiplied in as headsets blend: as light
+    std::uint32_t kept_bits = 0;             // of each word: stay as the eye before left them, as for an anaglyph
 };
 
 // All kernels of `present`.
