@@ -24,7 +24,7 @@ ROOMS = {
     "engine/gpu": "engine engine/scene shaders shaders/shared",
     "engine/passes": "engine engine/gpu shaders/shared",
     "engine/frame": "engine engine/gpu engine/passes engine/picture",
-    "engine/levels": "engine engine/scene engine/gpu engine/passes shaders/shared",
+    "engine/levels": "engine engine/files engine/scene engine/gpu engine/passes shaders/shared",
     "engine/stream": "engine engine/scene engine/files engine/files/web engine/gpu shaders/shared",
     "engine/library": "engine engine/scene engine/files engine/files/web engine/picture engine/gpu engine/passes engine/frame",
     "xr": "engine engine/gpu shaders/shared",
