@@ -13,8 +13,8 @@ foreach(package zip bz2 openexr imath openxr-loader jsoncpp glfw stb webp fmt im
     endforeach()
 endforeach()
 set_target_properties(binosplat PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}/binosplat")
-set_target_properties(binosplat_engine PROPERTIES INSTALL_RPATH "$ORIGIN/binosplat")
-foreach(target binosplat binosplat_engine)
+set_target_properties(binosplat_library PROPERTIES INSTALL_RPATH "$ORIGIN/binosplat")
+foreach(target binosplat binosplat_library)
     target_link_options(${target} PRIVATE LINKER:--disable-new-dtags)  # these libraries find each other there, too
 endforeach()
 
