@@ -206,9 +206,7 @@ void SceneRenderer::render(ConnectedHeadset& headset, ShownScene& shown, const V
                        .period_ms = headset.session.periodMs(),
                        .is_old = !is_of_now,
                        .lost_periods = headset.session.lostPeriods(),
-                       .work = last_.work_rendered,
-                       .warp_error = last_.warp_error,
-                       .half_loss = last_.half_loss});
+                       .work = last_.work_rendered});
     sayGoverned();
     sayHidden(one_eye);
     sayCutShort();
