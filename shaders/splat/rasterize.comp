@@ -194,25 +194,7 @@ uint toMove(float alpha, float depth_sum, vec2 inverse_depth_sums) {
     return movingPixel(inverse_depth, kLanded, spreadCode(variance / (inverse_depth * inverse_depth)));
 }
 
-// Adds the difference between a pixel and what was there before.
-void addError(inout float error, vec3 shown, uvec2 colours, uint at) {
-    const vec3 off = shown - colourAt(FloatColours(colours), HalfColours(colours), at).rgb;
-    error += min(dot(off, off), kMaxPixelError);
-}
-
-bool isMade() { return kMasked && (!kCoarse || TARGET.is_made != 0); }
-
-// Writes what a picture that is made from this one must know of the tile; `sums` is what its quarters turned out to have had, and
-// `lost` the amplitude that it lacks.
-void leaveTile(uint tile, uint cost, vec4 sums, float lost) {
-    const vec4 amplitude = isMade() ? sqrt(sums / (kErrorSteps * 3 * kCellSize * kCellSize)) : vec4(0);
-    PastTiles past_tiles = PastTiles(TARGET.past_tiles);
-    const uint age = isMade() ? past_tiles.at[tile].age : 0;  // 0: nothing was there
-    // What was wrong because nobody had seen it says nothing of later frames.
-    const vec4 expected = age > 0 ? sqrt(vec4(past_tiles.at[tile].grown) / (kErrorSteps * 3 * kCellSize * kCellSize)) : vec4(1);
-    const vec4 growth = mix(amplitude / float(max(age, 1)), vec4(0), greaterThanEqual(expected, vec4(kUnseenGrowth)));
-    past_tiles.at[tile] = PastTile(cost, 0, growth, vec4(0), uvec4(0), lost);
-}
+#include "lib/leave_tile.glsl"
 
 // Blends the tile or, if they are coarse, each cell its own: the sums of the thread's pixels. `first_px`: of the first of these.
 void blendTile(uint lanes, uvec2 range, uvec2 tile_px, vec2 first_px, bool is_coarse) {
