@@ -57,7 +57,7 @@ struct FrameResult {
     PassTimes gpu_ms;
     double gpu_total_ms = 0.0;  // from the first pass to the last
     FrameCounters counters;
-    Traffic stereo_bytes_per_pixel;  // of the passes that make one eye from the other, if the mode has any
+    Traffic stereo_bytes_per_pixel;                    // of the passes that make one eye from the other, if the mode has any
     double tiles_rendered = 1.0, work_rendered = 1.0;  // shares of the affiliated eye's tiles, and of its work if the mode weighs it
     std::uint64_t peak_gpu_bytes = 0;                  // the most device memory that this program ever held at a time
     std::vector<std::string> left_out;                 // what this scene and mode did not need
