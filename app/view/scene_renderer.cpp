@@ -113,6 +113,7 @@ FrameSettings SceneRenderer::settingsOfFrame(ConnectedHeadset& headset, const Vi
     frame.half_floats = true;
     frame.keep_classes = settings.tint;
     frame.gazes = views.gazes;
+    frame.times_passes = settings.page == PanelPage::kMethod;
     frame.mark = governed_count_;
     frame.keep_past = true;
     if (settings.backdrop != Backdrop::kAsSet) { frame.background = colourOf(settings.backdrop); }

@@ -41,8 +41,8 @@ gpu::uint tileCountOf(const TargetPlan& target) {
 
 }  // namespace
 
-void FrameRecorder::begin(Commands& commands) const {
-    commands.begin();
+void FrameRecorder::begin(Commands& commands, bool times_passes) const {
+    commands.begin(times_passes);
     if (changes_known) { scene.recordChanges(commands); }
 }
 
@@ -101,15 +101,15 @@ void FrameRecorder::describe(const FramePlan& plan, int index, TargetState& stat
 }
 
 void FrameRecorder::recordCulling(Commands& commands, const FramePlan& plan) const {
-    begin(commands);
+    begin(commands, false);
     describeFrame(commands, plan);
     for (const ListPlan& list : plan.lists) {
         if (list.culls) { passes.recordCull(commands, scene, room.lists(), list.eyes, Role::kNone); }
     }
 }
 
-void FrameRecorder::record(Commands& commands, const FramePlan& plan) const {
-    begin(commands);
+void FrameRecorder::record(Commands& commands, const FramePlan& plan, bool times_passes) const {
+    begin(commands, times_passes);
     room.recordShown(commands);  // which says where the masks are
     describeFrame(commands, plan);
     for (const Step& step : plan.steps) {

@@ -30,14 +30,14 @@ struct FrameRecorder {
     std::optional<std::uint64_t> changes_known;
 
     // The whole frame, from Commands::begin on.
-    void record(Commands& commands, const FramePlan& plan) const;
+    void record(Commands& commands, const FramePlan& plan, bool times_passes = true) const;
     // Only the culling: how many splats the lists need.
     void recordCulling(Commands& commands, const FramePlan& plan) const;
     // The end of that: what the device reports is copied to `readback`.
     void recordReport(Commands& commands, const Buffer& readback) const { commands.copy(room.lists().state, readback, sizeof(FrameState)); }
 
 private:
-    void begin(Commands& commands) const;
+    void begin(Commands& commands, bool times_passes) const;
     // Writes FrameState.
     void describeFrame(Commands& commands, const FramePlan& plan) const;
     // Tells the device of a target where it lies, and what becomes of it.

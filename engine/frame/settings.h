@@ -44,7 +44,8 @@ struct FrameSettings {
     // kAlternate, kTemporal: more frames follow, which are made from this one; it may be made from the one before, if that was asked for
     // with keep_past, too.
     bool keep_past = false;
-    std::uint64_t mark = 0;  // the caller's own; comes back with the result
+    bool times_passes = true;  // for FrameResult::gpu_ms: two timestamps a pass instead of two a frame
+    std::uint64_t mark = 0;    // the caller's own; comes back with the result
 };
 
 // Of such a mask.
@@ -54,7 +55,7 @@ std::uint32_t countHidden(std::span<const std::uint8_t> hidden_tiles);
 StereoSettings stereoSettingsOf(const FrameSettings& settings);
 
 struct FrameResult {
-    PassTimes gpu_ms;
+    PassTimes gpu_ms;           // of FrameSettings::times_passes
     double gpu_total_ms = 0.0;  // from the first pass to the last
     FrameCounters counters;
     Traffic stereo_bytes_per_pixel;                    // of the passes that make one eye from the other, if the mode has any

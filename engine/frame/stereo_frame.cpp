@@ -294,7 +294,7 @@ void StereoFrame::record(Flight& flight, const FrameSettings& settings, const Ap
     flight.settings = settings;
     flight.settings.hidden_tiles = {};
     flight.asked = moving_pays_.asked();
-    recorder().record(flight.commands, plan_);
+    recorder().record(flight.commands, plan_, settings.times_passes);
     changes_known_ = scene_->changesRecorded();
     recorder().recordReport(flight.commands, flight.readback);
     pasts_ = pastsAfter(plan_, pastsFor(eyes_, settings));

@@ -40,8 +40,9 @@ Commands::~Commands() {
                                                              UINT64_MAX);
 }
 
-void Commands::begin() {
+void Commands::begin(bool times_passes) {
     assert(!under_way_);
+    times_passes_ = times_passes;
     in_pass_ = beside_ = staged_ = false;  // of what was dropped
     passes_.clear();
     timestamp_count_ = 0;
@@ -52,7 +53,8 @@ void Commands::begin() {
     if (*timestamps_) { command_buffer_.resetQueryPool(*timestamps_, 0, kMaxTimestamps); }
 }
 
-void Commands::writeTimestamp() {
+void Commands::writeTimestamp(bool is_end_of_frame) {
+    if (!times_passes_ && timestamp_count_ > 0 && !is_end_of_frame) { return; }
     assert(timestamp_count_ < kMaxTimestamps);
     if (*timestamps_) { command_buffer_.writeTimestamp(vk::PipelineStageFlagBits::eBottomOfPipe, *timestamps_, timestamp_count_); }
     ++timestamp_count_;
@@ -228,6 +230,7 @@ void Commands::drop() {
 
 void Commands::end() {
     endPass();
+    if (!times_passes_ && timestamp_count_ > 0) { writeTimestamp(true); }
     const vk::MemoryBarrier to_host(vk::AccessFlagBits::eTransferWrite, vk::AccessFlagBits::eHostRead);
     command_buffer_.pipelineBarrier(vk::PipelineStageFlagBits::eTransfer, vk::PipelineStageFlagBits::eHost, {}, to_host, {}, {});
     command_buffer_.end();
@@ -276,7 +279,7 @@ void Commands::wait() {
     check(status == vk::Result::eSuccess, "{}: no timestamps: {}", context_.deviceName(), vk::to_string(status));
     const std::uint64_t mask = context_.timestampMask();
     const double ms_per_tick = context_.timestampPeriodNs() * 1e-6;
-    for (std::size_t i = 0; i < passes_.size(); ++i) {
+    for (std::size_t i = 0; times_passes_ && i < passes_.size(); ++i) {
         times_.push_back({passes_[i], static_cast<double>((ticks[2 * i + 1] - ticks[2 * i]) & mask) * ms_per_tick});
     }
     total_ms_ = static_cast<double>((ticks.back() - ticks.front()) & mask) * ms_per_tick;

@@ -45,8 +45,8 @@ public:
     // Waits for what is under way.
     ~Commands();
 
-    // begin, any of the recording calls, submit, wait; then times() may be asked for, and begin again.
-    void begin();
+    // begin, any of the recording calls, submit, wait; then totalMs() and, if `times_passes`, times() may be asked for, and begin again.
+    void begin(bool times_passes = true);
     // Everything up to the next beginPass counts as this pass.
     void beginPass(const PassLabel& label);
     void endPass();
@@ -122,7 +122,7 @@ public:
     // For anything that is not a pass: pictures that leave for a headset or a window. Between begin and submit.
     [[nodiscard]] const vk::raii::CommandBuffer& buffer() const { return command_buffer_; }
 
-    // Of the frame that wait() finished; empty if the device has no timestamps.
+    // Of the frame that wait() finished; empty if its passes were not timed, or the device has no timestamps.
     [[nodiscard]] const PassTimes& times() const { return times_; }
     [[nodiscard]] double totalMs() const { return total_ms_; }
     // Kernels, fills, updates and copies of buffers since begin.
@@ -134,7 +134,8 @@ private:
     void waitForAll();
     void end();
     void changeLayout(vk::Image image, vk::ImageAspectFlagBits aspect, vk::ImageLayout from, vk::ImageLayout to);
-    void writeTimestamp();
+    // Unless only the first and the last are wanted.
+    void writeTimestamp(bool is_end_of_frame = false);
 
     const Context& context_;
     Level level_;
@@ -146,7 +147,7 @@ private:
     std::vector<PassLabel> passes_;
     std::uint32_t timestamp_count_ = 0;
     std::uint32_t count_ = 0;
-    bool in_pass_ = false, under_way_ = false, beside_ = false, staged_ = false;
+    bool in_pass_ = false, under_way_ = false, beside_ = false, staged_ = false, times_passes_ = true;
     PassTimes times_;
     double total_ms_ = 0.0;
 };

@@ -43,6 +43,7 @@ FrameSettings settingsOf(const bsp_frame_info& frame, const bsp_scene_t* scene) 
     settings.background = background;
     if (scene != nullptr) { settings.order = scene->gpu->usualOrder(); }
     settings.keep_past = hasPast(settings.mode);
+    settings.times_passes = false;
     settings.keep_depth = settings.keep_both_depths = (frame.flags & BSP_FRAME_DEPTH) != 0;
     settings.half_floats = (frame.flags & BSP_FRAME_HALF_FLOATS) != 0;
     settings.stereo.budget = frame.budget == 0.0 ? kUsualBudget : std::max(frame.budget, 0.0);

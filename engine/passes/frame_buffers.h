@@ -51,7 +51,7 @@ public:
     VisibleBuffers(const Context& context, std::uint32_t capacity);
 
     [[nodiscard]] std::uint32_t capacity() const { return capacity_; }
-    // Depth keys and splat indices; sorting needs `spare`. Once they are sorted, the counts of tiles replace the keys, and the
+    // Depth keys and splat indices; sorting begins in `spare`. Once they are sorted, the counts of tiles replace the keys, and the
     // sets of tiles replace `spare`.
     [[nodiscard]] KeyValues order() const { return {at<gpu::uint>(0), at<gpu::uint>(4)}; }
     [[nodiscard]] KeyValues spare() const { return {at<gpu::uint>(8), at<gpu::uint>(12)}; }

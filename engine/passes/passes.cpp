@@ -143,8 +143,8 @@ void Passes::recordOrder(Commands& commands, const GpuScene& scene, const FrameB
                                 .visible_bits = buffers.visibleBits(),
                                 .group_offsets = buffers.groupCounts(),
                                 .visible = buffers.state.address<gpu::ListState>(FrameBuffers::visibleList(eyes.list)),
-                                .keys = order.keys,
-                                .splats = order.values,
+                                .keys = spare.keys,
+                                .splats = spare.values,
                                 .splat_count = scene.splatCount(),
                                 .chunk_bits = scene.chunkBits(),
                                 .order_eye = static_cast<gpu::uint>(eyes.order_eye),
@@ -152,8 +152,9 @@ void Passes::recordOrder(Commands& commands, const GpuScene& scene, const FrameB
     const CompactKernel kernel{.by_distance = eyes.middle.has_value(), .in_pages = scene.isInPages()};
     dispatchOverBlocks(commands, kernels_.get(kernel), pass, scene, buffers, eyes.list);
     commands.beginPass({role, FrameStage::kSort, "sort_depth"});
-    // Four rounds: the result is where the input was.
-    sort().record(commands, order, spare, buffers.scratch.address<gpu::uint>(), buffers.state, FrameBuffers::visibleList(eyes.list), 32);
+    static_assert(Sort::endsInSpare(gpu::kDepthKeyBits));
+    sort().record(commands, spare, order, buffers.scratch.address<gpu::uint>(), buffers.state, FrameBuffers::visibleList(eyes.list),
+                  gpu::kDepthKeyBits);
 }
 
 // What the passes of pictures that are rendered at once have in common.

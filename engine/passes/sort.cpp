@@ -11,13 +11,13 @@ namespace binosplat {
 
 namespace {
 
-// A GPU has many subgroups under way to hide the latency of memory: sixteen, or eight if shared memory, of which each takes 1 KiB for its
-// digits, is as small as Vulkan allows. A CPU's run one after the other: four of these.
+// A GPU has many subgroups under way to hide the latency of memory: sixteen, or eight if shared memory, of which each takes 2 KiB for its
+// digits, is less than 48 KiB. A CPU's run one after the other: four of these.
 gpu::uint threadsOf(const Context& context) {
     if (context.isSoftware()) {
         return std::clamp(gpu::kSortSubgroups * context.subgroupSize(), 32u, std::min(8 * context.minSubgroupSize(), 128u));
     }
-    const gpu::uint most_subgroups = context.sharedMemory() >= 32768 ? 16 : 8;
+    const gpu::uint most_subgroups = context.sharedMemory() >= 49152 ? 16 : 8;
     return std::min({512u, most_subgroups * context.minSubgroupSize(), std::bit_floor(context.maxGroupInvocations())});
 }
 

@@ -1,4 +1,4 @@
-// A stable radix sort of 32-bit keys with 32-bit values (shaders/sort/sort_*.comp): reduce then scan, 8 bits and two
+// A stable radix sort of 32-bit keys with 32-bit values (shaders/sort/sort_*.comp): reduce then scan, 9 bits and two
 // commands per round.
 #pragma once
 
@@ -26,11 +26,11 @@ public:
 
     static bool hasNarrowSubgroups(const Context& context);
 
-    // Bytes of `histograms` for lists of up to `items`: half a byte a key and 17 KiB, 273 KiB at most.
+    // Bytes of `histograms` for lists of up to `items`: a byte a key and 34 KiB, 546 KiB at most.
     static std::uint64_t histogramBytes(std::uint64_t items);
 
     // True if the result of `record` lies in `spare`.
-    static bool endsInSpare(unsigned key_bits) { return roundsOf(key_bits) % 2 == 1; }
+    static constexpr bool endsInSpare(unsigned key_bits) { return roundsOf(key_bits) % 2 == 1; }
 
     // Sorts `in` by the lowest `key_bits` bits of its keys; `spare` is as large and is overwritten. Returns whichever of the two
     // holds the result. The length is that of the list at `list_bytes` of `lists`, whose count of workgroups is used.
@@ -38,8 +38,7 @@ public:
                      std::uint64_t list_bytes, unsigned key_bits) const;
 
 private:
-    // As few rounds as 8 bits allow.
-    static unsigned roundsOf(unsigned key_bits) { return (key_bits + 7) / 8; }
+    static constexpr unsigned roundsOf(unsigned key_bits) { return (key_bits + gpu::kMaxDigitBits - 1) / gpu::kMaxDigitBits; }
 
     Kernel count_, scatter_;
 };

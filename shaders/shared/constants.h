@@ -24,10 +24,11 @@ BINOSPLAT_CONSTANT uint kListBlock = 256;
 // Splats that come and go together: as many as one workgroup culls.
 BINOSPLAT_CONSTANT uint kPageSplats = kCullBlock;
 
-// Sorting: up to 8 bits a round; a block is what one workgroup ranks: of kSortSubgroups subgroups where these are narrow, of more where
+// Sorting: up to 9 bits a round; a block is what one workgroup ranks: of kSortSubgroups subgroups where these are narrow, of more where
 // they are wide (engine/passes/sort.cpp), each with a histogram in shared memory. Beyond half a million keys, blocks grow. Counts are
 // summed up in two steps, by runs of kSortRun blocks and then over the runs, each step a few loads per thread.
-BINOSPLAT_CONSTANT uint kMaxDigits = 256;
+BINOSPLAT_CONSTANT uint kMaxDigitBits = 9;
+BINOSPLAT_CONSTANT uint kMaxDigits = 1 << kMaxDigitBits;
 BINOSPLAT_CONSTANT uint kSortBlock = 2048;
 BINOSPLAT_CONSTANT uint kMaxSortBlocks = 256;
 BINOSPLAT_CONSTANT uint kSortRun = 16;
@@ -41,6 +42,13 @@ BINOSPLAT_CONSTANT uint kSumRuns = 8;
 BINOSPLAT_CONSTANT uint kSumRunBits = 16;
 // Of cull_pages, whose last workgroup also lists the pages, a word of 32 a thread: workgroups of kGroupSize pages.
 BINOSPLAT_CONSTANT uint kMostPageGroupsInOneRun = 32;
+
+// Keys of depths and distances, of three rounds: a float for every one between half the near plane and 2^13 times the near plane; nearer
+// (and behind the eye) 2^kNearKeyShift floats share a key, farther away 2^kFarKeyShift.
+BINOSPLAT_CONSTANT uint kDepthKeyBits = 27;
+BINOSPLAT_CONSTANT uint kExactDepthKeys = 14 << 23;
+BINOSPLAT_CONSTANT uint kNearKeyShift = 10;
+BINOSPLAT_CONSTANT uint kFarKeyShift = 8;
 
 // bin_large: enough threads for any device, since only the device knows how many splats there are for them.
 BINOSPLAT_CONSTANT uint kBinLargeSize = 128;

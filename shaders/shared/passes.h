@@ -262,7 +262,7 @@ struct SelectPass {
     uint at_once;  // how many of the targets are rendered at the same time
 };
 
-// A stable radix sort of (key, value), up to 8 bits per round, reduce then scan: assumes neither forward progress between workgroups
+// A stable radix sort of (key, value), up to 9 bits per round, reduce then scan: assumes neither forward progress between workgroups
 // nor a subgroup width.
 struct SortCountPass {
     Uints keys;

@@ -21,13 +21,12 @@ const uint kBlockWords = kCullBlock / 32;
 shared uint visible_words[kBlockWords];
 shared uint visible_before[kBlockWords];  // how many of the block's splats come before each word's
 
-// Orders splats as depths or distances do. The square of a distance keeps what float32 tells apart of the distance, and is the same float
-// for whichever eyes the list is made, since it depends on neither.
-float keyOf(EyeView eye, vec3 position) {
+// What splats are ordered by. A distance is the same float for whichever eyes the list is made, since it depends on neither.
+float depthOf(EyeView eye, vec3 position) {
     if (kByDistance) {
         const vec3 from_middle = fromPlace(pass.middle.position, pass.middle.position_low, position);
-        precise const float square = dot(from_middle, from_middle);
-        return square;
+        precise const float distance = sqrt(dot(from_middle, from_middle));
+        return distance;
     }
     return dot(eye.camera_from_world_z, fromEye(eye, position));
 }
@@ -36,6 +35,14 @@ float keyOf(EyeView eye, vec3 position) {
 uint sortableBits(float value) {
     const uint bits = floatBitsToUint(value == 0 ? 0.0 : value);  // -0 is as deep as 0
     return (bits & 0x80000000u) != 0 ? ~bits : bits | 0x80000000u;
+}
+
+// In kDepthKeyBits, in the same order.
+uint keyOf(float depth, float near) {
+    const uint bits = sortableBits(depth), first_exact = sortableBits(0.5 * near);
+    if (bits < first_exact) { return bits >> kNearKeyShift; }
+    const uint above = bits - first_exact, exact = min(above, kExactDepthKeys);
+    return (first_exact >> kNearKeyShift) + 1 + exact + (above - exact >> kFarKeyShift);
 }
 
 void main() {
@@ -50,12 +57,7 @@ void main() {
         for (uint word = 0; word < own_word; ++word) { before += bitCount(visible_words[word]); }
         visible_before[own_word] = before;
     }
-    EyeView eye;
-    if (kByDistance) {
-        barrier();  // as in shareEye: visible_before is there for all
-    } else {
-        eye = shareEye(pass.eyes, pass.order_eye);
-    }
+    const EyeView eye = shareEye(pass.eyes, pass.order_eye);
     const uint blocks = blockCount(), before_block = group < blocks ? sumBefore(pass.group_offsets, group, blocks) : 0;
     uint in_block = gl_LocalInvocationIndex;
     [[dont_unroll]] do {
@@ -63,7 +65,7 @@ void main() {
         if ((bits & bit) != 0) {
             const uint place = before_block + visible_before[in_block / 32] + bitCount(bits & (bit - 1));
             const uint i = first + in_block;
-            pass.keys.at[place] = sortableBits(keyOf(eye, positionOf(pass.chunks, placeOfSplat(i, pass.chunk_bits))));
+            pass.keys.at[place] = keyOf(depthOf(eye, positionOf(pass.chunks, placeOfSplat(i, pass.chunk_bits))), eye.near);
             pass.splats.at[place] = i;
         }
         in_block += kGroupSize;

@@ -16,8 +16,6 @@ layout(constant_id = 2) const uint kComparedLanes = 0;  // not 0: the subgroup w
 layout(local_size_x_id = 0) in;
 layout(push_constant, scalar) uniform Push { SortScatterPass pass; };
 
-const uint kDigitBits = 8;
-
 shared uint subgroup_digits[kMaxSubgroups * kMaxDigits];  // counts, then where the next key of a subgroup's digit goes
 
 uint digitOf(uint key) { return (key >> pass.shift) & (pass.digits - 1); }
@@ -33,7 +31,7 @@ uvec4 matchDigit(uint digit, uvec4 valid) {
         return uvec4(peers & valid.x, 0, 0, 0);
     }
     uvec4 peers = valid;
-    [[unroll]] for (uint bit = 0; bit < kDigitBits; ++bit) {
+    [[unroll]] for (uint bit = 0; bit < kMaxDigitBits; ++bit) {
         const bool set = (digit & (1u << bit)) != 0;
         const uvec4 lanes = subgroupBallot(set);
         peers &= set ? lanes : ~lanes;

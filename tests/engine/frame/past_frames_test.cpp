@@ -114,7 +114,7 @@ TEST_CASE_FIXTURE(
             std::array<Eye, 2> eyes = eyesAt(view.eye, step);
             eyes[1].world_from_camera.orientation = eyes[1].world_from_camera.orientation * glm::angleAxis(cant, glm::dvec3(0, 1, 0));
             const FrameResult result = frame.render(eyes, makeSettings(Mode::kTemporal, 0.9));
-            if (step == 4) { CHECK(result.counters.commands == (cant > 0.0 ? 41u : 27u)); }
+            if (step == 4) { CHECK(result.counters.commands == (cant > 0.0 ? 37u : 23u)); }
             full->render(eyes, makeSettings(Mode::kShared));
             CHECK(test::psnrDb(test::picturesOf(frame), test::picturesOf(*full)) >= 53.0);
         }
@@ -131,7 +131,7 @@ TEST_CASE_FIXTURE(Gpu, "a walk keeps its quality within the budget, in both eyes
         CHECK(result.work_rendered > 0.15);
         CHECK(result.work_rendered < 0.22);  // a tile more than the budget at most
         CHECK(result.counters.warped->tiles_patched > 0);
-        CHECK(result.counters.commands <= 27);
+        CHECK(result.counters.commands <= 23);
         if (frame % 6 == 0) { CHECK(walk.psnr() > 36.0); }
     }
 }

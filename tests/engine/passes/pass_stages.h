@@ -65,8 +65,21 @@ inline constexpr double kEpsilon = 0x1p-24;  // of a float32 rounding
 // What the device rounds when it takes a splat to the camera: the eye has 48 bits, so that nothing counts but how far apart they are.
 inline double distanceToRound(const glm::dvec3& position, const Eye& eye) { return glm::length(position - eye.world_from_camera.position); }
 
-// The depth that a key stands for (shaders/sort/compact.comp): integers in the order of the floats.
-inline float floatOfKey(std::uint32_t key) { return std::bit_cast<float>((key >> 31) != 0 ? key & 0x7fffffffu : ~key); }
+// Integers in the order of the floats that they stand for.
+inline float floatOfSortable(std::uint32_t bits) { return std::bit_cast<float>((bits >> 31) != 0 ? bits & 0x7fffffffu : ~bits); }
+
+// The depths that a key stands for (shaders/sort/compact.comp), the least and the greatest.
+inline std::pair<float, float> depthsOfKey(std::uint32_t key, float near) {
+    const std::uint32_t first_exact = std::bit_cast<std::uint32_t>(0.5f * near) | 0x80000000u;
+    const std::uint32_t first_key = (first_exact >> gpu::kNearKeyShift) + 1, last_key = first_key + gpu::kExactDepthKeys;
+    if (key < first_key) {
+        const std::uint32_t first = key << gpu::kNearKeyShift;
+        return {floatOfSortable(first), floatOfSortable(first + (1u << gpu::kNearKeyShift) - 1)};
+    }
+    if (key < last_key) { return {floatOfSortable(first_exact + key - first_key), floatOfSortable(first_exact + key - first_key)}; }
+    const std::uint32_t first = first_exact + gpu::kExactDepthKeys + ((key - last_key) << gpu::kFarKeyShift);
+    return {floatOfSortable(first), floatOfSortable(first + (1u << gpu::kFarKeyShift) - 1)};
+}
 
 // ProjectedSplat::opacity (-log2, negative where there is no reference) and ::colour (three half floats).
 struct OpacityColour {

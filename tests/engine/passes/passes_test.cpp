@@ -336,13 +336,14 @@ TEST_CASE_FIXTURE(Gpu, "compact lists what is visible in the scene's order, with
         const SceneOnDevice device(*this, view.scene, {view.eye}, settings.near);
         const Compacted compacted = compactOnDevice(*this, device, twin.splats, settings.order_from);
         CHECK(compacted.splats == twin.splats);
-        // Keys order as the floats they stand for; those are the depths, up to a few roundings of the distance, or its squares.
+        // Keys order as the floats they stand for; those are the depths or distances, up to a few roundings of the distance.
         double worst = 0.0;
         for (std::size_t i = 0; i < compacted.keys.size(); ++i) {
+            const double depth = settings.order_from ? std::sqrt(twin.depths[i]) : twin.depths[i];
             const double unit =
-                settings.order_from ? twin.depths[i] : test::distanceToRound(glm::dvec3(view.scene.positions[twin.splats[i]]), view.eye);
-            worst = std::max(worst,
-                             std::abs(static_cast<double>(test::floatOfKey(compacted.keys[i])) - twin.depths[i]) / (test::kEpsilon * unit));
+                settings.order_from ? depth : test::distanceToRound(glm::dvec3(view.scene.positions[twin.splats[i]]), view.eye);
+            const auto [least, most] = test::depthsOfKey(compacted.keys[i], static_cast<float>(settings.near));
+            worst = std::max(worst, std::max(least - depth, depth - most) / (test::kEpsilon * unit));
         }
         CHECK(worst <= 8.0);  // measured: 2.4
     };
