@@ -7,7 +7,11 @@
 
 namespace binosplat {
 
-KernelTable presentKernels() { return everyVariant<PresentKernel>(); }
+KernelTable presentKernels() {
+    KernelTable table = everyVariant<PresentKernel>();
+    append(table, everyVariant<TurnKernel>());
+    return table;
+}
 
 bool Presenter::takes(vk::Format format) {
     using Format = vk::Format;
@@ -23,7 +27,10 @@ Presenter::Presenter(const Context& context, vk::Format format)
     check(takes(format), "pictures leave as 8-bit RGBA or BGRA, not as {}", vk::to_string(format));
 }
 
-void Presenter::makeKernels() { kernels_.get(PresentKernel{.half_colours = true}); }
+void Presenter::makeKernels() {
+    kernels_.get(PresentKernel{.half_colours = true});
+    kernels_.get(TurnKernel{});
+}
 
 void Presenter::makeRoom(glm::uvec2 size_px, bool with_depth) {
     const std::uint64_t pixel_count = std::uint64_t{size_px.x} * size_px.y;
@@ -60,6 +67,23 @@ void Presenter::record(Commands& commands, const PresentedEye& eye, double near)
                       (eye.size_px.y + 7) / 8);
     commands.copyToImage(pixels_, eye.colour, eye.size_px, vk::ImageAspectFlagBits::eColor);
     if (with_depth) { commands.copyToImage(depths_, eye.depth, eye.size_px, vk::ImageAspectFlagBits::eDepth); }
+}
+
+const Buffer& Presenter::turn(Commands& commands, glm::uvec2 picture_px, glm::uvec2 view_px, const glm::dmat3& picture_from_view) {
+    const std::uint64_t bytes = sizeof(gpu::uint) * view_px.x * view_px.y;
+    if (turned_.bytes() < bytes) { turned_ = Buffer(context_, "turned pixels", bytes); }
+    const glm::mat3 matrix(picture_from_view);
+    const gpu::TurnPass pass{.pixels = pixels_.address<gpu::uint>(),
+                             .shown = turned_.address<gpu::uint>(),
+                             .column_x = matrix[0],
+                             .column_y = matrix[1],
+                             .column_z = matrix[2],
+                             .picture_px = picture_px,
+                             .view_px = view_px,
+                             .linear = linear_ ? 1u : 0u};
+    commands.beginPass({Role::kNone, TurnKernel::kStage, TurnKernel::kShader});
+    commands.dispatch(kernels_.get(TurnKernel{}), pass, (view_px.x + 15) / 16, (view_px.y + 7) / 8);
+    return turned_;
 }
 
 }  // namespace binosplat

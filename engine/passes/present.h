@@ -37,12 +37,16 @@ public:
     void rebuildKernels() { kernels_.rebuild(); }
     // The bytes of the eye that was recorded last, rows top to bottom, for showing them elsewhere.
     [[nodiscard]] const Buffer& pixels() const { return pixels_; }
+    // The same as a view from the same place with other axes shows them. The matrix takes places in the view, in pixels, to those in the
+    // picture. Makes room first; only the first of a submission may need it.
+    const Buffer& turn(Commands& commands, glm::uvec2 picture_px, glm::uvec2 view_px, const glm::dmat3& picture_from_view);
 
 private:
     const Context& context_;
     KernelCache kernels_;
     bool blue_first_, linear_;
     Buffer pixels_, depths_;  // one eye after the other
+    Buffer turned_;
 };
 
 }  // namespace binosplat

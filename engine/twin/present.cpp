@@ -78,4 +78,28 @@ std::vector<double> presentDepths(std::span<const glm::dvec4> rgba, std::span<co
     return shares;
 }
 
+std::vector<std::uint32_t> turn(std::span<const std::uint32_t> words, glm::uvec2 picture_px, glm::uvec2 view_px,
+                                const glm::dmat3& picture_from_view, bool linear) {
+    std::vector<std::uint32_t> shown;
+    const glm::dvec2 last(picture_px - 1u);
+    for (std::uint32_t i = 0; i < view_px.x * view_px.y; ++i) {
+        const glm::dvec3 ray = picture_from_view * glm::dvec3(i % view_px.x + 0.5, i / view_px.x + 0.5, 1.0);
+        const glm::dvec2 place = glm::clamp(glm::dvec2(ray) / ray.z - 0.5, glm::dvec2(0.0), last), low = glm::floor(place);
+        std::uint32_t word = 0;
+        for (int channel = 0; channel < 4; ++channel) {
+            const bool encoded = !linear && channel < 3;
+            double light = 0.0;
+            for (const glm::dvec2 corner : {glm::dvec2(0, 0), glm::dvec2(1, 0), glm::dvec2(0, 1), glm::dvec2(1, 1)}) {
+                const glm::dvec2 share = glm::mix(1.0 - (place - low), place - low, corner), at = glm::min(low + corner, last);
+                const double value =
+                    (words[static_cast<std::size_t>(at.y) * picture_px.x + static_cast<std::size_t>(at.x)] >> (8 * channel) & 255) / 255.0;
+                light += share.x * share.y * (encoded ? lightOf(value) : value);
+            }
+            word |= byteOf(encoded ? encodedOf(light) : light, false) << (8 * channel);
+        }
+        shown.push_back(word);
+    }
+    return shown;
+}
+
 }  // namespace binosplat::reference

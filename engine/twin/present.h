@@ -29,4 +29,8 @@ std::vector<std::uint32_t> presentOver(std::span<const glm::dvec4> rgba, std::sp
 // near / (D/A), and the offset: 1 at the near plane and before it, 0 where alpha stays under 1/255.
 std::vector<double> presentDepths(std::span<const glm::dvec4> rgba, std::span<const double> depth_sums, const Presentation& presentation);
 
+// turn: such words as a view with other axes shows them, each from the four around its place, in light. `linear`: bytes are light.
+std::vector<std::uint32_t> turn(std::span<const std::uint32_t> words, glm::uvec2 picture_px, glm::uvec2 view_px,
+                                const glm::dmat3& picture_from_view, bool linear);
+
 }  // namespace binosplat::reference

@@ -305,6 +305,18 @@ struct PresentPass {
     uint kept_bits;    // of each word of pixels: stay as they are, for a picture of both eyes
 };
 
+// turn: a presented picture as a view with other axes shows it.
+struct TurnPass {
+    Uints pixels;   // of the picture, as PresentPass leaves them
+    Uints shown;    // out: of the view
+    vec3 column_x;  // of the matrix from places in the view, in pixels, to those in the picture
+    vec3 column_y;
+    vec3 column_z;
+    uvec2 picture_px;
+    uvec2 view_px;
+    uint linear;  // 1: bytes count as light
+};
+
 BINOSPLAT_END_SHARED
 
 #endif

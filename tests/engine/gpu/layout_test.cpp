@@ -86,6 +86,7 @@ std::vector<Layout> hostLayouts() {
         LAYOUT(SortScatterPass, keys_in, values_in, keys_out, values_out, histograms, run_sums, digit_begins, list, shift, digits),
         LAYOUT(PresentPass, colours, half_colours, depths, words, tile_kinds, pixel_classes, pixels, device_depths, mesh_depths, size_px,
                depth_scale, depth_offset, blue_first, linear, see_through, over, kept_bits),
+        LAYOUT(TurnPass, pixels, shown, column_x, column_y, column_z, picture_px, view_px, linear),
     };
 }
 

@@ -210,6 +210,25 @@ TEST_CASE_FIXTURE(Gpu, "the bytes reach an image, rows top to bottom, and images
     CHECK_THROWS_WITH(Presenter(context(), vk::Format::eR16G16B16A16Sfloat), doctest::Contains("8-bit RGBA or BGRA"));
 }
 
+TEST_CASE_FIXTURE(Gpu, "a window shows what a view with other axes sees of it, and the same bytes where these are its own") {
+    const glm::uvec2 size_px(21, 13), view_px(10, 7);
+    const Colours colours = makeColours(size_px);
+    const Picture eye{.colours = upload("colours", colours), .depths = {}};
+    const Bytes shown = reference::present(asDoubles(colours), {});
+    const DeviceImage image(context(), size_px);
+    Presenter presenter(context(), DeviceImage::kFormat);
+    const glm::dmat3 within(1, 0, 0, 0, 1, 0, 5, 3, 1), turned(0.9, -0.2, 0.004, 0.3, 1.1, -0.006, 3.3, 2.7, 1.0);
+    for (const glm::dmat3& picture_from_view : {within, turned}) {
+        const Buffer readback(context(), "read-back", sizeof(std::uint32_t) * view_px.x * view_px.y, MemoryKind::kReadback);
+        run([&](Commands& commands) {
+            presenter.record(commands, {&eye, size_px, nullptr, *image.image, {}}, 0.2);
+            commands.copy(presenter.turn(commands, size_px, view_px, picture_from_view), readback, readback.bytes());
+        });
+        CHECK(countOff(readback.mapped<std::uint32_t>(), reference::turn(shown, size_px, view_px, picture_from_view, false),
+                       picture_from_view == within ? 0 : 1) == 0);
+    }
+}
+
 TEST_CASE_FIXTURE(Gpu, "smaller copies of a picture are the mean of its pixels, down to a single one, in the light that they stand for") {
     constexpr glm::uvec2 kSize(8, 4);
     constexpr std::uint32_t kLevels = 4;
