@@ -44,33 +44,38 @@ public:
         : sampler_(view.picture, view.rect),
           tangents_(view.fov),
           view_from_eye_(glm::mat3_cast(glm::conjugate(view.stage_from_view.orientation) * eye.stage_from_eye.orientation)) {
-        is_same_grid_ = view.rect.extent == eye.size_px && isNearlyTheEye(eye);
+        shift_px_ = findShift(eye, view.rect.extent);
     }
 
     [[nodiscard]] std::optional<glm::dvec4> at(std::uint32_t x, std::uint32_t y, const glm::dvec3& direction_eye) const {
-        if (is_same_grid_) { return sampler_.texel(x, y); }
+        if (shift_px_) { return sampler_.texel(x + shift_px_->x, y + shift_px_->y); }
         const std::optional<glm::dvec2> uv = tangents_.uvOf(view_from_eye_ * direction_eye);
         return uv ? sampler_.sampleInside(uv->x, uv->y) : std::nullopt;
     }
 
 private:
-    // Poses and angles went to the application and came back in single precision: a view that moves no corner by 0.02 pixels is the eye's.
-    [[nodiscard]] bool isNearlyTheEye(const EyeView& eye) const {
+    // If the view has all pixels of the eye: the place of the first. Poses and angles went to the application and came back in single
+    // precision, so that corners may be off by 0.02 pixels.
+    [[nodiscard]] std::optional<glm::uvec2> findShift(const EyeView& eye, const glm::uvec2& extent) const {
         constexpr double kSameGrid_px = 0.02;
         const Tangents eye_tangents(eye.fov);
-        for (const glm::dvec2 corner : {glm::dvec2(0, 0), glm::dvec2(1, 0), glm::dvec2(0, 1), glm::dvec2(1, 1)}) {
+        const auto placeOf = [&](const glm::dvec2& corner) {
             const std::optional<glm::dvec2> uv = tangents_.uvOf(view_from_eye_ * eye_tangents.direction(corner));
-            if (!uv) { return false; }
-            const glm::dvec2 moved_px = (*uv - corner) * glm::dvec2(eye.size_px);
-            if (!(glm::length(moved_px) < kSameGrid_px)) { return false; }
+            return uv ? *uv * glm::dvec2(extent) : glm::dvec2(-1.0);
+        };
+        const glm::dvec2 first = glm::round(placeOf({0.0, 0.0})), last = first + glm::dvec2(eye.size_px);
+        if (glm::any(glm::lessThan(first, glm::dvec2(0.0))) || glm::any(glm::greaterThan(last, glm::dvec2(extent)))) { return {}; }
+        for (const glm::dvec2 corner : {glm::dvec2(0, 0), glm::dvec2(1, 0), glm::dvec2(0, 1), glm::dvec2(1, 1)}) {
+            const glm::dvec2 moved_px = placeOf(corner) - (first + corner * glm::dvec2(eye.size_px));
+            if (!(glm::length(moved_px) < kSameGrid_px)) { return {}; }
         }
-        return true;
+        return glm::uvec2(first);
     }
 
     Sampler sampler_;
     Tangents tangents_;
     glm::dmat3 view_from_eye_;
-    bool is_same_grid_ = false;
+    std::optional<glm::uvec2> shift_px_;
 };
 
 // An eye's view with the inset in it, if there is one.

@@ -101,6 +101,16 @@ TEST_CASE("a projection of the eye's own view comes through byte for byte, also 
     CHECK(compose(eye, {projection(canvas, submitted)}) == seen);
     submitted.fov.right_rad += 0.004;  // a fifth of a pixel
     CHECK(compose(eye, {projection(canvas, submitted)}) != seen);
+    // Of more than the eye sees.
+    const Canvas wide = noise({70, 51});
+    const double across = (std::tan(0.6) + std::tan(0.9)) / 64, down = (std::tan(0.7) + std::tan(0.8)) / 48;
+    submitted.fov = {std::atan(-std::tan(0.9) - 4 * across), std::atan(std::tan(0.6) + 2 * across), std::atan(std::tan(0.7) + down),
+                     std::atan(-std::tan(0.8) - 2 * down)};
+    const RgbPicture part = compose(eye, {projection(wide, submitted)});
+    for (std::size_t i = 0; i < 3 * 64 * 48; ++i) {
+        const std::size_t column = i / 3 % 64 + 4, row = i / 3 / 64 + 1;
+        REQUIRE(part.bytes[i] == static_cast<std::uint8_t>(wide.bytes[4 * (70 * row + column) + i % 3]));
+    }
     CHECK(compose(eyeOf({3, 2}), {}) == RgbPicture{{3, 2}, std::vector<std::uint8_t>(18, 0)});
 }
 
