@@ -127,7 +127,7 @@ FrameSettings SceneRenderer::settingsOfFrame(ConnectedHeadset& headset, const Vi
 }
 
 void SceneRenderer::prepare(ConnectedHeadset& headset, ShownScene& shown, const Similarity& scene_from_room, const ViewSettings& settings,
-                            const FrameViews& views) {
+                            FrameViews& views) {
     LoadedScene& scene = *shown.get();
     frame_ = settingsOfFrame(headset, settings, scene_from_room.scale, views);
     eyes_.clear();

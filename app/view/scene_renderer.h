@@ -24,6 +24,7 @@ struct FrameViews {
     Pose room_from_head;
     std::optional<std::array<xr::EyeView, 2>> insets;  // from the same places, if the headset takes insets
     std::array<std::optional<Gaze>, 2> gazes;          // by Side: where the eyes look, if it matters
+    std::array<xr::EyeView, 2> pictures;               // what the frame's pictures are of, as the runtime is told
 };
 
 class SceneRenderer {
@@ -40,9 +41,10 @@ public:
     // The runtime refuses depth after all; false: depth was off already.
     bool dropDepth(ConnectedHeadset& headset);
 
-    // Prepares what render() will show. Throws Error if memory is short; then nothing is shown until this succeeds with less.
+    // Prepares what render() will show, and sets the pictures of `views`. Throws Error if memory is short; then nothing is shown until this
+    // succeeds with less.
     void prepare(ConnectedHeadset& headset, ShownScene& shown, const Similarity& scene_from_room, const ViewSettings& settings,
-                 const FrameViews& views);
+                 FrameViews& views);
     // Renders and presents that, in one submission with what `record_panel` records, and does not wait for it. With a `window`, one eye's
     // picture is kept for it.
     void render(ConnectedHeadset& headset, ShownScene& shown, const ViewSettings& settings, MirrorWindow* window,

@@ -47,7 +47,7 @@ private:
     void renderWaiting();
     void recordPanel(Commands& commands);
     // With the wearer's settings or, if memory is short, the previous ones; false: the scene is not shown in this frame.
-    bool prepareScene(const FrameViews& views);
+    bool prepareScene(FrameViews& views);
     // Chooses hands, rays and other things in the room for this frame.
     void chooseThings(const WearerNow& wearer, const FrameViews& views);
     // Reports errors of a scene that loads while it is shown, and once that all of it is there.

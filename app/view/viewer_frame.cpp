@@ -37,7 +37,7 @@ void Viewer::drawFrame() {
     if (scenes_.isNextReady()) { takeScene(); }
     const std::array<xr::EyeView, 2> eyes = withoutNoise(*located);
     const std::array<Pose, 2> room_from_eyes = roomFromEyes(eyes);
-    FrameViews views{eyes, room_from_eyes, roomFromHead(room_from_eyes), {}, {}};
+    FrameViews views{eyes, room_from_eyes, roomFromHead(room_from_eyes), {}, {}, eyes};
     if (const auto& insets = headset().session.insets()) {
         views.insets = withoutNoise({xr::EyeView{eyes[kLeft].pose, (*insets)[kLeft]}, xr::EyeView{eyes[kRight].pose, (*insets)[kRight]}});
     }
@@ -91,7 +91,7 @@ void Viewer::sayLive(LoadedScene& scene) {
                     counters.frames_waited_for_loading));
 }
 
-bool Viewer::prepareScene(const FrameViews& views) {
+bool Viewer::prepareScene(FrameViews& views) {
     ViewSettings asked = state_.settings();
     if (headset().inset) { asked.stereo.half_periphery = false; }  // as the renderer does
     scenes_.expect(asked.stereo, renderer_.sizePx(asked), asked.tint);
@@ -193,7 +193,7 @@ void Viewer::addEyes(xr::Layers& layers, const FrameViews& views) const {
         return images.layerEye(e, eyes[static_cast<std::size_t>(e)], options_.run.camera.near.value_or(kUsualNear));
     };
     const EyeImages& images = *headset().images;
-    const xr::LayerEye left = layerEye(images, views.eyes, kLeft), right = layerEye(images, views.eyes, kRight);
+    const xr::LayerEye left = layerEye(images, views.pictures, kLeft), right = layerEye(images, views.pictures, kRight);
     const bool see_through = renderer_.seesThrough(state_.settings());
     if (!headset().inset) { return layers.addEyes({left, right}, see_through); }
     const EyeImages& insets = *headset().inset_images;
