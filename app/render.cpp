@@ -1,10 +1,12 @@
 // `binosplat render`: one frame, or frames along a path, with pictures and a report.
 #include "app/blind_camera.h"
 #include "app/commands.h"
+#include "app/film.h"
 #include "app/load.h"
 #include "app/options/camera_options.h"
 #include "app/options/device_options.h"
 #include "app/options/modes.h"
+#include "app/panorama.h"
 #include "app/render_path.h"
 #include "app/report/report.h"
 #include "app/terminal/interrupt.h"
@@ -26,27 +28,24 @@ namespace {
 
 constexpr double kLongFrameMs = 2000.0;
 
-void writePictures(OutputFiles& files, StereoFrame& frame, const FrameSettings& settings, PictureLayout layout) {
-    const auto write = [&](const char* name, const Image& image) {
+void writeEyes(OutputFiles& files, const NamedPictures& pictures, const std::optional<Panorama>& panorama) {
+    for (const auto& [name, image] : pictures) {
         stopIfInterrupted();
         writePicture(files.staging() / name, PictureKind::kFloat, image);
-        writePicture(files.staging() / name, PictureKind::kDisplay, image);
-    };
-    if (settings.mode == Mode::kMono) {
-        write("mono", frame.readPicture(0));
-    } else {
-        const std::array<Image, 2> pictures{frame.readPicture(kLeft), frame.readPicture(kRight)};
-        if (layout == PictureLayout::kSeparate) {
-            write("left", pictures[kLeft]);
-            write("right", pictures[kRight]);
-        } else {
-            write("stereo", joined(pictures[kLeft], pictures[kRight], layout));
-        }
+        writeDisplay(files.staging() / name, image, panorama);
+    }
+}
+
+void writePictures(OutputFiles& files, StereoFrame& frame, const FrameSettings& settings, PictureLayout layout) {
+    std::vector<Image> pictures{frame.readPicture(0)};
+    if (settings.mode != Mode::kMono) {
+        pictures.push_back(frame.readPicture(kRight));
         // Tinted by how each tile was made; a mode that renders every eye in full has nothing to tint.
         const Image& affiliated = pictures[static_cast<std::size_t>(1 - settings.dominant)];
         writePicture(files.staging() / "roi", PictureKind::kDisplay,
                      makeRoiPicture(affiliated, frame.readTileKinds(), frame.readPixelClasses()));
     }
+    writeEyes(files, namedPictures(std::move(pictures), layout), {});
     writePicture(files.staging() / "dominant_depth", PictureKind::kFloat, frame.readDominantDepth());
 }
 
@@ -89,8 +88,10 @@ void runRender(const RenderOptions& options) {
     const StereoOptions& stereo = options.run.stereo;
     // Errors that can be detected early are reported before the scene is loaded.
     requirePeriphery(stereo);
+    if (options.video) { requireFfmpeg(); }
     OutputFiles files(options.out);
     const CameraFiles camera_files = readCameraFiles(options.run.camera);
+    const std::optional<Panorama> panorama = askedPanorama(options);
     const std::optional<HeadPath> path = options.path.empty() ? std::nullopt : std::optional(readHeadPath(options));
 
     LoadNotes notes;
@@ -134,8 +135,15 @@ void runRender(const RenderOptions& options) {
         const double units_per_metre = 1.0 / options.run.metres_per_unit;
         const PathReport said{context.deviceName(), used, cameras,
                               renderPath(frame, live, settings, cameras, stereo.axes, units_per_metre, *path, files)};
+        if (options.video) { writeFilm(files.staging(), path->film_pattern, path->rate_hz, filmTags(options)); }
         report(said);
         warnOfBlindFrames(said, positions);
+    } else if (panorama) {
+        const Cameras upright = panoramaCameras(cameras, *panorama);
+        EyePictures made = renderPanorama(frame, live, settings, upright, *panorama);
+        writeEyes(files, namedPictures(std::move(made.pictures), options.layout), panorama);
+        report(FrameReport{context.deviceName(), used, upright, made.result});
+        if (made.result.sees_nothing) { warn(fmt::format("{}: no splat is seen from there", options.scene)); }
     } else {
         settings.keep_classes = true;
         const std::span<const Eye> eyes = stereo.mode == Mode::kMono ? std::span(&cameras.middle, 1) : std::span<const Eye>(cameras.eyes);

@@ -8,8 +8,10 @@
 #include "engine/frame/staying_axes.h"
 #include "engine/picture/image_io.h"
 #include "engine/picture/join.h"
+#include "engine/picture/panorama_tags.h"
 #include "engine/picture/roi_picture.h"
 #include "engine/picture/turned.h"
+#include "engine/setup/text_file.h"
 
 #include <fmt/format.h>
 
@@ -59,16 +61,34 @@ void requireNoOthers(const std::filesystem::path& folder, std::size_t frames, co
 
 }  // namespace
 
-Image joined(const Image& left, const Image& right, PictureLayout layout) {
-    return layout == PictureLayout::kSideBySide ? besideOneAnother(left, right) : aboveOneAnother(left, right);
+NamedPictures namedPictures(std::vector<Image> eyes, PictureLayout layout) {
+    const bool beside = layout == PictureLayout::kSideBySide;
+    if (layout != PictureLayout::kSeparate) { eyes = {beside ? besideOneAnother(eyes[0], eyes[1]) : aboveOneAnother(eyes[0], eyes[1])}; }
+    NamedPictures named;
+    for (const std::string_view name : eyeNames(eyes.size() == 1, layout)) { named.emplace_back(name, std::move(eyes[named.size()])); }
+    return named;
+}
+
+void writeDisplay(const std::filesystem::path& stem, const Image& image, const std::optional<Panorama>& panorama) {
+    const std::filesystem::path path = writePicture(stem, PictureKind::kDisplay, image).front();
+    if (!panorama || image.size_px != panorama->size_px || path.extension() != ".png") { return; }
+    writeText(path, withPanoramaTags(readTextFile(path, "a picture", SIZE_MAX), *panorama));
 }
 
 HeadPath readHeadPath(const RenderOptions& options) {
     HeadMotion motion = readHeadMotion(options.path, options.path_axes, options.segment);
     if (!motion.note().empty()) { fmt::print(stderr, "binosplat: {}\n", motion.note()); }
     std::vector<double> times_s = frameTimes(motion, options.segment, options.path);
-    requireNoOthers(options.out, times_s.size(), eyeNames(options.run.stereo.mode == Mode::kMono, options.layout));
-    return {std::move(motion), std::move(times_s), options.layout};
+    const std::vector<std::string_view> eyes = eyeNames(options.run.stereo.mode == Mode::kMono, options.layout);
+    requireNoOthers(options.out, times_s.size(), eyes);
+    const double length_s = times_s.back() - times_s.front();
+    const double mean_rate_hz = length_s > 0.0 ? static_cast<double>(times_s.size() - 1) / length_s : 1.0;
+    return {std::move(motion),
+            std::move(times_s),
+            options.layout,
+            askedPanorama(options),
+            options.segment.rate_hz.value_or(mean_rate_hz),
+            fmt::format("frame_%06d_{}{}", eyes[0], extensionOf(PictureKind::kDisplay))};
 }
 
 std::vector<PathFrame> renderPath(StereoFrame& frame, LiveScene* live, const FrameSettings& path_settings, const Cameras& start, Axes kind,
@@ -79,36 +99,36 @@ std::vector<PathFrame> renderPath(StereoFrame& frame, LiveScene* live, const Fra
     const bool stay = kind == Axes::kStay, mono = settings.mode == Mode::kMono;
     std::vector<PathFrame> frames;
     StayingAxes axes(glm::radians(kAxesMarginDegrees));
-    ProgressLine line(fmt::format("rendering {} frames", path.times_s.size()));
-    for (const double time_s : path.times_s) {
-        const Pose world_from_middle = path.motion.cameraAt(time_s, start.middle.world_from_camera, units_per_metre);
-        const Cameras cameras = moveCameras(start, world_from_middle);
+    const auto renderFlat = [&](const Cameras& cameras) {
         const std::span<const Eye> views = mono ? std::span(&cameras.middle, 1) : std::span<const Eye>(cameras.eyes);
         const std::span<const Eye> eyes = stay ? axes.follow(views) : views;
         if (stay) {
             settings.hidden_tiles = axes.hiddenTiles();
             settings.gazes = turnGazes(path_settings.gazes, views, eyes);
         }
-        if (live != nullptr) {
-            live->setTime(time_s - path.times_s.front());
-            settle(*live, eyes);
-        }
+        if (live != nullptr) { settle(*live, eyes); }
         // A device's first frame compiles kernels, which must not count in the report.
         if (frames.empty()) { frame.render(eyes, settings); }
-        line.show(static_cast<double>(frames.size()) / static_cast<double>(path.times_s.size()));
-        FrameResult result = frame.render(eyes, settings);
-        if (live != nullptr) { result.counters.streaming = streamingOf(*live); }
-        const auto shown = [&](int of) {
-            const auto e = static_cast<std::size_t>(of);
-            return showTurned(frame.readPicture(of), eyes[e], views[e]);
-        };
-        int eye = 0;
-        for (const std::string_view name : eyeNames(mono, path.layout)) {
-            stopIfInterrupted();
-            const Image picture = path.layout == PictureLayout::kSeparate ? shown(eye++) : joined(shown(kLeft), shown(kRight), path.layout);
-            writePicture(files.staging() / pictureName(frames.size(), name), PictureKind::kDisplay, picture);
+        EyePictures made{{}, frame.render(eyes, settings)};
+        for (std::size_t e = 0; e < eyes.size(); ++e) {
+            made.pictures.push_back(showTurned(frame.readPicture(static_cast<int>(e)), eyes[e], views[e]));
         }
-        frames.push_back({time_s, cameras, std::move(result)});
+        return made;
+    };
+    ProgressLine line(fmt::format("rendering {} frames", path.times_s.size()));
+    for (const double time_s : path.times_s) {
+        const Pose world_from_middle = path.motion.cameraAt(time_s, start.middle.world_from_camera, units_per_metre);
+        Cameras cameras = moveCameras(start, world_from_middle);
+        if (path.panorama) { cameras = panoramaCameras(cameras, *path.panorama); }
+        if (live != nullptr) { live->setTime(time_s - path.times_s.front()); }
+        line.show(static_cast<double>(frames.size()) / static_cast<double>(path.times_s.size()));
+        EyePictures made = path.panorama ? renderPanorama(frame, live, settings, cameras, *path.panorama) : renderFlat(cameras);
+        if (live != nullptr) { made.result.counters.streaming = streamingOf(*live); }
+        for (const auto& [name, picture] : namedPictures(std::move(made.pictures), path.layout)) {
+            stopIfInterrupted();
+            writeDisplay(files.staging() / pictureName(frames.size(), name), picture, path.panorama);
+        }
+        frames.push_back({time_s, cameras, std::move(made.result)});
     }
     // How the tiles of the last frame were made, if both eyes have tiles that were not rendered.
     if (!mono && !frame.readTileKinds(kLeft).empty() && !frame.readTileKinds(kRight).empty()) {

@@ -3,12 +3,18 @@
 
 #include "app/options/camera_options.h"
 #include "app/options/options.h"
+#include "app/panorama.h"
 #include "app/report/report.h"
 #include "engine/picture/image.h"
 #include "engine/setup/head_motion.h"
 #include "engine/setup/output_files.h"
 #include "engine/stream/live_scene.h"
 
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 namespace binosplat {
@@ -17,10 +23,16 @@ struct HeadPath {
     HeadMotion motion;
     std::vector<double> times_s;  // of the frames, since the motion's first pose
     PictureLayout layout;
+    std::optional<Panorama> panorama;
+    double rate_hz;            // of a film of the frames
+    std::string film_pattern;  // of the names of their pictures, if there is one for each frame
 };
 
-// Both eyes' pictures in one, in a layout that is not separate.
-Image joined(const Image& left, const Image& right, PictureLayout layout);
+// Pictures of eyes by the names of their files: mono, left and right, or stereo for both in one.
+using NamedPictures = std::vector<std::pair<std::string_view, Image>>;
+NamedPictures namedPictures(std::vector<Image> eyes, PictureLayout layout);
+// As displayed, to `stem` and the extension. A panorama of one eye says so to galleries, if the format is PNG.
+void writeDisplay(const std::filesystem::path& stem, const Image& image, const std::optional<Panorama>& panorama);
 
 // --path, at each of its poses or --rate times a second. Throws Error if the file cannot be used, or if the output folder holds numbered
 // pictures that the new ones would not replace: nobody could tell them apart.

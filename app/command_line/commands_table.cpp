@@ -66,16 +66,46 @@ RunOptions withPast() {
     return standard;
 }
 
+// Panoramas are rendered in full, one eye or both, in an order of splats that is the same in all their faces.
+void settlePanorama(RenderOptions& render, const Settings& line) {
+    const bool around = render.projection == Projection::k360;
+    StereoOptions& stereo = render.run.stereo;
+    const Mode mode = around ? Mode::kMono : Mode::kShared;
+    const char* const name = around ? "360" : "vr180";
+    if (line.contains("mode") && stereo.mode != mode) {
+        throw Error(ExitCode::kUsage, fmt::format("--projection {} and --mode {} contradict each other: its mode is {}", name,
+                                                  nameOf(stereo.mode), nameOf(mode)));
+    }
+    if (stereo.foveation_deg > 0.0) {
+        throw Error(ExitCode::kUsage, fmt::format("--projection {} and --foveation contradict each other", name));
+    }
+    stereo.mode = mode;
+    if (!stereo.order) { stereo.order = Order::kDistance; }
+    const glm::uvec2 size = render.run.camera.size_px.value_or(around ? glm::uvec2(4096, 2048) : glm::uvec2(2048));
+    check(size.x == (around ? 2 : 1) * size.y, "--size is {}x{}, must be {} with --projection {}", size.x, size.y,
+          around ? "twice as wide as high" : "as wide as high", name);
+    render.run.camera.size_px = size;
+}
+
 Options makeRender(const Settings& given) {
     Settings line = given;
     RenderOptions render;
     render.scene = wordOf(line, "SCENE");
     render.run = readRun(line, {"view"}, line.contains("path") ? withPast() : RunOptions());
     render = readRows(renderRows(), line, render);
+    if (render.projection != Projection::kFlat) { settlePanorama(render, line); }
+    const bool both_eyes = render.run.stereo.mode != Mode::kMono, in_one = render.video || render.projection == Projection::kVr180;
+    if (both_eyes && in_one && !line.contains("layout")) { render.layout = PictureLayout::kSideBySide; }
+    if (const std::optional<glm::uvec2>& size = render.run.camera.size_px; render.video && size) {
+        check(size->x % 2 == 0 && size->y % 2 == 0, "--size is {}x{}, must be even with --video", size->x, size->y);
+    }
+    if (render.video && both_eyes && render.layout == PictureLayout::kSeparate) {
+        throw Error(ExitCode::kUsage, "--video and --layout separate contradict each other: a film has both eyes in one picture");
+    }
     if (render.layout != PictureLayout::kSeparate && render.run.stereo.mode == Mode::kMono) {
         throw Error(ExitCode::kUsage, "--layout and --mode mono contradict each other: there is one eye");
     }
-    for (const char* key : {"path-axes", "from", "seconds", "rate"}) {
+    for (const char* key : {"path-axes", "from", "seconds", "rate", "video"}) {
         if (line.contains(key) && render.path.empty()) { throw Error(ExitCode::kUsage, fmt::format("--{} is given without --path", key)); }
     }
     return render;

@@ -13,11 +13,13 @@ namespace binosplat {
 
 namespace {
 
-std::string replaced(std::string text, std::string_view what, std::string_view by) {
-    for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size())) {
-        text.replace(at, what.size(), by);
+std::string replaced(std::string_view text, std::string_view what, std::string_view by) {
+    std::string made;
+    for (std::size_t at = text.find(what); at != std::string_view::npos; at = text.find(what)) {
+        made.append(text.substr(0, at)).append(by);
+        text.remove_prefix(at + what.size());
     }
-    return text;
+    return made.append(text);
 }
 
 std::string usage(const Command& command) {

@@ -202,6 +202,11 @@ std::span<const OptionRow<RenderOptions>> renderRows() {
         {{"out", "", kRender, "DIR", "directory for pictures and report.json", "", /*required*/ true}, field::file<&RenderOptions::out>()},
         {{"layout", "", kRender, "KIND", "both eyes in pictures of their own, or in one: side by side, or top and bottom (the left eye's)"},
          field::named<&RenderOptions::layout>({"separate", "sbs", "tb"})},
+        {{"projection", "", kRender, "KIND",
+          "flat, or for headsets: vr180, all that lies ahead of both eyes, or 360, all around; the last two by equal angles, level and in "
+          "full"},
+         field::named<&RenderOptions::projection>({"flat", "vr180", "360"})},
+        {{"video", "", kRender, "", "with --path: also video.mp4 of its frames, by ffmpeg"}, field::flag<&RenderOptions::video>()},
         {{"path", "", kRender, "POSES.csv", "head poses to render relative to the camera, one numbered frame after the other"},
          field::file<&RenderOptions::path>()},
         {{"path-axes", "", kRender, "AXES", "axes of --path"}, field::named<&RenderOptions::path_axes>({"openxr", "unity"})},

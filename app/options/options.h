@@ -77,6 +77,8 @@ struct RunOptions {
 
 // Both eyes' pictures: in files of their own, or in one, the left eye's on the left or above.
 enum class PictureLayout { kSeparate, kSideBySide, kTopBottom };
+// As a window shows it; all that lies ahead of two eyes; all around the middle of them. The last two on a grid of equal angles.
+enum class Projection { kFlat, kVr180, k360 };
 
 struct RenderOptions {
     std::string scene;
@@ -86,6 +88,8 @@ struct RenderOptions {
     MotionAxes path_axes = MotionAxes::kOpenXr;  // --path-axes: of the recording
     MotionSegment segment;                       // --from, --seconds, --rate: of the path
     PictureLayout layout = PictureLayout::kSeparate;
+    Projection projection = Projection::kFlat;
+    bool video = false;  // --video: also a film of the path
 };
 
 struct BenchOptions {

@@ -1,0 +1,21 @@
+// Numbered pictures as a film, through ffmpeg.
+#pragma once
+
+#include "app/panorama.h"
+#include "engine/picture/panorama_tags.h"
+
+#include <filesystem>
+#include <string>
+
+namespace binosplat {
+
+// Throws Error unless ffmpeg can be run.
+void requireFfmpeg();
+
+// What galleries and players are told of the pictures.
+FilmTags filmTags(const RenderOptions& options);
+
+// `folder`/video.mp4 of its pictures `pattern`, in which %06d stands for their numbers from 0 on. Throws Error with what ffmpeg says.
+void writeFilm(const std::filesystem::path& folder, const std::string& pattern, double rate_hz, const FilmTags& tags);
+
+}  // namespace binosplat

@@ -1,0 +1,26 @@
+// What a file says of the picture in it, for galleries and players of headsets: GPano in the XMP of a PNG, and the boxes of Google's
+// Spherical Video V2 (docs/spherical-video-v2-rfc.md of its spatial-media) in an MP4.
+#pragma once
+
+#include "engine/picture/panorama.h"
+
+#include <optional>
+#include <string>
+
+namespace binosplat {
+
+// A PNG file whose picture is this panorama, with the tags.
+std::string withPanoramaTags(const std::string& png, const Panorama& panorama);
+
+enum class FilmEyes : unsigned char { kOne = 0, kTopBottom = 1, kSideBySide = 2 };  // as the box st3d counts; the left one first
+
+struct FilmTags {
+    FilmEyes eyes = FilmEyes::kOne;
+    std::optional<double> width_rad;  // of a panorama
+};
+
+// The box moov of an MP4, with the tags in the descriptions of its pictures. It must not lie before the pictures, whose places in the file
+// it names. Throws Error if it is not such a box.
+std::string withFilmTags(const std::string& moov, const FilmTags& tags);
+
+}  // namespace binosplat

@@ -1,0 +1,187 @@
+// Facts about pictures of all around: where things are in them, that no seam shows, and what their files say to players.
+#include "app/scores/metrics.h"
+#include "engine/picture/image_io.h"
+#include "engine/picture/panorama_tags.h"
+#include "tests/run_program.h"
+
+SUITE(panorama) {
+
+constexpr double kPi = std::numbers::pi;
+
+// 3D Gaussians, whose shape depends on the axes of the camera; from a place within the room.
+const std::string kPlace = "--eye 0.02,-1.5,1.2 --up 0,-1,0 ";
+
+glm::vec3 colourAt(const Image& image, std::size_t x, std::size_t y) {
+    const float* p = &image.values[static_cast<std::size_t>(image.channels) * (y * image.size_px.x + x)];
+    return {p[0], p[1], p[2]};
+}
+
+// The mean square of how much more a picture differs from another, turned to the left by `shift` columns, in a column than in the next one.
+double stepAt(const Image& a, const Image& b, std::size_t shift, std::size_t column) {
+    double sum = 0.0;
+    for (std::size_t y = 0; y < a.size_px.y; ++y) {
+        const auto differs = [&](std::size_t x) { return colourAt(a, x % a.size_px.x, y) - colourAt(b, (x + shift) % b.size_px.x, y); };
+        const glm::vec3 step = differs(column + 1) - differs(column);
+        sum += static_cast<double>(glm::dot(step, step)) / 3.0;
+    }
+    return sum / a.size_px.y;
+}
+
+// The bytes of the first box or chunk with these four letters, from these on.
+std::string after(const std::string& bytes, const std::string& letters) {
+    const std::size_t at = bytes.find(letters);
+    return at == std::string::npos ? "" : bytes.substr(at + 4);
+}
+std::uint32_t numberIn(const std::string& bytes, std::size_t at) {
+    std::uint32_t value = 0;
+    for (std::size_t i = at; i < at + 4; ++i) { value = value << 8 | static_cast<unsigned char>(bytes.at(i)); }
+    return value;
+}
+
+TEST_CASE("what the faces show of a direction, the panorama shows there, also where they meet") {
+    const auto colourOf = [](const glm::dvec3& direction) { return glm::vec4(0.5 + 0.4 * glm::normalize(direction), 1.0); };
+    for (const double width_rad : {kPi, 2.0 * kPi}) {
+        const Panorama panorama{width_rad, {static_cast<std::uint32_t>(std::lround(64.0 * width_rad / kPi)), 64}};
+        std::vector<Image> faces;
+        for (const Eye& face : facesOf(panorama, {})) {
+            Image& image = faces.emplace_back(Image{face.size_px, 4, {}});
+            for (std::size_t i = 0; i < image.pixelCount(); ++i) {
+                const glm::dvec2 at(static_cast<double>(i % face.size_px.x) + 0.5, static_cast<double>(i / face.size_px.x) + 0.5);
+                const glm::dvec2 slope = (at - glm::dvec2(face.intrinsics.cx, face.intrinsics.cy)) / face.intrinsics.fx;
+                const glm::vec4 colour = colourOf(face.world_from_camera.orientation * glm::dvec3(slope, 1.0));
+                for (int c = 0; c < 4; ++c) { image.values.push_back(colour[c]); }
+            }
+        }
+        const Image seen = panoramaOf(panorama, faces);
+        float worst = 0.0f;
+        for (std::size_t i = 0; i < seen.pixelCount(); ++i) {
+            const double right = ((static_cast<double>(i % seen.size_px.x) + 0.5) / seen.size_px.x - 0.5) * width_rad;
+            const double down = ((static_cast<double>(i / seen.size_px.x) + 0.5) / seen.size_px.y - 0.5) * kPi;
+            const glm::vec4 expected = colourOf({std::sin(right) * std::cos(down), std::sin(down), std::cos(right) * std::cos(down)});
+            for (int c = 0; c < 4; ++c) {
+                worst = std::max(worst, std::abs(seen.values[4 * i + static_cast<std::size_t>(c)] - expected[c]));
+            }
+        }
+        CHECK(worst < 5e-4f);  // the mean over a pixel is not its middle
+    }
+}
+
+TEST_CASE_FIXTURE(AtWork, "where faces of a picture of all around meet, nothing stands out against the same picture made of others") {
+    const auto around = [&](const std::string& look) {
+        work.go("render builtin:atelier --projection 360 --size 256x128 " + kPlace + look + " --out around");
+        return readPicture(work.path / "around/mono" BINOSPLAT_FLOAT_EXTENSION);
+    };
+    // An eighth of a turn to the right: what was an edge of a face is the middle of one, and the other way round.
+    const Image ahead = around("--look 0.02,-1.5,2.2"), aside = around("--look 1.02,-1.5,2.2");
+    REQUIRE(ahead.size_px == glm::uvec2(256, 128));
+    const Image nothing{ahead.size_px, 4, std::vector<float>(ahead.values.size(), 0.0f)};
+    double edges = 0.0, own = 0.0;
+    for (std::size_t edge = 32; edge < 256; edge += 64) {
+        edges += stepAt(ahead, aside, 256 - 32, edge - 1);
+        own += stepAt(ahead, nothing, 0, edge - 1);
+    }
+    MESSAGE("steps at the edges of faces: " << edges / own << " of the picture's own");
+    CHECK(edges < 0.5 * own);
+}
+
+TEST_CASE_FIXTURE(AtWork, "each direction is where a flat picture has it, for each eye") {
+    const std::string look = "--look 0.02,-1.5,2.2 --ipd 0.3 ";
+    work.go("render builtin:atelier --projection vr180 --layout separate --size 256x256 --out around " + kPlace + look);
+    work.go("render builtin:atelier --mode shared --order distance --fov-x 90 --size 512x512 --out flat " + kPlace + look);
+    const auto picture = [&](const std::string& name) { return readPicture(work.path / (name + BINOSPLAT_FLOAT_EXTENSION)); };
+    const auto differ = [&](const std::string& around, const std::string& flat) {
+        const Image a = picture("around/" + around), f = picture("flat/" + flat);
+        double sum = 0.0, count = 0.0;
+        for (std::size_t y = 80; y < 176; ++y) {
+            for (std::size_t x = 80; x < 176; ++x) {
+                const double right = (static_cast<double>(x) + 0.5) * kPi / 256.0 - kPi / 2.0,
+                             down = (static_cast<double>(y) + 0.5) * kPi / 256.0 - kPi / 2.0;
+                const glm::dvec2 at(std::tan(right), std::tan(down) / std::cos(right));
+                // The mean of the four pixels around, which are half as wide.
+                const glm::dvec2 place = glm::floor(256.0 * at + 256.0 - 0.5);
+                glm::vec3 flat_colour(0.0f);
+                for (int i = 0; i < 4; ++i) {
+                    flat_colour += 0.25f * colourAt(f, static_cast<std::size_t>(place.x) + static_cast<std::size_t>(i % 2),
+                                                    static_cast<std::size_t>(place.y) + static_cast<std::size_t>(i / 2));
+                }
+                const glm::vec3 difference = colourAt(a, x, y) - flat_colour;
+                sum += glm::dot(difference, difference) / 3.0, count += 1.0;
+            }
+        }
+        return sum / count;
+    };
+    for (const std::string eye : {"left", "right"}) {
+        const double own = differ(eye, eye), other = differ(eye, eye == "left" ? "right" : "left");
+        MESSAGE(eye << ": " << -10.0 * std::log10(own) << " dB, as the other " << -10.0 * std::log10(other));
+        CHECK(own < 0.2 * other);
+    }
+}
+
+TEST_CASE_FIXTURE(AtWork, "a picture of all around tells galleries so, and is a picture still") {
+    work.go("render builtin:one-splat --projection 360 --size 64x32 --out out");
+#ifdef BINOSPLAT_HAS_PNG
+    const std::string png = work.bytesOf("out/mono.png");
+    const std::string text = after(png, "iTXt");
+    CHECK(text.starts_with("XML:com.adobe.xmp" + std::string(5, '\0')));
+    for (const char* said : {"ProjectionType=\"equirectangular\"", "FullPanoWidthPixels=\"64\"", "CroppedAreaLeftPixels=\"0\""}) {
+        CHECK(text.find(said) != std::string::npos);
+    }
+    CHECK(readPicture(work.path / "out/mono.png").size_px == glm::uvec2(64, 32));
+#endif
+    work.checkRefused("render builtin:one-splat --projection 360 --size 64x64 --out no", 1,
+                      "--size is 64x64, must be twice as wide as high");
+    work.checkRefused("render builtin:one-splat --projection vr180 --mode paper --out no", 2, "its mode is shared");
+}
+
+// A box of an MP4.
+std::string box(const std::string& type, const std::string& content) {
+    const auto size = static_cast<std::uint32_t>(8 + content.size());
+    std::string bytes;
+    for (const int shift : {24, 16, 8, 0}) { bytes += static_cast<char>(size >> shift); }
+    return bytes + type + content;
+}
+// The index of a film as ffmpeg writes it, as far as it matters.
+std::string indexOf(const std::string& tags) {
+    const std::string picture = std::string(78, 'p') + box("avcC", "decoder") + tags + box("pasp", "12345678");
+    const std::string table = box("stsd", std::string(7, '\0') + '\1' + box("avc1", picture)) + box("stts", "times");
+    return box("moov", box("mvhd", "m") + box("trak", box("tkhd", "t") + box("mdia", box("mdhd", "d") + box("minf", box("stbl", table)))) +
+                           box("udta", "u"));
+}
+
+TEST_CASE("the boxes that say how a film was projected lie after the decoder's, and all boxes around them grow by as much") {
+    const std::string none(4, '\0'), quarter = "\x40" + std::string(3, '\0');
+    const auto sphere = [&](const std::string& side) {
+        return box("sv3d", box("svhd", none + "binosplat" + '\0') +
+                               box("proj", box("prhd", std::string(16, '\0')) + box("equi", none + none + none + side + side)));
+    };
+    CHECK(withFilmTags(indexOf(""), {FilmEyes::kSideBySide, kPi}) == indexOf(box("st3d", none + '\2') + sphere(quarter)));
+    CHECK(withFilmTags(indexOf(""), {FilmEyes::kOne, 2.0 * kPi}) == indexOf(sphere(none)));
+    CHECK(withFilmTags(indexOf(""), {FilmEyes::kTopBottom, {}}) == indexOf(box("st3d", none + '\1')));
+    CHECK(!errorOf([] { (void)withFilmTags(box("moov", "none"), {}); }).empty());
+}
+
+TEST_CASE_FIXTURE(AtWork,
+                  "a path becomes a film, at its rate and with both eyes in each picture; without ffmpeg one line says what is missing") {
+    work.write("poses.csv", "time_s,x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,0,1\n0.04,0.01,0,0,0,0,0,1\n0.08,0.02,0,0,0,0,0,1\n");
+    // A program that does what is asked of it: it leaves a film, and says how it was called.
+    work.write("film", box("ftyp", "isom") + box("mdat", "pictures") + indexOf(""));
+    std::filesystem::create_directories(work.path / "bin");
+    const std::string here = work.path.string();
+    work.write("bin/ffmpeg", "#!/bin/sh\necho \"$@\" >" + here + "/called\nfor film; do :; done\n[ \"$film\" = -version ] || cp " + here +
+                                 "/film \"$film\"\n");
+    std::filesystem::permissions(work.path / "bin/ffmpeg", std::filesystem::perms::owner_all);
+    const std::string film = "render builtin:one-splat --path poses.csv --size 32x32 --video ";
+    work.go(film + "--projection vr180 --out out", "PATH=" + here + "/bin:" + environment("PATH"));
+    const std::string called = work.bytesOf("called");
+    CHECK(called.find("-framerate 25 ") != std::string::npos);
+    CHECK(called.find("frame_%06d_stereo") != std::string::npos);
+    const std::string bytes = work.bytesOf("out/video.mp4");
+    CHECK(numberIn(after(bytes, "equi"), 12) == 0x40000000u);
+    CHECK(after(bytes, "st3d").at(4) == '\2');
+    CHECK(readPicture(work.path / (std::string("out/frame_000002_stereo") + extensionOf(PictureKind::kDisplay))).size_px ==
+          glm::uvec2(64, 32));
+    work.checkRefused(film + "--out no", 1, "ffmpeg", "PATH=" + here);
+    CHECK(!work.holds("no"));
+}
+
+}  // SUITE(panorama)
