@@ -39,6 +39,17 @@
 #include <utility>
 #include <vector>
 
+namespace doctest {
+template <typename... Values>
+struct StringMaker<std::tuple<Values...>> {
+    static String convert(const std::tuple<Values...>& all) {
+        String text;
+        std::apply([&](const auto&... value) { ((text += (text.size() == 0 ? "" : ", ") + toString(value)), ...); }, all);
+        return text;
+    }
+};
+}  // namespace doctest
+
 #define SUITE(name)          \
     TEST_SUITE_BEGIN(#name); \
     namespace binosplat::test::name##_suite
@@ -65,6 +76,32 @@ inline std::vector<std::string> wordsIn(const std::string& text) {
 inline nlohmann::json expecting(nlohmann::json json, const nlohmann::json& keys) {
     json.merge_patch(keys);
     return json;
+}
+
+// What belongs together, in one comparison that prints both sides: CHECK(these(a.x, a.y) == these(1, 2)).
+template <typename... Values>
+std::tuple<Values...> these(Values&&... values) {
+    return std::tuple<Values...>(std::forward<Values>(values)...);
+}
+
+// What lies in a range is equal to it: CHECK(share == between(0.1, 0.2)).
+struct Range {
+    double low, high;
+    bool has_ends;
+
+    friend bool operator==(double value, const Range& range) {
+        return range.has_ends ? value >= range.low && value <= range.high : value > range.low && value < range.high;
+    }
+    friend std::ostream& operator<<(std::ostream& stream, const Range& range) { return stream << range.low << " to " << range.high; }
+};
+template <typename Low, typename High>
+Range between(Low low, High high) {
+    return {static_cast<double>(low), static_cast<double>(high), false};
+}
+// The same with its ends.
+template <typename Low, typename High>
+Range within(Low low, High high) {
+    return {static_cast<double>(low), static_cast<double>(high), true};
 }
 
 // From 0 to 1. The numbers of std::mt19937 are the same everywhere; those of the standard's distributions are not.

@@ -81,13 +81,10 @@ TEST_CASE("only a file on a disk is opened, and nothing else is waited for") {
         std::string reason;
         return openRegularFile(path, reason) != nullptr ? "opened" : reason;
     };
-    CHECK(reasonFor(work.path / "file") == "opened");
-    CHECK(reasonFor(work.path / "link") == "opened");
-    CHECK(reasonFor(work.path / "pipe") == "not a regular file");
-    CHECK(reasonFor("/dev/zero") == "not a regular file");
-    CHECK(reasonFor(work.path) == "is a directory");
-    CHECK(reasonFor(work.path / "none") == "No such file or directory");
-    CHECK(reasonFor(work.path / "file" / "below") == "Not a directory");
+    CHECK(these(reasonFor(work.path / "file"), reasonFor(work.path / "link"), reasonFor(work.path / "pipe"), reasonFor("/dev/zero")) ==
+          these("opened", "opened", "not a regular file", "not a regular file"));
+    CHECK(these(reasonFor(work.path), reasonFor(work.path / "none"), reasonFor(work.path / "file" / "below")) ==
+          these("is a directory", "No such file or directory", "Not a directory"));
 }
 
 TEST_CASE_FIXTURE(AtWork, "a file is read from anywhere, and its stamp tells when it was written to") {
@@ -101,8 +98,7 @@ TEST_CASE_FIXTURE(AtWork, "a file is read from anywhere, and its stamp tells whe
     CHECK(stampOf(file.get()) == stamp);
     std::array<char, 4> read{};
     CHECK(readAt(file.get(), 3, std::as_writable_bytes(std::span(read))) == 4u);
-    CHECK(std::string(read.data(), 4) == "3456");
-    CHECK(std::fgetc(file.get()) == '0');
+    CHECK(these(std::string(read.data(), 4), std::fgetc(file.get())) == these("3456", '0'));
     CHECK(readAt(file.get(), 8, std::as_writable_bytes(std::span(read))) == 2u);
     CHECK(readAt(file.get(), 10, std::as_writable_bytes(std::span(read))) == 0u);
     std::ofstream(work.path / "file", std::ios::app) << "more";
@@ -121,15 +117,12 @@ TEST_CASE_FIXTURE(AtWork, "a scene that is written does not go through a link th
         file.write("new", 3);
         file.commit();
     }
-    CHECK(work.bytesOf("scene.ply") == "new");
-    CHECK(work.bytesOf("victim") == "keep me");
+    CHECK(these(work.bytesOf("scene.ply"), work.bytesOf("victim")) == these("new", "keep me"));
     {
         PartFile given_up(target.string());
         given_up.write("half", 4);
     }
-    CHECK(work.bytesOf("scene.ply") == "new");
-    CHECK(work.bytesOf("victim") == "keep me");
-    CHECK(work.bytesOf(planted("-1")) == "somebody's");
+    CHECK(these(work.bytesOf("scene.ply"), work.bytesOf("victim"), work.bytesOf(planted("-1"))) == these("new", "keep me", "somebody's"));
     CHECK(std::distance(fs::directory_iterator(work.path), {}) == 5);
 }
 
@@ -224,9 +217,8 @@ TEST_CASE("the user's folders are where the environment says, and relative ones 
     const std::string home = environment("HOME"), cache = environment("XDG_CACHE_HOME"), config = environment("XDG_CONFIG_HOME");
     using Folders = std::pair<fs::path, fs::path>;
     CHECK(foldersWith("/home/somebody", "", "here") == Folders("/home/somebody/.cache", "/home/somebody/.config"));
-    CHECK(foldersWith("/home/somebody", "/caches", "/settings") == Folders("/caches", "/settings"));
-    CHECK(foldersWith("", "", "") == Folders());
-    CHECK(foldersWith("here", "", "") == Folders());
+    CHECK(these(foldersWith("/home/somebody", "/caches", "/settings"), foldersWith("", "", ""), foldersWith("here", "", "")) ==
+          these(Folders("/caches", "/settings"), Folders(), Folders()));
     CHECK(fileSystemRoots() == std::vector<fs::path>{"/"});
     foldersWith(home.c_str(), cache.c_str(), config.c_str());
 }

@@ -17,26 +17,21 @@ bool passesBudget(const Image& a, const Image& b) {
 TEST_CASE("a constant difference of 0.1 is 20 dB, and values beyond 0 to 1 are compared as they are") {
     // PSNR = -10 log10(0.1^2).
     const Difference difference = compare(makeGrey({4, 4}, 4, 0.5f), makeGrey({4, 4}, 4, 0.6f));
-    CHECK(difference.psnrDb() == doctest::Approx(20.0).epsilon(1e-6));
-    CHECK(difference.largest == doctest::Approx(0.1).epsilon(1e-6));
-    CHECK(difference.shareOff() == 1.0);
+    CHECK(these(difference.psnrDb(), difference.largest, difference.shareOff()) ==
+          these(doctest::Approx(20.0).epsilon(1e-6), doctest::Approx(0.1).epsilon(1e-6), 1.0));
     const Difference beyond = compare(makeGrey({2, 2}, 3, 2.0f), makeGrey({2, 2}, 3, 3.0f));
-    CHECK(beyond.psnrDb() == doctest::Approx(0.0));
-    CHECK(beyond.largest == 1.0);
+    CHECK(these(beyond.psnrDb(), beyond.largest) == these(doctest::Approx(0.0), 1.0));
 }
 
 TEST_CASE("a value is off only beyond the threshold, and in the channels asked for") {
     Image a = makeGrey({10, 1}, 1, 0.0f), b = a;
     b.values[3] = 1.9f / 255.0f;
     b.values[4] = 2.1f / 255.0f;
-    CHECK(compare(a, b, 1).off == 1);
-    CHECK(compare(a, b, 1).shareOff() == doctest::Approx(0.1));
-    CHECK(compare(a, b, 1, 0.0).off == 2);
+    CHECK(these(compare(a, b, 1).off, compare(a, b, 1).shareOff(), compare(a, b, 1, 0.0).off) == these(1, doctest::Approx(0.1), 2));
     a = makeGrey({3, 3}, 4, 0.5f);
     b = makeFlat({3, 3}, glm::vec3(0.5f), 4);
-    CHECK(compare(a, makeGrey({3, 3}, 3, 0.5f), 3).largest == 0.0);
-    CHECK(compare(a, b, 3).largest == 0.0);
-    CHECK(compare(a, b, 4).largest == 0.5);
+    CHECK(these(compare(a, makeGrey({3, 3}, 3, 0.5f), 3).largest, compare(a, b, 3).largest, compare(a, b, 4).largest) ==
+          these(0.0, 0.0, 0.5));
 }
 
 TEST_CASE("one value that is not finite fails, even if both pictures have it") {
@@ -46,10 +41,8 @@ TEST_CASE("one value that is not finite fails, even if both pictures have it") {
         a.values[1234] = bad;
         for (const Image& b : {good, a}) {
             const Difference difference = compare(a, b);
-            CHECK(difference.not_finite == 1);
-            CHECK(difference.off == 1);
-            CHECK(difference.largest == kInfinity);
-            CHECK(difference.psnrDb() == -kInfinity);
+            CHECK(these(difference.not_finite, difference.off, difference.largest, difference.psnrDb()) ==
+                  these(1, 1, kInfinity, -kInfinity));
             CHECK_FALSE(passesBudget(a, b));
         }
     }
@@ -98,8 +91,7 @@ TEST_CASE("each way to be wrong that a wearer notices has a figure of its own") 
     const Image blurred = draw([&](std::uint32_t x, std::uint32_t y, float grey) { return isTile(x, y) ? 0.5f : grey; });
     const VisibleErrors rivals = errorsOf(blurred, full);
     CHECK(rivals.rival > 0.3);
-    CHECK(rivals.badShare() == 0.0);
-    CHECK(rivals.edge == 0.0);
+    CHECK(these(rivals.badShare(), rivals.edge) == these(0.0, 0.0));
     CHECK(rivals.seam < 4e-4);  // a tenth of a step of 255
     CHECK(errorsOf(blurred, blurred).rival == 0.0);
 
@@ -107,8 +99,7 @@ TEST_CASE("each way to be wrong that a wearer notices has a figure of its own") 
         draw([](std::uint32_t x, std::uint32_t y, float grey) { return grey + ((x / 16 + y / 16) % 2 == 0 ? 0.02f : 0.0f); });
     const VisibleErrors seams = errorsOf(stepped, stepped);
     CHECK(seams.seam == doctest::Approx(0.02).epsilon(0.02));  // 5 steps of 255
-    CHECK(seams.badShare() == 0.0);
-    CHECK(seams.edge == 0.0);
+    CHECK(these(seams.badShare(), seams.edge) == these(0.0, 0.0));
     CHECK(seams.rival < 0.01);
 
     const Image streaked = draw([](std::uint32_t x, std::uint32_t y, float grey) { return x < 16 ? (y % 8 < 4 ? 0.3f : 0.5f) : grey; });

@@ -24,8 +24,7 @@ TEST_CASE("a value becomes the nearest of a display's, whatever it is") {
     for (const auto& [value, level] : {std::pair(-1.0f, 0), {0.4f, 0}, {0.6f, 1}, {254.4f, 254}, {254.6f, 255}, {1e30f, 255}}) {
         CHECK(quantize(value / 255.0f) == level);
     }
-    CHECK(quantize(std::numeric_limits<float>::infinity()) == 255);
-    CHECK(quantize(std::numeric_limits<float>::quiet_NaN()) == 0);
+    CHECK(these(quantize(std::numeric_limits<float>::infinity()), quantize(std::numeric_limits<float>::quiet_NaN())) == these(255, 0));
 }
 
 TEST_CASE_FIXTURE(AtWork, "a float picture comes back to the bit") {
@@ -34,9 +33,7 @@ TEST_CASE_FIXTURE(AtWork, "a float picture comes back to the bit") {
         if (channels != 4) {
             writePfm(work.path / "a.pfm", image);
             const Image back = readPicture(work.path / "a.pfm");
-            CHECK(back.size_px == image.size_px);
-            CHECK(back.channels == channels);
-            CHECK(back.values == image.values);
+            CHECK(these(back.size_px, back.channels, back.values) == these(image.size_px, channels, image.values));
         }
         const auto files = writePicture(work.path / "a.b", PictureKind::kFloat, image);
         REQUIRE(!files.empty());
@@ -92,9 +89,8 @@ TEST_CASE("colours of a picture with alpha are read as they are stored") {
     std::ofstream(folder.path / "a.png", std::ios::binary).write(reinterpret_cast<const char*>(kPng), sizeof kPng);
     const Image image = readPicture(folder.path / "a.png");
     REQUIRE(image.values.size() == 4);
-    CHECK(image.values[0] == doctest::Approx(200.0 / 255.0));
-    CHECK(image.values[1] == doctest::Approx(100.0 / 255.0));
-    CHECK(image.values[2] == doctest::Approx(50.0 / 255.0));
+    CHECK(these(image.values[0], image.values[1], image.values[2]) ==
+          these(doctest::Approx(200.0 / 255.0), doctest::Approx(100.0 / 255.0), doctest::Approx(50.0 / 255.0)));
 }
 
 #ifdef BINOSPLAT_OPENIMAGEIO

@@ -15,8 +15,7 @@ TEST_CASE("tiles are tinted up to their last pixel, and what is reprojected stay
     // 3 x 2 tiles over 33 x 17 pixels: the last column and the last row of tiles are one pixel wide.
     const std::vector<std::uint32_t> kinds{gpu::kTileEdge, 0, gpu::kTileCenter, gpu::kTilePredicted, 0, 0};
     const Image picture = makeRoiPicture(makeGrey({33, 17}, 4, 0.5f), kinds, {});
-    CHECK(picture.channels == 3);
-    CHECK(picture.size_px == glm::uvec2(33, 17));
+    CHECK(these(picture.channels, picture.size_px) == these(3, glm::uvec2(33, 17)));
     CHECK(isAt(picture, 0, 0, tinted(PixelOrigin::kEdgeRoi, 0.5f)));
     CHECK(isAt(picture, 15, 15, tinted(PixelOrigin::kEdgeRoi, 0.5f)));
     CHECK(isAt(picture, 16, 15, glm::vec3(0.5f)));

@@ -16,8 +16,7 @@ TEST_CASE("every headset of the repository is one that a person could wear, and 
         CHECK(names.insert(headset.name).second);
         CHECK(headset.source.starts_with("https://"));
         CHECK(headset.size_px.x <= gpu::kMostRowSteps * gpu::kArrivalsStep);  // a row fits into shared memory
-        CHECK(headset.eye_distance_m >= 0.055);
-        CHECK(headset.eye_distance_m <= 0.075);
+        CHECK(headset.eye_distance_m == within(0.055, 0.075));
         CHECK(headset.canting_rad >= 0.0);
         CHECK(headset.canting_rad < 0.2);
         canted += headset.canting_rad > 0.0 ? 1 : 0;
@@ -36,20 +35,16 @@ TEST_CASE("every headset of the repository is one that a person could wear, and 
             // From straight ahead of the wearer: canting turns them outwards.
             CHECK(glm::degrees(inwards - headset.canting_rad) > 30.0);
             CHECK(glm::degrees(outwards + headset.canting_rad) < 75.0);
-            CHECK(glm::degrees(angles.up_rad) > 35.0);
-            CHECK(glm::degrees(angles.up_rad) < 60.0);
-            CHECK(glm::degrees(-angles.down_rad) > 40.0);
-            CHECK(glm::degrees(-angles.down_rad) < 60.0);
+            CHECK(glm::degrees(angles.up_rad) == between(35.0, 60.0));
+            CHECK(glm::degrees(-angles.down_rad) == between(40.0, 60.0));
             // Pixels are nearly square: unequal angles and unequal sides belong together.
             const Eye& eye = eyes[side];
             CHECK(eye.intrinsics.fx / eye.intrinsics.fy == doctest::Approx(1.0).epsilon(0.25));
-            CHECK(eye.intrinsics.cx > 0.3 * eye.size_px.x);
-            CHECK(eye.intrinsics.cx < 0.7 * eye.size_px.x);
+            CHECK(eye.intrinsics.cx == between(0.3 * eye.size_px.x, 0.7 * eye.size_px.x));
             // A point 2 m ahead of the wearer lies towards the nose, right in the left picture: were the eyes swapped, it would not.
             const glm::dvec3 point = transform(inverse(eye.world_from_camera), {0.0, 0.0, 2.0});
             const double share = (eye.intrinsics.fx * point.x / point.z + eye.intrinsics.cx) / eye.size_px.x;
-            CHECK(share > (side == kLeft ? 0.5 : 0.0));
-            CHECK(share < (side == kLeft ? 1.0 : 0.5));
+            CHECK(share == between((side == kLeft ? 0.5 : 0.0), (side == kLeft ? 1.0 : 0.5)));
         }
     }
     CHECK(names.size() >= 8);
@@ -64,8 +59,7 @@ TEST_CASE("canted eyes turn outwards") {
     for (const int side : {kLeft, kRight}) {
         const double outwards = side == kLeft ? -1.0 : 1.0;
         const glm::dvec3 ahead = eyes[side].world_from_camera.orientation * glm::dvec3(0, 0, 1);
-        CHECK(ahead.x == doctest::Approx(outwards * std::sin(0.1)));
-        CHECK(ahead.y == doctest::Approx(0.0));
+        CHECK(these(ahead.x, ahead.y) == these(doctest::Approx(outwards * std::sin(0.1)), doctest::Approx(0.0)));
         CHECK(eyes[side].world_from_camera.position.x == doctest::Approx(outwards * 0.032));
     }
     // The mid-eye sees from the left eye's outer edge to the right eye's.
@@ -84,9 +78,8 @@ TEST_CASE_FIXTURE(AtWork, "a headset's file may name its lenses' centres, and mi
     };
     CHECK(read(top + left + right).lens_centres[kLeft] == glm::dvec3(0.0, 0.0, 1.0));
     const Headset named = read(top + left + "lens_centre = [-3, 2.5]\n" + right);
-    CHECK(named.lens_centres[kLeft].x == doctest::Approx(-std::tan(glm::radians(3.0))));
-    CHECK(named.lens_centres[kLeft].y == doctest::Approx(-std::tan(glm::radians(2.5))));
-    CHECK(named.lens_centres[kRight] == glm::dvec3(0.0, 0.0, 1.0));
+    CHECK(these(named.lens_centres[kLeft].x, named.lens_centres[kLeft].y, named.lens_centres[kRight]) ==
+          these(doctest::Approx(-std::tan(glm::radians(3.0))), doctest::Approx(-std::tan(glm::radians(2.5))), glm::dvec3(0.0, 0.0, 1.0)));
     const std::pair<std::string, const char*> mistakes[]{
         {top + left + "lens_centre = 3\n" + right, "h.toml:11: left.lens_centre must be two angles"},
         {top + left + "lens_centre = [1, 2, 3]\n" + right, "must be two angles"},

@@ -161,18 +161,15 @@ TEST_CASE("a segment's frames are its samples, or at a rate, and its end is not 
     const HeadMotion motion =
         parseHeadMotion("0,0,0,0,0,0,0,1\n0.5,1,0,0,0,0,0,1\n1,3,0,0,0,0,0,1\n2,3,0,0,0,0,0,1\n", "m", MotionAxes::kOpenXr);
     using Times = std::vector<double>;
-    CHECK(frameTimes(motion, {}, "m") == Times{0.0, 0.5, 1.0, 2.0});
-    CHECK(frameTimes(motion, {0.0, 1.0, {}}, "m") == Times{0.0, 0.5});
-    CHECK(frameTimes(motion, {0.0, {}, 2.0}, "m") == Times{0.0, 0.5, 1.0, 1.5, 2.0});
-    CHECK(frameTimes(motion, {0.0, 1.0, 2.0}, "m") == Times{0.0, 0.5});
-    CHECK(frameTimes(motion, {0.0, 2.0, 90.0}, "m").size() == 180);
+    CHECK(these(frameTimes(motion, {}, "m"), frameTimes(motion, {0.0, 1.0, {}}, "m"), frameTimes(motion, {0.0, {}, 2.0}, "m")) ==
+          these(Times{0.0, 0.5, 1.0, 2.0}, Times{0.0, 0.5}, Times{0.0, 0.5, 1.0, 1.5, 2.0}));
+    CHECK(these(frameTimes(motion, {0.0, 1.0, 2.0}, "m"), frameTimes(motion, {0.0, 2.0, 90.0}, "m").size()) == these(Times{0.0, 0.5}, 180));
     CHECK(frameTimes(motion, {0.0, 100.0, 2.0}, "m").size() == 5);  // no longer than it is
     // From between two samples on, relative to the pose there.
     const HeadMotion rest = motion.startingAt(0.75);
     CHECK(frameTimes(rest, {}, "m") == Times{0.0, 0.25, 1.25});
-    CHECK(rest.duration_s() == 1.25);
-    CHECK(rest.poseAt(0.0).position.x == doctest::Approx(2.0));
-    CHECK(rest.cameraAt(0.25, {}).position.x == doctest::Approx(1.0));
+    CHECK(these(rest.duration_s(), rest.poseAt(0.0).position.x, rest.cameraAt(0.25, {}).position.x) ==
+          these(1.25, doctest::Approx(2.0), doctest::Approx(1.0)));
     CHECK_THROWS_AS(frameTimes(motion, {0.0, {}, 1e6}, "m"), Error);
 }
 
@@ -180,8 +177,7 @@ TEST_CASE("the shared recording reads, and its wearer walks forward" * test::nee
     const auto data = binosplat::test::sharedData();
     if (!data) { return; }
     const HeadMotion motion = readHeadMotion(*data / "headmotion" / "User3.csv", MotionAxes::kUnity);
-    CHECK(motion.samples().size() == 4597);
-    CHECK(motion.duration_s() == doctest::Approx(76.5515291).epsilon(1e-9));
+    CHECK(these(motion.samples().size(), motion.duration_s()) == these(4597, doctest::Approx(76.5515291).epsilon(1e-9)));
     // While the head moves at 0.4 m/s or more, it moves along its line of sight rather than against it. Read as OpenXR's axes, the same
     // recording is of somebody who walks backwards: it was made in Unity's.
     double cosines = 0.0;

@@ -27,19 +27,13 @@ TEST_CASE_FIXTURE(AtWork, "a camera file is world-from-camera, its rows as they 
                                         glm::dvec3(0.0));
     REQUIRE(cameras.size() == 2);
     const Eye& eye = cameras[0].eye;
-    CHECK(cameras[0].name == "a");
-    CHECK(cameras[1].name == "1");
+    CHECK(these(cameras[0].name, cameras[1].name) == these("a", "1"));
     CHECK(glm::length(transform(eye.world_from_camera, {0, 0, 1}) - glm::dvec3(2, 2, 3)) < 1e-12);
     CHECK(glm::length(transform(eye.world_from_camera, {1, 0, 0}) - glm::dvec3(1, 2, 2)) < 1e-12);
-    CHECK(eye.size_px == glm::uvec2(640, 480));
-    CHECK(eye.intrinsics.cx == 320.0);
-    CHECK(eye.intrinsics.cy == 240.0);
+    CHECK(these(eye.size_px, eye.intrinsics.cx, eye.intrinsics.cy) == these(glm::uvec2(640, 480), 320.0, 240.0));
     const Eye half = resize(cameras[1].eye, {320, 240});
-    CHECK(half.intrinsics.fx == 250.0);
-    CHECK(half.intrinsics.fy == 255.0);
-    CHECK(half.intrinsics.cx == 150.0);
-    CHECK(half.intrinsics.cy == 100.0);
-    CHECK(half.size_px == glm::uvec2(320, 240));
+    CHECK(these(half.intrinsics.fx, half.intrinsics.fy, half.intrinsics.cx, half.intrinsics.cy, half.size_px) ==
+          these(250.0, 255.0, 150.0, 100.0, glm::uvec2(320, 240)));
 }
 
 TEST_CASE_FIXTURE(AtWork, "a Git LFS pointer is named as what it is") {
@@ -52,9 +46,7 @@ TEST_CASE_FIXTURE(AtWork, "a Git LFS pointer is named as what it is") {
 }
 
 TEST_CASE("numbers are read whole") {
-    CHECK(parseNumber("1.5") == 1.5);
-    CHECK(parseNumber("+2e-3") == 2e-3);
-    CHECK(parseNumber("-0.25") == -0.25);
+    CHECK(these(parseNumber("1.5"), parseNumber("+2e-3"), parseNumber("-0.25")) == these(1.5, 2e-3, -0.25));
     for (const char* text : {"", "1.5x", "x", "nan", "inf", "1,5", "0x10", "1e999", "--1", "+-1"}) {
         CHECK(!parseNumber(text).has_value());
     }
@@ -73,8 +65,7 @@ TEST_CASE_FIXTURE(AtWork, "output files appear together or not at all, and a run
     write("1", true);
     write("longer", false);
     CHECK(std::distance(fs::directory_iterator(folder), {}) == 2);
-    CHECK(fs::file_size(folder / "one") == 1);
-    CHECK(fs::file_size(folder / "two") == 1);
+    CHECK(these(fs::file_size(folder / "one"), fs::file_size(folder / "two")) == these(1, 1));
 }
 
 TEST_CASE_FIXTURE(AtWork, "an output folder whose path leaves no room for files is refused, and nothing of it stays") {
