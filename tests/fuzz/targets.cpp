@@ -1,7 +1,6 @@
 // Readers take files: the inputs are given to them in memory, under a name in /proc.
 #include "tests/fuzz/targets.h"
 
-#include "engine/error.h"
 #include "engine/files/load_scene.h"
 #include "engine/files/lod_meta.h"
 #include "engine/files/scene_targets.h"
@@ -19,15 +18,6 @@
 
 #include <sys/mman.h>
 #include <unistd.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdio>
-#include <cstdlib>
-#include <filesystem>
-#include <string_view>
-#include <vector>
 
 namespace binosplat::fuzz {
 

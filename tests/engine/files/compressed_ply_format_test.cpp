@@ -1,5 +1,4 @@
 // PlayCanvas compressed PLY: values worked out by hand, a real file, and headers that do not fit.
-#include "engine/files/load_scene.h"
 #include "tests/engine/files/hostile_scenes.h"
 #include "tests/shared_data.h"
 
@@ -13,26 +12,20 @@ TEST_CASE_FIXTURE(InFolder, "words lie between the bounds of their chunk") {
     const CompressedPly packed{.splats = 257, .position = 0x7ffu << 21 | 0x7ffu, .colour = 0xff0080ffu};
     const Scene scene = loadScene(folder.write("a.ply", packed.bytes()), 0, &notes);
     REQUIRE(scene.size() == 257);
-    CHECK(scene.positions[0] == glm::vec3(1.0f, -2.0f, 8.0f));
-    CHECK(scene.positions[255] == glm::vec3(1.0f, -2.0f, 8.0f));
-    CHECK(scene.positions[256] == glm::vec3(2.0f, -2.0f, 8.0f));
+    CHECK(these(scene.positions[0], scene.positions[255], scene.positions[256]) ==
+          these(glm::vec3(1.0f, -2.0f, 8.0f), glm::vec3(1.0f, -2.0f, 8.0f), glm::vec3(2.0f, -2.0f, 8.0f)));
     // Scales exp(-6), exp(-5), exp(-4): the first is dropped, the two others follow it.
-    CHECK(scene.scales[0].x == doctest::Approx(std::exp(-5.0)));
-    CHECK(scene.scales[0].y == doctest::Approx(std::exp(-4.0)));
-    CHECK(scene.opacities[0] == 1.0f);
+    CHECK(these(scene.scales[0].x, scene.scales[0].y, scene.opacities[0]) ==
+          these(doctest::Approx(std::exp(-5.0)), doctest::Approx(std::exp(-4.0)), 1.0f));
     // Colour between bounds: r all of -0.5 to 1.5, g none of 0 to 1, b 128/255 of 0 to 2.
-    CHECK(shown(scene, 0) == doctest::Approx(1.5));
-    CHECK(shown(scene, 1) == doctest::Approx(0.0));
-    CHECK(shown(scene, 2) == doctest::Approx(256.0 / 255.0));
-    CHECK(notes.three_scales);
-    CHECK(notes.median_flatness == doctest::Approx(std::exp(-1.0)));
-    CHECK(notes.sh_degree_in_file == 0);
+    CHECK(these(shown(scene, 0), shown(scene, 1), shown(scene, 2)) ==
+          these(doctest::Approx(1.5), doctest::Approx(0.0), doctest::Approx(256.0 / 255.0)));
+    CHECK(these(notes.three_scales, notes.median_flatness, notes.sh_degree_in_file) == these(true, doctest::Approx(std::exp(-1.0)), 0));
 
     // Colours without bounds are from 0 to 1; zero opacity stays zero.
     const Scene plain = loadScene(folder.write("a.ply", CompressedPly{.colour = 0xff008000u, .has_colour_bounds = false}.bytes()));
-    CHECK(shown(plain, 0) == doctest::Approx(1.0));
-    CHECK(shown(plain, 1) == doctest::Approx(0.0));
-    CHECK(shown(plain, 2) == doctest::Approx(128.0 / 255.0));
+    CHECK(these(shown(plain, 0), shown(plain, 1), shown(plain, 2)) ==
+          these(doctest::Approx(1.0), doctest::Approx(0.0), doctest::Approx(128.0 / 255.0)));
     CHECK(plain.opacities[0] == 0.0f);
 }
 
@@ -54,10 +47,8 @@ TEST_CASE_FIXTURE(InFolder, "SH bytes stand for the middle of their interval wit
     const Scene scene = loadScene(folder.write("a.ply", CompressedPly{.splats = 3, .rest = rest}.bytes()));
     REQUIRE(scene.sh_degree == 2);
     const float* sh = scene.sh.data() + 2 * 27;
-    CHECK(sh[3 * 1 + 0] == -4.0f);
-    CHECK(sh[3 * 2 + 0] == 4.0f);
-    CHECK(sh[3 * 1 + 1] == 8.0f * (64.5f / 256.0f - 0.5f));
-    CHECK(sh[3 * 8 + 2] == 8.0f * (200.5f / 256.0f - 0.5f));
+    CHECK(these(sh[3 * 1 + 0], sh[3 * 2 + 0], sh[3 * 1 + 1], sh[3 * 8 + 2]) ==
+          these(-4.0f, 4.0f, 8.0f * (64.5f / 256.0f - 0.5f), 8.0f * (200.5f / 256.0f - 0.5f)));
 }
 
 TEST_CASE("a real compressed PLY gives the values another decoder gave" * needsSharedData()) {
@@ -72,8 +63,7 @@ TEST_CASE("a real compressed PLY gives the values another decoder gave" * needsS
     CHECK(scene.opacities[300] == doctest::Approx(0.9450980));
     CHECK(shown(scene, 3 * 300) == doctest::Approx(0.0945961));
     CHECK(glm::distance(scene.positions[90853], {0.4553929f, -0.6415753f, 0.7538047f}) < 1e-6f);
-    CHECK(notes.median_flatness > 0.0);
-    CHECK(notes.median_flatness < 1.0);
+    CHECK(notes.median_flatness == between(0.0, 1.0));
 }
 
 TEST_CASE_FIXTURE(InFolder, "headers and counts that do not fit are named; a comment asks for antialiasing here, too") {

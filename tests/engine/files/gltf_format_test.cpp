@@ -1,5 +1,4 @@
 // glTF with KHR_gaussian_splatting: values, nodes, buffers, what is left out and what is refused.
-#include "engine/files/load_scene.h"
 #include "engine/files/quantized.h"
 #include "engine/files/scene_series.h"
 #include "engine/files/spz.h"
@@ -48,8 +47,7 @@ TEST_CASE_FIXTURE(InFolder, "a glTF holds what a PLY of the same splats holds, w
         CHECK(scene.by_distance);
         CHECK(scene.y_up);
         CHECK(scene.vertical_axis == 1);
-        CHECK(notes.lines.empty());
-        CHECK(notes.three_scales);
+        CHECK(these(notes.lines.empty(), notes.three_scales) == these(true, true));
         checkAlike(loadScene(folder.write("in_its_text", gltf.embedded())), expected);
         (void)folder.write("its splats.bin", gltf.binary());
         checkAlike(loadScene(folder.write("beside.gltf", gltf.json(R"(,"uri":"its%20splats.bin")"))), expected);
@@ -130,8 +128,7 @@ TEST_CASE("a node that lies far from 0, as those of 3D Tiles do, keeps its splat
     LoadNotes notes;
     const Scene scene = loadScene(folder.write("far.glb", gltf.glb()), 0, &notes);
     CHECK(glm::distance(scene.origin, away) < 10.0);
-    CHECK(scene.origin.z == 0.0);
-    CHECK(scene.origin == glm::round(scene.origin));
+    CHECK(these(scene.origin.z, scene.origin) == these(0.0, glm::round(scene.origin)));
     checkSays(notes.lines, "count from " + describeOrigin(scene));
     for (std::size_t i = 0; i < 3; ++i) {
         const glm::dvec3 expected = turn * glm::dvec3(plain.positions[i]) + away;
@@ -157,9 +154,7 @@ TEST_CASE_FIXTURE(InFolder, "several primitives and nodes are one scene, of the 
     gltf.roots = "[1,0]";  // the last node is in no scene
     const Scene scene = loadScene(folder.write("several.glb", gltf.glb()));
     REQUIRE(scene.size() == 12);
-    CHECK(scene.sh_degree == 1);
-    CHECK(scene.positions[0].x == 11.0f);
-    CHECK(scene.positions[6].x == 1.0f);
+    CHECK(these(scene.sh_degree, scene.positions[0].x, scene.positions[6].x) == these(1, 11.0f, 1.0f));
     CHECK(scene.sh[3] != 0.0f);           // of the first primitive
     CHECK(scene.sh[3 * 12 + 3] == 0.0f);  // of the second, which has the constant band alone
     CHECK(scene.sh[3 * 12 + 1] == scene.sh[1]);
@@ -174,9 +169,8 @@ TEST_CASE_FIXTURE(InFolder, "what the extension's keys say is kept, and what the
     };
     const std::string usual = R"("kernel":"ellipse","colorSpace":"srgb_rec709_display")";
     CHECK(loadWith(usual + R"(,"sortingMethod":"cameraDistance","projection":"perspective")").by_distance);
-    CHECK(notes.axes == "x left, y up, z front; right-handed (glTF's own)");
-    CHECK(notes.colour_space == "srgb_rec709_display (named by the file)");
-    CHECK(notes.lines.empty());
+    CHECK(these(notes.axes, notes.colour_space, notes.lines.empty()) ==
+          these("x left, y up, z front; right-handed (glTF's own)", "srgb_rec709_display (named by the file)", true));
     CHECK_FALSE(loadWith(usual + R"(,"sortingMethod":"zDepth")").by_distance);
     CHECK(notes.lines.empty());
     CHECK(loadWith(R"("kernel":"cube","colorSpace":"p3","sortingMethod":"none","projection":"fisheye")").by_distance);
@@ -248,8 +242,7 @@ TEST_CASE("the fifteen cases of the conformance matrix give the values that they
             const double in_all = scene.is_linear ? stored : (lightOf(0.5 + kShConstant * stored) - 0.5) / kShConstant;
             CHECK(all.sh[48 * node + i] == doctest::Approx(i < 3 ? in_all : stored).epsilon(1e-5));
         }
-        CHECK(scene.is_linear == (name != "scale_f32"));
-        CHECK(scene.positions[0] == glm::vec3(1.0f, 2.0f, 3.0f));
+        CHECK(these(scene.is_linear, scene.positions[0]) == these((name != "scale_f32"), glm::vec3(1.0f, 2.0f, 3.0f)));
         // Half a turn about x, which changes no covariance along the axes; all scales are logarithms of the draft.
         const std::map<std::string, glm::dvec3> scales{{"scale_f32", {0.2, -0.1, 0.7}},
                                                        {"scale_i8", {1, -2, 3}},

@@ -1,5 +1,4 @@
 // Broken scene files of every format: each loads into a whole scene or is refused in one line.
-#include "engine/files/load_scene.h"
 #include "engine/files/sog.h"
 #include "tests/engine/files/gltf_files.h"
 #include "tests/engine/files/hostile_scenes.h"

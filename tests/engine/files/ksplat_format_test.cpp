@@ -1,5 +1,4 @@
 // .ksplat: values in every level and degree, buckets and sections, and what does not fit.
-#include "engine/files/load_scene.h"
 #include "tests/engine/files/ksplat_files.h"
 #include "tests/shared_data.h"
 
@@ -46,8 +45,7 @@ TEST_CASE("a .ksplat of each level gives what its bytes mean: sections of each d
             text.degrees = degrees;
             LoadNotes notes;
             checkContents(loadScene(folder.write("named otherwise", text.bytes()), 0, &notes), text, *std::ranges::max_element(degrees));
-            CHECK(notes.lines.empty());
-            CHECK(notes.three_scales);
+            CHECK(these(notes.lines.empty(), notes.three_scales) == these(true, true));
             if (degrees.size() == 1) { continue; }
             std::string shorter = text.bytes();
             shorter[4096 + 1024] = 3;  // of five splats in the second section
@@ -71,11 +69,8 @@ TEST_CASE("the same four splats as .splat and as .ksplat are the same scene" * n
     const Scene plain = loadScene((*data / "formats/minimal.splat").string()),
                 scene = loadScene((*data / "formats/minimal.ksplat").string());
     REQUIRE(scene.size() == 4);
-    CHECK(scene.positions == plain.positions);
-    CHECK(scene.scales == plain.scales);
-    CHECK(scene.thicknesses == plain.thicknesses);
-    CHECK(scene.opacities == plain.opacities);
-    CHECK(scene.sh == plain.sh);
+    CHECK(these(scene.positions, scene.scales, scene.thicknesses, scene.opacities, scene.sh) ==
+          these(plain.positions, plain.scales, plain.thicknesses, plain.opacities, plain.sh));
     for (std::size_t i = 0; i < 4; ++i) { CHECK(glm::length(scene.rotations[i] - plain.rotations[i]) < 1e-2f); }
 }
 

@@ -1,6 +1,5 @@
 // Scenes that come packed: within gzip, or alone in a zip archive.
 #include "engine/files/packed_scene.h"
-#include "engine/files/load_scene.h"
 #include "tests/engine/files/gltf_files.h"
 #include "tests/engine/files/spz_files.h"
 #ifdef BINOSPLAT_SOG

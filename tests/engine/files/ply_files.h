@@ -173,13 +173,8 @@ inline ReadScene readScene(const std::string& source) {
 
 inline void checkSameScene(const Scene& a, const Scene& b) {
     REQUIRE(a.size() == b.size());
-    CHECK(a.sh_degree == b.sh_degree);
-    CHECK(a.positions == b.positions);
-    CHECK(a.rotations == b.rotations);
-    CHECK(a.scales == b.scales);
-    CHECK(a.thicknesses == b.thicknesses);
-    CHECK(a.opacities == b.opacities);
-    CHECK(a.sh == b.sh);
+    CHECK(these(a.sh_degree, a.positions, a.rotations, a.scales, a.thicknesses, a.opacities, a.sh) ==
+          these(b.sh_degree, b.positions, b.rotations, b.scales, b.thicknesses, b.opacities, b.sh));
 }
 
 // Replaces the first `from`; it must be there.

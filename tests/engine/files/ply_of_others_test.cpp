@@ -1,5 +1,4 @@
 // PLY files as other programs write them: what is read of each, what is said of it, and what is no scene.
-#include "engine/files/load_scene.h"
 #include "tests/engine/scene/scene_measures.h"
 
 SUITE(ply_of_others) {
@@ -127,9 +126,7 @@ TEST_CASE_FIXTURE(InFolder, "positions of float64 far from 0 keep their detail, 
         checkSays(notes.lines, "count from 431250,-5412000,0");
         writePly(scene, folder.file("again.ply"));
         const Scene again = loadScene(folder.file("again.ply"));
-        CHECK(again.origin == scene.origin);
-        CHECK(again.rotations == scene.rotations);
-        CHECK(again.sh == scene.sh);
+        CHECK(these(again.origin, again.rotations, again.sh) == these(scene.origin, scene.rotations, scene.sh));
         REQUIRE(again.size() == 3);
         for (std::size_t i = 0; i < 3; ++i) {
             const glm::dvec3 expected = glm::dvec3(ply["x"].values[i], ply["y"].values[i], ply["z"].values[i]) - scene.origin;
@@ -144,8 +141,7 @@ TEST_CASE_FIXTURE(InFolder, "positions of float64 far from 0 keep their detail, 
         // What is float32 in the file has lost its detail already, and stays where it is.
         for (const char* name : {"x", "y", "z"}) { ply[name].type = "float"; }
         const Scene near = loadScene(folder.write("float.ply", ply.bytes()));
-        CHECK(near.origin == glm::dvec3(0.0));
-        CHECK(near.positions[2] == glm::vec3(431249.5f, -5412001.0f, 209.0f));
+        CHECK(these(near.origin, near.positions[2]) == these(glm::dvec3(0.0), glm::vec3(431249.5f, -5412001.0f, 209.0f)));
     }
 }
 
@@ -168,9 +164,8 @@ TEST_CASE_FIXTURE(InFolder, "of splats that move and fade the still of one momen
             load(ply, "(trbf_center, trbf_scale, motion_0, motion_5, motion_7, omega_1): shown as the still of one moment, 0.5");
         const auto opacity = [](double logit, double seen) { return doctest::Approx(seen / (1.0 + std::exp(-logit))).epsilon(1e-5); };
         CHECK(scene.positions == std::vector<glm::vec3>{{1.5f, 0.5f, 5.0f}, {2.0f, 0.25f, 5.0f}, {-5.0f, -0.875f, 6.0f}});
-        CHECK(scene.opacities[0] == opacity(0.0, std::exp(-1.0)));
-        CHECK(scene.opacities[1] == opacity(2.0, 1.0));
-        CHECK(scene.opacities[2] == opacity(-2.0, std::exp(-0.25)));
+        CHECK(these(scene.opacities[0], scene.opacities[1], scene.opacities[2]) ==
+              these(opacity(0.0, std::exp(-1.0)), opacity(2.0, 1.0), opacity(-2.0, std::exp(-0.25))));
         CHECK(scene.sh == loadScene(folder.write("still.ply", makeIn(encoding, 9, true).bytes())).sh);
         CHECK(scene.rotations[1] == loadScene(folder.file("still.ply")).rotations[1]);
         CHECK(std::abs(glm::dot(scene.rotations[0], loadScene(folder.file("still.ply")).rotations[0])) == doctest::Approx(std::sqrt(0.5)));

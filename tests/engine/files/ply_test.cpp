@@ -1,5 +1,4 @@
 // What a PLY file means: values, encodings, orders, types; what is written reads back; and what is said of a broken one.
-#include "engine/files/load_scene.h"
 #include "engine/scene/describe.h"
 #include "engine/scene/procedural.h"
 #include "tests/engine/scene/scene_measures.h"
@@ -14,19 +13,13 @@ TEST_CASE_FIXTURE(InFolder, "a PLY's numbers arrive activated, in every encoding
     for (const Encoding encoding : kEncodings) {
         const auto [notes, scene] = readScene(folder.write("known.ply", makeIn(encoding).bytes()));
         REQUIRE(scene.size() == 3);
-        CHECK(scene.sh_degree == 0);
-        CHECK(scene.positions[2] == glm::vec3(-3.0f, 0.125f, 6.0f));
-        CHECK(scene.sh == std::vector<float>{0.0f, 0.25f, 0.5f, 0.0f, 0.5f, 1.0f, 0.0f, -0.5f, -1.0f});
-        CHECK(scene.opacities[0] == 0.5f);
-        CHECK(scene.opacities[1] == doctest::Approx(1.0 / (1.0 + std::exp(-2.0))).epsilon(1e-6));
-        CHECK(scene.scales[0].x == 1.0f);
-        CHECK(scene.scales[0].y == doctest::Approx(std::exp(-3.0)).epsilon(1e-6));
-        CHECK(scene.rotations[0] == glm::quat(1.0f, 0.0f, 0.0f, 0.0f));
-        CHECK(scene.rotations[1] == glm::quat(0.5f, 0.5f, 0.5f, 0.5f));
-        CHECK(scene.rotations[2] == glm::quat(0.0f, 0.0f, -1.0f, 0.0f));
-        CHECK(notes.splats_in_file == 3);
-        CHECK_FALSE(notes.three_scales);
-        CHECK(notes.lines.empty());
+        CHECK(these(scene.sh_degree, scene.positions[2], scene.sh, scene.opacities[0]) ==
+              these(0, glm::vec3(-3.0f, 0.125f, 6.0f), std::vector<float>{0.0f, 0.25f, 0.5f, 0.0f, 0.5f, 1.0f, 0.0f, -0.5f, -1.0f}, 0.5f));
+        CHECK(these(scene.opacities[1], scene.scales[0].x, scene.scales[0].y) ==
+              these(doctest::Approx(1.0 / (1.0 + std::exp(-2.0))).epsilon(1e-6), 1.0f, doctest::Approx(std::exp(-3.0)).epsilon(1e-6)));
+        CHECK(these(scene.rotations[0], scene.rotations[1], scene.rotations[2]) ==
+              these(glm::quat(1.0f, 0.0f, 0.0f, 0.0f), glm::quat(0.5f, 0.5f, 0.5f, 0.5f), glm::quat(0.0f, 0.0f, -1.0f, 0.0f)));
+        CHECK(these(notes.splats_in_file, notes.three_scales, notes.lines.empty()) == these(3, false, true));
     }
     for (const double length : {1e-30, 1e30}) {
         PlyText ply = makePly();
@@ -64,8 +57,7 @@ TEST_CASE_FIXTURE(InFolder, "SH bands that are all zero are left out, even if a 
     const Scene scene = loadScene(folder.write("late.ply", ply.bytes()));
     REQUIRE(scene.sh_degree == 2);
     REQUIRE(scene.sh.size() == 700 * 27);
-    CHECK(scene.sh[3 * 27 + 3 * 1 + 0] == 7.0f);
-    CHECK(scene.sh[699 * 27 + 3 * 7 + 1] == 9.0f);
+    CHECK(these(scene.sh[3 * 27 + 3 * 1 + 0], scene.sh[699 * 27 + 3 * 7 + 1]) == these(7.0f, 9.0f));
     CHECK(std::count(scene.sh.begin(), scene.sh.end(), 0.0f) == 700 * 25 - 2 + 0);  // f_dc_1 and f_dc_2 are not zero
 }
 
@@ -81,8 +73,7 @@ TEST_CASE("blocks that are read ahead on a thread of their own come all and in o
             if (without_sh == splats) { limitShDegree(scene, 0, notes); }
             const Scene loaded = writtenAndRead(folder, scene);
             REQUIRE(loaded.sh_degree == scene.sh_degree);
-            CHECK(loaded.positions == scene.positions);
-            CHECK(loaded.sh == scene.sh);
+            CHECK(these(loaded.positions, loaded.sh) == these(scene.positions, scene.sh));
         }
     }
     const std::string row = "0 0 1 0 0 0 0 0 0 0 0 0 1 0 0 0\n", middle = "element vertex 20000\n";
@@ -116,8 +107,7 @@ TEST_CASE_FIXTURE(InFolder, "of three scales the shortest becomes the last, the 
         CHECK(glm::length(kept[1] - trained[v]) < 1e-6f);
         CHECK(glm::length(kept[2] - trained[static_cast<int>(shortest)]) < 1e-6f);  // the normal lies along the shortest axis
         CHECK(glm::determinant(kept) == doctest::Approx(1.0));
-        CHECK(scene.scales[0].x == doctest::Approx(std::exp(logs[u])));
-        CHECK(scene.scales[0].y == doctest::Approx(std::exp(logs[v])));
+        CHECK(these(scene.scales[0].x, scene.scales[0].y) == these(doctest::Approx(std::exp(logs[u])), doctest::Approx(std::exp(logs[v]))));
         CHECK(notes.three_scales);
         CHECK(notes.median_flatness == doctest::Approx(std::exp(-7.0 - std::min(logs[u], logs[v]))));
         REQUIRE(scene.isGaussian3d());
@@ -139,10 +129,8 @@ TEST_CASE_FIXTURE(InFolder, "splats with NaN, infinity, overflow or no rotation 
                 ply[name].values[1] = bad;
                 const auto [notes, scene] = readScene(folder.write("nan.ply", ply.bytes()));
                 REQUIRE(scene.size() == 2);
-                CHECK(scene.positions[1].x == -3.0f);
-                CHECK(scene.sh.size() == 2 * 12);
-                CHECK(notes.skipped_not_finite == 1);
-                CHECK(notes.skipped_zero_rotation == 0);
+                CHECK(these(scene.positions[1].x, scene.sh.size()) == these(-3.0f, 2 * 12));
+                CHECK(these(notes.skipped_not_finite, notes.skipped_zero_rotation) == these(1, 0));
                 checkSays(notes.lines, "1 of 3 splats skipped");
             }
         }
@@ -153,9 +141,7 @@ TEST_CASE_FIXTURE(InFolder, "splats with NaN, infinity, overflow or no rotation 
     ply["nx"].values[1] = kNan;  // of no interest
     LoadNotes notes;
     CHECK(loadScene(folder.write("bad.ply", ply.bytes()), 0, &notes).size() == 1);
-    CHECK(notes.skipped_not_finite == 1);
-    CHECK(notes.skipped_zero_rotation == 1);
-    CHECK(notes.lines.size() == 2);
+    CHECK(these(notes.skipped_not_finite, notes.skipped_zero_rotation, notes.lines.size()) == these(1, 1, 2));
 }
 
 TEST_CASE_FIXTURE(InFolder, "a logit of infinity is opacity 1; the shortest of three axes may have no extent, any other may not") {
@@ -235,12 +221,8 @@ TEST_CASE_FIXTURE(InFolder, "what is written reads back the same, opacity 0 and 
         scene.opacities = {0.0f, 1.0f, 0.999999f};
         scene.scales = {{0.0f, 1e-6f}, {1.0f, 2.0f}, {3.0f, 1e6f}};
         const Scene again = writtenAndRead(folder, scene);
-        CHECK(again.positions == scene.positions);
-        CHECK(again.sh == scene.sh);
-        CHECK(again.opacities[0] == 0.0f);
-        CHECK(again.opacities[1] == 1.0f);
-        CHECK(again.opacities[2] == doctest::Approx(0.999999).epsilon(1e-6));
-        CHECK(again.scales[0].x == 0.0f);
+        CHECK(these(again.positions, again.sh, again.opacities[0], again.opacities[1], again.opacities[2], again.scales[0].x) ==
+              these(scene.positions, scene.sh, 0.0f, 1.0f, doctest::Approx(0.999999).epsilon(1e-6), 0.0f));
         CHECK(again.scales[0].y == doctest::Approx(1e-6).epsilon(1e-5));
         for (std::size_t i = 0; i < scene.size(); ++i) {
             CHECK(glm::length(again.rotations[i] - scene.rotations[i]) < 1e-6f);

@@ -1,5 +1,4 @@
 // SOG: values worked out by hand in both versions and both wrappings, and everything that does not fit.
-#include "engine/files/load_scene.h"
 #include "tests/engine/files/streamed_scenes.h"
 
 SUITE(sog_format) {
@@ -9,9 +8,8 @@ void checkContents(const Scene& scene, const LoadNotes& notes, bool version1) {
     CHECK(notes.skipped_not_finite + notes.skipped_zero_rotation == 0);
     for (std::size_t i = 0; i < 8; ++i) {
         const double x = -1.0 + 2.0 * (32.0 * static_cast<double>(i) * 256.0 / 65535.0);  // in the logarithmic space
-        CHECK(scene.positions[i].x == doctest::Approx(std::copysign(std::expm1(std::abs(x)), x)));
-        CHECK(scene.positions[i].y == doctest::Approx(-std::expm1(2.0)));
-        CHECK(scene.positions[i].z == doctest::Approx(1.0));
+        CHECK(these(scene.positions[i].x, scene.positions[i].y, scene.positions[i].z) ==
+              these(doctest::Approx(std::copysign(std::expm1(std::abs(x)), x)), doctest::Approx(-std::expm1(2.0)), doctest::Approx(1.0)));
         // The first of three growing scales is dropped.
         CHECK(scene.scales[i].x == doctest::Approx(std::exp(-8.0 + (10.0 * static_cast<double>(i) + 1) / 32.0)));
         CHECK(scene.scales[i].y == doctest::Approx(std::exp(-8.0 + (10.0 * static_cast<double>(i) + 2) / 32.0)));
@@ -29,8 +27,7 @@ void checkContents(const Scene& scene, const LoadNotes& notes, bool version1) {
             CHECK(scene.sh[12 * i + 3 * (k + 1) + 2] == doctest::Approx(-2.0 + 100.0 / 64.0).epsilon(1e-4));
         }
     }
-    CHECK(notes.three_scales);
-    CHECK(notes.median_flatness == doctest::Approx(std::exp(-1.0 / 32.0)).epsilon(1e-4));
+    CHECK(these(notes.three_scales, notes.median_flatness) == these(true, doctest::Approx(std::exp(-1.0 / 32.0)).epsilon(1e-4)));
 }
 
 TEST_CASE("a WebP picture among other chunks is found, and gives back the bytes that were stored") {
@@ -91,8 +88,7 @@ TEST_CASE_FIXTURE(InFolder, "rotations name their largest component; splats that
     files["meta.json"] = replaced(files["meta.json"], "\"count\":128", "\"count\":65");  // even splats use entry 65
     LoadNotes notes;
     CHECK(loadScene(writeSogFolder(folder, "scene", files), 0, &notes).size() == 3);  // 3, 5, 7
-    CHECK(notes.skipped_not_finite == 4);
-    CHECK(notes.skipped_zero_rotation == 1);
+    CHECK(these(notes.skipped_not_finite, notes.skipped_zero_rotation) == these(4, 1));
 }
 
 TEST_CASE_FIXTURE(InFolder, "a key asks for antialiasing, by the name of old writers or of new ones, or says that the scene is of discs") {
@@ -103,10 +99,8 @@ TEST_CASE_FIXTURE(InFolder, "a key asks for antialiasing, by the name of old wri
         return loadScene(writeSogFolder(folder, "said", files), 0, &notes);
     };
     const Scene gaussians = loadWith("");
-    CHECK(gaussians.isGaussian3d());
-    CHECK_FALSE(gaussians.antialiased);
-    CHECK(loadWith("\"antialias\":true,").antialiased);
-    CHECK_FALSE(loadWith("\"antialias\":false,").antialiased);
+    CHECK(these(gaussians.isGaussian3d(), gaussians.antialiased) == these(true, false));
+    CHECK(these(loadWith("\"antialias\":true,").antialiased, loadWith("\"antialias\":false,").antialiased) == these(true, false));
     CHECK(loadWith("\"model\":\"antialiased\",").antialiased);
     // A streamed scene is, where one of its chunks is.
     const std::string streamed = writeStreamed(folder, "streamed", makeLodMeta());
@@ -116,11 +110,9 @@ TEST_CASE_FIXTURE(InFolder, "a key asks for antialiasing, by the name of old wri
     (void)writeSogFolder(folder, "streamed/a", chunk);
     CHECK(loadScene(streamed).antialiased);
     const Scene discs = loadWith("\"model\":\"2dgs\",");
-    CHECK_FALSE(discs.antialiased);
-    CHECK_FALSE(discs.isGaussian3d());
+    CHECK(these(discs.antialiased, discs.isGaussian3d()) == these(false, false));
     CHECK_FALSE(notes.three_scales);
-    CHECK(discs.scales == gaussians.scales);
-    CHECK(discs.rotations == gaussians.rotations);
+    CHECK(these(discs.scales, discs.rotations) == these(gaussians.scales, gaussians.rotations));
 }
 
 TEST_CASE_FIXTURE(InFolder, "a meta.json that does not fit is named with its key") {

@@ -1,6 +1,5 @@
 // SOG as it is written: codebooks and palettes that come near, and what a bundle keeps of a scene.
 #include "engine/files/codebook.h"
-#include "engine/files/load_scene.h"
 #include "engine/files/sh_palette.h"
 #include "engine/files/sog.h"
 #include "engine/files/sog_pack.h"
@@ -23,9 +22,7 @@ TEST_CASE("a codebook keeps few numbers as they are, and of many it keeps what i
     CHECK(Codebook(std::vector<float>{}).values()[255] == 0.0f);
 
     const Codebook apart(few, -200.0f);
-    CHECK(apart.values()[0] == -200.0f);
-    CHECK(apart.nearest(-200.0f) == 0);
-    CHECK(apart.values()[apart.nearest(-1.0f)] == -1.0f);
+    CHECK(these(apart.values()[0], apart.nearest(-200.0f), apart.values()[apart.nearest(-1.0f)]) == these(-200.0f, 0, -1.0f));
     CHECK(Codebook(std::vector<float>{}, -20.0f).values()[255] == -20.0f);
 
     std::mt19937 random(5);

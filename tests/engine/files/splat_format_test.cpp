@@ -1,5 +1,4 @@
 // .splat files: values worked out by hand, and what is not taken for one.
-#include "engine/files/load_scene.h"
 #include "tests/engine/files/hostile_scenes.h"
 
 SUITE(splat_format) {
@@ -17,20 +16,15 @@ TEST_CASE_FIXTURE(InFolder, "a .splat is read row by row, whatever its name") {
     const std::string turned = splatRow({-4, 5, -6}, {0.125f, 0.5f, 0.25f}, {0, 255, 102, 255, 218, 38, 128, 128});
     const Scene scene = loadScene(folder.write("scene.bin", repeat(kPlain, 300) + turned), 0, &notes);
     REQUIRE(scene.size() == 301);
-    CHECK(scene.positions[299] == glm::vec3(1, 2, 3));
-    CHECK(scene.scales[299].x == doctest::Approx(0.5));
-    CHECK(scene.scales[299].y == doctest::Approx(0.25));
-    CHECK(scene.opacities[299] == doctest::Approx(0.8));
-    CHECK(scene.rotations[299].w == doctest::Approx(1.0));
+    CHECK(these(scene.positions[299], scene.scales[299].x, scene.scales[299].y, scene.opacities[299], scene.rotations[299].w) ==
+          these(glm::vec3(1, 2, 3), doctest::Approx(0.5), doctest::Approx(0.25), doctest::Approx(0.8), doctest::Approx(1.0)));
     CHECK(0.5f + 0.28209479f * scene.sh[3 * 299 + 0] == doctest::Approx(1.0));
     CHECK(0.5f + 0.28209479f * scene.sh[3 * 299 + 2] == doctest::Approx(0.2));
-    CHECK(scene.positions[300] == glm::vec3(-4, 5, -6));
-    CHECK(scene.opacities[300] == 1.0f);
+    CHECK(these(scene.positions[300], scene.opacities[300]) == these(glm::vec3(-4, 5, -6), 1.0f));
     // The x axis is the shortest: t_w lies along it. (w, x) = (90, -90)/128 turns about x, which leaves that axis alone.
     const glm::vec3 normal = scene.rotations[300] * glm::vec3(0, 0, 1);
     CHECK(glm::distance(normal, glm::vec3(1, 0, 0)) < 1e-5f);
-    CHECK(notes.three_scales);
-    CHECK(notes.median_flatness == doctest::Approx(0.5));
+    CHECK(these(notes.three_scales, notes.median_flatness) == these(true, doctest::Approx(0.5)));
     CHECK(scene.sh_degree == 0);
 }
 

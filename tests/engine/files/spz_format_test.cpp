@@ -1,5 +1,4 @@
 // SPZ: values worked out by hand, what writing and reading back keeps, and what does not fit.
-#include "engine/files/load_scene.h"
 #include "engine/files/spz.h"
 #include "engine/twin/harmonics.h"
 #include "tests/engine/files/spz_files.h"
@@ -24,17 +23,12 @@ TEST_CASE_FIXTURE(InFolder, "both versions give what their bytes mean, in axes r
         const Scene scene = loadBytes(folder, gzip(makeSpz(version).bytes()), &notes);
         REQUIRE(scene.size() == 2);
         CHECK(scene.positions[0] == glm::vec3(1.0f, 2.0f, -0.5f));  // 8 fractional bits; y and z turned
-        CHECK(scene.positions[1] == glm::vec3(0.0f, -1.0f / 256.0f, 1.0f / 256.0f));
-        CHECK(scene.opacities[0] == 1.0f);
-        CHECK(scene.opacities[1] == doctest::Approx(0.2));
-        CHECK(scene.sh[0] == doctest::Approx(-0.5 / 0.15));
-        CHECK(scene.sh[1] == doctest::Approx(0.5 / 0.15));
-        CHECK(scene.sh[2] == doctest::Approx((128.0 / 255.0 - 0.5) / 0.15));
+        CHECK(these(scene.positions[1], scene.opacities[0], scene.opacities[1], scene.sh[0]) ==
+              these(glm::vec3(0.0f, -1.0f / 256.0f, 1.0f / 256.0f), 1.0f, doctest::Approx(0.2), doctest::Approx(-0.5 / 0.15)));
+        CHECK(these(scene.sh[1], scene.sh[2]) == these(doctest::Approx(0.5 / 0.15), doctest::Approx((128.0 / 255.0 - 0.5) / 0.15)));
         // Scales exp(0), exp(1), exp(-8); then exp(-10), exp(5.9375), exp(0): z and x are dropped.
-        CHECK(scene.scales[0].x == doctest::Approx(1.0));
-        CHECK(scene.scales[0].y == doctest::Approx(std::exp(1.0)));
-        CHECK(scene.scales[1].x == doctest::Approx(std::exp(5.9375)));
-        CHECK(scene.scales[1].y == doctest::Approx(1.0));
+        CHECK(these(scene.scales[0].x, scene.scales[0].y, scene.scales[1].x, scene.scales[1].y) ==
+              these(doctest::Approx(1.0), doctest::Approx(std::exp(1.0)), doctest::Approx(std::exp(5.9375)), doctest::Approx(1.0)));
         REQUIRE(scene.sh_degree == 1);
         for (int i = 0; i < 9; ++i) {
             const float stored = static_cast<float>(4 * i) / 128.0f;
@@ -154,10 +148,8 @@ TEST_CASE_FIXTURE(InFolder, "writing and reading back keeps every attribute with
         // What was read is not changed again; of a rotation with two components of nearly the same size the other one may be left out.
         writeSpz(back, folder.file("a.spz"));
         const Scene again = loadScene(folder.file("a.spz"));
-        CHECK(again.positions == back.positions);
-        CHECK(again.scales == back.scales);
-        CHECK(again.opacities == back.opacities);
-        CHECK(again.sh == back.sh);
+        CHECK(these(again.positions, again.scales, again.opacities, again.sh) ==
+              these(back.positions, back.scales, back.opacities, back.sh));
     }
     writeSpz({}, folder.file("a.spz"));
     CHECK(loadScene(folder.file("a.spz")).size() == 0);
@@ -211,8 +203,7 @@ TEST_CASE_FIXTURE(InFolder, "SH of degree 4 are left out with a note; bytes behi
     spz.flags = 3;
     LoadNotes notes;
     const Scene scene = loadBytes(folder, gzip(spz.bytes() + "records of an extension"), &notes);
-    CHECK(scene.sh_degree == 3);
-    CHECK(scene.antialiased);
+    CHECK(these(scene.sh_degree, scene.antialiased) == these(3, true));
     REQUIRE_FALSE(notes.lines.empty());
     CHECK(contains(notes.lines.back(), "degree 4"));
 }

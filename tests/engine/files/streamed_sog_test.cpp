@@ -1,8 +1,6 @@
 // Streamed SOG: a level is its chunks, splat by splat; the choice of a level; progress; and what does not fit.
-#include "engine/files/load_scene.h"
 #include "engine/files/lod_meta.h"
 #include "tests/engine/files/streamed_scenes.h"
-#include "tests/suite.h"
 
 #ifndef _WIN32
 #include <sys/resource.h>
@@ -48,10 +46,8 @@ TEST_CASE_FIXTURE(Streamed, "a level is its chunks in their order, with the envi
     for (const Scene* part : {&a, &b, &env}) { addWhole(finest, *part); }
     LoadNotes notes;
     checkSameScene(loadLevel(source, 0, &notes), finest);
-    CHECK(notes.level == 0);
-    CHECK(notes.level_splats == std::vector<std::uint64_t>{16, 8});
-    CHECK(notes.environment_splats == 8);
-    CHECK(notes.splats_in_file == 24);
+    CHECK(these(notes.level, notes.level_splats, notes.environment_splats, notes.splats_in_file) ==
+          these(0, std::vector<std::uint64_t>{16, 8}, 8, 24));
     checkSameScene(loadScene(source), finest);
     checkSameScene(loadScene(source + "/lod-meta.json"), finest);
     std::filesystem::rename(source + "/lod-meta.json", source + "/other");
@@ -175,8 +171,7 @@ TEST_CASE_FIXTURE(InFolder, "what a leaf names is counted in stored splats, brok
     for (const char* part : {"/b", "/env"}) { addWhole(expected, loadScene(source + part)); }
     LoadNotes notes;
     checkSameScene(loadScene(source, 0, &notes), expected);
-    CHECK(notes.skipped_zero_rotation == 1);
-    CHECK(notes.splats_in_file == 20);
+    CHECK(these(notes.skipped_zero_rotation, notes.splats_in_file) == these(1, 20));
 }
 
 TEST_CASE("files of the first writers, without version, counts and environment, are read; progress runs from 0 to 1 over all chunks") {
@@ -206,8 +201,7 @@ TEST_CASE_FIXTURE(Streamed, "the finest level that fits is chosen, or the coarse
     };
     CHECK(levelWithin(24) == 0);
     CHECK(asked == std::vector<std::pair<std::uint64_t, int>>{{24, 1}});
-    CHECK(levelWithin(23) == 1);
-    CHECK(levelWithin(0) == 1);
+    CHECK(these(levelWithin(23), levelWithin(0)) == these(1, 1));
 }
 
 TEST_CASE_FIXTURE(Streamed, "a level that a scene does not have is refused") {

@@ -1,6 +1,5 @@
 // Facts about writing streamed SOG scenes.
 #include "engine/files/streamed_write.h"
-#include "engine/files/load_scene.h"
 #include "engine/scene/pick_splats.h"
 #include "engine/scene/procedural.h"
 #include "tests/engine/files/sog_scenes.h"
@@ -37,8 +36,7 @@ TEST_CASE("levels are written that read back whole, the same bytes every time; a
     write("a");
     write("b");
     const auto files = filesIn(folder.file("a"));
-    CHECK(files == filesIn(folder.file("b")));
-    CHECK(files.contains("0_2/meta.json"));
+    CHECK(these(files, files.contains("0_2/meta.json")) == these(filesIn(folder.file("b")), true));
     CHECK(files.at("lod-meta.json")
               .starts_with(R"({"version":1,"asset":{"generator":"binosplat"},"count":2522,"counts":[1681,841],"lodLevels":2,)"));
     for (const auto& [level, whole] : {std::pair(0u, &scene), std::pair(1u, &coarse)}) {

@@ -1,7 +1,6 @@
 // Scenes at random, and what two of them have in common.
 #pragma once
 
-#include "engine/files/load_scene.h"
 #include "engine/files/ply.h"
 #include "tests/engine/files/ply_files.h"
 

@@ -26,17 +26,12 @@ TEST_CASE("opacities, thicknesses and sizes are counted against their bounds") {
     Scene scene;  // a thousand splats in a cube of a side of 9, one unit apart, a centimetre large
     for (int i = 0; i < 1000; ++i) { addSplat(scene, glm::vec3(i / 100, i / 10 % 10, i % 10), glm::vec3(0.01f), 0.5f); }
     const SceneSurvey before = surveyScene(scene);
-    CHECK(before.size == doctest::Approx(9.0));
-    CHECK(before.transparent + before.opaque + before.thin + before.large == 0);
+    CHECK(these(before.size, before.transparent + before.opaque + before.thin + before.large) == these(doctest::Approx(9.0), 0));
     addSplat(scene, glm::vec3(4), {0.01f, 0.01f, 0.0009f}, 0.9901f);
     addSplat(scene, glm::vec3(4), {0.01f, 0.91f, 0.0011f}, 0.9899f);
     addSplat(scene, glm::vec3(4), {0.01f, 0.89f, 0.01f}, 0.0039f);
     const SceneSurvey survey = surveyScene(scene);
-    CHECK(survey.size == doctest::Approx(9.0));
-    CHECK(survey.transparent == 1);
-    CHECK(survey.opaque == 1);
-    CHECK(survey.thin == 1);
-    CHECK(survey.large == 1);
+    CHECK(these(survey.size, survey.transparent, survey.opaque, survey.thin, survey.large) == these(doctest::Approx(9.0), 1, 1, 1, 1));
     CHECK(surveyScene(scene, 0.1).thin == 2);  // a unit is a decimetre
     scene.thicknesses.clear();
     CHECK(surveyScene(scene).thin == 0);  // of discs the shorter axis counts
@@ -66,9 +61,7 @@ TEST_CASE("scenes of no splat and of one place are surveyed") {
     Scene scene;
     for (int i = 0; i < 3; ++i) { addSplat(scene, glm::vec3(7), glm::vec3(1), 0.5f); }
     const SceneSurvey survey = surveyScene(scene);
-    CHECK(survey.size == 0.0);
-    CHECK(survey.large == 0);
-    CHECK(survey.floaters == 0);
+    CHECK(these(survey.size, survey.large, survey.floaters) == these(0.0, 0, 0));
 }
 
 }  // SUITE(survey)
