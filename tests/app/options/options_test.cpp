@@ -29,8 +29,7 @@ TEST_CASE_FIXTURE(AtWork, "a scene in the place of a command is viewed, any othe
     const std::string file = (work.path / "Größe 日本.ply").string();
     work.write("Größe 日本.ply", "not looked into");
     const auto viewed = std::get<ViewOptions>(parseWords({file, "--frames", "3", "--mode", "mono"}));
-    CHECK(viewed.scene == file);
-    CHECK(viewed.frames == 3);
+    CHECK(these(viewed.scene, viewed.frames) == these(file, 3));
     CHECK(parse<ViewOptions>(work.path.string()).scene == work.path.string());
     CHECK(parse<ViewOptions>("").browse);
     CHECK(parse<ViewOptions>("builtin:no-such-scene").scene == "builtin:no-such-scene");
@@ -219,10 +218,8 @@ TEST_CASE_FIXTURE(AtWork, "the documents of the options are those that the progr
     CHECK(text.find("\n# mode = \"predicted\"") != std::string::npos);
     // It says the defaults.
     const RunOptions none = renderOptions(""), file = renderOptions("--config " + (kSource / "configs/default.toml").string());
-    CHECK(file.camera.near == none.camera.near);
-    CHECK(file.camera.background == none.camera.background);
-    CHECK(file.stereo == none.stereo);
-    CHECK(file.metres_per_unit == none.metres_per_unit);
+    CHECK(these(file.camera.near, file.camera.background, file.stereo, file.metres_per_unit) ==
+          these(none.camera.near, none.camera.background, none.stereo, none.metres_per_unit));
     CHECK_FALSE(none.camera.near);  // by the size of the scene
     CHECK(none.stereo.mode == Mode::kPredicted);
 }
@@ -247,22 +244,15 @@ TEST_CASE_FIXTURE(AtWork, "frames that follow one another are temporal unless a 
     writeText(work.path / "named.toml",
               "mode = \"paper\"\nnear = 0.5\n[camera]\nsize = \"64x32\"\nheadset = \"quest2\"\n"
               "[stereo]\ncenter-roi = true\nipd = 0.07\n");
-    CHECK(renderOptions("").stereo.mode == Mode::kPredicted);
-    CHECK(renderOptions("--path b.csv").stereo.mode == Mode::kTemporal);
+    CHECK(these(renderOptions("").stereo.mode, renderOptions("--path b.csv").stereo.mode) == these(Mode::kPredicted, Mode::kTemporal));
     CHECK(renderOptions("--path b.csv" + named).stereo.mode == Mode::kPaper);
-    CHECK(view("").stereo.mode == Mode::kTemporal);
-    CHECK(view(open).stereo.mode == Mode::kTemporal);
-    CHECK(view(named).stereo.mode == Mode::kPaper);
-    CHECK(view(named + " --mode predicted").stereo.mode == Mode::kPredicted);
+    CHECK(these(view("").stereo.mode, view(open).stereo.mode, view(named).stereo.mode, view(named + " --mode predicted").stereo.mode) ==
+          these(Mode::kTemporal, Mode::kTemporal, Mode::kPaper, Mode::kPredicted));
     const RunOptions from_file = renderOptions(named), both = renderOptions(named + " --near 0.1 --size 8x9 --fov-x 90 --ipd 0");
-    CHECK(from_file.camera.near == 0.5);
-    CHECK(from_file.camera.size_px == glm::uvec2(64, 32));
-    CHECK(from_file.camera.headset == "quest2");
+    CHECK(these(from_file.camera.near, from_file.camera.size_px, from_file.camera.headset) == these(0.5, glm::uvec2(64, 32), "quest2"));
     CHECK(from_file.stereo.warp.center_rois);
     CHECK(from_file.stereo.ipd_m == 0.07);
-    CHECK(both.camera.near == 0.1);
-    CHECK(both.camera.size_px == glm::uvec2(8, 9));
-    CHECK(both.camera.fov_x_deg == 90.0);
+    CHECK(these(both.camera.near, both.camera.size_px, both.camera.fov_x_deg) == these(0.1, glm::uvec2(8, 9), 90.0));
     CHECK(both.camera.headset.empty());  // an angle and a headset contradict each other
     CHECK(both.stereo.ipd_m == 0.0);
 }
@@ -291,9 +281,8 @@ TEST_CASE_FIXTURE(AtWork, "splats go by depth or by distance: as the command lin
     };
     CHECK_FALSE(renderOptions("").stereo.order);
     CHECK(frameSettings({}, renderOptions("").stereo, Order::kDepth).order == Order::kDepth);
-    CHECK(orderOf("", Order::kDistance) == Order::kDistance);
-    CHECK(orderOf(file, Order::kDepth) == Order::kDistance);
-    CHECK(orderOf("--order depth", Order::kDistance) == Order::kDepth);
+    CHECK(these(orderOf("", Order::kDistance), orderOf(file, Order::kDepth), orderOf("--order depth", Order::kDistance)) ==
+          these(Order::kDistance, Order::kDistance, Order::kDepth));
     CHECK(orderOf(file + " --order depth", Order::kDistance) == Order::kDepth);
     CHECK(view("--order distance").stereo.order == Order::kDistance);
     CHECK(parse<BenchOptions>("bench a --out b --orders").orders);

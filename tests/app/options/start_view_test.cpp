@@ -26,9 +26,8 @@ TEST_CASE("eyes look at their lenses or where they are said to") {
     CHECK(!gazes("--gaze 0,0,1")[kRight]);
     const auto at_lenses = gazes("--foveation 15");
     REQUIRE(at_lenses[kLeft]);
-    CHECK(at_lenses[kLeft]->clear_rad == doctest::Approx(glm::radians(15.0)));
-    CHECK(at_lenses[kLeft]->direction == headset.lens_centres[kLeft]);
-    CHECK(at_lenses[kRight]->direction == headset.lens_centres[kRight]);
+    CHECK(these(at_lenses[kLeft]->clear_rad, at_lenses[kLeft]->direction, at_lenses[kRight]->direction) ==
+          these(doctest::Approx(glm::radians(15.0)), headset.lens_centres[kLeft], headset.lens_centres[kRight]));
     // Ahead of the head is inwards for eyes that are turned outwards.
     const auto ahead = gazes("--foveation 15 --gaze 0,0,1");
     CHECK(ahead[kLeft]->direction.x == doctest::Approx(std::sin(0.1)));
@@ -51,10 +50,8 @@ TEST_CASE("eyes stand half their distance from the middle") {
     // Up is -y by default, so camera x is world x here.
     CHECK(glm::length(cameras.eyes[kLeft].world_from_camera.position - glm::dvec3(0.98, 2.0, 3.0)) < 1e-12);
     CHECK(glm::length(cameras.eyes[kRight].world_from_camera.position - glm::dvec3(1.02, 2.0, 3.0)) < 1e-12);
-    CHECK(cameras.middle.intrinsics.fx == doctest::Approx(100.0));
-    CHECK(cameras.middle.intrinsics.fy == doctest::Approx(100.0));
-    CHECK(cameras.middle.intrinsics.cx == 100.0);
-    CHECK(cameras.middle.intrinsics.cy == 50.0);
+    CHECK(these(cameras.middle.intrinsics.fx, cameras.middle.intrinsics.fy, cameras.middle.intrinsics.cx, cameras.middle.intrinsics.cy) ==
+          these(doctest::Approx(100.0), doctest::Approx(100.0), 100.0, 50.0));
 }
 
 TEST_CASE("a file is framed whole: upright and from its front where its y is up, and from afar where it is one wide splat") {
@@ -78,9 +75,8 @@ TEST_CASE("a file is framed whole: upright and from its front where its y is up,
     scene.y_up = true;
     const View upright = startView(scene, {60.0}).view;
     CHECK(trained.up == glm::dvec3(0.0, -1.0, 0.0));
-    CHECK(upright.up == glm::dvec3(0.0, 1.0, 0.0));
-    CHECK(upright.look == trained.look);
-    CHECK(upright.eye.z - upright.look.z == doctest::Approx(trained.look.z - trained.eye.z));
+    CHECK(these(upright.up, upright.look, upright.eye.z - upright.look.z) ==
+          these(glm::dvec3(0.0, 1.0, 0.0), trained.look, doctest::Approx(trained.look.z - trained.eye.z)));
     CHECK(upright.eye.z > upright.look.z);
     Scene one;
     one.name = "one.ply";
@@ -101,24 +97,18 @@ TEST_CASE_FIXTURE(AtWork, "cameras lie with a scene in its folder, beside it, or
     };
     CHECK(findCameraFile(scene).empty());
     writeText(beside, "[]");
-    CHECK(findCameraFile(scene) == beside);
-    CHECK(findCameraFile(sog) == beside);
-    CHECK(findCameraFile(work.path / "sog/") == beside);
+    CHECK(these(findCameraFile(scene), findCameraFile(sog), findCameraFile(work.path / "sog/")) == these(beside, beside, beside));
     CHECK(findCameraFile(garden).empty());  // of another scene
     CHECK(errorOf([&] { with("--view 1"); }).starts_with("--view is given without --cameras"));
     writeText(trained, "[]");
     writeText(sog / "cameras.json", "[]");
-    CHECK(findCameraFile(garden) == trained);
-    CHECK(findCameraFile(iteration / "point_cloud.ply") == trained);
-    CHECK(findCameraFile(sog) == sog / "cameras.json");
+    CHECK(these(findCameraFile(garden), findCameraFile(iteration / "point_cloud.ply"), findCameraFile(sog)) ==
+          these(trained, trained, sog / "cameras.json"));
     CHECK(findCameraFile(sog / "meta.json") == sog / "cameras.json");
     const auto viewed = parse<ViewOptions>("view " + scene.string() + " --view 3").run.camera;
-    CHECK(viewed.cameras_file == beside.string());
-    CHECK(viewed.view == 3);
+    CHECK(these(viewed.cameras_file, viewed.view) == these(beside.string(), 3));
     CHECK(parse<ViewOptions>("view a --cameras c.json").run.camera.cameras_file == "c.json");
-    CHECK(with("--view 1").cameras_file == trained.string());
-    CHECK(with("--view 1").view == 1);
-    CHECK(with("").cameras_file.empty());
+    CHECK(these(with("--view 1").cameras_file, with("--view 1").view, with("").cameras_file.empty()) == these(trained.string(), 1, true));
     CHECK(with("--view 1 --cameras other.json").cameras_file == "other.json");
     CHECK(errorOf([&] { with("--view 1 --eye 0,0,0"); }) == "--view and --eye contradict each other, must be one of them");
     writeText(work.path / "a.toml", "headset = \"quest2\"\n");
@@ -126,8 +116,7 @@ TEST_CASE_FIXTURE(AtWork, "cameras lie with a scene in its folder, beside it, or
     writeText(work.path / "b.toml", "cameras = \"b.json\"\n");
     CHECK(with("--view 1 --config " + (work.path / "b.toml").string()).cameras_file == (work.path / "b.json").string());
     const auto bench = parse<BenchOptions>("bench " + garden.string() + " --out out --view 1");
-    CHECK(bench.run.camera.cameras_file == trained.string());
-    CHECK(bench.asked.cameras_file == trained.string());
+    CHECK(these(bench.run.camera.cameras_file, bench.asked.cameras_file) == these(trained.string(), trained.string()));
     CHECK(errorOf([&] { parseLine("bench " + garden.string() + " builtin:fence --out out --view 1"); }) != "");
     writeText(garden / "meta.json", "{}");  // a SOG scene is no training's output
     CHECK(with("--view 1").cameras_file == trained.string());
@@ -148,8 +137,7 @@ TEST_CASE_FIXTURE(AtWork, "one stands at the first camera that sees the scene, u
     const StartView start = startView(scene);
     CAPTURE(start.why);
     CHECK(start.why.starts_with("at camera 1 (right) of "));
-    CHECK(start.up_why == "the mean of all cameras'");
-    CHECK(start.view.eye == glm::dvec3(0, 0, -9));
+    CHECK(these(start.up_why, start.view.eye) == these("the mean of all cameras'", glm::dvec3(0, 0, -9)));
     CHECK(glm::distance(start.view.up, glm::dvec3(0, -1, 0)) < 1e-6);
     CHECK(glm::distance(glm::normalize(start.view.look - start.view.eye), glm::dvec3(0, 0, 1)) < 1e-6);
     CHECK(start.view.look.z == doctest::Approx(0.0));  // among the splats
