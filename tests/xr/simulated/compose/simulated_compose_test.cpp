@@ -124,11 +124,8 @@ TEST_CASE("an inset and its view are one picture: what shows through the inset i
     layer.blending = {true, false};
     const Canvas white({4, 4}, {255, 255, 255, 255});
     const RgbPicture seen = compose(eye, {projection(white, eye), layer});
-    CHECK(at(seen, 0, 1) == Rgb{255, 0, 0});
-    CHECK(at(seen, 1, 1) == Rgb{255, 255, 255});
-    CHECK(at(seen, 2, 2) == Rgb{255, 255, 255});
-    CHECK(at(seen, 2, 3) == Rgb{255, 0, 0});
-    CHECK(at(compose(eye, {layer}, kRight), 1, 1) == Rgb{255, 0, 0});
+    CHECK(these(at(seen, 0, 1), at(seen, 1, 1), at(seen, 2, 2), at(seen, 2, 3), at(compose(eye, {layer}, kRight), 1, 1)) ==
+          these(Rgb{255, 0, 0}, Rgb{255, 255, 255}, Rgb{255, 255, 255}, Rgb{255, 0, 0}, Rgb{255, 0, 0}));
     // An empty one is none.
     layer.insets[kLeft]->rect.extent = {0, 2};
     CHECK(at(compose(eye, {layer}), 1, 1) == Rgb{255, 0, 0});
@@ -263,8 +260,7 @@ TEST_CASE("a cylinder's picture lies on its arc about the middle") {
     CylinderLayer layer{canvas.picture(), canvas.whole(), {}, 0.0, 2.0 * kEighth, 1.0, Visibility::kBoth, {}};
     // 100 pixels per unit of tangent, so far away that the left edge is the eye's, and the top where y/z = pi/4 in the middle.
     const RgbPicture far_away = compose(eyeOf({200, 200}), {layer});
-    CHECK(at(far_away, 10, 100) == Rgb{255, 0, 0});
-    CHECK(at(far_away, 190, 100) == Rgb{0, 0, 255});
+    CHECK(these(at(far_away, 10, 100), at(far_away, 190, 100)) == these(Rgb{255, 0, 0}, Rgb{0, 0, 255}));
     CHECK(at(far_away, 99, 23)[0] > 100);
     CHECK(at(far_away, 99, 20) == kBlack);
     // At 45 degrees to the side the wall is farther away by sqrt(2), so its edge is seen at pi/4 * sqrt(2) > 1.
@@ -297,8 +293,7 @@ TEST_CASE("a sphere's picture lies between its angles") {
     CHECK(looking(2.0 * kEighth, 0.5 * kEighth)[0] > 240);
     CHECK(looking(-2.0 * kEighth, 0.5 * kEighth)[1] > 240);
     CHECK(looking(2.0 * kEighth, -0.5 * kEighth)[2] > 240);
-    CHECK(looking(0.0, 1.5 * kEighth) == kBlack);
-    CHECK(looking(0.0, -1.5 * kEighth) == kBlack);
+    CHECK(these(looking(0.0, 1.5 * kEighth), looking(0.0, -1.5 * kEighth)) == these(kBlack, kBlack));
     // A sphere about the eye is as one far away; from outside only its far half is seen, from within.
     const Rgb before = looking(2.0 * kEighth, 0.3 * kEighth);
     layer.radius_m = 3.0;
@@ -334,9 +329,7 @@ TEST_CASE("a cube map's faces are in Vulkan's order, and the top left texel of e
     CubeLayer turned;
     turned.faces.fill(marked.picture());
     const RgbPicture seen = compose(eyeOf({8, 8}), {turned});
-    CHECK(at(seen, 6, 1) == Rgb{255, 0, 0});
-    CHECK(at(seen, 1, 1) == kBlack);
-    CHECK(at(seen, 6, 6) == kBlack);
+    CHECK(these(at(seen, 6, 1), at(seen, 1, 1), at(seen, 6, 6)) == these(Rgb{255, 0, 0}, kBlack, kBlack));
 }
 
 TEST_CASE("the room shows as far as alpha lets it or is added") {

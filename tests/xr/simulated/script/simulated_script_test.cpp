@@ -32,8 +32,7 @@ struct HeadCase {
 
 TEST_CASE("an empty script is the resting headset; comments, blanks and carriage returns do not count") {
     const Script script = parse("");
-    CHECK(script.rate_hz == 90.0);
-    CHECK(script.size_px == glm::uvec2(1024, 1024));
+    CHECK(these(script.rate_hz, script.size_px) == these(90.0, glm::uvec2(1024, 1024)));
     CHECK_FALSE(script.visibility_mask);
     const State state = script.at(12.5);
     CHECK(state.stage_from_head.position == glm::dvec3(0.0, 1.6, 0.0));
@@ -48,8 +47,7 @@ TEST_CASE("an empty script is the resting headset; comments, blanks and carriage
     CHECK(state.should_render);
     CHECK(script.eventsIn(-kForever, kForever).empty());
     const Script spaced = parse("\xef\xbb\xbf# a comment\r\n\r\n \t rate  72 # another\r\nsize 640\t480#and another");
-    CHECK(spaced.rate_hz == 72.0);
-    CHECK(spaced.size_px == glm::uvec2(640, 480));
+    CHECK(these(spaced.rate_hz, spaced.size_px) == these(72.0, glm::uvec2(640, 480)));
 }
 
 TEST_CASE("the head goes on straight lines and the shorter great arcs from key to key; what a pose leaves out stays as it was") {
@@ -107,8 +105,7 @@ TEST_CASE("LOCAL stands where the head is at time zero without its tilt, or wher
     CHECK(isNear(said.stageFromLocal(1.0).position, {1.0, 1.6, 0.0}));
     CHECK(isNear(said.stageFromLocal(9.0).position, {2.0, 1.6, 0.0}));
     CHECK(isNear(forwardOf(said.stageFromLocal(9.0)), {0.0, 0.0, -1.0}));
-    CHECK(said.eventsIn(0.5, 1.5).size() == 1);
-    CHECK(said.eventsIn(0.5, 1.5).at(0).kind == ScriptEvent::Kind::kRecentre);
+    CHECK(these(said.eventsIn(0.5, 1.5).size(), said.eventsIn(0.5, 1.5).at(0).kind) == these(1, ScriptEvent::Kind::kRecentre));
 }
 
 TEST_CASE("controllers move and aim from their grip") {
@@ -176,15 +173,12 @@ TEST_CASE("events happen once in the frame that reaches them") {
     const Script script = parse("at -1 slow-images 3\nat 1 lose-session\nat 1 lose-instance\nat 2 exit");
     const auto first = script.eventsIn(-kForever, 0.0);
     REQUIRE(first.size() == 1);
-    CHECK(first[0].kind == ScriptEvent::Kind::kSlowImages);
-    CHECK(first[0].count == 3);
+    CHECK(these(first[0].kind, first[0].count) == these(ScriptEvent::Kind::kSlowImages, 3));
     CHECK(script.eventsIn(0.0, 0.999).empty());
     const auto at_one = script.eventsIn(0.999, 1.0);
     REQUIRE(at_one.size() == 2);
-    CHECK(at_one[0].kind == ScriptEvent::Kind::kLoseSession);
-    CHECK(at_one[1].kind == ScriptEvent::Kind::kLoseInstance);
-    CHECK(script.eventsIn(1.0, 1.5).empty());
-    CHECK(script.eventsIn(1.5, 7.0).size() == 1);
+    CHECK(these(at_one[0].kind, at_one[1].kind) == these(ScriptEvent::Kind::kLoseSession, ScriptEvent::Kind::kLoseInstance));
+    CHECK(these(script.eventsIn(1.0, 1.5).empty(), script.eventsIn(1.5, 7.0).size()) == these(true, 1));
     CHECK(std::string(nameOf(ScriptEvent::Kind::kExit)) == "exit");
 }
 
@@ -207,15 +201,12 @@ TEST_CASE("frames are chosen by number, extensions and the mask are switched, an
     CHECK(script.allowsExtension("XR_KHR_vulkan_enable2"));
     CHECK(script.visibility_mask);
     const Script loaded = parse("at 1 gpu-load 4 ms-per-megapixel");
-    CHECK(loaded.gpu_load.at(0.0).ms(10.0, 2.0) == 0.0);
-    CHECK(loaded.gpu_load.at(1.0).ms(10.0, 2.0) == doctest::Approx(8.0));
+    CHECK(these(loaded.gpu_load.at(0.0).ms(10.0, 2.0), loaded.gpu_load.at(1.0).ms(10.0, 2.0)) == these(0.0, doctest::Approx(8.0)));
 }
 
 TEST_CASE("headset files give size, distance, canting, angles and insets, and every one of the project is read") {
     const Script script = Script::parse("headset index.toml\nipd 0.064", std::string(BINOSPLAT_SOURCE_DIR) + "/configs/headsets/a.script");
-    CHECK(script.system_name == "Valve Index");
-    CHECK(script.size_px == glm::uvec2(2468, 2740));
-    CHECK(script.eye_distance_m == 0.064);
+    CHECK(these(script.system_name, script.size_px, script.eye_distance_m) == these("Valve Index", glm::uvec2(2468, 2740), 0.064));
     const State state = script.at(0.0);
     CHECK(state.eyes[kLeft].fov.left_rad == doctest::Approx(-51.9821 * kDegree));
     CHECK(state.eyes[kRight].fov.down_rad == doctest::Approx(-54.6016 * kDegree));
@@ -234,9 +225,8 @@ TEST_CASE("headset files give size, distance, canting, angles and insets, and ev
         return folder.script("headset h.toml");
     };
     const Script full = readWith("[inset]\nhalf_angle_deg = 15\nsize = \"60x50\"\ncontext_size = \"40x30\"\n");
-    CHECK(full.inset.half_angle_rad == doctest::Approx(0.2617994));
-    CHECK(full.insetSizePx() == glm::uvec2(60, 50));
-    CHECK(full.contextSizePx() == glm::uvec2(40, 30));
+    CHECK(these(full.inset.half_angle_rad, full.insetSizePx(), full.contextSizePx()) ==
+          these(doctest::Approx(0.2617994), glm::uvec2(60, 50), glm::uvec2(40, 30)));
     CHECK(readWith("[inset]\nhalf_angle_deg = 15\n").contextSizePx() == glm::uvec2(50, 50));
     CHECK(readWith("").inset.half_angle_rad == doctest::Approx(0.3490659));
 }
