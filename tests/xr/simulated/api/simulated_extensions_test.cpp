@@ -176,8 +176,7 @@ TEST_CASE("the display's rate is one of a list, or the one that is fixed") {
         checkEach(XR_SUCCESS, {request(80), request(80)});
         const auto changes = made.events<XrEventDataDisplayRefreshRateChangedFB>(XR_TYPE_EVENT_DATA_DISPLAY_REFRESH_RATE_CHANGED_FB);
         REQUIRE(changes.size() == 1);
-        CHECK(changes[0].fromDisplayRefreshRate == 100);
-        CHECK(changes[0].toDisplayRefreshRate == 80);
+        CHECK(these(changes[0].fromDisplayRefreshRate, changes[0].toDisplayRefreshRate) == these(100, 80));
         CHECK(current() == 80);
         CHECK(request(0) == XR_SUCCESS);
         CHECK(current() == 100);
@@ -247,9 +246,8 @@ TEST_CASE("the joints of a hand turn with its controller, and those of a finger 
     }
     // A quarter of pi in a second, to the left, which is about +y.
     for (const auto& speed : left.speeds) {
-        CHECK(speed.angularVelocity.x == doctest::Approx(0));
-        CHECK(speed.angularVelocity.y == doctest::Approx(0.25 * 3.14159265).epsilon(1e-3));
-        CHECK(speed.angularVelocity.z == doctest::Approx(0));
+        CHECK(these(speed.angularVelocity.x, speed.angularVelocity.y, speed.angularVelocity.z) ==
+              these(doctest::Approx(0), doctest::Approx(0.25 * 3.14159265).epsilon(1e-3), doctest::Approx(0)));
     }
     CHECK(right.turning(XR_HAND_JOINT_INDEX_TIP_EXT) > 1);
     CHECK(right.turning(XR_HAND_JOINT_LITTLE_TIP_EXT) == doctest::Approx(0));
@@ -286,9 +284,8 @@ TEST_CASE("a headless session may have frames, which nobody draws; time and stat
     const States expected[] = {{}, {}, {XR_SESSION_STATE_VISIBLE}, {}, {XR_SESSION_STATE_SYNCHRONIZED}, {XR_SESSION_STATE_STOPPING}};
     for (int frame = 0; frame < 6; ++frame) {
         state = made.waitFrame();
-        CHECK(state.shouldRender == XR_FALSE);
-        CHECK(state.predictedDisplayTime == kStart + frame * 100'000'000);
-        CHECK(state.predictedDisplayPeriod == 100'000'000);
+        CHECK(these(state.shouldRender, state.predictedDisplayTime, state.predictedDisplayPeriod) ==
+              these(XR_FALSE, kStart + frame * 100'000'000, 100'000'000));
         for (int i = 0; i < 2; ++i) { CHECK(made.sync() == (frame < 3 ? XR_SUCCESS : XR_SESSION_NOT_FOCUSED)); }
         REQUIRE(begin(made.session, nullptr) == XR_SUCCESS);
         // Its picture would need a swapchain, which there cannot be; even one that names none is refused as a layer.

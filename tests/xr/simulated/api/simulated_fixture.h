@@ -7,7 +7,6 @@
 #include <time.h>
 #include <vulkan/vulkan.h>
 //
-#include <openxr/openxr.h>
 #include <openxr/openxr_platform.h>
 
 #include "tests/xr/simulated/api/simulated_checks.h"

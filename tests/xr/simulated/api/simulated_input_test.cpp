@@ -57,14 +57,12 @@ TEST_CASE_FIXTURE(InstanceFixture, "an action set has two names of its own, an a
     XrActionSetCreateInfo set_info = actionSetInfo("walking", "Walking");
     XrActionSet set = XR_NULL_HANDLE;
     CHECK(xrCreateActionSet(instance, &set_info, &set) == XR_SUCCESS);
-    CHECK(makeSet("", "Running") == XR_ERROR_NAME_INVALID);
-    CHECK(makeSet("running", "") == XR_ERROR_LOCALIZED_NAME_INVALID);
+    CHECK(these(makeSet("", "Running"), makeSet("running", "")) == these(XR_ERROR_NAME_INVALID, XR_ERROR_LOCALIZED_NAME_INVALID));
     for (const char* bad : {"Running", "run/ning", "running fast"}) {
         CHECK_MESSAGE(makeSet(bad, "Running") == XR_ERROR_PATH_FORMAT_INVALID, bad);
     }
-    CHECK(makeSet("walking", "Running") == XR_ERROR_NAME_DUPLICATED);
-    CHECK(makeSet("running", "Walking") == XR_ERROR_LOCALIZED_NAME_DUPLICATED);
-    CHECK(makeSet("running", "\xC3\x28") == XR_ERROR_VALIDATION_FAILURE);
+    CHECK(these(makeSet("walking", "Running"), makeSet("running", "Walking"), makeSet("running", "\xC3\x28")) ==
+          these(XR_ERROR_NAME_DUPLICATED, XR_ERROR_LOCALIZED_NAME_DUPLICATED, XR_ERROR_VALIDATION_FAILURE));
     checkEach(XR_SUCCESS, {makeSet("running", "L\xC3\xA4uft"), xrDestroyActionSet(set)});
     CHECK(xrDestroyActionSet(set) == XR_ERROR_HANDLE_INVALID);
     CHECK(xrCreateActionSet(instance, &set_info, &set) == XR_SUCCESS);
@@ -80,14 +78,11 @@ TEST_CASE_FIXTURE(InstanceFixture, "an action set has two names of its own, an a
     };
     XrActionCreateInfo info = actionInfo("jump", "Jump");
     CHECK(xrCreateAction(set, &info, &action) == XR_SUCCESS);
-    CHECK(make("jump", "Jump") == XR_ERROR_NAME_DUPLICATED);
-    CHECK(make("duck", "Jump") == XR_ERROR_LOCALIZED_NAME_DUPLICATED);
+    CHECK(these(make("jump", "Jump"), make("duck", "Jump")) == these(XR_ERROR_NAME_DUPLICATED, XR_ERROR_LOCALIZED_NAME_DUPLICATED));
     checkEach(XR_SUCCESS, {xrCreateAction(other_set, &info, &other), xrDestroyAction(action)});
     CHECK(xrDestroyAction(action) == XR_ERROR_HANDLE_INVALID);
-    CHECK(make("duck", "Jump") == XR_SUCCESS);
-    CHECK(make("", "Roll") == XR_ERROR_NAME_INVALID);
-    CHECK(make("roll", "") == XR_ERROR_LOCALIZED_NAME_INVALID);
-    CHECK(make("Roll", "Roll") == XR_ERROR_PATH_FORMAT_INVALID);
+    CHECK(these(make("duck", "Jump"), make("", "Roll"), make("roll", ""), make("Roll", "Roll")) ==
+          these(XR_SUCCESS, XR_ERROR_NAME_INVALID, XR_ERROR_LOCALIZED_NAME_INVALID, XR_ERROR_PATH_FORMAT_INVALID));
     info = actionInfo("roll", "Roll", XR_ACTION_TYPE_FLOAT_INPUT);
     XrPath paths[2] = {path("/user/hand/left"), path("/user/gamepad")};
     info.countSubactionPaths = 2;
@@ -149,15 +144,13 @@ TEST_CASE_FIXTURE(SessionFixture, "suggestions are whole, action sets are attach
     CHECK(xrGetCurrentInteractionProfile(session, XR_NULL_PATH, &profile) == XR_ERROR_PATH_INVALID);
 }
 
-TEST_CASE_FIXTURE(InputFixture,
-                  "a profile is in use from the first sync in focus on, and announced; states are asked for by type and hand") {
+TEST_CASE_FIXTURE(InputFixture, "a profile is in use from the first sync in focus on, and announced; states are got by type and hand") {
     attach({set});
     CHECK(sync(set) == XR_SESSION_NOT_FOCUSED);
     CHECK(profileOf(left) == "none");
     focus();
     CHECK(sync(set) == XR_SUCCESS);
-    CHECK(profileOf(left) == kTouch);
-    CHECK(profileOf(path("/user/gamepad")) == "none");
+    CHECK(these(profileOf(left), profileOf(path("/user/gamepad"))) == these(kTouch, "none"));
     XrEventDataBuffer event;
     CHECK(poll(event) == XR_TYPE_EVENT_DATA_INTERACTION_PROFILE_CHANGED);
     CHECK(sync(set) == XR_SUCCESS);
@@ -192,35 +185,27 @@ TEST_CASE_FIXTURE(InputFixture,
     CHECK(with(named.sourcePath, XR_NULL_PATH, getName) == XR_ERROR_PATH_INVALID);
 }
 
-TEST_CASE_FIXTURE(InputFixture,
-                  "a button is pressed at the script's times, seen at syncs; of two hands the stronger counts, or one alone") {
+TEST_CASE_FIXTURE(InputFixture, "a button is pressed at the script's times, seen at syncs; of two hands the stronger counts, or one") {
     start();
     runTo(4);
-    CHECK(boolean(click).isActive == XR_TRUE);
-    CHECK(boolean(click).currentState == XR_FALSE);
-    CHECK(boolean(click).changedSinceLastSync == XR_FALSE);
+    CHECK(these(boolean(click).isActive, boolean(click).currentState, boolean(click).changedSinceLastSync) ==
+          these(XR_TRUE, XR_FALSE, XR_FALSE));
     frame();
     CHECK_MESSAGE(boolean(click).currentState == XR_FALSE, "nothing changes between syncs");
     REQUIRE(sync(set) == XR_SUCCESS);
-    CHECK(boolean(click).currentState == XR_TRUE);
-    CHECK(boolean(click).changedSinceLastSync == XR_TRUE);
-    CHECK(boolean(click).lastChangeTime == 1'500'000'000);
-    CHECK(number(pull, left).currentState == doctest::Approx(0.2));
-    CHECK(number(pull, right).currentState == doctest::Approx(0.5));
-    CHECK(number(pull).currentState == doctest::Approx(0.5));
-    CHECK(vector(stick).currentState.x == doctest::Approx(0.5));
-    CHECK(vector(stick).currentState.y == doctest::Approx(-0.5));
+    CHECK(these(boolean(click).currentState, boolean(click).changedSinceLastSync, boolean(click).lastChangeTime) ==
+          these(XR_TRUE, XR_TRUE, 1'500'000'000));
+    CHECK(these(number(pull, left).currentState, number(pull, right).currentState, number(pull).currentState) ==
+          these(doctest::Approx(0.2), doctest::Approx(0.5), doctest::Approx(0.5)));
+    CHECK(these(vector(stick).currentState.x, vector(stick).currentState.y) == these(doctest::Approx(0.5), doctest::Approx(-0.5)));
     REQUIRE(sync(set) == XR_SUCCESS);
-    CHECK(boolean(click).changedSinceLastSync == XR_FALSE);
-    CHECK(boolean(click).lastChangeTime == 1'500'000'000);
+    CHECK(these(boolean(click).changedSinceLastSync, boolean(click).lastChangeTime) == these(XR_FALSE, 1'500'000'000));
     for (int i = 0; i < 2; ++i) { frame(); }
     REQUIRE(sync(set) == XR_SUCCESS);
-    CHECK(boolean(click).currentState == XR_FALSE);
-    CHECK(boolean(click).changedSinceLastSync == XR_TRUE);
+    CHECK(these(boolean(click).currentState, boolean(click).changedSinceLastSync) == these(XR_FALSE, XR_TRUE));
     // A set that is not synced is inactive, and so is a hand that is left out.
     REQUIRE(sync(set, left) == XR_SUCCESS);
-    CHECK(number(pull, left).isActive == XR_TRUE);
-    CHECK(number(pull, right).isActive == XR_FALSE);
+    CHECK(these(number(pull, left).isActive, number(pull, right).isActive) == these(XR_TRUE, XR_FALSE));
     CHECK(sync() == XR_SUCCESS);
     CHECK(number(pull, left).isActive == XR_FALSE);
     CHECK(sync(set, path("/user/head")) == XR_ERROR_PATH_UNSUPPORTED);
@@ -231,8 +216,7 @@ TEST_CASE_FIXTURE(InputFixture,
     checkArguments(xrSyncActions, session, &nothing);
 }
 
-TEST_CASE_FIXTURE(InputFixture,
-                  "action spaces are made of pose actions, and move with their hands, also once the action's handle is gone") {
+TEST_CASE_FIXTURE(InputFixture, "action spaces are made of pose actions, and move with their hands, also once the action is gone") {
     XrActionSpaceCreateInfo info{XR_TYPE_ACTION_SPACE_CREATE_INFO, nullptr, grip, left, kIdentity};
     XrSpace made = XR_NULL_HANDLE;
     const auto make = [&] { return xrCreateActionSpace(session, &info, &made); };
@@ -258,21 +242,17 @@ TEST_CASE_FIXTURE(InputFixture,
     // its set is active, whether that was read before or after.
     CHECK(locate(above, held, 2'500'000'000).locationFlags == 15);
     runTo(11);
-    CHECK(number(pull, right).isActive == XR_FALSE);
-    CHECK(number(pull, right).currentState == 0);
-    CHECK(number(pull, right).lastChangeTime == 0);
+    CHECK(these(number(pull, right).isActive, number(pull, right).currentState, number(pull, right).lastChangeTime) ==
+          these(XR_FALSE, 0, 0));
     CHECK(number(pull).currentState == doctest::Approx(0.2));
     CHECK(pose(grip, right).isActive == XR_FALSE);
     CHECK(locate(held, local, 2'100'000'000).locationFlags == 0);
     XrSpaceVelocity velocity{XR_TYPE_SPACE_VELOCITY};
     XrSpaceLocation location = locate(above, held, 2'100'000'000, &velocity);
-    CHECK(location.locationFlags == 15);
-    CHECK(location.pose.position.y == doctest::Approx(0.5));
-    CHECK(velocity.velocityFlags == kMoving);
-    CHECK(velocity.linearVelocity.y == 0);
+    CHECK(these(location.locationFlags, location.pose.position.y) == these(15, doctest::Approx(0.5)));
+    CHECK(these(velocity.velocityFlags, velocity.linearVelocity.y) == these(kMoving, 0));
     location = locate(held, above, 2'100'000'000);
-    CHECK(location.locationFlags == 15);
-    CHECK(location.pose.position.y == doctest::Approx(-0.5));
+    CHECK(these(location.locationFlags, location.pose.position.y) == these(15, doctest::Approx(-0.5)));
     for (const XrSpace base : {other, local}) { CHECK(locate(above, base, 2'100'000'000).locationFlags == 0); }
     REQUIRE(sync(set, left) == XR_SUCCESS);
     CHECK(locate(above, held, 2'100'000'000).locationFlags == 0);
@@ -292,8 +272,7 @@ TEST_CASE_FIXTURE(InputFixture, "a set of higher priority takes the controls tha
     const XrActionsSyncInfo info{XR_TYPE_ACTIONS_SYNC_INFO, nullptr, 2, both};
     REQUIRE(xrSyncActions(session, &info) == XR_SUCCESS);
     CHECK(number(pull, right).isActive == XR_FALSE);
-    CHECK(boolean(choose).isActive == XR_TRUE);
-    CHECK(boolean(click).isActive == XR_TRUE);
+    CHECK(these(boolean(choose).isActive, boolean(click).isActive) == these(XR_TRUE, XR_TRUE));
     REQUIRE(sync(set) == XR_SUCCESS);
     CHECK(number(pull, right).isActive == XR_TRUE);
 }

@@ -183,14 +183,12 @@ TEST_CASE("the wearer sees each inset in the place of what its view shows there"
     REQUIRE(ahead.size_px == glm::uvec2(128, 64));
     for (const auto& [first, colour] : {std::pair(0u, 'g'), std::pair(64u, 'b')}) {
         for (const std::uint32_t row : {20u, 32u, 43u}) {
-            CHECK(colourAt(ahead, first + 19, row) == 'r');
-            CHECK(colourAt(ahead, first + 20, row) == colour);
-            CHECK(colourAt(ahead, first + 43, row) == colour);
+            CHECK(these(colourAt(ahead, first + 19, row), colourAt(ahead, first + 20, row), colourAt(ahead, first + 43, row)) ==
+                  these('r', colour, colour));
             CHECK(colourAt(ahead, first + 44, row) == 'r');
         }
         for (const std::uint32_t column : {0u, 32u, 63u}) {
-            CHECK(colourAt(ahead, first + column, 19) == 'r');
-            CHECK(colourAt(ahead, first + column, 44) == 'r');
+            CHECK(these(colourAt(ahead, first + column, 19), colourAt(ahead, first + column, 44)) == these('r', 'r'));
         }
     }
     // From 35 degrees to the left to 5 to the right: 9.6 to 34.8.

@@ -147,14 +147,12 @@ TEST_CASE("frames are logged, and pictures written for those with layers, also o
     REQUIRE(lines.size() == 4);
     CHECK(lines[3] == expecting(lines[3], {{"frame", 3}, {"session_state", "FOCUSED"}, {"should_render", true}, {"blend_mode", "OPAQUE"}}));
     CHECK(lines[3]["gpu_ms"].get<double>() == doctest::Approx(2 * 2.048));  // of both views
-    CHECK(lines[3]["eyes"][0]["fov"]["left"].get<double>() == doctest::Approx(-0.7));
-    CHECK_FALSE(lines[2].contains("picture"));
+    CHECK(these(lines[3]["eyes"][0]["fov"]["left"].get<double>(), lines[2].contains("picture")) == these(doctest::Approx(-0.7), false));
     REQUIRE(lines[3]["layers"].size() == 2);
     const Json &projection = lines[3]["layers"][0], &quad = lines[3]["layers"][1];
     CHECK(projection == expecting(projection, {{"type", "projection"}, {"space", "LOCAL"}, {"flags", {"blend_texture_source_alpha"}}}));
     const Json& views = projection["views"];
-    CHECK(views.size() == 2);
-    CHECK(views[1]["rect"] == Json{0, 0, 64, 32});
+    CHECK(these(views.size(), views[1]["rect"]) == these(2, Json{0, 0, 64, 32}));
     CHECK(views[0] ==
           expecting(views[0], {{"format", "VK_FORMAT_R8G8B8A8_SRGB"}, {"depth", {{"format", "VK_FORMAT_D32_SFLOAT"}, {"far", 100.0}}}}));
     CHECK(views[0]["depth"]["near"].is_null());  // infinite
@@ -180,14 +178,12 @@ TEST_CASE_FIXTURE(SurroundFixture, "layers that surround reach the wearer and th
     CHECK(show(&sphere) == XR_SUCCESS);
     CHECK(seen() == Texel{255, 0, 0, 255});
     layer = logged().back()["layers"][0];
-    CHECK(layer["type"] == "equirect2");
-    CHECK(layer["upper_angle"].get<double>() == doctest::Approx(kPi / 2));
+    CHECK(these(layer["type"], layer["upper_angle"].get<double>()) == these("equirect2", doctest::Approx(kPi / 2)));
     makeCube();
     CHECK(show(&cube) == XR_SUCCESS);
     CHECK(seen() == Texel{0, 255, 0, 255});
     layer = logged().back()["layers"][0];
-    CHECK(layer["type"] == "cube");
-    CHECK(layer["views"][0]["rect"] == Json{0, 0, 4, 4});
+    CHECK(these(layer["type"], layer["views"][0]["rect"]) == these("cube", Json{0, 0, 4, 4}));
     cube.orientation = {0, 0.70710678f, 0, 0.70710678f};
     CHECK(show(&cube) == XR_SUCCESS);
     CHECK(seen() == Texel{0, 0, 0, 255});
@@ -214,8 +210,7 @@ TEST_CASE_FIXTURE(SurroundFixture, "cylinders and spheres have angles, radii and
     checkChanges(showCylinder, kNotValid, to(cylinder.radius, -1), to(cylinder.radius, NAN));
     CHECK(with(cylinder.radius, INFINITY, showCylinder) == XR_SUCCESS);
     CHECK(with(cylinder.centralAngle, 7, showCylinder) == kNotValid);
-    CHECK(with(cylinder.centralAngle, 0, showCylinder) == XR_SUCCESS);
-    CHECK(with(cylinder.aspectRatio, 0, showCylinder) == kNotValid);
+    CHECK(these(with(cylinder.centralAngle, 0, showCylinder), with(cylinder.aspectRatio, 0, showCylinder)) == these(XR_SUCCESS, kNotValid));
     CHECK(with(cylinder.pose.orientation.w, 0, showCylinder) == XR_ERROR_POSE_INVALID);
     CHECK(with(cylinder.subImage.imageRect.extent.width, 5, showCylinder) == XR_ERROR_SWAPCHAIN_RECT_INVALID);
     CHECK(with(cylinder.eyeVisibility, static_cast<XrEyeVisibility>(3), showCylinder) == kNotValid);
@@ -224,9 +219,8 @@ TEST_CASE_FIXTURE(SurroundFixture, "cylinders and spheres have angles, radii and
     checkChanges(showSphere, kNotValid, to(sphere.radius, -1), to(sphere.centralHorizontalAngle, 7), to(sphere.upperVerticalAngle, 2),
                  to(sphere.lowerVerticalAngle, -2), to(sphere.subImage.imageArrayIndex, 1));
     makeCube();
-    CHECK(with(cube.swapchain, picture, showCube) == XR_ERROR_LAYER_INVALID);
-    CHECK(with(cube.imageArrayIndex, 1, showCube) == kNotValid);
-    CHECK(with(cube.orientation.w, 0, showCube) == XR_ERROR_POSE_INVALID);
+    CHECK(these(with(cube.swapchain, picture, showCube), with(cube.imageArrayIndex, 1, showCube), with(cube.orientation.w, 0, showCube)) ==
+          these(XR_ERROR_LAYER_INVALID, kNotValid, XR_ERROR_POSE_INVALID));
     CHECK(with(cylinder.subImage.swapchain, cube_map, showCylinder) == XR_ERROR_LAYER_INVALID);
     XrSwapchainCreateInfo info = swapchainInfo();
     info.faceCount = 6;

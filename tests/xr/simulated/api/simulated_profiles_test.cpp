@@ -222,8 +222,7 @@ TEST_CASE("every input of every profile is read as it is moved, each by itself, 
                 const float value = bound.type == XR_ACTION_TYPE_BOOLEAN_INPUT ? 1.0f : 0.75f;
                 played.move(bound, value);
                 const Played::Reading moved = played.read(bound);
-                CHECK(moved.x == value);
-                CHECK(moved.y == (bound.type == XR_ACTION_TYPE_VECTOR2F_INPUT ? -value : 0.0f));
+                CHECK(these(moved.x, moved.y) == these(value, (bound.type == XR_ACTION_TYPE_VECTOR2F_INPUT ? -value : 0.0f)));
                 CHECK((moved.has_changed && moved.changed_at > 0));
                 // Nothing else of its type moves with it.
                 for (const Bound& other : played.bindings) {
@@ -290,9 +289,8 @@ TEST_CASE("the palm's surface lies beside the grip, turned towards the index fin
     for (const XrPath hand : paths) {
         const XrSpaceLocation location =
             made.locate(made.makeActionSpace(actions[1], hand), made.makeActionSpace(actions[0], hand), kStart);
-        CHECK(location.locationFlags == 15);
-        CHECK(location.pose.position.x == doctest::Approx(hand == paths[0] ? -0.02 : 0.02));
-        CHECK(location.pose.orientation.x == doctest::Approx(-std::sin(3.14159265 / 8)));
+        CHECK(these(location.locationFlags, location.pose.position.x, location.pose.orientation.x) ==
+              these(15, doctest::Approx(hand == paths[0] ? -0.02 : 0.02), doctest::Approx(-std::sin(3.14159265 / 8))));
         CHECK(location.pose.orientation.w == doctest::Approx(std::cos(3.14159265 / 8)));
     }
 }

@@ -97,13 +97,10 @@ TEST_CASE_FIXTURE(SessionFixture, "a session begins once, when it is READY, in s
 
     // Drawn for from VISIBLE on; in lock-step a frame lasts one period.
     state = frame();
-    CHECK(state.shouldRender == XR_FALSE);
-    CHECK(state.predictedDisplayPeriod == 11'111'111);
-    CHECK(state.predictedDisplayTime == kStart);
+    CHECK(these(state.shouldRender, state.predictedDisplayPeriod, state.predictedDisplayTime) == these(XR_FALSE, 11'111'111, kStart));
     CHECK(states() == States{XR_SESSION_STATE_SYNCHRONIZED});
     state = frame();
-    CHECK(state.shouldRender == XR_FALSE);
-    CHECK(state.predictedDisplayTime == kStart + state.predictedDisplayPeriod);
+    CHECK(these(state.shouldRender, state.predictedDisplayTime) == these(XR_FALSE, kStart + state.predictedDisplayPeriod));
     CHECK(states() == States{XR_SESSION_STATE_VISIBLE});
     CHECK(frame().shouldRender == XR_TRUE);
     CHECK(states() == States{XR_SESSION_STATE_FOCUSED});
@@ -255,12 +252,10 @@ TEST_CASE("frames go by the display's rate from the next one on: that which the 
     // From 0.0325 s on.
     std::vector<XrDuration> steps;
     for (int i = 0; i < 12; ++i) { steps.push_back(step()); }
-    CHECK(std::ranges::find(steps, 2 * kPeriod) - steps.begin() == 7);
-    CHECK(std::ranges::count(steps, 2 * kPeriod) == 5);
+    CHECK(these(std::ranges::find(steps, 2 * kPeriod) - steps.begin(), std::ranges::count(steps, 2 * kPeriod)) == these(7, 5));
     const auto changes = made.events<XrEventDataDisplayRefreshRateChangedFB>(XR_TYPE_EVENT_DATA_DISPLAY_REFRESH_RATE_CHANGED_FB);
     REQUIRE(changes.size() == 1);
-    CHECK(changes[0].fromDisplayRefreshRate == 100.0f);
-    CHECK(changes[0].toDisplayRefreshRate == 50.0f);
+    CHECK(these(changes[0].fromDisplayRefreshRate, changes[0].toDisplayRefreshRate) == these(100.0f, 50.0f));
     float rates[16] = {};
     std::uint32_t count = 0;
     REQUIRE(made.XR(xrEnumerateDisplayRefreshRatesFB)(made.session, 16, &count, rates) == XR_SUCCESS);
@@ -301,9 +296,8 @@ TEST_CASE("a device that takes longer than a period misses displays, and the log
         }
         return steps;
     };
-    CHECK(stepsIn(0.0, 0.199) == std::set<XrDuration>{1});
-    CHECK(stepsIn(0.2, 0.399) == std::set<XrDuration>{3});
-    CHECK(stepsIn(0.41, 9.0) == std::set<XrDuration>{1});
+    CHECK(these(stepsIn(0.0, 0.199), stepsIn(0.2, 0.399), stepsIn(0.41, 9.0)) ==
+          these(std::set<XrDuration>{1}, std::set<XrDuration>{3}, std::set<XrDuration>{1}));
     std::set<double> said;
     for (const Json& line : made.logged()) { said.insert(line.value("gpu_ms", 0.0)); }
     CHECK(said == std::set<double>{0.0, 7.0, 25.0});
@@ -322,8 +316,7 @@ TEST_CASE_FIXTURE(Leaving, "the script goes on and the session moves though ever
         CHECK_FALSE(line.contains("frame"));
         for (const auto& event : line["events"]) { events.push_back(event); }
         if (!line.contains("refused")) { continue; }
-        CHECK(line["refused"] == "XR_ERROR_TIME_INVALID");
-        CHECK(line["display_time_ns"] == kStart + kPeriod * refused);
+        CHECK(these(line["refused"], line["display_time_ns"]) == these("XR_ERROR_TIME_INVALID", kStart + kPeriod * refused));
         CHECK(line["reason"] == "the time is " + std::to_string(-line["display_time_ns"].get<XrTime>()) + ", must be positive");
         ++refused;
     }
@@ -342,14 +335,12 @@ TEST_CASE_FIXTURE(Leaving, "a frame that is refused and ended again moves the se
     }
     std::vector<Json> lines = logged();
     REQUIRE(lines.size() == 6);
-    CHECK(lines[4].contains("refused"));
-    CHECK(lines[5]["frame"] == 2);
+    CHECK(these(lines[4].contains("refused"), lines[5]["frame"]) == these(true, 2));
     while (states() != States{XR_SESSION_STATE_STOPPING}) { frame(); }
     CHECK(xrEndSession(session) == XR_SUCCESS);
     lines = logged();
-    CHECK(lines[lines.size() - 3].contains("frame"));
-    CHECK(lines[lines.size() - 2]["events"] == Json{"state STOPPING"});
-    CHECK(lines[lines.size() - 2]["session_state"] == "STOPPING");
+    CHECK(these(lines[lines.size() - 3].contains("frame"), lines[lines.size() - 2]["events"], lines[lines.size() - 2]["session_state"]) ==
+          these(true, Json{"state STOPPING"}, "STOPPING"));
     CHECK(lines.back()["events"] == Json{"state IDLE", "state EXITING"});
 }
 
@@ -374,8 +365,7 @@ TEST_CASE("states change while a frame is open, where the script says so, and th
         take(closed);
     }
     REQUIRE_FALSE(open.empty());
-    CHECK(open.front() == XR_SESSION_STATE_SYNCHRONIZED);
-    CHECK(open.back() == XR_SESSION_STATE_STOPPING);
+    CHECK(these(open.front(), open.back()) == these(XR_SESSION_STATE_SYNCHRONIZED, XR_SESSION_STATE_STOPPING));
     CHECK(std::ranges::count(closed, XR_SESSION_STATE_FOCUSED) == 0);
     CHECK(xrEndSession(made.session) == XR_SUCCESS);
 }

@@ -75,9 +75,8 @@ TEST_CASE_FIXTURE(WalkingFixture, "spaces are located in one another as the scri
     CHECK(location.locationFlags == (kValid | kTracked));
     checkNear(location.pose.position, {1, 1.5f, 1});
     CHECK(location.pose.orientation.y == doctest::Approx(std::sin(M_PI / 8)));
-    CHECK(velocity.velocityFlags == kMoving);
-    CHECK(velocity.linearVelocity.z == doctest::Approx(-1));
-    CHECK(velocity.angularVelocity.y == doctest::Approx(M_PI / 4).epsilon(1e-3));
+    CHECK(these(velocity.velocityFlags, velocity.linearVelocity.z, velocity.angularVelocity.y) ==
+          these(kMoving, doctest::Approx(-1), doctest::Approx(M_PI / 4).epsilon(1e-3)));
     // LOCAL starts where the head was: the way back from the head to it is the way that the head went.
     checkNear(locate(view, local, kStart).pose.position, {0, 0, 0});
     CHECK(locate(view, view, kStart).pose.orientation.w == doctest::Approx(1));
@@ -91,15 +90,13 @@ TEST_CASE_FIXTURE(WalkingFixture, "spaces are located in one another as the scri
     const auto find = [&] { return list(2u, &count, views.data()); };
     CHECK(find() == XR_SUCCESS);
     CHECK(state.viewStateFlags != 0);
-    CHECK(views[1].pose.position.x - views[0].pose.position.x == doctest::Approx(0.06));
-    CHECK(views[0].fov.angleLeft == doctest::Approx(-50 * M_PI / 180));
-    CHECK(views[0].fov.angleUp == doctest::Approx(45 * M_PI / 180));
+    CHECK(these(views[1].pose.position.x - views[0].pose.position.x, views[0].fov.angleLeft, views[0].fov.angleUp) ==
+          these(doctest::Approx(0.06), doctest::Approx(-50 * M_PI / 180), doctest::Approx(45 * M_PI / 180)));
     CHECK(views[0].fov.angleDown == doctest::Approx(-48 * M_PI / 180));
     CHECK(views[1].fov.angleLeft == doctest::Approx(-45 * M_PI / 180));
     CHECK(xrLocateViews(session, &info, nullptr, 2, &count, views.data()) == XR_ERROR_VALIDATION_FAILURE);
-    CHECK(with(info.displayTime, 0, find) == XR_ERROR_TIME_INVALID);
-    CHECK(with(info.space, XR_NULL_HANDLE, find) == XR_ERROR_HANDLE_INVALID);
-    CHECK(with(info.viewConfigurationType, kMono, find) == XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED);
+    CHECK(these(with(info.displayTime, 0, find), with(info.space, XR_NULL_HANDLE, find), with(info.viewConfigurationType, kMono, find)) ==
+          these(XR_ERROR_TIME_INVALID, XR_ERROR_HANDLE_INVALID, XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED));
 }
 
 TEST_CASE_FIXTURE(WalkingFixture, "the visibility mask is a mesh in two calls, its outline goes once round the axis, counter-clockwise") {
@@ -116,8 +113,7 @@ TEST_CASE_FIXTURE(WalkingFixture, "the visibility mask is a mesh in two calls, i
     mask.vertexCapacityInput = 1;
     mask.vertexCountOutput = mask.indexCountOutput = 0;
     CHECK(getMask(session, kStereo, 0, kHidden, &mask) == XR_SUCCESS);
-    CHECK(mask.vertexCountOutput == vertices.size());
-    CHECK(mask.indexCountOutput == indices.size());
+    CHECK(these(mask.vertexCountOutput, mask.indexCountOutput) == these(vertices.size(), indices.size()));
     mask.vertexCapacityInput = mask.vertexCountOutput;
     mask.indexCapacityInput = mask.indexCountOutput - 1;
     CHECK(getMask(session, kStereo, 0, kHidden, &mask) == XR_ERROR_SIZE_INSUFFICIENT);
@@ -211,8 +207,7 @@ TEST_CASE("a recentring is announced for LOCAL, and for LOCAL_FLOOR where that i
         for (int frame = 0; frame < 3; ++frame) { REQUIRE(made.sync() == XR_SUCCESS); }
         std::vector<XrReferenceSpaceType> announced;
         for (const auto& change : made.events<XrEventDataReferenceSpaceChangePending>(XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING)) {
-            CHECK(change.session == made.session);
-            CHECK(change.changeTime == kStart + 150'000'000);
+            CHECK(these(change.session, change.changeTime) == these(made.session, kStart + 150'000'000));
             // From where LOCAL began, at the head of time 0, to where the head is then; LOCAL_FLOOR is below it both times.
             CHECK(change.poseValid == XR_TRUE);
             const XrPosef& pose = change.poseInPreviousSpace;

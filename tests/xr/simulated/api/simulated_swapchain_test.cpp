@@ -162,8 +162,7 @@ TEST_CASE_FIXTURE(SessionFixture, "formats are enumerated, sRGB first, and a swa
     CHECK(make() == XR_SUCCESS);
 }
 
-TEST_CASE_FIXTURE(SessionFixture,
-                  "every format, use and shape can be held whole, twice, and freed in between, and Vulkan has nothing against") {
+TEST_CASE_FIXTURE(SessionFixture, "every format, use and shape can be held whole, twice, and freed in between, and Vulkan agrees") {
     constexpr XrSwapchainUsageFlags kSampled = XR_SWAPCHAIN_USAGE_SAMPLED_BIT;
     constexpr XrSwapchainUsageFlags kCopied = XR_SWAPCHAIN_USAGE_TRANSFER_SRC_BIT | XR_SWAPCHAIN_USAGE_TRANSFER_DST_BIT;
     std::uint32_t count = 0;
@@ -211,9 +210,8 @@ TEST_CASE("images are made by the application's own loader, and ask for extended
         recorded.makeSwapchain(info);
         return ImageRecorder::made.at(0).flags;
     };
-    CHECK(flagsFor(0) == 0);
-    CHECK(flagsFor(kMutable) == VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT);
-    CHECK(flagsFor(kMutable | kWritten) == (VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT | VK_IMAGE_CREATE_EXTENDED_USAGE_BIT));
+    CHECK(these(flagsFor(0), flagsFor(kMutable), flagsFor(kMutable | kWritten)) ==
+          these(0, VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT, (VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT | VK_IMAGE_CREATE_EXTENDED_USAGE_BIT)));
 }
 
 TEST_CASE_FIXTURE(SessionFixture, "images are acquired, waited for and released in this order, not more than there are, oldest first") {
@@ -300,9 +298,8 @@ TEST_CASE_FIXTURE(SessionFixture, "images are found in attachment layouts, on ev
 }
 
 TEST_CASE("images come in as many, and in the order, as the script says") {
-    CHECK(turnsOf("images 2", 4) == std::vector<std::uint32_t>{0, 1, 0, 1});
-    CHECK(turnsOf("images 1", 2) == std::vector<std::uint32_t>{0, 0});
-    CHECK(turnsOf("images 4 reversed", 5) == std::vector<std::uint32_t>{3, 2, 1, 0, 3});
+    CHECK(these(turnsOf("images 2", 4), turnsOf("images 1", 2), turnsOf("images 4 reversed", 5)) ==
+          these(std::vector<std::uint32_t>{0, 1, 0, 1}, std::vector<std::uint32_t>{0, 0}, std::vector<std::uint32_t>{3, 2, 1, 0, 3}));
     const auto order = turnsOf("images 5 shuffled", 40);
     CHECK(std::set(order.begin(), order.end()).size() == 5);
     std::size_t in_turn = 0;

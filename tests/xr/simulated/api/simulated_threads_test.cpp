@@ -129,8 +129,7 @@ TEST_CASE_FIXTURE(SessionFixture, "each thread makes, uses and destroys its own,
     CHECK(failures.count == 0);
 }
 
-TEST_CASE_FIXTURE(SessionFixture,
-                  "one thread waits for frames while another ends the ones before, and each is displayed a period after the other") {
+TEST_CASE_FIXTURE(SessionFixture, "one thread waits for frames while another ends the ones before, each a period after the other") {
     begin();
     constexpr int kFrames = 30;
     std::mutex lock;
