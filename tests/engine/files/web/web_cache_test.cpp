@@ -1,5 +1,4 @@
 // What is kept on the disk: asked about, not fetched again; there when the server is gone; within its limit; and whole, whoever uses it.
-#include "engine/files/load_scene.h"
 #include "tests/engine/files/web/web_runs.h"
 
 SUITE(web_cache) {

@@ -1,7 +1,6 @@
 // Loading scenes from a test's server.
 #pragma once
 
-#include "engine/files/load_scene.h"
 #include "engine/files/web/web_files.h"
 #include "tests/engine/files/ply_files.h"
 #include "tests/engine/files/web/web_server.h"

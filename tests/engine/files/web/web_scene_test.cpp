@@ -1,5 +1,4 @@
 // Scenes of every format at addresses: the same as on the disk, and no more is asked for than they need.
-#include "engine/files/load_scene.h"
 #include "tests/engine/files/gltf_files.h"
 #include "tests/engine/files/hostile_scenes.h"
 #include "tests/engine/files/ksplat_files.h"
@@ -23,9 +22,8 @@ TEST_CASE("an address begins with http or https; a name in its folder cannot lea
         CHECK_FALSE(isAddress(other));
     }
     const Address address = parseAddress("https://server:81/a b/c/meta.json?key=1&x#top");
-    CHECK(address.text == "https://server:81/a%20b/c/meta.json?key=1&x");
-    CHECK(address.folder == "https://server:81/a%20b/c/");
-    CHECK(address.server == "https://server:81");
+    CHECK(these(address.text, address.folder, address.server) ==
+          these("https://server:81/a%20b/c/meta.json?key=1&x", "https://server:81/a%20b/c/", "https://server:81"));
     CHECK(addressOf(address, "") == address.text);
     CHECK(addressOf(address, "0/50% ä?#.webp") == "https://server:81/a%20b/c/0/50%25%20%C3%A4%3F%23.webp");
     CHECK(parseAddress("http://server").folder == "http://server/");
@@ -58,13 +56,10 @@ TEST_CASE("machines of this network are told from those of the public web") {
         CHECK_FALSE_MESSAGE(isPrivateAddress(ip), ip);
     }
     using Groups = std::array<std::uint16_t, 8>;
-    CHECK(parseIp("1.2.3.255") == Groups{0, 0, 0, 0, 0, 0xffff, 0x102, 0x3ff});
-    CHECK(parseIp("::") == Groups{});
-    CHECK(parseIp("1::8") == Groups{1, 0, 0, 0, 0, 0, 0, 8});
-    CHECK(parseIp("::7:8") == Groups{0, 0, 0, 0, 0, 0, 7, 8});
-    CHECK(parseIp("1:2:3:4:5:6:7::") == Groups{1, 2, 3, 4, 5, 6, 7, 0});
-    CHECK(parseIp("1:2:3:4:5:6:7:fFfF") == Groups{1, 2, 3, 4, 5, 6, 7, 0xffff});
-    CHECK(parseIp("1::5:6:1.2.3.4%eth0") == Groups{1, 0, 0, 0, 5, 6, 0x102, 0x304});
+    CHECK(these(parseIp("1.2.3.255"), parseIp("::"), parseIp("1::8"), parseIp("::7:8")) ==
+          these(Groups{0, 0, 0, 0, 0, 0xffff, 0x102, 0x3ff}, Groups{}, Groups{1, 0, 0, 0, 0, 0, 0, 8}, Groups{0, 0, 0, 0, 0, 0, 7, 8}));
+    CHECK(these(parseIp("1:2:3:4:5:6:7::"), parseIp("1:2:3:4:5:6:7:fFfF"), parseIp("1::5:6:1.2.3.4%eth0")) ==
+          these(Groups{1, 2, 3, 4, 5, 6, 7, 0}, Groups{1, 2, 3, 4, 5, 6, 7, 0xffff}, Groups{1, 0, 0, 0, 5, 6, 0x102, 0x304}));
     std::istringstream others(
         ": ::: 1 1.2.3 1.2.3.4.5 1.2.3.256 1.2.3. 1.2.3.4. a.b.c.d 1:2:3:4:5:6:7 1:2:3:4:5:6:7:8:9 1:2:3:4:5:6:7:8:: 1::2::3 "
         ":1:2:3:4:5:6:7 1:2:3:4:5:6:7: 12345:: g:: 1.2.3.4:: 1:2:3:4:5:6:7:1.2.3.4 -1:: 1::+2");
@@ -168,8 +163,7 @@ TEST_CASE("of a streamed scene the files of the level that is read are fetched, 
         checkSameScene(loadScene(path, 0, &local, {}, {level, {}}), scene);
         CHECK(local.level_splats == far.level_splats);
         std::vector<std::string> asked = sorted(server.asked());
-        CHECK(std::ranges::adjacent_find(asked) == asked.end());
-        CHECK(std::ranges::count(asked, "/s/a.sog") == (level == 0 ? 1 : 0));
+        CHECK(these(std::ranges::adjacent_find(asked), std::ranges::count(asked, "/s/a.sog")) == these(asked.end(), (level == 0 ? 1 : 0)));
         for (const std::string& name : asked) {
             CAPTURE(name);
             const bool expected = level == 0 ? name == "/s/a.sog" || name.starts_with("/s/b/") : name.starts_with("/s/c/");

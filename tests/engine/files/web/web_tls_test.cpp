@@ -1,5 +1,4 @@
 // Somebody else's server, over TLS: whose certificate is trusted, and how many connections the files of a scene take.
-#include "engine/files/load_scene.h"
 #include "tests/engine/files/sog_scenes.h"
 #include "tests/engine/files/web/web_runs.h"
 #include "tests/xr/simulated/installed.h"
