@@ -1,6 +1,5 @@
 // Parts of streamed scenes beside whoever wants them: what is wished for and nothing else, in that order, whatever files and servers do.
 #include "engine/stream/chunk_loader.h"
-#include "engine/files/load_scene.h"
 
 #include "engine/scene/procedural.h"
 #include "tests/engine/files/streamed_scenes.h"
@@ -91,8 +90,7 @@ TEST_CASE("the same wishes give the same parts in the same order, on any number 
         loader.want(everyLeaf(loader.source(), 3), {{5, 1}, {31, 0}, {7, 1}, {6, 2}});
         orders.push_back(placesOf(takeAll(loader)));
     }
-    CHECK(orders[0] == orders[1]);
-    CHECK(orders[0].size() == 36);
+    CHECK(these(orders[0], orders[0].size()) == these(orders[1], 36));
 }
 
 TEST_CASE("wishes that are given up are not loaded, and what waits is bounded") {
@@ -124,9 +122,8 @@ TEST_CASE_FIXTURE(InFolder, "of a file that is broken or missing one line says s
         CHECK(placesOf(takeAll(loader)) == come);
         const std::vector<std::string> lines = loader.takeLines();
         checkSays(lines, line);
-        CHECK(loader.takeLines().empty());
-        CHECK(loader.brokenFiles() == std::vector<bool>{false, true, false, false});
-        CHECK(loader.isDone());
+        CHECK(these(loader.takeLines().empty(), loader.brokenFiles(), loader.isDone()) ==
+              these(true, std::vector<bool>{false, true, false, false}, true));
     };
     // Ranges beyond a chunk break that chunk alone.
     const std::string longer = replaced(makeLodMeta(), R"("file":1,"offset":0,"count":8)", R"("file":1,"offset":0,"count":9)");

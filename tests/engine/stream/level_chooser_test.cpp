@@ -64,8 +64,7 @@ TEST_CASE("the coarsest level of every leaf comes first, the nearest in view bef
     }
     CHECK(seen.size() == field.leaves.size());
     CHECK(choices.coarsest.front().leaf == 4);  // straight ahead
-    CHECK(choices.finer.front().leaf == 4);
-    CHECK(choices.finer.front().level == 0);
+    CHECK(these(choices.finer.front().leaf, choices.finer.front().level) == these(4, 0));
     for (const LeafLevel& one : choices.finer) { CHECK(choices.levels[one.leaf] == one.level); }
 }
 
@@ -175,8 +174,7 @@ TEST_CASE("levels in broken files are passed over, unless they are loaded") {
     CHECK(choose({{true, false, false, false}, {}}).levels == Levels(4, 1));
     CHECK(choose({{true, false, false, false}, {0, 1}}).levels == Levels{1, 0, 1, 1});
     const LevelChoices& without_coarsest = choose({{false, false, false, true}, {}});
-    CHECK(without_coarsest.levels == Levels(4, 0));
-    CHECK(without_coarsest.coarsest.front().level == 2);
+    CHECK(these(without_coarsest.levels, without_coarsest.coarsest.front().level) == these(Levels(4, 0), 2));
     CHECK(choose({{true, true, true, true}, {}}).levels == Levels(4, kNone));
 }
 
@@ -186,8 +184,7 @@ TEST_CASE("leaves of odd shape, count and place are no trouble") {
                  {glm::vec3(1), glm::vec3(2), {{0, 0, {1, 5}}, {1, 2, {0, 5}}, {2, 3, {0, 9}}}},  // coarser levels have no fewer
                  {glm::vec3(3e38f), glm::vec3(3e38f), {{0, 0, {6, 1ull << 40}}, {1, 2, {5, 1}}}}});
     const LevelChoices& choices = odd.choose(eyeAt(glm::dvec3(0.0)), within(1000));
-    CHECK(choices.levels == std::vector<std::uint32_t>{0, 0, 0, 1});
-    CHECK(choices.splats == 107);
+    CHECK(these(choices.levels, choices.splats) == these(std::vector<std::uint32_t>{0, 0, 0, 1}, 107));
     CHECK(odd.choose(eyeAt(glm::dvec3(0.0)), within(0)).levels == std::vector<std::uint32_t>(4, kNone));
     CHECK(Chooser({}).choose(eyeAt(glm::dvec3(0.0)), within(1000)).levels.empty());
 }

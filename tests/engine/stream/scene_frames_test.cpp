@@ -61,8 +61,7 @@ TEST_CASE("what stayed as it was differs nowhere, and a step has the pages that 
     for (std::size_t p = 0; p < first.size(); ++p) { CHECK(std::ranges::equal(first[p].bytes(), second[p].bytes()) == (p != page)); }
     CHECK(bytesIn(second) == first.size() * first[page].bytes().size());
     const FrameStep step = stepBetween(first, second, traits);
-    CHECK(step.splats == scene.size());
-    CHECK(step.pages == std::vector<std::uint32_t>{static_cast<std::uint32_t>(page)});
+    CHECK(these(step.splats, step.pages) == these(scene.size(), std::vector<std::uint32_t>{static_cast<std::uint32_t>(page)}));
     REQUIRE(step.now.size() == 1);
     CHECK(std::ranges::equal(step.now[0].bytes(), second[page].bytes()));
     // Where both were, and where the one is now.
