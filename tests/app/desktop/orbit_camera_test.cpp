@@ -55,8 +55,7 @@ TEST_CASE("a way ends where it leads, the shorter way round; keys end it; a new 
     mover.set(from);
     mover.glideTo(to);
     for (int i = 0; i < 100; ++i) { mover.pass({}, 0.01); }
-    CHECK_FALSE(mover.isGliding());
-    CHECK(mover.camera() == OrbitCamera::between(from, to, 1.0));
+    CHECK(these(mover.isGliding(), mover.camera()) == these(false, OrbitCamera::between(from, to, 1.0)));
     CHECK(glm::distance(mover.camera().centre(), to.centre()) < 1e-9);
     mover.glideTo(from);
     mover.pass({.fly = {0.0, 0.0, 1.0}}, 0.01);
@@ -87,10 +86,8 @@ TEST_CASE("what lies in the plane of the screen is at one pixel for both eyes, w
         CHECK(glm::distance(pixelOf(eyes[kRight], pointAt(eyes[kRight], place, 2.0)), place) < 1e-9);
     }
     const auto eyeAt = [](WindowStereo stereo, const glm::dvec2& place) { return partAt(partsOf(stereo, {100, 60}), place)->eye; };
-    CHECK(eyeAt(WindowStereo::kSideBySide, {20, 30}) == kLeft);
-    CHECK(eyeAt(WindowStereo::kSideBySide, {70, 30}) == kRight);
-    CHECK(eyeAt(WindowStereo::kCrossEyed, {20, 30}) == kRight);
-    CHECK(eyeAt(WindowStereo::kTopBottom, {20, 40}) == kRight);
+    CHECK(these(eyeAt(WindowStereo::kSideBySide, {20, 30}), eyeAt(WindowStereo::kSideBySide, {70, 30})) == these(kLeft, kRight));
+    CHECK(these(eyeAt(WindowStereo::kCrossEyed, {20, 30}), eyeAt(WindowStereo::kTopBottom, {20, 40})) == these(kRight, kRight));
     CHECK_FALSE(partAt(partsOf(WindowStereo::kMono, {100, 60}), {100, 30}).has_value());
 }
 

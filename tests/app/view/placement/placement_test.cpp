@@ -105,8 +105,7 @@ TEST_CASE("a scene that would be looked at from nearer than half a metre is show
     const auto growthAt = [](double distance, double metres_per_unit) {
         return growthToSee({{1, 2, 3}, {1, 2, 3 + distance}, {0, -1, 0}, 60.0}, metres_per_unit);
     };
-    CHECK(growthAt(0.25, 1.0) == doctest::Approx(2.0));
-    CHECK(growthAt(0.25, 0.1) == doctest::Approx(20.0));
+    CHECK(these(growthAt(0.25, 1.0), growthAt(0.25, 0.1)) == these(doctest::Approx(2.0), doctest::Approx(20.0)));
     for (const double distance : {0.5, 2.0, 100.0}) { CHECK(growthAt(distance, 1.0) == 1.0); }
     CHECK(growthAt(0.25, 10.0) == 1.0);
     CHECK(growthAt(0.0, 1.0) == 1000.0);  // as far as hands can make it grow
@@ -154,9 +153,7 @@ TEST_CASE("rounding between parallel eyes is taken out, canting is not") {
     views[0].fov = {-0.9f, 0.8f, 0.85f, -0.95f};
     views[1].fov = {-0.8f, 0.9f, std::nextafter(0.85f, 1.0f), std::nextafter(-0.95f, 0.0f)};
     const std::array<xr::EyeView, 2> alike = withoutNoise(views);
-    CHECK(alike[1].fov.angleUp == 0.85f);
-    CHECK(alike[1].fov.angleDown == -0.95f);
-    CHECK(alike[1].fov.angleLeft == -0.8f);
+    CHECK(these(alike[1].fov.angleUp, alike[1].fov.angleDown, alike[1].fov.angleLeft) == these(0.85f, -0.95f, -0.8f));
     views[1].fov.angleUp = 0.8501f;
     CHECK(withoutNoise(views)[1].fov.angleUp == 0.8501f);
 }

@@ -64,16 +64,13 @@ TEST_CASE_FIXTURE(Home, "a folder is listed with its folders and scenes, and wit
     add("trained/point_cloud/iteration_7/point_cloud.ply");
     fs::create_directories(path / "untrained/point_cloud/iteration_7");
     const SceneList list = listFolder(path.string());
-    CHECK(list.trouble.empty());
-    CHECK(list.title == path.string());
-    CHECK(list.above == base.string());
+    CHECK(these(list.trouble.empty(), list.title, list.above) == these(true, path.string(), base.string()));
     CHECK(namesOf(list) == std::vector<std::string>{"Attic/", "folder.ply/", "untrained/", "zoo/", "a.spz", "room2.PLY", "room10.ply",
                                                     "statue", "trained", "\xd0\x91\xd1\x8e\xd1\x81\xd1\x82.splat"});
     for (const SceneEntry& entry : list.entries) { CHECK(entry.trouble.empty()); }
     CHECK(entryOf(list, "zoo").place == at("zoo"));
     // The viewer's next scene goes the same way.
-    CHECK(sceneBeside(at("room2.PLY"), 1) == at("room10.ply"));
-    CHECK(sceneBeside(at("room10.ply"), 1) == at("statue"));
+    CHECK(these(sceneBeside(at("room2.PLY"), 1), sceneBeside(at("room10.ply"), 1)) == these(at("room10.ply"), at("statue")));
 }
 
 TEST_CASE_FIXTURE(Home, "what cannot be opened is listed with the reason, and nothing waits for a pipe") {
@@ -82,13 +79,11 @@ TEST_CASE_FIXTURE(Home, "what cannot be opened is listed with the reason, and no
     fs::create_symlink("loop.ply", path / "loop.ply");
     add("good.ply");
     const SceneList list = listFolder(path.string());
-    CHECK_FALSE(entryOf(list, "pipe.ply").trouble.empty());
-    CHECK(entryOf(list, "gone.ply").trouble == "is not there");
-    CHECK_FALSE(entryOf(list, "loop.ply").trouble.empty());
+    CHECK(these(entryOf(list, "pipe.ply").trouble.empty(), entryOf(list, "gone.ply").trouble, entryOf(list, "loop.ply").trouble.empty()) ==
+          these(false, "is not there", false));
     CHECK(entryOf(list, "good.ply").trouble.empty());
-    CHECK_FALSE(listFolder(at("nowhere")).trouble.empty());
-    CHECK_FALSE(listFolder(at("good.ply")).trouble.empty());
-    CHECK(listFolder(at("nowhere")).above == path.string());
+    CHECK(these(listFolder(at("nowhere")).trouble.empty(), listFolder(at("good.ply")).trouble.empty(), listFolder(at("nowhere")).above) ==
+          these(false, false, path.string()));
 }
 
 TEST_CASE("the way up ends at the top, and built-in scenes have a place of their own") {
@@ -96,19 +91,14 @@ TEST_CASE("the way up ends at the top, and built-in scenes have a place of their
     // Where there are drives, they lie above their roots.
     const Home work;
     const std::vector<fs::path> drives{"/", work.path};
-    CHECK(listFolder("/", drives).above == kDrives);
-    CHECK(listFolder(work.path.string(), drives).above == work.base.string());
+    CHECK(these(listFolder("/", drives).above, listFolder(work.path.string(), drives).above) == these(kDrives, work.base.string()));
     const SceneList all = listFolder(kDrives, drives);
     CHECK(all.above.empty());
     REQUIRE(all.entries.size() == 2);
-    CHECK(all.entries[0].name == "/");
-    CHECK(all.entries[1].place == work.path.string());
-    CHECK(all.entries[1].is_folder);
+    CHECK(these(all.entries[0].name, all.entries[1].place, all.entries[1].is_folder) == these("/", work.path.string(), true));
     CHECK(listFolder("/").title == "/");
-    CHECK(folderOf("builtin:fence") == kBuiltinFolder);
-    CHECK(folderOf("a/b/../c.ply") == (fs::current_path() / "a").string());
-    CHECK(folderOf("a/statue/") == (fs::current_path() / "a").string());
-    CHECK(folderOf("c.ply") == fs::current_path().string());
+    CHECK(these(folderOf("builtin:fence"), folderOf("a/b/../c.ply"), folderOf("a/statue/"), folderOf("c.ply")) ==
+          these(kBuiltinFolder, (fs::current_path() / "a").string(), (fs::current_path() / "a").string(), fs::current_path().string()));
     const SceneList builtin = listFolder(kBuiltinFolder);
     CHECK(builtin.above.empty());
     CHECK(entryOf(builtin, "fence").place == "builtin:fence");
@@ -125,21 +115,17 @@ TEST_CASE("recent scenes are kept in the user's folder, the latest first, each o
     CHECK(recentScenes() == kept);
     const SceneList list = listScenes("Recent scenes", recentScenes());
     CHECK(namesOf(list) == std::vector<std::string>{"builtin:fence", "gone.ply", "a.ply"});
-    CHECK(list.entries[0].trouble.empty());
-    CHECK(list.entries[1].trouble == "is not there");
-    CHECK(list.entries[2].trouble.empty());
-    CHECK(list.entries[2].place == kept[2]);
+    CHECK(these(list.entries[0].trouble.empty(), list.entries[1].trouble, list.entries[2].trouble.empty(), list.entries[2].place) ==
+          these(true, "is not there", true, kept[2]));
     // A name of two lines would be two scenes.
     rememberScene(work.at("two\nlines.ply"));
     CHECK(recentScenes() == kept);
     for (int i = 0; i < 12; ++i) { rememberScene(work.at(fmt::format("{}.ply", i))); }
-    CHECK(recentScenes().size() == kMostRecentScenes);
-    CHECK(recentScenes().front() == work.at("11.ply"));
-    CHECK(recentScenes().back() == work.at("2.ply"));
+    CHECK(these(recentScenes().size(), recentScenes().front(), recentScenes().back()) ==
+          these(kMostRecentScenes, work.at("11.ply"), work.at("2.ply")));
     rememberScene(work.at("5.ply"));
     const std::vector<std::string> latest = recentScenes();
-    CHECK(latest.size() == kMostRecentScenes);
-    CHECK(latest.front() == work.at("5.ply"));
+    CHECK(these(latest.size(), latest.front()) == these(kMostRecentScenes, work.at("5.ply")));
     CHECK(std::ranges::count(latest, work.at("5.ply")) == 1);
     // Nothing but the list lies there, and one that cannot be written stays as it was.
     const fs::path folder = work.base / "config" / "binosplat";
@@ -196,11 +182,8 @@ TEST_CASE("a scene is described in words: how much, of what kind, how large") {
         REQUIRE(found != lines.end());
         return found->second;
     };
-    CHECK(valueOf("Splats") == "1 234 567, 3 broken ones left out");
-    CHECK(valueOf("Kind") == "3D Gaussians");
-    CHECK(valueOf("Colours (SH)") == "degree 1, 3 in the file");
-    CHECK(valueOf("In memory") == "64.0 MiB");
-    CHECK(valueOf("File") == "2.0 KiB");
+    CHECK(these(valueOf("Splats"), valueOf("Kind"), valueOf("Colours (SH)"), valueOf("In memory"), valueOf("File")) ==
+          these("1 234 567, 3 broken ones left out", "3D Gaussians", "degree 1, 3 in the file", "64.0 MiB", "2.0 KiB"));
     CHECK(valueOf("Scale") == "0.25 metres a scene unit");
     CHECK(describeFacts({}, 1.0).at(0).second == "0");
     // From what loading met.
@@ -217,10 +200,7 @@ TEST_CASE("a scene is described in words: how much, of what kind, how large") {
     notes.skipped_not_finite = 4;
     notes.sh_degree_in_file = 2;
     const SceneFacts folder = factsOf(scene, notes, work.at("sog"));
-    CHECK(folder.splats == 2);
-    CHECK(folder.left_out == 4);
-    CHECK(folder.kind == "3D Gaussians");
-    CHECK(folder.file_bytes == 1100);
+    CHECK(these(folder.splats, folder.left_out, folder.kind, folder.file_bytes) == these(2, 4, "3D Gaussians", 1100));
     CHECK(folder.device_bytes > 0);
     CHECK(factsOf(scene, notes, "builtin:fence").file_bytes == 0);
     CHECK(factsOf(scene, notes, (work.path / "sog" / "meta.json").string()).file_bytes == 100);
@@ -286,8 +266,7 @@ TEST_CASE("a place is saved and asked for in the coordinates of the scene's file
     state.place({{1, 0, 0, 0}, {0, 0, 1}, 1.0});
     CHECK(state.withPlacement().scene_from_room->position == glm::dvec3(1, 2, 4));
     state.set(settings);
-    CHECK(state.sceneFromRoom().position == glm::dvec3(6, 6, 6));
-    CHECK(state.sceneFromRoom().scale == 2.0);
+    CHECK(these(state.sceneFromRoom().position, state.sceneFromRoom().scale) == these(glm::dvec3(6, 6, 6), 2.0));
 }
 
 TEST_CASE_FIXTURE(Home, "viewpoints are the cameras beside the scene, and then those that were kept") {
@@ -302,18 +281,15 @@ TEST_CASE_FIXTURE(Home, "viewpoints are the cameras beside the scene, and then t
     std::ofstream(viewFileStem(scene).string() + ".viewpoints.txt", std::ios::app) << "0 0 1 0 0 2 0 0 1\n0 0 1 0\n";
     const std::vector<Viewpoint> found = findViewpoints({}, scene, {});
     REQUIRE(found.size() == 3);
-    CHECK(found[0].name == "door");
-    CHECK(found[0].view.eye == glm::dvec3(5, 0, 0));
-    CHECK(found[1].view.eye == glm::dvec3(0, 0, 1));
-    CHECK(found[2].name == "your own 2");
+    CHECK(these(found[0].name, found[0].view.eye, found[1].view.eye, found[2].name) ==
+          these("door", glm::dvec3(5, 0, 0), glm::dvec3(0, 0, 1), "your own 2"));
     // They are in the coordinates of the scene's file, wherever its positions count from.
     Scene far;
     far.origin = {4.0, 0.0, -2.0};
     const std::vector<Viewpoint> there = findViewpoints(far, scene, {});
     REQUIRE(there.size() == 3);
-    CHECK(there[0].view.eye == glm::dvec3(1, 0, 2));
-    CHECK(there[2].view.eye == glm::dvec3(-4, 0, 5));
-    CHECK(there[2].view.look == glm::dvec3(-3, 0, 5));
+    CHECK(these(there[0].view.eye, there[2].view.eye, there[2].view.look) ==
+          these(glm::dvec3(1, 0, 2), glm::dvec3(-4, 0, 5), glm::dvec3(-3, 0, 5)));
     CHECK(findViewpoints(far, scene, path / "cameras.json")[0].view.eye == glm::dvec3(1, 0, 2));
 }
 
@@ -324,19 +300,15 @@ TEST_CASE_FIXTURE(Home, "a scene that was shown has a small picture and a line, 
         for (int x = 0; x < 400; ++x) { wide.values.insert(wide.values.end(), {x < 200 ? 0.0f : 1.0f, 0.5f, 0.0f, 1.0f}); }
     }
     const Image small = makeScenePicture(wide);
-    CHECK(small.size_px == kScenePicturePx);
-    CHECK(small.values.size() == small.pixelCount() * 3);
-    CHECK(small.values[0] == 0.0f);
-    CHECK(small.values[small.values.size() - 3] == 1.0f);
+    CHECK(these(small.size_px, small.values.size(), small.values[0], small.values[small.values.size() - 3]) ==
+          these(kScenePicturePx, small.pixelCount() * 3, 0.0f, 1.0f));
     keepSeenScene(at("b.ply"), small, "7 splats, discs");
     toggleFavourite(at("c.ply"));
     SceneList list = listFolder(path.string());
     describeScenes(list);
     REQUIRE(list.entries.size() == 3);
-    CHECK(list.entries[0].name == "c.ply");
-    CHECK(list.entries[0].is_favourite);
-    CHECK(list.entries[1].picture.key.empty());
-    CHECK(list.entries[1].about == "0.0 KiB");
+    CHECK(these(list.entries[0].name, list.entries[0].is_favourite, list.entries[1].picture.key.empty(), list.entries[1].about) ==
+          these("c.ply", true, true, "0.0 KiB"));
     CHECK(list.entries[2].about == "7 splats, discs");
     CHECK(list.entries[2].picture.rgba.size() == std::size_t{4} * kScenePicturePx.x * kScenePicturePx.y);
     toggleFavourite(at("c.ply"));
@@ -350,9 +322,7 @@ TEST_CASE("the rate is that of the frames of the last second, and those are late
     const auto show = [&](int frames, std::int64_t step_ms, double period_ms, double met_hz, int late, bool follows = true) {
         CAPTURE(step_ms);
         for (int i = 0; i < frames; ++i) { met.add(time_ns += step_ms * 1'000'000, period_ms, follows); }
-        CHECK(met.displayHz() == doctest::Approx(1000.0 / period_ms));
-        CHECK(met.metHz() == doctest::Approx(met_hz));
-        CHECK(met.late() == late);
+        CHECK(these(met.displayHz(), met.metHz(), met.late()) == these(doctest::Approx(1000.0 / period_ms), doctest::Approx(met_hz), late));
     };
     show(1, 0, 10.0, 0.0, 0);
     show(150, 10, 10.0, 100.0, 0);

@@ -5,7 +5,6 @@
 #include "app/view/panel/panel_content.h"
 #include "app/view/panel/panel_style.h"
 #include "app/view/settings/view_files.h"
-#include "engine/files/load_scene.h"
 #include "engine/scene/procedural.h"
 #include "tests/engine/gpu/device_image.h"
 #include "tests/run_program.h"
@@ -82,8 +81,7 @@ TEST_CASE_FIXTURE(Shown, "a folder of a SOG scene is shown like a file, with or 
 }
 #endif
 
-TEST_CASE_FIXTURE(Shown,
-                  "one that was asked for while another one came takes its place, and if it cannot be read the first comes after all") {
+TEST_CASE_FIXTURE(Shown, "one that was asked for while another came takes its place, and if it cannot be read the first comes after all") {
     ShownScene scenes(context(), options, log);
     scenes.begin("builtin:fence");
     scenes.begin("builtin:slanted-wall");
@@ -102,8 +100,7 @@ TEST_CASE_FIXTURE(Shown,
     CHECK_THROWS_AS(static_cast<void>(none.take(state)), Error);
 }
 
-TEST_CASE_FIXTURE(
-    Shown, "a place that was given belongs to the scene that it was given with: others start at their own, or where they were saved") {
+TEST_CASE_FIXTURE(Shown, "a place belongs to the scene that it was given with: others start at their own, or where they were saved") {
     const auto startOf = [&](const std::string& scene, const ViewOptions& given) {
         ShownScene scenes(context(), given, log);
         scenes.begin(scene);
@@ -125,8 +122,7 @@ TEST_CASE_FIXTURE(
     CHECK(same(startOf("builtin:step-edge", options), given));
 }
 
-TEST_CASE_FIXTURE(
-    Shown, "a remembered place that cannot be used is one line, the scene is shown at its start, and saving replaces a broken file") {
+TEST_CASE_FIXTURE(Shown, "a remembered place that is of no use is one line, the scene is shown at its start, saving mends the file") {
     const fs::path file = viewSettingsFile(options.scene);
     const auto showAgain = [&](std::string& complaint) {
         ShownScene scenes(context(), options, log);
@@ -196,8 +192,7 @@ TEST_CASE_FIXTURE(Shown, "loading gives up where it is told to, before the file'
     CHECK(furthest < 0.6);
 }
 
-TEST_CASE_FIXTURE(Shown,
-                  "a loader that was told to give up is done in the end, and keeps nothing in memory, whether it was in time or not") {
+TEST_CASE_FIXTURE(Shown, "a loader that was told to give up ends, and keeps nothing in memory, whether it was in time or not") {
     const std::uint64_t before = context().memoryUse().current_bytes;
     SceneLoader early(context(), "builtin:fence", options.run), late(context(), "builtin:fence", options.run);
     early.cancel();
@@ -283,8 +278,7 @@ TEST_CASE_FIXTURE(Shown, "another method is drawn once its kernels are there, ma
     const ViewSettings shared = settings;
     settings.stereo.mode = Mode::kTwoPass;
     scenes.expect(settings.stereo, size_px, false);
-    CHECK(scenes.isMakingKernels());
-    CHECK(scenes.drawable(settings).stereo == shared.stereo);
+    CHECK(these(scenes.isMakingKernels(), scenes.drawable(settings).stereo) == these(true, shared.stereo));
     const auto waitUntilReady = [&] {
         while (scenes.isMakingKernels()) {
             std::this_thread::yield();
@@ -296,8 +290,7 @@ TEST_CASE_FIXTURE(Shown, "another method is drawn once its kernels are there, ma
     CHECK(drawsWithoutCompiling());
     settings.stereo.warp.budget = 0.9;
     scenes.expect(settings.stereo, size_px, false);
-    CHECK_FALSE(scenes.isMakingKernels());
-    CHECK(scenes.drawable(settings) == settings);
+    CHECK(these(scenes.isMakingKernels(), scenes.drawable(settings)) == these(false, settings));
     // Chosen and left again.
     const ViewSettings two_pass = settings;
     settings.stereo.mode = Mode::kPaper;

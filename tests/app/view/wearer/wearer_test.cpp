@@ -114,8 +114,7 @@ TEST_CASE_FIXTURE(Pointing, "a trigger that was pulled beside the panel does not
     CHECK_FALSE(panel.clicksElsewhere(kRight));
 }
 
-TEST_CASE_FIXTURE(Pointing,
-                  "a ray meets the panel where it points, from the front alone, and a strip joins its ends and shows its face to the eye") {
+TEST_CASE_FIXTURE(Pointing, "a ray meets the panel where it points, from the front alone; a strip joins its ends and faces the eye") {
     // A quarter to the right and downwards of the panel's middle.
     hands[kRight] = pointingAt(panel, {0.2, 0.1});
     CHECK(at() == doctest::Approx(600));
@@ -123,8 +122,7 @@ TEST_CASE_FIXTURE(Pointing,
     CHECK_FALSE(panel.pointer().pressed);
     const auto seen = panel.rays(glm::dvec3(0.0), std::nullopt);
     REQUIRE(seen.size() == 1);
-    CHECK(seen[0].sprite == Sprite::kRay);
-    CHECK(seen[0].strip.size_m.y == doctest::Approx(0.5));
+    CHECK(these(seen[0].sprite, seen[0].strip.size_m.y) == these(Sprite::kRay, doctest::Approx(0.5)));
     CHECK(glm::distance(seen[0].strip.room_from_strip.position, transform(panel.roomFromPanel(), {0.2, 0.1, -0.25})) < 1e-9);
     hands[kRight].aim = compose(panel.roomFromPanel(), {glm::dquat(0, 0, 1, 0), {0.2, 0.1, 0.5}});  // behind it, towards it
     CHECK(at() < 0.0);
@@ -154,18 +152,15 @@ TEST_CASE("a throw lands on the floor, where physics puts it") {
     // 7 m/s straight ahead from 1.2 m: it falls for sqrt(2 h / g).
     const TeleportAim level = aimTeleport({{1, 0, 0, 0}, {0.2, 0.4, 0.3}}, 1.6);
     REQUIRE(level.target.has_value());
-    CHECK(level.target->y == doctest::Approx(1.6));
-    CHECK(level.target->x == doctest::Approx(0.2));
-    CHECK(level.target->z == doctest::Approx(0.3 + 7.0 * std::sqrt(2.0 * 1.2 / 9.8)));
-    CHECK(level.arc.size() == kTeleportStrips + 1);
+    CHECK(these(level.target->y, level.target->x, level.target->z, level.arc.size()) ==
+          these(doctest::Approx(1.6), doctest::Approx(0.2), doctest::Approx(0.3 + 7.0 * std::sqrt(2.0 * 1.2 / 9.8)), kTeleportStrips + 1));
     CHECK(glm::distance(level.arc.front(), glm::dvec3(0.2, 0.4, 0.3)) < 1e-12);
     // Upwards it flies farther, and down at one's feet not at all.
     const auto reach = [](double up_rad) {
         const TeleportAim aim = aimTeleport({glm::angleAxis(up_rad, glm::dvec3(1, 0, 0)), {0.0, 0.4, 0.0}}, 1.6);
         return glm::length(glm::dvec2(aim.target->x, aim.target->z));
     };
-    CHECK(reach(0.6) > reach(0.0) + 1.0);
-    CHECK(reach(0.6) < 7.0);
+    CHECK(reach(0.6) == between(reach(0.0) + 1.0, 7.0));
     CHECK(reach(-1.5707) < 0.01);
     CHECK_FALSE(aimTeleport({{1, 0, 0, 0}, {0.0, 1.7, 0.0}}, 1.6).target.has_value());
 }
@@ -177,8 +172,7 @@ TEST_CASE("a hand that is lost while it aims for a place moves nobody") {
     CHECK(wearer.controls.aimingHand() == kLeft);
     wearer.now.hands[kLeft] = {};
     wearer.update();
-    CHECK_FALSE(wearer.controls.aimingHand().has_value());
-    CHECK(wearer.place() == glm::dvec3(0.0));
+    CHECK(these(wearer.controls.aimingHand().has_value(), wearer.place()) == these(false, glm::dvec3(0.0)));
 }
 
 TEST_CASE("the stick of the hand that points at the panel scrolls there, the other hand's moves the wearer, and a throw goes on over it") {
@@ -190,8 +184,7 @@ TEST_CASE("the stick of the hand that points at the panel scrolls there, the oth
             now.hands[static_cast<std::size_t>(pointing)] = pointingAt(panel, {0.1, 0.1});
             now.hands[static_cast<std::size_t>(1 - pointing)] = pointingAway();
             wearer.push(pointing, {0.0, 1.0});
-            CHECK(panel.isPointedAtBy(pointing));
-            CHECK_FALSE(panel.isPointedAtBy(1 - pointing));
+            CHECK(these(panel.isPointedAtBy(pointing), panel.isPointedAtBy(1 - pointing)) == these(true, false));
             CHECK(panel.pointer().wheel > 0.0);
             CHECK(wearer.place() == glm::dvec3(0.0));
             CHECK_FALSE(controls.aimingHand().has_value());
@@ -218,8 +211,7 @@ TEST_CASE("the stick turns smoothly, a right angle in a second, which counts as 
     settings.smooth_turn = true;
     Wearer smooth(settings);
     for (int i = 0; i < 10; ++i) { smooth.push(kRight, {1.0, 0.0}); }
-    CHECK(smooth.controls.isMoving());
-    CHECK(smooth.turn_rad() == doctest::Approx(1.5707963).epsilon(1e-6));
+    CHECK(these(smooth.controls.isMoving(), smooth.turn_rad()) == these(true, doctest::Approx(1.5707963).epsilon(1e-6)));
     smooth.push(kRight, {0.0, 0.0});
     CHECK_FALSE(smooth.controls.isMoving());
     Wearer wearer;
@@ -238,15 +230,13 @@ TEST_CASE("the stick turns smoothly, a right angle in a second, which counts as 
     CHECK(turns({-0.9, 0.0}) == -1);
 }
 
-TEST_CASE(
-    "an eye that nobody sees looks at the middle of its lens, one that is seen where it is seen to, in its own axes, with less clear") {
+TEST_CASE("an eye that nobody sees looks at the middle of its lens, one that is seen where it is seen to, with less clear") {
     GazeFollower follower;
     std::array<std::optional<Gaze>, 2> gazes;
     for (int i = 0; i < 100; ++i) {
         gazes = follower.update(std::nullopt, kEyes, kLensClear, kStep);
         REQUIRE(gazes[kLeft]);
-        CHECK(gazes[kLeft]->direction == glm::dvec3(0.0, 0.0, 1.0));
-        CHECK(gazes[kRight]->clear_rad == kLensClear);
+        CHECK(these(gazes[kLeft]->direction, gazes[kRight]->clear_rad) == these(glm::dvec3(0.0, 0.0, 1.0), kLensClear));
     }
     for (int i = 0; i < 20; ++i) { gazes = follower.update(kAside, kEyes, kLensClear, kStep); }
     CHECK(angleBetween(gazes[kRight]->direction, kAside) < 1e-6);
@@ -266,8 +256,7 @@ TEST_CASE("a blink changes nothing, a gaze that stays lost goes back to the lens
     const Gaze seen = *gazes[kRight];
     for (double t = kStep; t < GazeFollower::kHoldSeconds - 0.5 * kStep; t += kStep) {
         gazes = follower.update(std::nullopt, kEyes, kLensClear, kStep);
-        CHECK(gazes[kRight]->direction == seen.direction);
-        CHECK(gazes[kRight]->clear_rad == seen.clear_rad);
+        CHECK(these(gazes[kRight]->direction, gazes[kRight]->clear_rad) == these(seen.direction, seen.clear_rad));
     }
     const auto follow = [&](const std::optional<glm::dvec3>& gaze, double most_rad) {
         const Gaze before = *gazes[kRight];
@@ -277,8 +266,7 @@ TEST_CASE("a blink changes nothing, a gaze that stays lost goes back to the lens
     };
     const double whole_rad = angleBetween(seen.direction, {0.0, 0.0, 1.0});
     for (int i = 0; i < 100; ++i) { follow(std::nullopt, 1.1 * whole_rad * kStep / GazeFollower::kLoseSeconds); }
-    CHECK(gazes[kRight]->direction == glm::dvec3(0.0, 0.0, 1.0));
-    CHECK(gazes[kRight]->clear_rad == kLensClear);
+    CHECK(these(gazes[kRight]->direction, gazes[kRight]->clear_rad) == these(glm::dvec3(0.0, 0.0, 1.0), kLensClear));
     for (int i = 0; i < 20; ++i) { follow(kAside, 1.1 * whole_rad * kStep / GazeFollower::kFindSeconds); }
     CHECK(angleBetween(gazes[kRight]->direction, kAside) < 1e-6);
 }
