@@ -3,11 +3,8 @@
 #include "app/commands.h"
 #include "app/terminal/interrupt.h"
 #include "engine/error.h"
-#include "engine/passes/contribute.h"
-#include "engine/passes/passes.h"
-#include "engine/passes/past_passes.h"
+#include "engine/passes/pass_kernels.h"
 #include "engine/passes/present.h"
-#include "engine/passes/warp_passes.h"
 #include "engine/setup/output_files.h"
 
 #include <fmt/format.h>
@@ -24,11 +21,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 KernelTable allKernels(const Context& context) {
-    KernelTable table = passKernels(context);
-    append(table, warpKernels(context));
-    append(table, pastKernels(context.isSoftware()));
+    KernelTable table = PassKernels(context).table();
     append(table, presentKernels());
-    append(table, contributeKernels());
     return table;
 }
 

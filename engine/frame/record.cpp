@@ -8,23 +8,6 @@
 
 namespace binosplat {
 
-FrameKernels::FrameKernels(const Context& context, std::uint32_t threads_per_cell)
-    : passes(context, threads_per_cell), warp_passes(context), past_passes(context) {}
-
-void FrameKernels::rebuild() {
-    passes.rebuildKernels();
-    warp_passes.rebuildKernels();
-    past_passes.rebuildKernels();
-}
-
-void FrameKernels::take(FrameKernels& from) {
-    passes.takeKernels(from.passes);
-    warp_passes.takeKernels(from.warp_passes);
-    past_passes.takeKernels(from.past_passes);
-}
-
-std::size_t FrameKernels::count() const { return passes.kernelCount() + warp_passes.kernelCount() + past_passes.kernelCount(); }
-
 namespace {
 
 // Where the target's eye looks; if nobody knows, it sees everything.
@@ -104,7 +87,7 @@ void FrameRecorder::recordCulling(Commands& commands, const FramePlan& plan) con
     begin(commands, false);
     describeFrame(commands, plan);
     for (const ListPlan& list : plan.lists) {
-        if (list.culls) { passes.recordCull(commands, scene, room.lists(), list.eyes, Role::kNone); }
+        if (list.culls) { binosplat::recordCull(kernels, commands, scene, room.lists(), list.eyes, Role::kNone); }
     }
 }
 
@@ -117,8 +100,8 @@ void FrameRecorder::record(Commands& commands, const FramePlan& plan, bool times
             case Step::Kind::kList: {
                 const ListPlan& list = plan.lists[static_cast<std::size_t>(step.index)];
                 const EyesOfList eyes = eyesOf(list);
-                if (list.culls) { passes.recordCull(commands, scene, room.lists(), eyes, list.role); }
-                passes.recordOrder(commands, scene, room.lists(), eyes, list.role);
+                if (list.culls) { binosplat::recordCull(kernels, commands, scene, room.lists(), eyes, list.role); }
+                binosplat::recordOrder(kernels, commands, scene, room.lists(), eyes, list.role);
                 break;
             }
             case Step::Kind::kWarp:
@@ -144,22 +127,23 @@ void FrameRecorder::record(Commands& commands, const FramePlan& plan, bool times
 void FrameRecorder::recordWarp(Commands& commands, const FramePlan& plan, int index) const {
     const TargetPlan& target = plan.targets[static_cast<std::size_t>(index)];
     const Warp& warp = *target.warp;
-    warp_passes.record(commands, {.scene = scene,
-                                  .buffers = room.lists(),
-                                  .warp = room.warp(index),
-                                  .settings = warp.settings,
-                                  .rectified = warp.relation.rectified,
-                                  .may_move = warp.may_move,
-                                  .list = target.list,
-                                  .index = index,
-                                  .role = target.role,
-                                  .source = room.picture(plan.targets[static_cast<std::size_t>(warp.source)].picture),
-                                  .target = room.picture(target.picture),
-                                  .source_shown = room.shown(warp.source),
-                                  .target_shown = room.shown(index),
-                                  .words = wordsOf(plan, index),
-                                  .background = glm::vec3(plan.background),
-                                  .target_gaze = warp.gaze.has_value()});
+    binosplat::recordWarp(kernels, commands,
+                          {.scene = scene,
+                           .buffers = room.lists(),
+                           .warp = room.warp(index),
+                           .settings = warp.settings,
+                           .rectified = warp.relation.rectified,
+                           .may_move = warp.may_move,
+                           .list = target.list,
+                           .index = index,
+                           .role = target.role,
+                           .source = room.picture(plan.targets[static_cast<std::size_t>(warp.source)].picture),
+                           .target = room.picture(target.picture),
+                           .source_shown = room.shown(warp.source),
+                           .target_shown = room.shown(index),
+                           .words = wordsOf(plan, index),
+                           .background = glm::vec3(plan.background),
+                           .target_gaze = warp.gaze.has_value()});
 }
 
 MovingWords FrameRecorder::wordsOf(const FramePlan& plan, int warped) const {
@@ -183,7 +167,7 @@ PastInputs FrameRecorder::pastOf(const FramePlan& plan, int index) const {
 }
 
 void FrameRecorder::recordPast(Commands& commands, const FramePlan& plan, int index) const {
-    past_passes.recordWarp(commands, pastOf(plan, index));
+    recordFromPast(kernels, commands, pastOf(plan, index));
 }
 
 void FrameRecorder::recordChoice(Commands& commands, const FramePlan& plan) const {
@@ -192,7 +176,7 @@ void FrameRecorder::recordChoice(Commands& commands, const FramePlan& plan) cons
         if (plan.targets[static_cast<std::size_t>(t)].choice == TileChoice::kPast) { eyes.push_back(pastOf(plan, t)); }
     }
     recordChanged(commands, plan, eyes);
-    past_passes.recordChoice(commands, eyes, static_cast<gpu::uint>(plan.shares()));
+    binosplat::recordChoice(kernels, commands, eyes, static_cast<gpu::uint>(plan.shares()));
 }
 
 void FrameRecorder::recordChanged(Commands& commands, const FramePlan& plan, std::span<const PastInputs> pictures) const {
@@ -211,8 +195,8 @@ void FrameRecorder::recordChanged(Commands& commands, const FramePlan& plan, std
     const Buffer& buffer = room.changedRects();
     commands.update(buffer, rects.data(), rects.size() * sizeof(gpu::ChangedRect));
     for (std::size_t p = 0; p < pictures.size(); ++p) {
-        past_passes.recordChanged(commands, pictures[p], buffer.address<gpu::ChangedRect>(begins[p] * sizeof(gpu::ChangedRect)),
-                                  static_cast<gpu::uint>(begins[p + 1] - begins[p]));
+        binosplat::recordChanged(kernels, commands, pictures[p], buffer.address<gpu::ChangedRect>(begins[p] * sizeof(gpu::ChangedRect)),
+                                 static_cast<gpu::uint>(begins[p + 1] - begins[p]));
     }
 }
 
@@ -246,7 +230,7 @@ void FrameRecorder::recordPictures(Commands& commands, const FramePlan& plan, in
                                                     : pairs.arrays();
     targets.lists_chosen =
         std::ranges::any_of(plan.lists, [&](const ListPlan& list) { return list.of_chosen && list.eyes.list == planned.list; });
-    passes.recordPictures(commands, scene, room.lists(), targets, count > 1 ? Role::kBoth : planned.role);
+    binosplat::recordPictures(kernels, commands, scene, room.lists(), targets, count > 1 ? Role::kBoth : planned.role);
 }
 
 }  // namespace binosplat

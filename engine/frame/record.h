@@ -6,24 +6,9 @@
 
 namespace binosplat {
 
-// The kernels of frames, by groups.
-struct FrameKernels {
-    FrameKernels(const Context& context, std::uint32_t threads_per_cell);
-    // See StereoFrame.
-    void rebuild();
-    void take(FrameKernels& from);
-    [[nodiscard]] std::size_t count() const;
-
-    Passes passes;
-    WarpPasses warp_passes;
-    PastPasses past_passes;
-};
-
 // Everything that recording works with.
 struct FrameRecorder {
-    Passes& passes;
-    WarpPasses& warp_passes;
-    PastPasses& past_passes;
+    PassKernels& kernels;
     const GpuScene& scene;
     FrameRoom& room;
     // If the recording is going to be submitted, and so brings the scene's changes: those that the pasts know, see GpuScene.

@@ -69,7 +69,7 @@ struct FrameResult {
 // Initial values of a frame; the defaults suit every device.
 struct FrameOptions {
     FrameCapacity first_capacity{65536, 65536};
-    std::uint32_t threads_per_cell = 0;  // see Passes
+    std::uint32_t threads_per_cell = 0;  // see PassKernels
 };
 
 }  // namespace binosplat

@@ -25,9 +25,9 @@ FrameShape askedApartFromSizes(const FrameSettings& settings) { return shapeOf({
 StereoFrame::StereoFrame(const Context& context, const GpuScene& scene, const FrameOptions& options)
     : StereoFrame(context, scene, options, nullptr) {}
 
-StereoFrame::StereoFrame(const Context& context, const GpuScene& scene, const FrameOptions& options, FrameKernels* others)
+StereoFrame::StereoFrame(const Context& context, const GpuScene& scene, const FrameOptions& options, PassKernels* others)
     : context_(context),
-      own_kernels_(others == nullptr ? std::make_unique<FrameKernels>(context, options.threads_per_cell) : nullptr),
+      own_kernels_(others == nullptr ? std::make_unique<PassKernels>(context, options.threads_per_cell) : nullptr),
       kernels_(others == nullptr ? *own_kernels_ : *others),
       room_(context, options.first_capacity,
             [this] {

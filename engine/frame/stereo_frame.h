@@ -70,7 +70,7 @@ public:
     // Takes over the kernels of a frame of the same device and options, and keeps those of its own that the other lacks: what was made for
     // one scene need not be made again for the next. If the other goes on, it makes what it lacks anew.
     void takeKernels(StereoFrame& from);
-    // The number of its kernels, without those of sorting.
+    // The number of its kernels.
     [[nodiscard]] std::size_t kernelCount() const { return kernels_.count(); }
     // Makes the kernels of such frames, so that none of these waits for a driver's compiler: records them, but draws nothing.
     void makeKernels(std::span<const Eye> eyes, const FrameSettings& settings);
@@ -103,7 +103,7 @@ public:
 
 private:
     // Null: with kernels of its own.
-    StereoFrame(const Context& context, const GpuScene& scene, const FrameOptions& options, FrameKernels* others);
+    StereoFrame(const Context& context, const GpuScene& scene, const FrameOptions& options, PassKernels* others);
 
     using Append = std::function<void(Commands&)>;
     // A frame on the device, and what must be remembered to interpret its report. Two take turns. What only the device touches they
@@ -123,12 +123,7 @@ private:
     [[nodiscard]] Flight& flight() { return flights_[turn_]; }
     // `drops`: the recording is dropped, and so must leave the scene's changes to the next.
     [[nodiscard]] FrameRecorder recorder(bool drops = false) {
-        return {kernels_.passes,
-                kernels_.warp_passes,
-                kernels_.past_passes,
-                *scene_,
-                room_,
-                drops ? std::nullopt : std::optional(changes_known_)};
+        return {kernels_, *scene_, room_, drops ? std::nullopt : std::optional(changes_known_)};
     }
     // The pasts that the frames before leave to such a frame.
     [[nodiscard]] Pasts pastsFor(std::span<const Eye> eyes, const FrameSettings& settings) const;
@@ -161,8 +156,8 @@ private:
 
     const Context& context_;
     const GpuScene* scene_ = nullptr;
-    std::unique_ptr<FrameKernels> own_kernels_;  // null if they are another frame's
-    FrameKernels& kernels_;
+    std::unique_ptr<PassKernels> own_kernels_;  // null if they are another frame's
+    PassKernels& kernels_;
     FrameRoom room_;
     FramePlan plan_;                  // of the last frame
     Pasts pasts_;                     // that the last frame leaves

@@ -53,6 +53,7 @@ public:
     const Kernel& get(const K& kernel) {
         return find(K::kShader, sizeof(typename K::Pass), valuesOf(kernel));
     }
+    [[nodiscard]] const KernelTable& table() const { return table_; }
     [[nodiscard]] std::size_t size() const { return kernels_.size(); }
     // Makes all of them anew, see Context::replacedShaders. Throws as Kernel does, and then keeps the old ones.
     void rebuild();

@@ -20,8 +20,7 @@ std::uint32_t roomFor(std::uint32_t needed) { return static_cast<std::uint32_t>(
 
 SplatMeter::SplatMeter(const Context& context)
     : context_(context),
-      passes_(context),
-      contribute_passes_(context),
+      kernels_(context),
       readback_(context, "frame state read-back", sizeof(FrameState), MemoryKind::kReadback),
       commands_(context) {}
 
@@ -32,8 +31,7 @@ void SplatMeter::show(const GpuScene& scene, bool fits) {
     buffers_ = makeFrameBuffers(context_, scene.splatCount());
     growFrameBuffers(context_, buffers_, {std::max(scene.splatCount(), 1u), std::max(before.pairs, kFirstPairs)});
     sums_ = {};
-    sums_ = Buffer(context_, "contributions",
-                   std::max<std::uint64_t>(scene.splatCount(), 1) * ContributePasses::sumsPerSplat(fits) * sizeof(std::int64_t));
+    sums_ = Buffer(context_, "contributions", std::max<std::uint64_t>(scene.splatCount(), 1) * sumsPerSplat(fits) * sizeof(std::int64_t));
     commands_.begin();
     commands_.fillZero(sums_);
     commands_.submitAndWait();
@@ -72,10 +70,10 @@ void SplatMeter::record(const Eye& eye, double near, const Picture& picture, boo
     state.targets[0].colours = picture.colours.address<gpu::vec4>();
     commands_.begin();
     commands_.update(buffers_.state, &state, sizeof(state));
-    passes_.recordCull(commands_, *scene_, buffers_, eyes, Role::kNone);
-    passes_.recordOrder(commands_, *scene_, buffers_, eyes, Role::kNone);
-    passes_.recordPictures(commands_, *scene_, buffers_, targets, Role::kNone);
-    if (measures) { contribute_passes_.record(commands_, *scene_, buffers_, targets, picture, wanted, sums_); }
+    recordCull(kernels_, commands_, *scene_, buffers_, eyes, Role::kNone);
+    recordOrder(kernels_, commands_, *scene_, buffers_, eyes, Role::kNone);
+    recordPictures(kernels_, commands_, *scene_, buffers_, targets, Role::kNone);
+    if (measures) { recordContributions(kernels_, commands_, *scene_, buffers_, targets, picture, wanted, sums_); }
     commands_.endPass();
     commands_.copy(buffers_.state, readback_, sizeof(FrameState));
     commands_.submitAndWait();

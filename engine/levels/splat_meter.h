@@ -35,8 +35,7 @@ private:
     std::vector<T> read(const Buffer& buffer);
 
     const Context& context_;
-    Passes passes_;
-    ContributePasses contribute_passes_;
+    PassKernels kernels_;
     const GpuScene* scene_ = nullptr;
     FrameBuffers buffers_;
     Buffer sums_, readback_;

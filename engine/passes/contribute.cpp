@@ -3,10 +3,8 @@
 
 namespace binosplat {
 
-KernelTable contributeKernels() { return everyVariant<ContributeKernel>(); }
-
-void ContributePasses::record(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const Targets& targets,
-                              const Picture& picture, const Picture* wanted, const Buffer& sums) {
+void recordContributions(PassKernels& kernels, Commands& commands, const GpuScene& scene, const FrameBuffers& buffers,
+                         const Targets& targets, const Picture& picture, const Picture* wanted, const Buffer& sums) {
     const KeyValues& sorted = Sort::endsInSpare(tileBits(targets.all_tiles)) ? targets.pairs.spare : targets.pairs.pairs;
     gpu::ContributePass pass{.eyes = buffers.eyes(),
                              .splats = buffers.visible.splats(),
@@ -22,7 +20,7 @@ void ContributePasses::record(Commands& commands, const GpuScene& scene, const F
         pass.wanted = wanted->colours.address<gpu::vec4>();
     }
     commands.beginPass({Role::kNone, ContributeKernel::kStage, ContributeKernel::kShader});
-    commands.dispatch(kernels_.get(ContributeKernel{.splat_kind = scene.splatShape(), .fits = wanted != nullptr}), pass,
+    commands.dispatch(kernels.get(ContributeKernel{.splat_kind = scene.splatShape(), .fits = wanted != nullptr}), pass,
                       targets.size_tiles.x, targets.size_tiles.y);
 }
 

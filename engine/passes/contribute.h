@@ -5,21 +5,11 @@
 
 namespace binosplat {
 
-KernelTable contributeKernels();
-
-class ContributePasses {
-public:
-    explicit ContributePasses(const Context& context) : kernels_(context, contributeKernels()) {}
-
-    // 64-bit words of `sums` per splat of the scene.
-    static std::uint64_t sumsPerSplat(bool fits) { return fits ? gpu::kContributionSums : 1; }
-    // After Passes::recordPictures of all of one target, whose pairs lie in `buffers` alone and whose picture has floats. Adds to `sums`.
-    // `wanted`: a picture of the same size, or null for the weights alone.
-    void record(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const Targets& targets, const Picture& picture,
-                const Picture* wanted, const Buffer& sums);
-
-private:
-    KernelCache kernels_;
-};
+// 64-bit words of `sums` per splat of the scene.
+inline std::uint64_t sumsPerSplat(bool fits) { return fits ? gpu::kContributionSums : 1; }
+// After recordPictures of all of one target, whose pairs lie in `buffers` alone and whose picture has floats. Adds to `sums`. `wanted`: a
+// picture of the same size, or null for the weights alone.
+void recordContributions(PassKernels& kernels, Commands& commands, const GpuScene& scene, const FrameBuffers& buffers,
+                         const Targets& targets, const Picture& picture, const Picture* wanted, const Buffer& sums);
 
 }  // namespace binosplat

@@ -13,6 +13,7 @@
 
 #include "engine/gpu/gpu_scene.h"
 #include "engine/passes/frame_buffers.h"
+#include "engine/passes/pass_kernels.h"
 #include "shaders/shared/passes.h"
 
 #include <optional>
@@ -60,42 +61,17 @@ struct EyesOfList {
     gpu::DeviceAddress<gpu::uint> first_mask = {}, last_mask = {};  // if only the chosen tiles of each eye count
 };
 
-// All kernels of cull to rasterize, sorting included. `threads_per_cell`: see Passes.
-KernelTable passKernels(const Context& context, std::uint32_t threads_per_cell = 0);
+RasterizeKernel rasterizeKernel(std::uint32_t threads_per_cell, const Kept& kept, std::uint32_t splat_shape, bool masked, bool coarse);
 
-class Passes {
-public:
-    // `threads_per_cell`: 8, 16, 32 or 64 invocations blend 8x8 pixels; 0: as wide as the device's
-    // subgroups. Fewer if its workgroups are too small.
-    explicit Passes(const Context& context, std::uint32_t threads_per_cell = 0);
-    // See Context::replacedShaders. Throws Error if one cannot be made, and then keeps the old ones.
-    void rebuildKernels();
-    [[nodiscard]] std::size_t kernelCount() const { return kernels_.size(); }
-    // Takes over the kernels of others on the same device, with as many threads per cell, whose work is done, and keeps those of its own
-    // that the others lack.
-    void takeKernels(Passes& from);
-
-    // How many splats are visible: only cull.
-    void recordCull(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes, Role role);
-    // The list of these, front to back: compact and sort_depth. Also again by the depths of another eye; visibility is then not determined
-    // anew.
-    void recordOrder(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes, Role role);
-    // The pictures: project to rasterize.
-    void recordPictures(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const Targets& targets, Role role);
-
-private:
-    void recordCullPages(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes, Role role);
-    struct Recording;
-    void recordProjected(const Recording& recording);
-    void recordBinned(const Recording& recording);
-    void recordTileRanges(const Recording& recording, const KeyValues& sorted);
-    void recordRasterized(const Recording& recording, const KeyValues& sorted);
-    const Sort& sort();
-
-    const Context& context_;
-    std::uint32_t threads_per_cell_;
-    std::optional<Sort> sort_;  // made when it is first needed
-    KernelCache kernels_;
-};
+// How many splats are visible: only cull.
+void recordCull(PassKernels& kernels, Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes,
+                Role role);
+// The list of these, front to back: compact and sort_depth. Also again by the depths of another eye; visibility is then not determined
+// anew.
+void recordOrder(PassKernels& kernels, Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes,
+                 Role role);
+// The pictures: project to rasterize.
+void recordPictures(PassKernels& kernels, Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const Targets& targets,
+                    Role role);
 
 }  // namespace binosplat

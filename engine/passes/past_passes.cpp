@@ -27,16 +27,7 @@ gpu::PastView pastViewOf(const Eye& now, const Eye& past, double near, const glm
             .background = background};
 }
 
-KernelTable pastKernels(bool by_address) {
-    KernelTable table = everyVariant<WarpPastKernel>([=](const WarpPastKernel& k) { return k.by_address == by_address; });
-    append(table, everyVariant<WarpPixelsKernel>([=](const WarpPixelsKernel& k) { return k.by_address == by_address; }));
-    append(table, everyVariant<MarkChangedKernel>());
-    append(table, everyVariant<PriceKernel>([](const PriceKernel& k) { return k.past == 1; }));
-    append(table, everyVariant<SelectKernel>([](const SelectKernel& k) { return k.past == 1 && k.predicted == 1; }));
-    return table;
-}
-
-void PastPasses::recordWarp(Commands& commands, const PastInputs& in) {
+void recordFromPast(PassKernels& kernels, Commands& commands, const PastInputs& in) {
     commands.beginPass({in.role, WarpPastKernel::kStage, WarpPastKernel::kShader});
     const std::uint64_t blocks = FrameBuffers::targetField(in.index, offsetof(TargetState, past_blocks));
     const gpu::WarpPastPass pass{
@@ -58,23 +49,25 @@ void PastPasses::recordWarp(Commands& commands, const PastInputs& in) {
     const WarpPastKernel kernel{.half_colours = in.target.half_floats,
                                 .hidden_tiles = in.shown.value != 0 || in.source_shown.value != 0,
                                 .whole_blocks = size_px.x % gpu::kPastColumns == 0,
-                                .by_address = by_address_};
-    commands.dispatch(kernels_.get(kernel), pass, groupsOver(size_px.x, gpu::kPastTiles * gpu::kTileSize),
+                                .by_address = kernels.byAddress()};
+    commands.dispatch(kernels.get(kernel), pass, groupsOver(size_px.x, gpu::kPastTiles * gpu::kTileSize),
                       groupsOver(size_px.y, gpu::kTileSize));
     commands.beginPass({in.role, WarpPixelsKernel::kStage, WarpPixelsKernel::kShader});
-    const WarpPixelsKernel pixels{.half_colours = kernel.half_colours, .hidden_tiles = kernel.hidden_tiles, .by_address = by_address_};
-    commands.dispatchIndirect(kernels_.get(pixels), pass, in.buffers.state, blocks + offsetof(gpu::PastBlockList, per_group));
+    const WarpPixelsKernel pixels{
+        .half_colours = kernel.half_colours, .hidden_tiles = kernel.hidden_tiles, .by_address = kernels.byAddress()};
+    commands.dispatchIndirect(kernels.get(pixels), pass, in.buffers.state, blocks + offsetof(gpu::PastBlockList, per_group));
 }
 
-void PastPasses::recordChanged(Commands& commands, const PastInputs& in, gpu::DeviceAddress<gpu::ChangedRect> rects, gpu::uint count) {
+void recordChanged(PassKernels& kernels, Commands& commands, const PastInputs& in, gpu::DeviceAddress<gpu::ChangedRect> rects,
+                   gpu::uint count) {
     if (count == 0) { return; }
     commands.beginPass({in.role, MarkChangedKernel::kStage, MarkChangedKernel::kShader});
     const gpu::MarkChangedPass pass{
         .tiles = in.target.tiles.address<gpu::PastTile>(), .rects = rects, .size_tiles = tilesOf(in.target.size_px), .count = count};
-    commands.dispatch(kernels_.get(MarkChangedKernel{}), pass, groupsOver(in.warp.tileCount(), gpu::kWarpGroup));
+    commands.dispatch(kernels.get(MarkChangedKernel{}), pass, groupsOver(in.warp.tileCount(), gpu::kWarpGroup));
 }
 
-void PastPasses::recordChoice(Commands& commands, std::span<const PastInputs> eyes, gpu::uint at_once) {
+void recordChoice(PassKernels& kernels, Commands& commands, std::span<const PastInputs> eyes, gpu::uint at_once) {
     const PastInputs& first = eyes.front();
     const std::uint64_t target = FrameBuffers::targetField(first.index, 0);
     std::uint32_t most_tiles = 0;
@@ -88,7 +81,7 @@ void PastPasses::recordChoice(Commands& commands, std::span<const PastInputs> ey
     const auto dispatch = [&](const auto& kernel, const auto& pass) {
         using K = std::remove_cvref_t<decltype(kernel)>;
         commands.beginPass({eyes.size() > 1 ? Role::kBoth : first.role, K::kStage, K::kShader});
-        commands.dispatch(kernels_.get(kernel), pass, groupsOver(most_tiles, gpu::kWarpGroup), 1, static_cast<std::uint32_t>(eyes.size()));
+        commands.dispatch(kernels.get(kernel), pass, groupsOver(most_tiles, gpu::kWarpGroup), 1, static_cast<std::uint32_t>(eyes.size()));
     };
     dispatch(PriceKernel{.foveated = foveated, .past = true},
              gpu::PricePass{

@@ -7,7 +7,6 @@
 //   select       the tiles to render
 #pragma once
 
-#include "engine/gpu/kernel.h"
 #include "engine/passes/warp_passes.h"
 
 #include <span>
@@ -29,28 +28,13 @@ struct PastInputs {
 // The eye `now` and the one whose picture is its past, for the device. `near`: nothing is seen before this, in scene units.
 gpu::PastView pastViewOf(const Eye& now, const Eye& past, double near, const glm::vec3& background);
 
-// `by_address`: as lib/past.glsl has it; of software devices.
-KernelTable pastKernels(bool by_address);
-
-class PastPasses {
-public:
-    explicit PastPasses(const Context& context) : by_address_(context.isSoftware()), kernels_(context, pastKernels(by_address_)) {}
-    // As in WarpPasses.
-    void rebuildKernels() { kernels_.rebuild(); }
-    [[nodiscard]] std::size_t kernelCount() const { return kernels_.size(); }
-    void takeKernels(PastPasses& from) { kernels_.take(from.kernels_); }
-
-    // The target's colours, words and tiles.
-    void recordWarp(Commands& commands, const PastInputs& in);
-    // Between the two: marks where the scene changed since the past was made.
-    void recordChanged(Commands& commands, const PastInputs& in, gpu::DeviceAddress<gpu::ChangedRect> rects, gpu::uint count);
-    // Chooses the tiles of all `eyes`, one target after the other, that are rendered again; `at_once` of them at the same time. The first
-    // one's WarpView has the budget, a share of all eyes' work.
-    void recordChoice(Commands& commands, std::span<const PastInputs> eyes, gpu::uint at_once);
-
-private:
-    bool by_address_;
-    KernelCache kernels_;
-};
+// The target's colours, words and tiles.
+void recordFromPast(PassKernels& kernels, Commands& commands, const PastInputs& in);
+// Between the two: marks where the scene changed since the past was made.
+void recordChanged(PassKernels& kernels, Commands& commands, const PastInputs& in, gpu::DeviceAddress<gpu::ChangedRect> rects,
+                   gpu::uint count);
+// Chooses the tiles of all `eyes`, one target after the other, that are rendered again; `at_once` of them at the same time. The first
+// one's WarpView has the budget, a share of all eyes' work.
+void recordChoice(PassKernels& kernels, Commands& commands, std::span<const PastInputs> eyes, gpu::uint at_once);
 
 }  // namespace binosplat

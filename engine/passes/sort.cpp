@@ -32,30 +32,19 @@ bool Sort::hasNarrowSubgroups(const Context& context) {
     return context.maxSubgroupSize() <= 8 && context.minSubgroupSize() == context.maxSubgroupSize();
 }
 
-namespace {
-
-SortScatterKernel scatterKernel(const Context& context, DigitMatch match) {
-    const gpu::uint threads = threadsOf(context);
-    return {.threads = threads, .max_subgroups = threads / context.minSubgroupSize(), .compared_lanes = comparedLanes(context, match)};
-}
-
-}  // namespace
-
-KernelTable sortKernels(const Context& context) {
-    return {variantOf(SortCountKernel{.threads = threadsOf(context)}), variantOf(scatterKernel(context, DigitMatch::kAuto))};
-}
-
 Sort::Sort(const Context& context, DigitMatch match)
-    : count_(context, variantOf(SortCountKernel{.threads = threadsOf(context)})),
-      scatter_(context, variantOf(scatterKernel(context, match))) {}
+    : count_{.threads = threadsOf(context)},
+      scatter_{.threads = count_.threads,
+               .max_subgroups = count_.threads / context.minSubgroupSize(),
+               .compared_lanes = comparedLanes(context, match)} {}
 
 std::uint64_t Sort::histogramBytes(std::uint64_t items) {
     const std::uint64_t blocks = std::min<std::uint64_t>((items + gpu::kSortBlock - 1) / gpu::kSortBlock, gpu::kMaxSortBlocks);
     return (1 + gpu::kMaxSortRuns + blocks) * gpu::kMaxDigits * sizeof(gpu::uint);
 }
 
-KeyValues Sort::record(Commands& commands, KeyValues in, KeyValues spare, gpu::DeviceAddress<gpu::uint> histograms, const Buffer& lists,
-                       std::uint64_t list_bytes, unsigned key_bits) const {
+KeyValues Sort::record(KernelCache& kernels, Commands& commands, KeyValues in, KeyValues spare, gpu::DeviceAddress<gpu::uint> histograms,
+                       const Buffer& lists, std::uint64_t list_bytes, unsigned key_bits) const {
     const auto run_sums = histograms.at(gpu::kMaxDigits), counts = run_sums.at(std::uint64_t{gpu::kMaxSortRuns} * gpu::kMaxDigits);
     const auto list = lists.address<gpu::ListState>(list_bytes);
     const std::uint64_t groups = list_bytes + offsetof(gpu::ListState, per_sort_block);
@@ -64,10 +53,12 @@ KeyValues Sort::record(Commands& commands, KeyValues in, KeyValues spare, gpu::D
     for (unsigned round = 0, shift = 0; round < rounds; ++round) {
         const unsigned bits = (key_bits - shift + rounds - round - 1) / (rounds - round);
         const gpu::uint digits = 1u << bits;
-        commands.dispatchIndirect(count_, gpu::SortCountPass{in.keys, counts, run_sums, histograms, list, shift, digits}, lists, groups);
+        commands.dispatchIndirect(kernels.get(count_), gpu::SortCountPass{in.keys, counts, run_sums, histograms, list, shift, digits},
+                                  lists, groups);
         commands.dispatchIndirect(
-            scatter_, gpu::SortScatterPass{in.keys, in.values, spare.keys, spare.values, counts, run_sums, histograms, list, shift, digits},
-            lists, groups);
+            kernels.get(scatter_),
+            gpu::SortScatterPass{in.keys, in.values, spare.keys, spare.values, counts, run_sums, histograms, list, shift, digits}, lists,
+            groups);
         std::swap(in, spare);
         shift += bits;
     }

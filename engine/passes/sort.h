@@ -16,13 +16,12 @@ struct KeyValues {
 // are at most eight.
 enum class DigitMatch { kAuto, kBallots, kComparisons };
 
-// Its kernels.
-KernelTable sortKernels(const Context& context);
-
 class Sort {
 public:
     // kComparisons only where hasNarrowSubgroups.
     explicit Sort(const Context& context, DigitMatch match = DigitMatch::kAuto);
+    // Its two.
+    [[nodiscard]] KernelTable kernels() const { return {variantOf(count_), variantOf(scatter_)}; }
 
     static bool hasNarrowSubgroups(const Context& context);
 
@@ -34,13 +33,14 @@ public:
 
     // Sorts `in` by the lowest `key_bits` bits of its keys; `spare` is as large and is overwritten. Returns whichever of the two
     // holds the result. The length is that of the list at `list_bytes` of `lists`, whose count of workgroups is used.
-    KeyValues record(Commands& commands, KeyValues in, KeyValues spare, gpu::DeviceAddress<gpu::uint> histograms, const Buffer& lists,
-                     std::uint64_t list_bytes, unsigned key_bits) const;
+    KeyValues record(KernelCache& kernels, Commands& commands, KeyValues in, KeyValues spare, gpu::DeviceAddress<gpu::uint> histograms,
+                     const Buffer& lists, std::uint64_t list_bytes, unsigned key_bits) const;
 
 private:
     static constexpr unsigned roundsOf(unsigned key_bits) { return (key_bits + gpu::kMaxDigitBits - 1) / gpu::kMaxDigitBits; }
 
-    Kernel count_, scatter_;
+    SortCountKernel count_;
+    SortScatterKernel scatter_;
 };
 
 }  // namespace binosplat

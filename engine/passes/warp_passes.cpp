@@ -49,32 +49,12 @@ gpu::EyeGaze eyeGazeOf(const Gaze& gaze, const Intrinsics& lens) {
             .principal_px = {lens.cx, lens.cy}};
 }
 
-KernelTable warpKernels(const Context& context) {
-    KernelTable table = everyVariant<WeighKernel>();
-    append(table, everyVariant<DepthBoundsKernel>());
-    append(table, everyVariant<EdgeRoisKernel>());
-    append(table, everyVariant<ReprojectKernel>());
-    append(table, everyVariant<ResampleKernel>([most_steps = mostRowSteps(context)](const ResampleKernel& k) {
-               // Rows are moved if they can be, and odd rows of predicted are warped like even ones.
-               if (k.row_source == gpu::kPlacesGiven) {
-                   return k.rectified && k.row_steps == 0 && (k.way == gpu::kSamples || k.way == gpu::kDoesAny);
-               }
-               return k.row_steps <= most_steps && (k.row_source != gpu::kArrivalsGiven) == (k.rectified && k.row_steps > 0) &&
-                      (k.row_source != gpu::kWholeRowMoved || k.way == gpu::kPredicts);
-           }));
-    append(table, everyVariant<NewcomersKernel>());
-    append(table, everyVariant<ComponentsKernel>());
-    append(table, everyVariant<PriceKernel>([](const PriceKernel& k) { return k.past == 0; }));
-    append(table, everyVariant<SelectKernel>([](const SelectKernel& k) { return k.past == 0; }));
-    return table;
-}
-
 namespace {
 
 // The passes of one frame, one function each, and what several of them need.
 class WarpRecorder {
 public:
-    WarpRecorder(KernelCache& kernels, Commands& commands, const WarpInputs& in) : kernels_(kernels), commands_(commands), in_(in) {}
+    WarpRecorder(PassKernels& kernels, Commands& commands, const WarpInputs& in) : kernels_(kernels), commands_(commands), in_(in) {}
 
     [[nodiscard]] bool predicts() const { return in_.settings.choice == TileChoice::kPredicted; }
     [[nodiscard]] bool followsPaper() const { return in_.settings.choice == TileChoice::kPaper; }
@@ -123,7 +103,7 @@ private:
     [[nodiscard]] bool copiesColours() const { return in_.settings.forward && !predicts(); }
     [[nodiscard]] gpu::uint tileGroups() const { return (in_.warp.tileCount() + gpu::kWarpGroup - 1) / gpu::kWarpGroup; }
 
-    KernelCache& kernels_;
+    PassKernels& kernels_;
     Commands& commands_;
     const WarpInputs& in_;
 };
@@ -274,8 +254,8 @@ void WarpRecorder::select() {
 
 }  // namespace
 
-void WarpPasses::record(Commands& commands, const WarpInputs& in) {
-    WarpRecorder passes(kernels_, commands, in);
+void recordWarp(PassKernels& kernels, Commands& commands, const WarpInputs& in) {
+    WarpRecorder passes(kernels, commands, in);
     if (passes.predicts()) {
         passes.weigh();
         if (!in.may_move) { return; }

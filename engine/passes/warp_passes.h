@@ -12,8 +12,8 @@
 #pragma once
 
 #include "engine/gpu/gpu_scene.h"
-#include "engine/gpu/kernel.h"
 #include "engine/passes/eye_relation.h"
+#include "engine/passes/pass_kernels.h"
 #include "engine/passes/shown_tiles.h"
 #include "engine/passes/stereo_settings.h"
 #include "engine/passes/warp_buffers.h"
@@ -66,24 +66,8 @@ inline bool movesRows(bool rectified, const WarpBuffers& warp) { return rectifie
 // `gaze` for the device.
 gpu::EyeGaze eyeGazeOf(const Gaze& gaze, const Intrinsics& lens);
 
-// The kernels of these passes.
-KernelTable warpKernels(const Context& context);
-
-class WarpPasses {
-public:
-    explicit WarpPasses(const Context& context) : kernels_(context, warpKernels(context)) {}
-    // See Context::replacedShaders. Throws Error if one cannot be made, and then keeps the old ones.
-    void rebuildKernels() { kernels_.rebuild(); }
-    [[nodiscard]] std::size_t kernelCount() const { return kernels_.size(); }
-    // Takes over the kernels of others on the same device, whose work is done, and keeps those of its own that the others lack.
-    void takeKernels(WarpPasses& from) { kernels_.take(from.kernels_); }
-
-    // Runs all of them: writes the target's colours, except in the tiles that are finally listed, and its depths, if it has room
-    // for them. Hidden tiles become background.
-    void record(Commands& commands, const WarpInputs& in);
-
-private:
-    KernelCache kernels_;
-};
+// Runs all of them: writes the target's colours, except in the tiles that are finally listed, and its depths, if it has room for them.
+// Hidden tiles become background.
+void recordWarp(PassKernels& kernels, Commands& commands, const WarpInputs& in);
 
 }  // namespace binosplat

@@ -85,7 +85,7 @@ TEST_CASE_FIXTURE(AtWork, "a folder that cannot be written, a file of rubbish an
     for (const fs::path& place : {fs::path("/proc/nowhere"), pipe_folder, folder, folder}) {
         const Environment chosen("BINOSPLAT_PIPELINE_CACHE", place.string());
         const Context context({.device = {}, .validation = true});
-        const Kernel kernel(context, passKernels(context).front());
+        const Kernel kernel(context, PassKernels(context).table().front());
         CHECK(kernel.pipeline());
         CHECK(context.validationMessages().empty());
     }

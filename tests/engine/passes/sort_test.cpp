@@ -40,6 +40,7 @@ Values makeKeys(int pattern, std::size_t size, unsigned key_bits) {
 
 // How many lists come out wrong, the first of them told. They lie in one buffer, each with room for one key more.
 int countWrong(Gpu& gpu, const Sort& sort, const std::vector<Values>& lists, unsigned key_bits) {
+    KernelCache kernels(gpu.context(), sort.kernels());
     Values keys, values;
     std::vector<gpu::ListState> states;
     std::vector<std::size_t> begins;
@@ -63,7 +64,7 @@ int countWrong(Gpu& gpu, const Sort& sort, const std::vector<Values>& lists, uns
     gpu.run([&](Commands& commands) {
         for (std::size_t i = 0; i < lists.size(); ++i) {
             const auto at = [&](const Buffer& buffer) { return buffer.address<gpu::uint>(begins[i] * sizeof(gpu::uint)); };
-            const KeyValues sorted = sort.record(commands, {at(key_buffer), at(value_buffer)}, {at(spare_keys), at(spare_values)},
+            const KeyValues sorted = sort.record(kernels, commands, {at(key_buffer), at(value_buffer)}, {at(spare_keys), at(spare_values)},
                                                  histograms.address<gpu::uint>(), state_buffer, i * sizeof(gpu::ListState), key_bits);
             in_spare = sorted.keys.value == at(spare_keys).value;
             CHECK(in_spare == Sort::endsInSpare(key_bits));
@@ -186,13 +187,14 @@ TEST_CASE_FIXTURE(Gpu, "lists of every size from 0 to 600, round 2^17 and of 2^2
 
 TEST_CASE_FIXTURE(Gpu, "a list without room is as good as empty: its keys stay as they are") {
     const Sort sort(context());
+    KernelCache kernels(context(), sort.kernels());
     const Values keys{5, 4, 3, 2, 1};
     const Buffer key_buffer = upload("keys", keys), values = upload("values", keys), spare_keys = upload("spare keys", keys),
                  spare_values = upload("spare values", keys);
     const Buffer lists = upload("lists", std::vector{test::makeList(5, 4)});
     const Buffer histograms(context(), "histograms", Sort::histogramBytes(5));
     run([&](Commands& commands) {
-        sort.record(commands, {key_buffer.address<gpu::uint>(), values.address<gpu::uint>()},
+        sort.record(kernels, commands, {key_buffer.address<gpu::uint>(), values.address<gpu::uint>()},
                     {spare_keys.address<gpu::uint>(), spare_values.address<gpu::uint>()}, histograms.address<gpu::uint>(), lists, 0, 32);
     });
     CHECK(readBack<std::uint32_t>(key_buffer, 5) == keys);

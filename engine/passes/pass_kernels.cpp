@@ -1,0 +1,115 @@
+// Which variants of which kernels there are.
+#include "engine/passes/pass_kernels.h"
+
+#include "engine/passes/passes.h"
+#include "engine/passes/warp_buffers.h"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+
+namespace binosplat {
+
+namespace {
+
+// A cell gets one subgroup if subgroups have 8 to 64 invocations and four of them fit into a workgroup.
+std::uint32_t cellThreads(const Context& context, std::uint32_t wanted) {
+    const std::uint32_t most = std::min(64u, std::bit_floor(context.maxGroupInvocations() / gpu::kCellsPerTile));
+    return std::clamp(wanted != 0 ? wanted : context.subgroupSize(), 8u, most);
+}
+
+// Of cull to rasterize, without sorting.
+KernelTable frameKernels(std::uint32_t threads) {
+    KernelTable table = everyVariant<CullPagesKernel>();
+    append(table, everyVariant<CullKernel>());
+    append(table, everyVariant<CompactKernel>());
+    append(table, everyVariant<ProjectKernel>());
+    append(table, everyVariant<BinKernel>());
+    append(table, everyVariant<BinLargeKernel>());
+    append(table, everyVariant<TileRangesKernel>([](const TileRangesKernel& k) { return k.masked == 1 || k.half_colours == 0; }));
+    for (std::uint32_t choices = 0; choices < 8; ++choices) {
+        const Kept plain{.depth = (choices & 1) != 0, .half_floats = (choices & 2) != 0};
+        Kept moving = plain, even_rows = plain, past = plain;
+        moving.moving = even_rows.moving = even_rows.even_rows = past.past = true;
+        const auto add = [&](const Kept& kept, bool masked, bool coarse = false) {
+            table.push_back(variantOf(rasterizeKernel(threads, kept, choices >> 2, masked, coarse)));
+        };
+        for (const Kept& kept : {plain, moving, even_rows}) { add(kept, false); }
+        add(plain, true);
+        if (plain.depth) { continue; }  // a past's depths follow from its words
+        add(past, false);
+        add(past, true);
+        for (const Kept& kept : {plain, past}) { add(kept, true, true); }
+    }
+    return table;
+}
+
+// Of one eye from the other.
+KernelTable warpKernels(const Context& context) {
+    KernelTable table = everyVariant<WeighKernel>();
+    append(table, everyVariant<DepthBoundsKernel>());
+    append(table, everyVariant<EdgeRoisKernel>());
+    append(table, everyVariant<ReprojectKernel>());
+    append(table, everyVariant<ResampleKernel>([most_steps = mostRowSteps(context)](const ResampleKernel& k) {
+               // Rows are moved if they can be, and odd rows of predicted are warped like even ones.
+               if (k.row_source == gpu::kPlacesGiven) {
+                   return k.rectified && k.row_steps == 0 && (k.way == gpu::kSamples || k.way == gpu::kDoesAny);
+               }
+               return k.row_steps <= most_steps && (k.row_source != gpu::kArrivalsGiven) == (k.rectified && k.row_steps > 0) &&
+                      (k.row_source != gpu::kWholeRowMoved || k.way == gpu::kPredicts);
+           }));
+    append(table, everyVariant<NewcomersKernel>());
+    append(table, everyVariant<ComponentsKernel>());
+    append(table, everyVariant<PriceKernel>([](const PriceKernel& k) { return k.past == 0; }));
+    append(table, everyVariant<SelectKernel>([](const SelectKernel& k) { return k.past == 0; }));
+    return table;
+}
+
+// Of an eye from its past.
+KernelTable pastKernels(bool by_address) {
+    KernelTable table = everyVariant<WarpPastKernel>([=](const WarpPastKernel& k) { return k.by_address == by_address; });
+    append(table, everyVariant<WarpPixelsKernel>([=](const WarpPixelsKernel& k) { return k.by_address == by_address; }));
+    append(table, everyVariant<MarkChangedKernel>());
+    append(table, everyVariant<PriceKernel>([](const PriceKernel& k) { return k.past == 1; }));
+    append(table, everyVariant<SelectKernel>([](const SelectKernel& k) { return k.past == 1 && k.predicted == 1; }));
+    return table;
+}
+
+KernelTable allKernels(const Context& context, const Sort& sort, std::uint32_t threads_per_cell, bool by_address) {
+    KernelTable table = frameKernels(threads_per_cell);
+    append(table, sort.kernels());
+    append(table, warpKernels(context));
+    append(table, pastKernels(by_address));
+    append(table, everyVariant<ContributeKernel>());
+    return table;
+}
+
+}  // namespace
+
+PassKernels::PassKernels(const Context& context, std::uint32_t threads_per_cell)
+    : threads_per_cell_(cellThreads(context, threads_per_cell)),
+      by_address_(context.isSoftware()),
+      sort_(context),
+      cache_(context, allKernels(context, sort_, threads_per_cell_, by_address_)) {}
+
+void PassKernels::take(PassKernels& from) {
+    assert(threads_per_cell_ == from.threads_per_cell_);
+    cache_.take(from.cache_);
+}
+
+// With coarse tiles there is one kernel for all that a picture may keep.
+RasterizeKernel rasterizeKernel(std::uint32_t threads_per_cell, const Kept& kept, std::uint32_t splat_shape, bool masked, bool coarse) {
+    const bool moves_by_depth = kept.moving && kept.depth_choice != gpu::kDepthInverse;
+    return {.threads_per_cell = threads_per_cell,
+            .depth = (kept.depth || moves_by_depth || coarse) && !kept.past,  // a past has it from its words
+            .moments = kept.moments || kept.moving || kept.past,
+            .half_colours = kept.half_floats,
+            .splat_kind = splat_shape,
+            .local_size_x = gpu::kCellsPerTile * threads_per_cell,
+            .even_rows = kept.even_rows,
+            .masked = masked,
+            .past = kept.past,
+            .coarse = coarse};
+}
+
+}  // namespace binosplat
