@@ -22,6 +22,9 @@ constexpr double kPowerDown = 1.2, kPowerUp = 2.0;
 constexpr int kSettlingFrames = 1;
 constexpr std::size_t kOverAtOnce = 3, kOverAgain = 2, kCalmFrames = 8;
 constexpr std::size_t kWindow = MissedDisplays::kWindow, kOftenOver = MissedDisplays::kOftenOver, kOftenOf = MissedDisplays::kOftenOf;
+// As many frames as half a second has, where these are fewer than kWindow.
+constexpr std::size_t kFewestFrames = 12;
+constexpr double kWindowSeconds = 0.5;
 constexpr double kBetweenChangesSeconds = 1.0, kProvenSeconds = 3.0, kFirstWaitSeconds = 10.0, kLongestWaitSeconds = 300.0;
 // If the least settings miss as many displays as the best ones did, others cause the misses. The pacing may react to frame times only after
 // some frames.
@@ -164,7 +167,8 @@ GovernedSettings Governor::raised(double ratio) const {
 }
 
 void Governor::measure(const GovernedFrame& frame) {
-    now_s_ += 1e-3 * frame.period_ms * (1.0 + std::max(frame.lost_periods, 0.0));
+    const double seconds = 1e-3 * frame.period_ms * (1.0 + std::max(frame.lost_periods, 0.0));
+    now_s_ += seconds;
     period_ms_ = frame.period_ms;
     if (quality_ == Quality::kOff || frame.is_old) { return; }
     if (frame.gpu_ms <= 0.0) {
@@ -177,7 +181,7 @@ void Governor::measure(const GovernedFrame& frame) {
     }
     keep(recent_ms_, frame.gpu_ms);
     keep(recent_work_, frame.work);
-    if (turnsKnobs()) { model_.add(knobs(), {frame.gpu_ms, frame.work, frame.warp_error, frame.half_loss}); }
+    if (turnsKnobs()) { model_.add(knobs(), {frame.gpu_ms, seconds, frame.work, frame.warp_error, frame.half_loss}); }
     misses_.add(frame.lost_periods, now_s_);
     if (!misses_.areLeftAlone() && why_ == kOthersMiss) { why_.clear(); }
 
@@ -210,8 +214,10 @@ void Governor::giveBack(double now_ms) {
     misses_.raiseShare(period_ms_);
     if (recent_ms_.size() >= kCalmFrames) { downs_ = 0; }
     if (recent_ms_.size() >= kBlameFrames) { before_misses_.reset(); }
-    if (is_raised_ && now_s_ - changed_s_ >= kProvenSeconds) { wait_s_ = 0.0; }
-    if (now_s_ - changed_s_ < kBetweenChangesSeconds || recent_ms_.size() < kWindow) { return describe(now_ms, why_); }
+    if (is_raised_ && now_s_ - changed_s_ >= wait_s_ + kProvenSeconds) { wait_s_ = 0.0; }
+    const auto enough =
+        static_cast<std::size_t>(std::clamp(std::round(1e3 * kWindowSeconds / period_ms_), 1.0 * kFewestFrames, 1.0 * kWindow));
+    if (now_s_ - changed_s_ < kBetweenChangesSeconds || recent_ms_.size() < enough) { return describe(now_ms, why_); }
     const double work = medianOf(recent_work_, kWindow);
     // Within the period, but with less than a tenth to spare.
     if (now_ms > kTarget * period_ms_) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <span>
 
 namespace binosplat {
 
@@ -11,20 +12,34 @@ namespace {
 
 // The work that a bound takes grows by 4 to 12 % a dB: a higher one may cost the most, a lower one save the least. Errors fall so much a
 // dB.
-constexpr double kWorkUpPerDb = 0.1, kWorkDownPerDb = 0.05, kErrorDbPerDb = 0.6;
+constexpr double kWorkUpPerDb = 0.1, kWorkDownPerDb = 0.05, kErrorDbPerDb = 0.6, kMostWorkPerDb = 0.2;
 // Before anything is measured: a picture of a room, and what `temporal` is off by within a bound.
 constexpr double kUsualLoss = 2e-4, kUsualBelowBoundDb = 14.0;
 // A guess at the shares of a frame's time. Few visits cannot tell all four apart, and leave the others near it.
 constexpr std::array<double, 4> kUsualShares{0.1, 0.15, 0.45, 0.5};
 constexpr double kTrustInUsual = 0.0005;
-constexpr std::size_t kMostVisits = 8;
+constexpr std::size_t kMostVisits = 8, kMostFrames = 9;
+// By half in four seconds.
+constexpr double kLeastWeight = 0.05, kForgottenPerSecond = 0.84;
 constexpr int kFitRounds = 24;  // from the frame before's on
 constexpr double kSmoothing = 0.15;
 // The head may move again as it did lately: work and errors fall slowly, by half in ten seconds at 90 Hz.
 constexpr double kFading = 0.99923;
 // All visits take longer, or all less, when the scene or the device's clock has changed.
 constexpr double kChangedTime = 0.12;
-constexpr int kSeenForChange = 3;
+constexpr std::size_t kSeenForChange = 3, kLastingChange = 12;
+
+// The lower one of two in the middle: what disturbs a frame makes it slower.
+double lowerMedianOf(std::deque<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
+    std::ranges::nth_element(values, middle);
+    return *middle;
+}
+
+void pushNew(std::deque<double>& values, double value) {
+    values.push_back(value);
+    if (values.size() > kMostFrames) { values.pop_front(); }
+}
 
 double follow(double value, double now) { return now > value ? value + kSmoothing * (now - value) : std::max(now, value * kFading); }
 
@@ -41,7 +56,8 @@ double KnobModel::sumOf(const Terms& terms, const Terms& shares) {
 
 double KnobModel::workAt(double bound_db) const {
     const double up_db = bound_db - visits_.back().knobs.bound_db;
-    return std::min(work_ * std::exp((up_db > 0.0 ? kWorkUpPerDb : kWorkDownPerDb) * up_db), 1.0);
+    const double per_db = up_db > 0.0 ? std::max(work_per_db_, kWorkUpPerDb) : kWorkDownPerDb;
+    return std::min(work_ * std::exp(per_db * up_db), 1.0);
 }
 
 void KnobModel::add(const Knobs& knobs, const KnobFrame& frame) {
@@ -54,36 +70,68 @@ void KnobModel::add(const Knobs& knobs, const KnobFrame& frame) {
         work_ = workAt(knobs.bound_db);
         warp_error_ *= std::pow(10.0, 0.1 * kErrorDbPerDb * (visits_.back().knobs.bound_db - knobs.bound_db));
     }
-    const auto before = std::ranges::find(visits_, knobs, &Visit::knobs);
-    if (before == visits_.end()) {
-        visits_.push_back({knobs, frame.ms, frame.work, 0});
-        if (visits_.size() > kMostVisits) { visits_.erase(visits_.begin()); }
-    } else if (before + 1 != visits_.end()) {
-        std::rotate(before, before + 1, visits_.end());
-        visits_.back().frames = std::min(visits_.back().frames, kSeenForChange);
-    }
+    enter(knobs);
     noteChange(frame);
+    for (Visit& visit : visits_) { visit.weight = std::max(visit.weight * std::pow(kForgottenPerSecond, frame.seconds), kLeastWeight); }
     Visit& now = visits_.back();
-    const double weight = 1.0 / std::min(++now.frames, 8);
-    now.ms += weight * (frame.ms - now.ms);
-    now.work += weight * (frame.work - now.work);
+    pushNew(now.all_ms, frame.ms);
+    pushNew(now.all_work, frame.work);
+    now.ms = lowerMedianOf(now.all_ms);
+    now.work = lowerMedianOf(now.all_work);
+    now.weight = 1.0;
+    if (visits_.size() > 1 && now.all_ms.size() == kSeenForChange) { learnWork(visits_[visits_.size() - 2], now); }
     work_ = follow(work_, frame.work);
     if (frame.warp_error > 0.0) { warp_error_ = follow(warp_error_, frame.warp_error); }
     if (frame.half_loss > 0.0) { loss_ += kSmoothing * (frame.half_loss * pixels / 3.0 - loss_); }
     fit();
 }
 
+void KnobModel::learnWork(const Visit& before, const Visit& now) {
+    const double up_db = now.knobs.bound_db - before.knobs.bound_db;
+    if (up_db == 0.0 || !(now.work > 0.0) || !(before.work > 0.0)) { return; }
+    work_per_db_ = std::clamp(std::log(now.work / before.work) / up_db, 0.0, kMostWorkPerDb);
+}
+
+void KnobModel::enter(const Knobs& knobs) {
+    if (knows() && visits_.back().knobs == knobs) { return; }
+    doubted_ratio_ = changed_ >= kSeenForChange ? changed_ratio_ : 1.0;
+    changed_ = 0;
+    shares_before_ = shares_;
+    const auto before = std::ranges::find(visits_, knobs, &Visit::knobs);
+    if (before == visits_.end()) {
+        visits_.push_back({knobs});
+        if (visits_.size() > kMostVisits) { visits_.erase(visits_.begin()); }
+        return;
+    }
+    std::rotate(before, before + 1, visits_.end());
+    visits_.back().all_ms.assign(kSeenForChange, visits_.back().ms);
+    visits_.back().all_work.assign(kSeenForChange, visits_.back().work);
+}
+
+void KnobModel::scaleTimes(double ratio, std::size_t visits) {
+    for (Visit& visit : std::span(visits_).first(visits)) {
+        visit.ms *= ratio;
+        for (double& ms : visit.all_ms) { ms *= ratio; }
+    }
+}
+
 void KnobModel::noteChange(const KnobFrame& frame) {
     const Visit& now = visits_.back();
-    if (now.frames < kSeenForChange) { return; }
-    const double ratio = frame.ms / sumOf(termsOf(now.knobs.scale, frame.work), shares_);
+    const auto ratioTo = [&](const Terms& shares, double ms, double work) { return ms / sumOf(termsOf(now.knobs.scale, work), shares); };
+    if (now.all_ms.size() == kSeenForChange && doubted_ratio_ != 1.0) {
+        const double seen = std::log(ratioTo(shares_before_, now.ms, now.work)), doubted = std::log(doubted_ratio_);
+        if (std::abs(seen - doubted) < std::abs(seen)) { scaleTimes(doubted_ratio_, visits_.size() - 1); }
+        doubted_ratio_ = 1.0;
+    }
+    if (now.all_ms.size() < kSeenForChange) { return; }
+    const double ratio = ratioTo(shares_, frame.ms, frame.work);
     if (std::abs(std::log(ratio)) < kChangedTime) {
         changed_ = 0;
         return;
     }
     changed_ratio_ = changed_ == 0 ? ratio : 0.5 * (changed_ratio_ + ratio);
-    if (++changed_ < kSeenForChange) { return; }
-    for (Visit& visit : visits_) { visit.ms *= changed_ratio_; }
+    if (++changed_ < kLastingChange) { return; }
+    scaleTimes(changed_ratio_, visits_.size());
     changed_ = 0;
 }
 
@@ -94,14 +142,14 @@ void KnobModel::fit() {
     Terms usual = kUsualShares;
     const double all = now.ms / sumOf(termsOf(now.knobs.scale, now.work), usual);
     for (double& share : usual) { share *= all; }
-    if (visits_.size() == 1 && now.frames == 1) { shares_ = usual; }
+    if (visits_.size() == 1 && now.all_ms.size() == 1) { shares_ = usual; }
     for (int round = 0; round < kFitRounds; ++round) {
         for (std::size_t i = 0; i < shares_.size(); ++i) {
             double square = kTrustInUsual / (usual[i] * usual[i]), product = square * usual[i];
             for (const Visit& visit : visits_) {
                 const Terms terms = termsOf(visit.knobs.scale, visit.work);
                 const double rest = visit.ms - (sumOf(terms, shares_) - terms[i] * shares_[i]);
-                const double weight = (&visit == &now ? 4.0 : 1.0) / (visit.ms * visit.ms);
+                const double weight = (&visit == &now ? 4.0 : visit.weight) / (visit.ms * visit.ms);
                 square += weight * terms[i] * terms[i];
                 product += weight * terms[i] * rest;
             }

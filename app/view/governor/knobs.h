@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <deque>
 #include <optional>
 #include <vector>
 
@@ -17,6 +18,7 @@ struct Knobs {
 // A frame that was rendered with such knobs.
 struct KnobFrame {
     double ms = 0.0;
+    double seconds = 0.0;     // since the one before
     double work = 0.0;        // the share of both eyes' pairs that was rendered
     double warp_error = 0.0;  // of the tiles that were not, as expected; 0 if not known
     double half_loss = 0.0;   // what half of the resolution would lose, as measured on a few tiles; 0 if not known
@@ -45,26 +47,33 @@ public:
 private:
     // A frame's time is the sum of these, each times a share of its own: 1, pixels, work, pixels that are rendered.
     using Terms = std::array<double, 4>;
-    // A pair of knobs that was in use, with the means of its frames.
+    // A pair of knobs that was in use, with the medians of its last frames.
     struct Visit {
         Knobs knobs;
+        std::deque<double> all_ms = {}, all_work = {};  // newest last
         double ms = 0.0, work = 0.0;
-        int frames = 0;
+        double weight = 1.0;  // what is long ago counts for less
     };
     [[nodiscard]] double workAt(double bound_db) const;
     [[nodiscard]] static Terms termsOf(double scale, double work);
     [[nodiscard]] static double sumOf(const Terms& terms, const Terms& shares);
-    // Takes all visits for slower, or quicker, where frames at the same knobs and work are.
+    void enter(const Knobs& knobs);
+    void learnWork(const Visit& before, const Visit& now);
+    // Takes all visits for slower, or quicker, where frames at the same knobs and work are for long, or still are with other knobs.
     void noteChange(const KnobFrame& frame);
+    void scaleTimes(double ratio, std::size_t visits);
     void fit();
 
     std::vector<Visit> visits_;  // the present one last
     double work_ = 0.0;          // of the present bound, while the head moves
+    double work_per_db_ = 0.0;   // its growth, when the bound was changed last
     double warp_error_ = 0.0;    // likewise
     double loss_ = 0.0;          // of the resolution r: loss_ * (1/r^2 - 1)
     Terms shares_{};             // as fitted to the visits
-    int changed_ = 0;            // frames in a row that took so many times as long as expected
+    std::size_t changed_ = 0;    // frames in a row that took so many times as long as expected
     double changed_ratio_ = 1.0;
+    double doubted_ratio_ = 1.0;  // before the knobs were turned; 1: none
+    Terms shares_before_{};
 };
 
 }  // namespace binosplat
