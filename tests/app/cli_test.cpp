@@ -136,15 +136,12 @@ TEST_CASE_FIXTURE(AtWork, "render writes its files and nothing else") {
         }
         CHECK(fs::exists(folder / ("roi" + display_extension)) == (mode != "mono"));
         const Image depth = readPicture(folder / ("dominant_depth" + float_extension));
-        CHECK(depth.channels == 1);
-        CHECK(depth.size_px == glm::uvec2(40, 24));
+        CHECK(these(depth.channels, depth.size_px) == these(1, glm::uvec2(40, 24)));
         const nlohmann::json report = reportOf(work, "a/" + mode);
         for (const char* key : {"device", "options", "gpu_ms", "gpu_total_ms", "counters", "peak_gpu_bytes", "left_out"}) {
             CHECK(report.contains(key));
         }
-        CHECK(report["options"]["mode"] == mode);
-        CHECK(report["options"]["size"] == "40x24");
-        CHECK(report["options"]["gap-px"] == 2);
+        CHECK(these(report["options"]["mode"], report["options"]["size"], report["options"]["gap-px"]) == these(mode, "40x24", 2));
         CHECK(report["counters"].contains("tiles_patched") == (mode == "reproject" || mode == "paper" || mode == "predicted"));
         CHECK(report["gpu_ms"].size() >= 7);
         if (mode == "reproject") { CHECK(report["counters"]["tiles_patched"] == 0); }

@@ -35,8 +35,7 @@ TEST_CASE("a scene goes through every format within what the line says that it l
     CHECK(work.files() == Files{"a.ply", "b.spz", "c.ply"});
     const Scene made = loadScene("builtin:slanted-wall"), ply = work.load("a.ply"), back = work.load("c.ply");
     REQUIRE(back.size() == made.size());
-    CHECK(ply.positions == made.positions);
-    CHECK(ply.sh == made.sh);
+    CHECK(these(ply.positions, ply.sh) == these(made.positions, made.sh));
     for (std::size_t i = 0; i < made.size(); ++i) {
         CHECK(glm::distance(back.positions[i], made.positions[i]) < 2e-5f);
         CHECK(std::abs(back.opacities[i] - made.opacities[i]) < 0.002f);
@@ -49,8 +48,7 @@ TEST_CASE("a scene goes through every format within what the line says that it l
           "each; rotations and opacities of 8 bits");
     static_cast<void>(work.convert("a.sog d.ply"));
     static_cast<void>(work.convert("d.ply d.sog"));
-    CHECK(work.load("d.sog").size() == made.size());
-    CHECK_FALSE(work.load("d.sog").isGaussian3d());
+    CHECK(these(work.load("d.sog").size(), work.load("d.sog").isGaussian3d()) == these(made.size(), false));
 #else
     work.checkRefused("convert builtin:one-splat a.sog", 1, "a.sog: this build cannot write SOG");
 #endif
@@ -71,8 +69,7 @@ TEST_CASE_FIXTURE(Converted, "a sphere can be cut out of a scene, and keeps all 
         ++next;
     }
     CHECK(next == cut.size());
-    CHECK(next > 1);
-    CHECK(next < wall.size());
+    CHECK(next == between(1, wall.size()));
     checkRefused("convert builtin:slanted-wall b.ply --crop 1e6,0,0,1", 1,
                  "builtin:slanted-wall: none of its 1681 splats lies within --crop 1000000,0,0,1");
     CHECK(files() == Files{"a.ply"});

@@ -59,8 +59,7 @@ TEST_CASE("without a mode both eyes are made from their pasts, of which no frame
         CHECK(db < 40.0);  // some tiles were rendered again
     }
     const nlohmann::json report = way.report();
-    CHECK(report.at("options").at("path") == "poses.csv");
-    CHECK(report.at("options").at("path-axes") == "openxr");
+    CHECK(these(report.at("options").at("path"), report.at("options").at("path-axes")) == these("poses.csv", "openxr"));
     CHECK(report.at("options").at("rate").is_null());
     REQUIRE(report.at("frames").size() == 3);
     CHECK(report.at("frames").at(1).at("time_s") == doctest::Approx(0.1));
@@ -98,8 +97,7 @@ TEST_CASE_FIXTURE(Way, "a rate puts frames between the poses, turns by the great
     const nlohmann::json frames = report().at("frames");
     REQUIRE(frames.size() == 7);
     const std::set<std::string> before = files();
-    CHECK(before.size() == 2 + 8);
-    CHECK(before.contains("frames/frame_000006_mono" + kExtension));
+    CHECK(these(before.size(), before.contains("frames/frame_000006_mono" + kExtension)) == these(2 + 8, true));
     for (std::size_t i = 0; i < 7; ++i) {
         CAPTURE(i);
         CHECK(frames.at(i).at("time_s") == doctest::Approx(0.25 * static_cast<double>(i)));
@@ -125,8 +123,7 @@ TEST_CASE("a path may begin on the way, where the camera then stands, and end be
     REQUIRE(frames.size() == 2);
     const nlohmann::json &first = frames.at(0).at("eyes").at("mono"), &second = frames.at(1).at("eyes").at("mono");
     CHECK(frames.at(0).at("time_s") == 0.0);
-    CHECK(first.at("position").at(0) == doctest::Approx(0.0));
-    CHECK(first.at("orientation_wxyz").at(2) == doctest::Approx(0.0));
+    CHECK(these(first.at("position").at(0), first.at("orientation_wxyz").at(2)) == these(doctest::Approx(0.0), doctest::Approx(0.0)));
     // A quarter of the way back, of which the head that looks 20 degrees aside sees that part as going aside.
     const double turn = kPi / 9.0;
     CHECK(frames.at(1).at("time_s") == doctest::Approx(0.25));

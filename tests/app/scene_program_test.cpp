@@ -1,6 +1,5 @@
 // What the program says of a scene, and how it takes one of several levels.
 #include "app/scores/metrics.h"
-#include "engine/files/load_scene.h"
 #include "engine/files/ply.h"
 #include "engine/picture/image_io.h"
 #include "engine/scene/procedural.h"

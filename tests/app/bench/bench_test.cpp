@@ -85,10 +85,7 @@ TEST_CASE("methods sweep their settings, and views draw a scene's splats in seve
     CHECK(methodsOf(plan) == Names{"two-pass", "shared", "p budget=0 depth=mean", "p budget=0 depth=sum", "p budget=0.5 depth=mean",
                                    "p budget=0.5 depth=sum", "letter", "mono"});
     const StereoOptions &swept = plan.methods[4].stereo, &letter = plan.methods[6].stereo;
-    CHECK(swept.warp.budget == 0.5);
-    CHECK(swept.warp.gap_px == 3);
-    CHECK(swept.order == Order::kDistance);
-    CHECK(swept.warp.margin_px == 16);
+    CHECK(these(swept.warp.budget, swept.warp.gap_px, swept.order, swept.warp.margin_px) == these(0.5, 3, Order::kDistance, 16));
     CHECK_FALSE(swept.warp.forward);
     CHECK_FALSE(swept.per_eye);
     CHECK(letter.warp.forward);
@@ -104,12 +101,10 @@ TEST_CASE("methods sweep their settings, and views draw a scene's splats in seve
         }
         return names;
     };
-    CHECK(viewsIn("some/b") == "trained: whole near; flattened: flat; antialiased: dimmed; ");
-    CHECK(viewsIn("/some/where/a.ply") == "trained: whole; ");
-    CHECK(viewsIn("builtin:fence") == "trained: ; ");
+    CHECK(these(viewsIn("some/b"), viewsIn("/some/where/a.ply"), viewsIn("builtin:fence")) ==
+          these("trained: whole near; flattened: flat; antialiased: dimmed; ", "trained: whole; ", "trained: ; "));
     const RunOptions near = viewsOf(plan, "b", options.run).at(0).views.at(1).run;
-    CHECK(near.camera.near == 0.5);
-    CHECK(near.camera.eye == glm::dvec3(1.0, 2.0, 3.0));
+    CHECK(these(near.camera.near, near.camera.eye) == these(0.5, glm::dvec3(1.0, 2.0, 3.0)));
 }
 
 TEST_CASE("size, camera, headset and repeats of the command line take the place of the config's") {
@@ -118,19 +113,15 @@ TEST_CASE("size, camera, headset and repeats of the command line take the place 
     const std::string sizes = fence + "[[series]]\nname = \"a\"\nsizes = [\"64x48\", \"128x96\"]\n";
     CHECK(bench.plan(sizes).series.at(0).sizes_px == std::vector{glm::uvec2(64, 48), glm::uvec2(128, 96)});
     CHECK(bench.plan(sizes, "--size 32x16").series.at(0).sizes_px == std::vector{glm::uvec2(32, 16)});
-    CHECK(bench.plan(fence + "repeats = 7\n").repeats == 7);
-    CHECK(bench.plan(fence + "repeats = 7\n", "--repeats 3").repeats == 3);
+    CHECK(these(bench.plan(fence + "repeats = 7\n").repeats, bench.plan(fence + "repeats = 7\n", "--repeats 3").repeats) == these(7, 3));
     // A config's own camera is what its series and views start from.
     const std::string camera = "[camera]\nsize = \"256x256\"\neye = [0, 0, -1]\n" + fence +
                                "headsets = [\"quest2\", \"index\"]\n[[series]]\nname = \"a\"\nsizes = \"64x48\"\n"
                                "[[series]]\nname = \"b\"\n[[views]]\nname = \"near\"\nfov_x = 90\n";
     const BenchPlan plan = bench.plan(camera);
-    CHECK(plan.series.at(0).sizes_px == std::vector{glm::uvec2(64, 48)});
-    CHECK(plan.series.at(1).sizes_px == std::vector{glm::uvec2(256, 256)});
-    CHECK(plan.views.size() == 1);
-    CHECK(plan.headsets == Names{"quest2", "index"});
-    CHECK(bench.plan(camera, "--eye 1,1,1").views.empty());
-    CHECK(bench.plan(camera, "--headset vive").headsets == Names{""});
+    CHECK(these(plan.series.at(0).sizes_px, plan.series.at(1).sizes_px, plan.views.size(), plan.headsets) ==
+          these(std::vector{glm::uvec2(64, 48)}, std::vector{glm::uvec2(256, 256)}, 1, Names{"quest2", "index"}));
+    CHECK(these(bench.plan(camera, "--eye 1,1,1").views.empty(), bench.plan(camera, "--headset vive").headsets) == these(true, Names{""}));
 }
 
 TEST_CASE("LPIPS is among the scores where a config or the command line gives its weights, which nobody reads otherwise") {
@@ -142,8 +133,7 @@ TEST_CASE("LPIPS is among the scores where a config or the command line gives it
     CHECK(alone.psnr);
     CHECK_FALSE(alone.ssim);
     CHECK_FALSE(alone.flip);
-    CHECK(bench.plan(head + "lpips = \"w.bin\"\n").lpips.has_value());
-    CHECK_FALSE(bench.plan(head).lpips.has_value());
+    CHECK(these(bench.plan(head + "lpips = \"w.bin\"\n").lpips.has_value(), bench.plan(head).lpips.has_value()) == these(true, false));
     CHECK_FALSE(bench.plan(head + "scores = [\"psnr\"]\nlpips = \"none.bin\"\n").lpips.has_value());
     const BenchPlan none = bench.plan(head + "scores = [\"none\"]\n", "--lpips " + weights);
     CHECK(none.lpips.has_value());
@@ -176,25 +166,20 @@ TEST_CASE("what a bench would measure twice under one name is refused, and so is
 TEST_CASE("scenes have their own names, or their paths where those are equal") {
     BenchPlan plan;
     plan.scenes = {"a/x.ply", "b/x.ply", "c/y/", "builtin:fence"};
-    CHECK(nameIn(plan, "a/x.ply") == "a/x.ply");
-    CHECK(nameIn(plan, "c/y/") == "y");
-    CHECK(nameIn(plan, "builtin:fence") == "builtin:fence");
+    CHECK(these(nameIn(plan, "a/x.ply"), nameIn(plan, "c/y/"), nameIn(plan, "builtin:fence")) == these("a/x.ply", "y", "builtin:fence"));
     plan.views = {{"whole", {"y"}, {}}};
     CHECK(viewsOf(plan, "c/y/", {}).at(0).views.at(0).name == "whole");
 }
 
 TEST_CASE("ratios compare modes at the same point only, by the medians of frames that took turns") {
-    CHECK(median({3.0}) == 3.0);
-    CHECK(median({5.0, 1.0, 3.0}) == 3.0);
-    CHECK(median({4.0, 1.0, 3.0, 100.0}) == 3.5);
+    CHECK(these(median({3.0}), median({5.0, 1.0, 3.0}), median({4.0, 1.0, 3.0, 100.0})) == these(3.0, 3.0, 3.5));
     std::vector<BenchResult> results{makeResult("a", Mode::kTwoPass, 1, 4.0), makeResult("a", Mode::kShared, 1, 2.0),
                                      makeResult("a", Mode::kShared, 2, 3.0), makeResult("b,c", Mode::kMono, 1, 3.0),
                                      makeResult("a", Mode::kShared, 1, 5.0)};
     results[4].backbone = "3DGS";  // the same scene as discs is another point
     compareModes(results);
     CHECK(!results[4].ratio_to_two_pass.has_value());
-    CHECK(results[1].ratio_to_two_pass == 0.5);
-    CHECK(results[0].ratio_to_shared == 2.0);
+    CHECK(these(results[1].ratio_to_two_pass, results[0].ratio_to_shared) == these(0.5, 2.0));
     CHECK(!results[2].ratio_to_two_pass.has_value());
     CHECK(!results[3].ratio_to_shared.has_value());
     CHECK(contains(benchCsv({"GPU", "", results}), "\"b,c\""));
@@ -235,8 +220,7 @@ TEST_CASE("what moving a tile costs is told in pairs of shared's affiliated eye"
     // 10 us a tile, 0.5 us a pair.
     std::vector<BenchResult> results{predicted, shared};
     compareModes(results);
-    CHECK(results[0].move_cost.value() == doctest::Approx(20.0));
-    CHECK_FALSE(results[1].move_cost.has_value());
+    CHECK(these(results[0].move_cost.value(), results[1].move_cost.has_value()) == these(doctest::Approx(20.0), false));
     results[0].counters["tiles_weighed_as_moved"] = 0;
     compareModes(results);
     CHECK_FALSE(results[0].move_cost.has_value());
@@ -271,8 +255,7 @@ TEST_CASE("of an error an eye sees each tile's share, and notices it from a hund
     for (std::size_t i = 0; i < 512; ++i) { picture.values[4 * i] += i % 32 < 16 ? 0.02f : 0.005f; }
     const SeenScores seen = measureSeen(full, picture, std::array{0.5, 1.0});
     CHECK(seen.mean_square == doctest::Approx((0.5 * 0.1024 + 0.0064) / (3 * 512)).epsilon(1e-4));
-    CHECK(seen.psnrDb() == doctest::Approx(10.0 * std::log10(3 * 512 / 0.0576)).epsilon(1e-4));
-    CHECK(seen.noticed == 0.5);
+    CHECK(these(seen.psnrDb(), seen.noticed) == these(doctest::Approx(10.0 * std::log10(3 * 512 / 0.0576)).epsilon(1e-4), 0.5));
     CHECK(measureSeen(full, full, std::array{0.5, 1.0}).noticed == 0.0);
     // It stands in the tables, and has a panel of its own in the plot.
     BenchResult result = withError(1.0, 0.01);
@@ -294,9 +277,8 @@ TEST_CASE("of the tiles that were not rendered, those count as far under a bound
         return std::pair(found.kept, found.under);
     };
     using Counts = std::pair<std::uint64_t, std::uint64_t>;
-    CHECK(find({0, 0, 0, 0, 0, 0}, 28.0) == Counts(2, 1));
-    CHECK(find({0, 0, 3, 3, 3, 3}, 29.0) == Counts(2, 2));
-    CHECK(find({0, 0, 0, 0, 0, 0}, 27.9) == Counts(2, 0));
+    CHECK(these(find({0, 0, 0, 0, 0, 0}, 28.0), find({0, 0, 3, 3, 3, 3}, 29.0), find({0, 0, 0, 0, 0, 0}, 27.9)) ==
+          these(Counts(2, 1), Counts(2, 2), Counts(2, 0)));
     CHECK(find({0, 3, 0, 0, 0, 0}, 28.0) == Counts(1, 0));  // rendered
     CHECK(find({}, 28.0) == Counts(0, 0));                  // in full
     BoundedTiles both{2, 1};

@@ -20,8 +20,7 @@ TEST_CASE("any range has three to ten ticks, in order, within an axis that holds
                 if (scale == Scale::kLinear && low < 1e-3) { continue; }  // steps of 1e-6 at least
                 const PlotAxis axis = axisOver(scale, low, low * ratio);
                 INFO("low ", low, ", ratio ", ratio);
-                CHECK(axis.ticks().size() >= 3);
-                CHECK(axis.ticks().size() <= 10);
+                CHECK(axis.ticks().size() == within(3, 10));
                 for (std::size_t i = 1; i < axis.ticks().size(); ++i) { CHECK(axis.ticks()[i] > axis.ticks()[i - 1]); }
                 CHECK(axis.share(low) > -1e-9);
                 CHECK(axis.share(low * ratio) < 1.0 + 1e-9);
@@ -37,11 +36,8 @@ TEST_CASE("what has no place, and short numbers") {
     CHECK_FALSE(PlotAxis(Scale::kLog).shows(std::nan("")));
     CHECK(PlotAxis(Scale::kLinear).shows(-1.0));
     CHECK_FALSE(PlotAxis(Scale::kLinear).shows(INFINITY));
-    CHECK(shortNumber(1500.0) == "1.5k");
-    CHECK(shortNumber(3e6) == "3M");
-    CHECK(shortNumber(2e9) == "2G");
-    CHECK(shortNumber(1e15) == "1e+15");
-    CHECK(shortNumber(0.001) == "0.001");
+    CHECK(these(shortNumber(1500.0), shortNumber(3e6), shortNumber(2e9), shortNumber(1e15), shortNumber(0.001)) ==
+          these("1.5k", "3M", "2G", "1e+15", "0.001"));
 }
 
 TEST_CASE("names stand beside their points where there is room, and never on each other") {
