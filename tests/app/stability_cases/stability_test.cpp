@@ -73,8 +73,8 @@ TEST_CASE_FIXTURE(Gpu, "pictures that are made from the ones before keep to thei
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "splats with a broken attribute, or of which dimming leaves nothing, change no byte, of discs and of 3D Gaussians" *
-                           nightly()) {
+TEST_CASE_FIXTURE(Gpu,
+                  "splats with a broken attribute, or of which dimming leaves nothing, change no byte, discs or Gaussians" * nightly()) {
     for (const double broken : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
         for (const bool gaussians : {false, true}) {
             const Stage stage = gaussians ? makeBrokenGaussians(broken) : makeBrokenAttributes(broken);

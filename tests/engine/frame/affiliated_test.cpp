@@ -91,9 +91,8 @@ TEST_CASE_FIXTURE(Gpu, "every mode gives the same bytes from run to run, whateve
             }
         }
         for (std::size_t run = 1; run < made.size(); ++run) {
-            CHECK(made[run].pictures[kLeft].values == made[0].pictures[kLeft].values);
-            CHECK(made[run].pictures[kRight].values == made[0].pictures[kRight].values);
-            CHECK(made[run].tile_kinds == made[0].tile_kinds);
+            CHECK(these(made[run].pictures[kLeft].values, made[run].pictures[kRight].values, made[run].tile_kinds) ==
+                  these(made[0].pictures[kLeft].values, made[0].pictures[kRight].values, made[0].tile_kinds));
             CHECK(made[run].pixel_classes == made[0].pixel_classes);
             CHECK(depths[run].values == depths[0].values);
             for (const char* pairs : {"tile_pairs_left", "tile_pairs_right"}) {
@@ -166,8 +165,7 @@ TEST_CASE_FIXTURE(Gpu, "tiles that are rendered again are those of the full rend
     }
 }
 
-TEST_CASE_FIXTURE(Gpu,
-                  "what each eye culls and sorts by itself makes two-pass's tiles, and with parallel eyes the picture of shared lists") {
+TEST_CASE_FIXTURE(Gpu, "what each eye culls and sorts by itself makes two-pass's tiles, and with parallel eyes shared lists' picture") {
     const ViewedScene view = viewAtelier();
     KeptFrame frame(context(), view.scene);
     for (const double canting_rad : {0.0, glm::radians(5.0)}) {
@@ -181,9 +179,8 @@ TEST_CASE_FIXTURE(Gpu,
         settings.per_eye = false;
         const AffiliatedFrame together = makeAffiliated(frame, eyes, settings);
         CHECK(countOf(together.result, "splats_visible_left") >= countOf(alone.result, "splats_visible_left"));
-        CHECK(together.tile_kinds == alone.tile_kinds);
-        CHECK(together.pictures[kRight].values == alone.pictures[kRight].values);
-        CHECK(together.pictures[kLeft].values == alone.pictures[kLeft].values);
+        CHECK(these(together.tile_kinds, together.pictures[kRight].values, together.pictures[kLeft].values) ==
+              these(alone.tile_kinds, alone.pictures[kRight].values, alone.pictures[kLeft].values));
     }
 }
 

@@ -54,8 +54,7 @@ FrameResult goAhead(StereoFrame& frame, const std::array<Eye, 2>& eyes, const Fr
     return last;
 }
 
-TEST_CASE_FIXTURE(Atelier,
-                  "a frame that is not waited for is the one that is, byte for byte, in every mode, also after one of another size") {
+TEST_CASE_FIXTURE(Atelier, "a frame that is not waited for is the one that is, to the byte, in every mode, also after another size") {
     for (const Mode mode :
          {Mode::kTwoPass, Mode::kShared, Mode::kReproject, Mode::kPaper, Mode::kPredicted, Mode::kAlternate, Mode::kTemporal}) {
         CAPTURE(nameOf(mode));
@@ -132,8 +131,7 @@ TEST_CASE_FIXTURE(Atelier, "lists have room ahead however many pairs a pixel has
     CHECK(tried > 15);
 }
 
-TEST_CASE_FIXTURE(
-    Atelier, "walking is no jump, however near the near plane and however large the scene; a step of the wearer and a turn by a step are") {
+TEST_CASE_FIXTURE(Atelier, "walking is no jump, whatever the near plane and the scene's size; a wearer's step and snap turn are") {
     // Whether a frame is waited for: then what it says comes at once.
     const auto waits = [&](double units_per_metre, double metres, double degrees) {
         KeptFrame frame(context(), scene);
@@ -156,8 +154,7 @@ TEST_CASE_FIXTURE(
     }
 }
 
-TEST_CASE_FIXTURE(Atelier,
-                  "after a jump a frame is waited for, and done again once at most before anybody sees it, whatever lists have no room") {
+TEST_CASE_FIXTURE(Atelier, "after a jump a frame is waited for, and done again once at most unseen, whatever lists have no room") {
     for (const Mode mode : {Mode::kTwoPass, Mode::kShared, Mode::kReproject, Mode::kPaper, Mode::kPredicted}) {
         CAPTURE(nameOf(mode));
         KeptFrame frame(context(), scene, kNoRoom);

@@ -102,8 +102,7 @@ TEST_CASE_FIXTURE(Gpu, "a head that stands still sees the full render within 30 
     }
 }
 
-TEST_CASE_FIXTURE(
-    Gpu, "with work for nearly all of both eyes these are nearly the full render, parallel or canted, whatever room lists had before") {
+TEST_CASE_FIXTURE(Gpu, "with work for nearly all both eyes are nearly the full render, parallel or canted, whatever room lists had") {
     const ViewedScene view = viewAtelier();
     const GpuScene scene(context(), view.scene);
     for (const double cant : {0.0, 0.05}) {  // parallel eyes are rendered beside each other, canted ones one after the other
@@ -144,8 +143,7 @@ TEST_CASE_FIXTURE(Gpu, "where it is known where the eyes look, the budget is spe
         for (int frame = 0; frame <= 12; ++frame) {
             const FrameResult result = walk.go(frame);
             if (frame < 6) { continue; }
-            CHECK(result.work_rendered > 0.15);
-            CHECK(result.work_rendered < 0.22);
+            CHECK(result.work_rendered == between(0.15, 0.22));
             if (frame % 6 != 0) { continue; }
             const auto shown = walk.shown(), full = walk.full();
             for (std::size_t i = 0; i < shown[0].values.size(); ++i) {
@@ -158,16 +156,6 @@ TEST_CASE_FIXTURE(Gpu, "where it is known where the eyes look, the budget is spe
     FrameSettings looks = makeSettings(Mode::kTemporal);
     looks.gazes = {Gaze{{-0.8, 0.0, 1.0}, 0.0}, Gaze{{-0.8, 0.0, 1.0}, 0.0}};
     CHECK(errorOf(looks) < 0.8 * errorOf(makeSettings(Mode::kTemporal)));
-}
-
-TEST_CASE_FIXTURE(Gpu, "after a jump of the head both eyes are rendered in full") {
-    Walk walk(context(), makeSettings(Mode::kTemporal));
-    for (int frame = 0; frame < 3; ++frame) { walk.go(frame); }
-    walk.go(200.0);
-    const auto shown = walk.shown(), full = walk.full();
-    for (const std::size_t e : {0, 1}) { CHECK(shown[e].values == full[e].values); }
-    for (int frame = 201; frame < 216; ++frame) { walk.go(frame); }
-    CHECK(walk.psnr() > 36.0);
 }
 
 // As where a governor looks for the resolution that keeps the rate.
@@ -253,22 +241,6 @@ TEST_CASE_FIXTURE(Gpu, "with coarse tiles, a head that stands still comes to see
     for (int frame = 0; frame < 30; ++frame) { walk.go(4.0); }
     CHECK(walk.go(4.0).work_rendered < 0.005);  // what nobody notices has its turn now and then
     CHECK(test::psnrDb(walk.shown(), walk.alone()) > 50.0);
-}
-
-TEST_CASE_FIXTURE(Gpu, "with coarse tiles, a walk keeps its quality within the budget") {
-    for (const Mode mode : {Mode::kAlternate, Mode::kTemporal}) {
-        CAPTURE(nameOf(mode));
-        Walk walk(context(), withCoarse(mode), viewRoom());
-        walk.go(0.0);
-        for (int frame = 1; frame <= 12; ++frame) {
-            const FrameResult result = walk.go(frame);
-            if (mode == Mode::kTemporal) {
-                CHECK(result.work_rendered > 0.1);
-                CHECK(result.work_rendered < 0.23);
-            }
-            if (frame % 6 == 0) { CHECK(walk.psnr() > 34.0); }
-        }
-    }
 }
 
 }  // SUITE(past_frames)

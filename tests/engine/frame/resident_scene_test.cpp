@@ -81,8 +81,7 @@ TEST_CASE_FIXTURE(Gpu, "all of a scene in pages is the scene that stays, byte fo
     checkPagesAreTheScene(context(), test::inMortonOrder(gaussians.scene), gaussians.eye, kModes, 0.0);
 }
 
-TEST_CASE_FIXTURE(Gpu,
-                  "what is there is seen, and nothing else, whatever came and went before it, and hundreds of changes take no memory") {
+TEST_CASE_FIXTURE(Gpu, "what is there is seen, and nothing else, whatever came and went, and hundreds of changes take no memory") {
     const ViewedScene view = viewAtelier({160, 144});
     constexpr std::uint32_t kParts = 16;
     const std::vector<Scene> parts = inParts(view.scene, kParts);
@@ -165,8 +164,7 @@ TEST_CASE_FIXTURE(Atelier, "a part that is longer than what a frame may bring is
     frame.render(eyes, makeSettings(Mode::kMono));
     resident.remove(other);
     CHECK(countOf(frame.render(eyes, makeSettings(Mode::kMono)), "splats_visible") == 0);
-    CHECK(resident.splatsAdded() == 0);
-    CHECK(resident.freePages() == pages);
+    CHECK(these(resident.splatsAdded(), resident.freePages()) == these(0, pages));
 }
 
 TEST_CASE_FIXTURE(Atelier, "what has no room, or is of another kind, is refused, and the rest stays") {
