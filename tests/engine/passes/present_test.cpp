@@ -170,8 +170,7 @@ TEST_CASE_FIXTURE(Gpu, "depth is near over depth, and nothing is infinitely far,
     }
 }
 
-TEST_CASE_FIXTURE(
-    Gpu, "a picture lies over a program's own bytes, in any order and meaning, and before or behind its depths, as its twin's does") {
+TEST_CASE_FIXTURE(Gpu, "a picture lies over a program's own bytes, in any order, before or behind its depths, as its twin's does") {
     Shown shown{{64, 4}, makeColours({64, 4})};
     std::vector<double> sums, meshes;
     for (std::uint32_t i = 0; i < 256; ++i) {

@@ -294,8 +294,7 @@ TEST_CASE_FIXTURE(Gpu, "price counts of an error what the twin's eye sees, where
     }
 }
 
-TEST_CASE_FIXTURE(Gpu,
-                  "of tiles with a past price and select take the twin's of both eyes, for any budget and bound, and wherever these look") {
+TEST_CASE_FIXTURE(Gpu, "of tiles with a past price and select take the twin's of both eyes, for any budget, bound and gaze") {
     std::mt19937 random(11);
     for (const auto& [left, right] : {std::pair(glm::uvec2(1, 1), glm::uvec2(1, 1)), std::pair(glm::uvec2(16, 8), glm::uvec2(16, 8)),
                                       std::pair(glm::uvec2(43, 9), glm::uvec2(43, 9)), std::pair(glm::uvec2(20, 17), glm::uvec2(5, 3))}) {

@@ -146,8 +146,7 @@ void checkSums(Gpu& gpu, std::size_t count) {
     }
     Summed summed = sumUp(gpu, values);
     const Values runs(summed.sums.begin() + static_cast<std::ptrdiff_t>(count), summed.sums.end());
-    CHECK((runs[0] == kUntouched) == (length == count));
-    CHECK(runs.back() == kUntouched);
+    CHECK(these((runs[0] == kUntouched), runs.back()) == these((length == count), kUntouched));
     summed.sums.resize(count);
     for (std::size_t i = 0; i < count && length < count; ++i) { summed.sums[i] += runs[i / length]; }
     CHECK(summed.sums == expected);
@@ -197,8 +196,7 @@ TEST_CASE_FIXTURE(Gpu, "a list without room is as good as empty: its keys stay a
         sort.record(kernels, commands, {key_buffer.address<gpu::uint>(), values.address<gpu::uint>()},
                     {spare_keys.address<gpu::uint>(), spare_values.address<gpu::uint>()}, histograms.address<gpu::uint>(), lists, 0, 32);
     });
-    CHECK(readBack<std::uint32_t>(key_buffer, 5) == keys);
-    CHECK(readBack<std::uint32_t>(spare_keys, 5) == keys);
+    CHECK(these(readBack<std::uint32_t>(key_buffer, 5), readBack<std::uint32_t>(spare_keys, 5)) == these(keys, keys));
 }
 
 TEST_CASE_FIXTURE(Gpu, "sums are right at every size across a boundary") {
@@ -216,9 +214,7 @@ TEST_CASE_FIXTURE(Gpu, "a list of sums that does not fit is empty and says what 
     for (const std::uint32_t capacity : {60u, 59u}) {
         const gpu::ListState list = sumUp(*this, {10, 20, 30}, capacity).result;
         CHECK(wordsOf(list) == wordsOf(test::makeList(60, capacity)));
-        CHECK(list.needed == 60);
-        CHECK(list.count == (capacity == 60 ? 60 : 0));
-        CHECK((list.per_item.x == 0) == (capacity < 60));
+        CHECK(these(list.needed, list.count, (list.per_item.x == 0)) == these(60, (capacity == 60 ? 60 : 0), (capacity < 60)));
     }
     // Just beyond what an index may be, and beyond 2^32, where the sum modulo 2^32 is small, and several times that.
     for (const std::uint64_t total : {std::uint64_t{gpu::kMaxItems} + 1, std::uint64_t{UINT32_MAX} - 3, std::uint64_t{1} << 32,
@@ -226,8 +222,7 @@ TEST_CASE_FIXTURE(Gpu, "a list of sums that does not fit is empty and says what 
         CAPTURE(total);
         const gpu::ListState list = listOfSum(*this, total, UINT32_MAX - 1);
         CHECK(wordsOf(list) == wordsOf(test::makeList(UINT32_MAX, UINT32_MAX - 1)));
-        CHECK(list.needed == UINT32_MAX);
-        CHECK(list.count == 0);
+        CHECK(these(list.needed, list.count) == these(UINT32_MAX, 0));
     }
 }
 

@@ -142,8 +142,7 @@ TEST_CASE_FIXTURE(Gpu, "tile_ranges looks through any number of pairs, and past 
     CHECK(rangesOnDevice(*this, {}, {32, 16}).ranges == std::vector(2, glm::uvec2(0)));
 }
 
-TEST_CASE_FIXTURE(
-    Gpu, "tile_ranges finds the pairs of every tile; under a mask it lists the tiles with pairs, and clears those without and no others") {
+TEST_CASE_FIXTURE(Gpu, "tile_ranges finds the pairs of every tile; under a mask it lists tiles with pairs, and clears those without") {
     std::mt19937 random(3);
     for (const glm::uvec2 size_px : {glm::uvec2(300, 170), glm::uvec2(16, 16), glm::uvec2(1001, 7)}) {
         const glm::uvec2 size_tiles = (size_px + 15u) / 16u;
@@ -167,8 +166,7 @@ TEST_CASE_FIXTURE(
                 const Ranges found = rangesOnDevice(*this, tiles, size_px, is_masked, listed, half_floats);
                 CHECK(found.ranges == expected);
                 if (!is_masked) { continue; }
-                CHECK(found.full == full);
-                CHECK(found.groups_done == 0);
+                CHECK(these(found.full, found.groups_done) == these(full, 0));
                 const auto groups = static_cast<std::uint32_t>(full.size());
                 CHECK((listed.empty() || found.groups == glm::uvec3(groups, groups > 0 ? 1 : 0, 1)));
                 std::size_t wrong = 0;
