@@ -59,8 +59,7 @@ TEST_CASE_FIXTURE(AtWork, "what is rendered again follows the eyes, and goes bac
     const double on_way = findChosen(run, 26).middle;
     CHECK(on_way < right.middle - 0.1);
     CHECK(on_way > lost.middle + 0.05);  // measured: 0.58 and 0.46
-    CHECK(lost.middle > 0.4);
-    CHECK(lost.middle < 0.6);
+    CHECK(lost.middle == between(0.4, 0.6));
     CHECK(lost.middle == findChosen(run, 31).middle);
     // Nobody is told where the wearer looks.
     CHECK_FALSE(run.says("gaze"));
@@ -77,8 +76,7 @@ TEST_CASE_FIXTURE(AtWork, "where the wearer does not let the viewer see them, or
         CHECK(left.pixels > 300);
         CHECK(left.middle == right.middle);
         // Of a few tiles: beside those of a wearer who looks to the left or to the right, see above.
-        CHECK(left.middle > 0.35);
-        CHECK(left.middle < 0.75);
+        CHECK(left.middle == between(0.35, 0.75));
     }
 }
 

@@ -37,16 +37,14 @@ std::string highUp(const Panel& panel) {
 }
 void checkLifted(const ViewRun& run, double seconds) {
     const glm::dvec3 way = panelOf(run, run.frameAt(seconds)).middle - panelBefore().middle;
-    CHECK(way.y == doctest::Approx(0.2).epsilon(0.01));
-    CHECK(way.x == doctest::Approx(0.0).epsilon(0.01));
+    CHECK(these(way.y, way.x) == these(doctest::Approx(0.2).epsilon(0.01), doctest::Approx(0.0).epsilon(0.01)));
 }
 
 // The frame of a line counts the frames before it.
 void checkSaidAt(const ViewRun& run, const std::string& line, double seconds) {
     CAPTURE(line);
     const double said_s = ViewRun::secondsOf(run.frames.at(std::stoul(line.substr(line.find(' ')))));
-    CHECK(said_s > seconds - 0.03);
-    CHECK(said_s < seconds + 0.08);
+    CHECK(said_s == between(seconds - 0.03, seconds + 0.08));
 }
 
 TEST_CASE("every controller and bare hands show the panel, click and are felt; what is not in the hand does nothing") {
@@ -89,9 +87,7 @@ TEST_CASE("every controller and bare hands show the panel, click and are felt; w
         CAPTURE(controllers[i]);
         const std::size_t first = run.frameAt(begins[i]);
         CHECK(pulses(run, first + 3, 6) == 1);
-        CHECK(run.panels(first + 8).size() == 1);
-        CHECK(run.panels(first + 13).empty());
-        CHECK(run.panels(first + 19).size() == 1);
+        CHECK(these(run.panels(first + 8).size(), run.panels(first + 13).empty(), run.panels(first + 19).size()) == these(1, true, 1));
     }
     const std::size_t bare = run.frameAt(bare_begin) + 1;
     CHECK(pulses(run, bare, run.frameAt(bare_end) - bare) == 0);
@@ -137,8 +133,7 @@ TEST_CASE("a grip that shivers holds the panel, one that only touches does not; 
     const auto lifted = [&](std::size_t i) { return panelOf(run, run.frameAt(looks[i])).middle.y - acts.panel.middle.y; };
     CHECK(lifted(0) == doctest::Approx(0.0));
     checkLifted(run, looks[1]);
-    CHECK(lifted(2) > 0.05);
-    CHECK(lifted(2) < 0.15);
+    CHECK(lifted(2) == between(0.05, 0.15));
     const std::vector<std::string> changes = run.lines("vignette = ");
     INFO(run.outcome.output);
     REQUIRE(changes.size() == 2);
@@ -191,8 +186,7 @@ TEST_CASE("rays end at the panel, else fade; hands are seen as their joints are;
     CHECK(nearest(right_at) < 1e-4);
     CHECK(nearest(acts.panel.middle) < 1e-3);
     CHECK(run.rays(run.frameAt(lost) + 1).size() == 1);
-    CHECK(countSeen(run, both, kHand) == 2);
-    CHECK(countSeen(run, both, kKnob) == 0);
+    CHECK(these(countSeen(run, both, kHand), countSeen(run, both, kKnob)) == these(2, 0));
     CHECK(run.quadsAsWide(run.frameAt(lost) + 1, kHand).size() == 1);
     for (const double seconds : {hidden, gone}) { CHECK(run.panels(run.frameAt(seconds)).empty()); }
     for (const double seconds : {hidden, let_go}) { CHECK(run.rays(run.frameAt(seconds)).empty()); }
@@ -201,8 +195,7 @@ TEST_CASE("rays end at the panel, else fade; hands are seen as their joints are;
     CHECK(std::ranges::count_if(seen, [](const auto& hand) { return glm::distance(stagePlace(hand), {0.1, 1.5, -0.4}) < 0.1; }) == 1);
     // A fist is another picture than a hand that is open. The scene is in its grip, and does not move with it.
     const double likeness = run.likeness(run.pictureAt(open), run.pictureAt(fist));
-    CHECK(likeness < 45.0);
-    CHECK(likeness > 15.0);
+    CHECK(likeness == between(15.0, 45.0));
     // The head looks along -x, from (1, 1.6, 0).
     CHECK(glm::distance(panelOf(run, run.frameAt(moved)).middle, {0.1, 1.5, 0.45}) < 1e-4);
 }
@@ -228,8 +221,7 @@ TEST_CASE("controllers are drawn where grips are; the wearer teleports to where 
     const double by_trigger = acts.hold("right select", 0.2).wait(0.05).look();
     acts.wait(0.1).click(keep, "right select").wait(0.1);
     const ViewRun run = runClean(work, "run", acts.script(), kWithHands + " --hide-panel" + config);
-    CHECK(countSeen(run, both, kKnob) == 2);
-    CHECK(countSeen(run, both, kHandle) == 2);
+    CHECK(these(countSeen(run, both, kKnob), countSeen(run, both, kHandle)) == these(2, 2));
     const std::size_t frame = run.frameAt(one) + 1;
     REQUIRE(run.quadsAsWide(frame, kKnob).size() == 1);
     REQUIRE(run.quadsAsWide(frame, kHandle).size() == 1);
@@ -241,8 +233,7 @@ TEST_CASE("controllers are drawn where grips are; the wearer teleports to where 
     // It is said beforehand where that will be.
     CHECK(countSeen(run, by_stick, kArc) == 6);
     CHECK(vignettes(run, run.frameAt(by_stick)).empty());
-    CHECK(countSeen(run, there, kArc) == 0);
-    CHECK(countSeen(run, there, kTarget) == 0);
+    CHECK(these(countSeen(run, there, kArc), countSeen(run, there, kTarget)) == these(0, 0));
     const auto targetAt = [&](double seconds) {
         const auto found = run.quadsAsWide(run.frameAt(seconds), kTarget);
         REQUIRE(found.size() == 1);
@@ -369,8 +360,7 @@ TEST_CASE("the view's edge is dark while a stick moves the wearer, its middle is
     for (const double seconds : {after, without}) {
         for (const glm::uvec2 place : {glm::uvec2(1, 1), glm::uvec2(32, 1)}) { CHECK(at(seconds, place) == at(before, place)); }
     }
-    CHECK(countSeen(run, before, kHand) == 2);
-    CHECK(countSeen(run, end, kHand) == 0);
+    CHECK(these(countSeen(run, before, kHand), countSeen(run, end, kHand)) == these(2, 0));
     CHECK(run.frames.at(run.frameAt(before)).at("blend_mode") == "OPAQUE");
     CHECK(run.frames.at(run.frameAt(end)).at("blend_mode") == "ALPHA_BLEND");
 }

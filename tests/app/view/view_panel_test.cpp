@@ -48,13 +48,11 @@ TEST_CASE("what is clicked on the panel is so, beside it nothing is clicked, and
     };
     // 0 to 128 pixels, 0 to 100 %, 0.1 to 2, all clicked at the same share of their length.
     const double share = valueOf("budget"), scale = valueOf("resolution-scale");
-    CHECK(share > 0.4);
-    CHECK(share < 0.6);
+    CHECK(share == between(0.4, 0.6));
     CHECK(valueOf("margin") == doctest::Approx(128.0 * share).epsilon(0.02));
     CHECK(scale == doctest::Approx(0.1 + 1.9 * share).epsilon(0.02));
-    CHECK(run.width(run.frameAt(held)) == 160);
-    CHECK(run.width(run.frameAt(let_go) + 2) == static_cast<int>(std::round(160.0 * scale)));
-    CHECK(run.periodNs(run.frameAt(let_go)) == 20'000'000);
+    CHECK(these(run.width(run.frameAt(held)), run.width(run.frameAt(let_go) + 2), run.periodNs(run.frameAt(let_go))) ==
+          these(160, static_cast<int>(std::round(160.0 * scale)), 20'000'000));
     CHECK(run.periodNs(run.frameAt(other_rate)) == 8'333'333);
 
     // The viewer and `render` take the file.
@@ -65,8 +63,7 @@ TEST_CASE("what is clicked on the panel is so, beside it nothing is clicked, and
     REQUIRE(work.run("render builtin:slanted-wall --out rendered --size 32x32 --config '" + file.string() + "'").exit_code == 0);
     std::ifstream report(work.path / "rendered" / "report.json");
     const nlohmann::json options = nlohmann::json::parse(report).at("options");
-    CHECK(options.at("mode") == "mono");
-    CHECK(options.at("dominant") == "right");
+    CHECK(these(options.at("mode"), options.at("dominant")) == these("mono", "right"));
     // The wearer stands there again, unless told where to.
     const auto look = [&](const std::string& name, const std::string& arguments) {
         return runClean(work, name, "rate 50\nsize 96 96\nframes every 5\nat 0.15 exit\n", kWall + " --hide-panel " + arguments);
@@ -167,8 +164,7 @@ TEST_CASE_FIXTURE(AtWork, "a resolution that the device has no memory for is ref
               .says("presented pixels needs "));
 }
 
-TEST_CASE(
-    "tint and centre ROIs are seen in the eye that is made from the other, and a recorded walk with clicks is seen as it is rendered") {
+TEST_CASE("tint and centre ROIs are seen in the eye made from the other, and a recorded walk with clicks as it is rendered") {
     const Workplace work;
     std::ofstream motion(work.path / "walk.csv");
     motion << "time_s,x,y,z,qx,qy,qz,qw\n";

@@ -84,9 +84,7 @@ TEST_CASE_FIXTURE(AtWork, "where everything fits nothing is given up, and the he
         work, "quick", "rate 90\nsize 200 200\nframes none\n",
         "builtin:one-splat --mode shared --frames 40" + kNothingElse + withConfig(work, "[view]\nquality = \"fast\"\nrefresh-rate = 120\n"),
         kQuick);
-    CHECK(run.width(38) == 200);
-    CHECK(run.periodNs(0) == 11'111'111);
-    CHECK(run.periodNs(15) == 8'333'333);
+    CHECK(these(run.width(38), run.periodNs(0), run.periodNs(15)) == these(200, 11'111'111, 8'333'333));
 }
 
 TEST_CASE("no frame makes a kernel, also where the eyes come to look another way: all are made before the first one" * nightly()) {
@@ -149,8 +147,7 @@ TEST_CASE("irregular periods, frames that nobody is to see, other rates and a he
                        "irregular 90\nat 1 should-render off\nat 1.5 should-render on\nat 2 rate 20\nat 2.5 rate 10\nat 3 worn off\n"
                        "at 3.5 worn on\nat 4 visible off\nat 4.5 visible on\n",
                        70);
-    CHECK(run.changes().empty());
-    CHECK(run.widths.back() == kWhole);
+    CHECK(these(run.changes().empty(), run.widths.back()) == these(true, kWhole));
     CHECK_FALSE(run.says("missed"));
 }
 

@@ -169,8 +169,7 @@ inline void checkClean(const ViewRun& run) {
     INFO("stderr: " << run.outcome.errors);
     CHECK(run.outcome.exit_code == 0);
     CHECK(run.outcome.errors == "Core Validation output type: text, first time = true\n");  // the layer was there, and nothing else
-    CHECK(run.outcome.output.find("VUID") == std::string::npos);
-    CHECK(run.outcome.output.find("ERROR") == std::string::npos);
+    CHECK(these(run.outcome.output.find("VUID"), run.outcome.output.find("ERROR")) == these(std::string::npos, std::string::npos));
 }
 
 // A run that ended so, and showed no more layers than a runtime must take.

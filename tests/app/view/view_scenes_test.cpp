@@ -188,8 +188,7 @@ TEST_CASE_FIXTURE(AtWork, "a working directory that was deleted takes no picture
         fmt::format("mkdir gone && cd gone && rmdir ../gone && DISPLAY= WAYLAND_DISPLAY= XDG_CONFIG_HOME='{0}/config' '" BINOSPLAT_PROGRAM
                     "' view builtin:one-splat --load-first --mode mono --simulate '{0}/gone.script' --out '{0}/seen'",
                     work.path.string()));
-    CHECK(outcome.exit_code == 0);
-    CHECK(outcome.errors == "");
+    CHECK(these(outcome.exit_code, outcome.errors) == these(0, ""));
     CHECK(outcome.output.find("the picture cannot be written: the working directory is gone") != std::string::npos);
 }
 

@@ -257,8 +257,7 @@ public:
         CHECK(program_.exitCode() == 0);
         INFO(program_.said());
         CHECK(program_.said().find("frames; ") != std::string::npos);
-        CHECK(program_.said().find("VUID") == std::string::npos);
-        CHECK(program_.said().find("no window") == std::string::npos);
+        CHECK(these(program_.said().find("VUID"), program_.said().find("no window")) == these(std::string::npos, std::string::npos));
     }
 
     [[nodiscard]] Program& program() { return program_; }
