@@ -206,8 +206,34 @@ TEST_CASE_FIXTURE(Gpu, "colours above 1 are blended as they are, light or not: w
     }
 }
 
+TEST_CASE_FIXTURE(Gpu, "a flat 3D Gaussian that faces the eye is its disc with the low-pass's variance added") {
+    const glm::uvec2 size_px(160, 120);
+    const Eye eye = test::makeEye(size_px);
+    std::vector<test::Splat> narrow, wide;
+    for (int i = 0; i < 60; ++i) {
+        test::Splat splat;
+        const float depth = 1.0f + 0.05f * static_cast<float>(i);
+        splat.position = {0.6f * std::sin(2.1f * static_cast<float>(i)) * depth, 0.45f * std::cos(1.3f * static_cast<float>(i)) * depth,
+                          depth};
+        splat.rotation = glm::angleAxis(0.4f * static_cast<float>(i), glm::vec3(0, 0, 1));
+        splat.scale = glm::vec2(0.012f + 0.001f * static_cast<float>(i % 7), 0.05f) * depth;
+        splat.colour = {0.5f + 0.4f * std::sin(static_cast<float>(i)), 0.3f, 0.9f - 0.01f * static_cast<float>(i)};
+        narrow.push_back(splat);
+        const glm::vec2 sigma_px = 100.0f / depth * splat.scale;
+        splat.scale = glm::sqrt(sigma_px * sigma_px + gpu::kScreenVariance) * depth / 100.0f;
+        wide.push_back(splat);
+    }
+    const auto pictureOf = [&](const Scene& scene) { return renderMono(context(), scene, eye, makeSettings({0.2, 0.4, 0.6})).picture; };
+    Scene flat = test::makeScene(narrow);
+    flat.thicknesses.assign(flat.size(), 1e-6f);
+    const Image picture = pictureOf(flat);
+    CHECK(compare(picture, pictureOf(test::makeScene(wide)), 4).psnrDb() >= 120.0);  // measured: 151
+    CHECK(compare(picture, pictureOf(test::makeScene(narrow)), 4).psnrDb() < 50.0);
+}
+
 #ifdef BINOSPLAT_SOG  // which reads SOG
-TEST_CASE_FIXTURE(Gpu, "a real scene of Gaussians is rendered as twin and another renderer do, dimmed or not" * test::needsSharedData()) {
+TEST_CASE_FIXTURE(Gpu, "a real scene of 3D Gaussians is rendered as twin and another renderer render it, dimmed or not" *
+                           test::needsSharedData()) {
     const auto data = test::sharedData();
     if (!data) { return; }
     Scene scene = loadScene((*data / "playbot/playbot_lod3_sog").string());

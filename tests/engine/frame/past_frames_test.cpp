@@ -158,6 +158,16 @@ TEST_CASE_FIXTURE(Gpu, "where it is known where the eyes look, the budget is spe
     CHECK(errorOf(looks) < 0.8 * errorOf(makeSettings(Mode::kTemporal)));
 }
 
+TEST_CASE_FIXTURE(Gpu, "after a jump of the head both eyes are rendered in full") {
+    Walk walk(context(), makeSettings(Mode::kTemporal));
+    for (int frame = 0; frame < 3; ++frame) { walk.go(frame); }
+    walk.go(200.0);
+    const auto shown = walk.shown(), full = walk.full();
+    for (const std::size_t e : {0, 1}) { CHECK(shown[e].values == full[e].values); }
+    for (int frame = 201; frame < 216; ++frame) { walk.go(frame); }
+    CHECK(walk.psnr() > 36.0);
+}
+
 // As where a governor looks for the resolution that keeps the rate.
 TEST_CASE_FIXTURE(Gpu, "a past comes from less than the way to the other eye; without one a frame is waited for") {
     constexpr double kStepMetres = 0.0033166;  // of eyesAt
@@ -241,6 +251,22 @@ TEST_CASE_FIXTURE(Gpu, "with coarse tiles, a head that stands still comes to see
     for (int frame = 0; frame < 30; ++frame) { walk.go(4.0); }
     CHECK(walk.go(4.0).work_rendered < 0.005);  // what nobody notices has its turn now and then
     CHECK(test::psnrDb(walk.shown(), walk.alone()) > 50.0);
+}
+
+TEST_CASE_FIXTURE(Gpu, "with coarse tiles, a walk keeps its quality within the budget") {
+    for (const Mode mode : {Mode::kAlternate, Mode::kTemporal}) {
+        CAPTURE(nameOf(mode));
+        Walk walk(context(), withCoarse(mode), viewRoom());
+        walk.go(0.0);
+        for (int frame = 1; frame <= 12; ++frame) {
+            const FrameResult result = walk.go(frame);
+            if (mode == Mode::kTemporal) {
+                CHECK(result.work_rendered > 0.1);
+                CHECK(result.work_rendered < 0.23);
+            }
+            if (frame % 6 == 0) { CHECK(walk.psnr() > 34.0); }
+        }
+    }
 }
 
 }  // SUITE(past_frames)

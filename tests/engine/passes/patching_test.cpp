@@ -33,6 +33,7 @@ public:
         return {std::move(made), psnr_db};
     }
     Outcome render(Mode mode) { return render(makeSettings(mode)); }
+    [[nodiscard]] const Image& full() const { return full_; }
 
 private:
     test::KeptFrame frame_;
@@ -73,6 +74,16 @@ std::size_t countKind(const AffiliatedFrame& frame, gpu::uint kind) {
     return static_cast<std::size_t>(std::count(frame.tile_kinds.begin(), frame.tile_kinds.end(), kind));
 }
 
+// Pixels of a class that lie in no tile that is rendered again.
+std::size_t countLeft(const AffiliatedFrame& frame, gpu::uint pixel_class, glm::uvec2 size_px) {
+    std::size_t left = 0;
+    for (std::size_t i = 0; i < frame.pixel_classes.size(); ++i) {
+        const std::size_t tile = i / size_px.x / 16 * ((size_px.x + 15) / 16) + i % size_px.x / 16;
+        left += frame.pixel_classes[i] == pixel_class && frame.tile_kinds[tile] == 0 ? 1 : 0;
+    }
+    return left;
+}
+
 // How much the third source of error gains at one and the same budget.
 void checkNewcomers(Gpu& gpu, const std::vector<Splat>& splats, const std::array<Eye, 2>& eyes, Side dominant, double budget) {
     Scenery scenery(gpu, test::makeScene(splats), eyes, dominant);
@@ -84,6 +95,24 @@ void checkNewcomers(Gpu& gpu, const std::vector<Splat>& splats, const std::array
     CHECK(countOf(with.made.result, "splats_newcomers") > 0);
     CHECK(with.psnr_db >= without.psnr_db + 3.0);
 }
+
+// From where an eye looks to the middle of a tile.
+double angleOf(const Eye& eye, std::size_t tile, const Gaze& gaze) {
+    const Intrinsics& lens = eye.intrinsics;
+    const std::size_t columns = (eye.size_px.x + 15) / 16;
+    const glm::dvec2 middle_px = 16.0 * glm::dvec2(tile % columns, tile / columns) + 8.0;
+    const glm::dvec3 ray((middle_px.x - lens.cx) / lens.fx, (middle_px.y - lens.cy) / lens.fy, 1.0);
+    return std::acos(std::clamp(glm::dot(glm::normalize(ray), glm::normalize(gaze.direction)), -1.0, 1.0));
+}
+
+// Of the right eye's tiles that lie where it looks.
+double psnrNear(const Image& made, const Image& full, const Eye& eye, const Gaze& gaze) {
+    std::vector<std::uint32_t> near;
+    for (std::size_t t = 0; t < test::tileCount(eye.size_px); ++t) { near.push_back(angleOf(eye, t, gaze) <= gaze.clear_rad ? 1 : 0); }
+    return compare(test::keepTiles(made, near), test::keepTiles(full, near)).psnrDb();
+}
+
+bool isChosen(const AffiliatedFrame& made, std::size_t tile) { return made.tile_kinds[tile] == gpu::kTilePredicted; }
 
 TEST_CASE_FIXTURE(Gpu, "splats beyond the dominant eye's border and behind its near plane are found without a hole to show them") {
     // 0.25 before eyes 0.064 apart, 57 px of disparity: what one eye sees in its columns 210 to 238, the other has beyond 256.
@@ -117,6 +146,76 @@ TEST_CASE_FIXTURE(Gpu, "splats beyond the dominant eye's border and behind its n
     CHECK(countOf(both.render(Mode::kPredicted).made.result, "splats_newcomers") == 0);
 }
 
+TEST_CASE_FIXTURE(
+    Gpu, "a near edge uncovers holes beside it; centre ROIs leave none, and every patch brings the picture nearer to the full render") {
+    // A screen 1 from eyes 0.12 apart ends at x = -0.05, 4 before a wall: 26.6 px of disparity against 6.7.
+    std::vector<Splat> splats;
+    addWall(splats, 4.0f, 3.5f, 0.05f);
+    for (float y = -0.8f; y < 0.8f; y += 0.012f) {
+        for (float x = -0.45f; x < -0.05f; x += 0.012f) {
+            splats.push_back({{x, y, 1.0f}, {1, 0, 0, 0}, glm::vec2(0.008f), 0.97f, glm::vec3(0.7f)});
+        }
+    }
+    const auto fence = test::viewBuiltin("builtin:fence", kSizePx);
+    for (const bool bars : {false, true}) {
+        for (const Side dominant : {kLeft, kRight}) {
+            INFO("bars ", bars, ", dominant ", static_cast<int>(dominant));
+            Scenery scenery(*this, bars ? fence.scene : test::makeScene(splats), bars ? stereoPair(fence.eye, 0.12) : parallelEyes(0.12),
+                            dominant);
+            const Outcome filled = scenery.render(Mode::kReproject);
+            FrameSettings settings = makeSettings(Mode::kPaper);
+            settings.stereo.margin_px = 0;
+            const Outcome edges = scenery.render(settings);
+            settings.stereo.center_rois = true;
+            const Outcome centers = scenery.render(settings);
+            settings.mode = Mode::kPredicted;
+            settings.stereo.budget = 0.25;
+            const Outcome predicted = scenery.render(bars ? makeSettings(Mode::kPredicted) : settings);
+            CHECK(countLeft(centers.made, gpu::kHole, kSizePx) == 0);
+            CHECK(predicted.psnr_db > filled.psnr_db + (bars ? 0.0 : 3.0));
+            if (bars) {
+                CHECK(edges.psnr_db > filled.psnr_db);
+                CHECK(centers.psnr_db > edges.psnr_db);
+                continue;
+            }
+            // Where the affiliated eye sees the edge that the far wall comes out from: the right one to the right eye, the left to the
+            // left.
+            const double edge_px = dominant == kLeft ? 128.0 + 222.0 * (-0.05 - 0.06) : 128.0 + 222.0 * (-0.45 + 0.06);
+            std::size_t beside = 0, elsewhere = 0;
+            for (std::size_t i = 0; i < filled.made.pixel_classes.size(); ++i) {
+                const double x = static_cast<double>(i % 256) + 0.5;
+                if (filled.made.pixel_classes[i] == gpu::kHole && x > 16.0 && x < 240.0) {
+                    (std::abs(x - edge_px) < 28.0 ? beside : elsewhere) += 1;
+                }
+            }
+            CHECK(beside >= 256 * 10);
+            CHECK(beside <= 256 * 20);
+            CHECK(elsewhere == 0);
+            CHECK(countKind(edges.made, gpu::kTileCenter) == 0);
+            CHECK(countKind(centers.made, gpu::kTileCenter) > 0);
+            CHECK(countKind(centers.made, gpu::kTileEdge) == countKind(edges.made, gpu::kTileEdge));
+            CHECK(centers.psnr_db >= edges.psnr_db + 3.0);
+            CHECK(countLeft(predicted.made, gpu::kHole, kSizePx) == 0);
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu, "pixels that blend two depths are rendered again first") {
+    const auto view = test::viewBuiltin("builtin:two-layers", kSizePx);
+    Scenery scenery(*this, view.scene, stereoPair(view.eye, 0.12));
+    FrameSettings sparse = makeSettings(Mode::kPredicted);
+    sparse.stereo.budget = 0.1;  // with more, moving would not pay in so thin a scene
+    const Outcome moved = scenery.render(Mode::kReproject), predicted = scenery.render(sparse);
+    CHECK(countKind(predicted.made, gpu::kTilePredicted) > 0);
+    CHECK(predicted.psnr_db >= moved.psnr_db + 1.0);
+    // Whether the pixel's depth is the mean disparity decides how far off the picture is.
+    FrameSettings settings = makeSettings(Mode::kReproject);
+    for (const gpu::uint choice : {gpu::kDepthSum, gpu::kDepthMean}) {
+        settings.stereo.depth_choice = choice;
+        CHECK(moved.psnr_db >= scenery.render(settings).psnr_db);
+    }
+}
+
 TEST_CASE_FIXTURE(Gpu, "where moving did not pay the next frame leaves it out and loses nothing, until it would pay again") {
     const auto view = test::viewBuiltin("builtin:atelier", kSizePx, 20000);
     const std::array<Eye, 2> eyes = stereoPair(view.eye, 0.064);
@@ -136,7 +235,8 @@ TEST_CASE_FIXTURE(Gpu, "where moving did not pay the next frame leaves it out an
         const AffiliatedFrame shared = makeAffiliated(plain, of, makeSettings(Mode::kShared));
         CHECK(countKind(made, gpu::kTileCheap) == made.tile_kinds.size());
         CHECK(countOf(made.result, "tiles_patched") == made.tile_kinds.size());
-        CHECK(these(made.result.tiles_rendered, made.result.work_rendered) == these(1.0, 1.0));
+        CHECK(made.result.tiles_rendered == 1.0);
+        CHECK(made.result.work_rendered == 1.0);
         return made.pictures[kLeft].values == shared.pictures[kLeft].values &&
                made.pictures[kRight].values == shared.pictures[kRight].values;
     };
@@ -154,6 +254,37 @@ TEST_CASE_FIXTURE(Gpu, "where moving did not pay the next frame leaves it out an
     // Whoever asks for something else is answered at once.
     CHECK_FALSE((render(outside), reprojects(render(outside))));
     CHECK(reprojects(render(eyes, 0.1)));
+}
+
+TEST_CASE_FIXTURE(
+    Gpu, "where it is known where the eye looks fewer tiles are rendered again, none less about that place, and it is as good there") {
+    for (const double canting_rad : {0.0, glm::radians(5.0)}) {
+        const auto view = test::viewBuiltin("builtin:atelier", {384, 320}, 40000);
+        const auto eyes = test::headsetEyes(view.eye, canting_rad);
+        Scenery room(*this, view.scene, eyes);
+        FrameSettings settings = makeSettings(Mode::kPredicted);
+        settings.stereo.budget = 0.22;
+        const AffiliatedFrame everywhere = room.render(settings).made;
+        for (const glm::dvec3 direction : {glm::dvec3(0.0, 0.0, 1.0), glm::dvec3(-0.35, 0.2, 1.0)}) {
+            INFO("canting rad ", canting_rad, ", direction.x ", direction.x);
+            const Gaze gaze{direction, glm::radians(10.0)};
+            settings.gazes[kRight] = gaze;
+            const AffiliatedFrame there = room.render(settings).made;
+            for (std::size_t t = 0; t < there.tile_kinds.size(); ++t) {
+                const bool near = angleOf(eyes[kRight], t, gaze) <= gaze.clear_rad;
+                if (isChosen(there, t) != isChosen(everywhere, t)) { CHECK(near == isChosen(there, t)); }
+            }
+            CHECK(countOf(there.result, "tiles_predicted") < countOf(everywhere.result, "tiles_predicted"));
+            CHECK(countOf(there.result, "work_patched") < countOf(everywhere.result, "work_patched"));
+            CHECK(psnrNear(there.pictures[kRight], room.full(), eyes[kRight], gaze) >=
+                  psnrNear(everywhere.pictures[kRight], room.full(), eyes[kRight], gaze));
+        }
+        // One that may look everywhere gets the picture of one of which nothing is known.
+        settings.gazes[kRight] = Gaze{{0.0, 0.0, 1.0}, 1.6};
+        const AffiliatedFrame clear = room.render(settings).made;
+        CHECK(clear.tile_kinds == everywhere.tile_kinds);
+        CHECK(clear.pictures[kRight].values == everywhere.pictures[kRight].values);
+    }
 }
 
 }  // SUITE(patching)

@@ -203,7 +203,8 @@ auto moveRows(Gpu& gpu, const StereoCase& c, const Kinds& kinds, const Way& way,
     return std::tuple(std::move(colours), std::move(depths), device.readClasses(), device.readTileErrors());
 }
 
-TEST_CASE_FIXTURE(Gpu, "resample finds the twin's colours, depths, classes and errors in moved tiles, and leaves the others alone") {
+TEST_CASE_FIXTURE(Gpu,
+                  "resample finds the twin's colours, depths, classes and errors in tiles that are moved, and leaves the others alone") {
     const std::array ways{Way{0, Rows::kOwn, {.errors = true}},
                           Way{2, Rows::kShared, {.errors = true, .depths = true, .classes = true}},
                           Way{2, Rows::kSharedHalves, {.errors = true}},
@@ -264,6 +265,39 @@ TEST_CASE_FIXTURE(Gpu, "resample moves a row itself as reproject would, all rows
         }
     }
     CHECK(pictures == 50);
+}
+
+TEST_CASE_FIXTURE(Gpu, "resample copies colours as they are, and mixes those of a gap's two ends, however far each is") {
+    // Nothing moves but by whole pixels: one at inverse depth 0.1 by 1 px to the left, one at 0.4 by 4 px. Colours are the columns'
+    // squares.
+    const glm::uvec2 size_px(16, 1);
+    const auto eyes = stereoPair({Pose{}, {100.0, 100.0, 8.0, 0.5}, size_px}, 0.1);
+    StereoCase c{"steps", {}, {eyes[kLeft], eyes[kRight]}, {size_px, {}, {}, {}, {}}, {}};
+    c.settings.forward = true;
+    for (int x = 0; x < 16; ++x) {
+        const double w = x == 8 ? 0.4 : 0.1;
+        c.dominant.rgba.emplace_back(x * x / 256.0, 0.5, 0.25, 1.0);
+        c.dominant.depth.push_back(1.0 / w);
+        c.dominant.inverse_depth.push_back(w);
+        c.dominant.inverse_depth_squared.push_back(w * w);
+    }
+    test::roundToWords(c.dominant, c.settings);
+    for (const Rows rows : {Rows::kOwn, Rows::kShared}) {
+        StereoOnDevice device = toDevice(*this, c, rows);
+        device.reproject(/*hidden_tiles=*/false, /*forward=*/true);
+        device.resample({.classes = true, .forward = true});
+        const auto colours = device.readAffiliated();
+        const auto classes = device.readClasses();
+        for (int x = 0; x < 16; ++x) {
+            CAPTURE(x);
+            // Column 8 lies in front of column 5 in pixel 4, and pixel 7, which it leaves, is between columns 7 and 9; beyond the last
+            // column, in pixel 15, that one repeats.
+            const int source = x == 4 ? 8 : std::min(x + 1, 15);
+            const float expected = x == 7 ? (49.0f + 81.0f) / 512.0f : static_cast<float>(source * source) / 256.0f;
+            CHECK(colours[static_cast<std::size_t>(x)] == gpu::vec4(expected, 0.5f, 0.25f, 1.0f));
+            CHECK(classes[static_cast<std::size_t>(x)] == (x == 7 ? gpu::kGap : x == 15 ? gpu::kHole : gpu::kCovered));
+        }
+    }
 }
 
 TEST_CASE_FIXTURE(Gpu, "resample takes rows of any length, also longer ones than it keeps at a time") {

@@ -86,6 +86,52 @@ TEST_CASE_FIXTURE(Gpu, "depth_bounds counts depths beyond its range as the last,
     CHECK(reference::boundDepths(c.dominant, DepthChoice::kInverse) == expected);
 }
 
+TEST_CASE("depth bounds leave out one pixel in 200 at either end, and widen to whole bins") {
+    std::vector<std::uint32_t> bins(gpu::kDepthBins, 0);
+    CHECK(reference::findInverseDepthBounds(bins).near == 0.0);
+    // 1000 pixels: five nearest and five farthest count as specks; depths 2^0 to 2^4.
+    bins[100] = 5;
+    bins[512] = 495;
+    bins[512 + 4 * 32 - 1] = 495;
+    bins[900] = 5;
+    const InverseDepthBounds bounds = reference::findInverseDepthBounds(bins);
+    CHECK(bounds.near == 1.0);
+    CHECK(bounds.far == 1.0 / 16.0);
+    bins[100] = 6;
+    CHECK(reference::findInverseDepthBounds(bins).near == std::exp2(16.0 - 100.0 / 32.0));
+}
+
+TEST_CASE("edge ROIs of parallel eyes, by hand") {
+    // Depths 1 and 4: pixels move to the left by 10 and by 2.5 px. The right edge's last pixel, 127 in the paper's count, is at 117 and
+    // 124.5, so u_max = 124.5: right_w = 127 - 124 + 32. Left, top and bottom: u_min = -10, v_min = 0, v_max = H - 1: nothing.
+    StereoCase c = makePlainCase({128, 96});
+    const InverseDepthBounds bounds{0.25, 1.0};
+    CHECK(reference::findBorders(bounds, c.eyes, c.settings) == Borders{0, 0, 35, 0});
+    // What near content uncovers: from 117 on.
+    c.settings.tight_edges = true;
+    c.settings.margin_px = 0;
+    CHECK(reference::findBorders(bounds, c.eyes, c.settings) == Borders{0, 0, 10, 0});
+    // The other way round u_min = 2.5 and at most 10: left_w = 3, or 10, and the margin; never more than half of the width.
+    c = makePlainCase({128, 96}, kRight);
+    CHECK(reference::findBorders(bounds, c.eyes, c.settings) == Borders{35, 0, 0, 0});
+    c.settings.margin_px = 62;
+    CHECK(reference::findBorders(bounds, c.eyes, c.settings) == Borders{64, 0, 0, 0});
+    c.settings.margin_px = 0;
+    CHECK(reference::findBorders(bounds, c.eyes, c.settings) == Borders{3, 0, 0, 0});
+    c.settings.tight_edges = true;
+    CHECK(reference::findBorders(bounds, c.eyes, c.settings) == Borders{10, 0, 0, 0});
+    // 35 px are three tiles of eight; a border of one pixel is a column of tiles; 100 px wide, the last tile has four columns.
+    const auto columns = [](const Borders& borders, glm::uvec2 size_px) {
+        std::string row;
+        for (const TileKind kind : reference::markEdges(borders, size_px)) { row += kind == TileKind::kEdge ? 'e' : '.'; }
+        return row;
+    };
+    CHECK(columns({35, 0, 1, 0}, {128, 16}) == "eee....e");
+    CHECK(columns({16, 0, 4, 0}, {100, 16}) == "e.....e");
+    CHECK(columns({17, 0, 5, 0}, {100, 16}) == "ee...ee");
+    CHECK(columns({0, 1, 0, 16}, {16, 64}) == "e..e");
+}
+
 TEST_CASE_FIXTURE(Gpu, "depth_bounds counts the twin's depths, and of these edge_rois finds the twin's borders and tiles") {
     std::uint32_t all_flips = 0;
     for (StereoCase c : test::makeStereoCases()) {

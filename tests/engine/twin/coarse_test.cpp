@@ -1,0 +1,46 @@
+// Facts about how the twin fills a coarse tile, and what it expects to be lost: coarse_frames_test.cpp holds the device against it.
+#include "engine/twin/coarse.h"
+#include "tests/suite.h"
+
+SUITE(coarse) {
+
+constexpr double kApart = 15.0 / 7.0;  // samples, in pixels
+
+// What a tile's samples see of a picture.
+template <typename At>
+std::vector<glm::dvec4> samplesOf(const At& at) {
+    std::vector<glm::dvec4> samples;
+    for (int i = 0; i < 64; ++i) { samples.push_back(at(glm::dvec2(i % 8, i / 8) * kApart)); }
+    return samples;
+}
+
+TEST_CASE("pixels that are samples stay as they are, and what is a parabola along either axis is filled as one, up to the border") {
+    const auto parabola = [](const glm::dvec2& place) {
+        return glm::dvec4(0.3 + 0.02 * place.x - 0.001 * place.x * place.x + 0.003 * place.y, 0.1 + 0.002 * place.y * place.y, place);
+    };
+    const auto samples = samplesOf(parabola);
+    for (const glm::ivec2 corner : {glm::ivec2(0, 0), glm::ivec2(15, 0), glm::ivec2(0, 15), glm::ivec2(15, 15)}) {
+        const glm::dvec4 sample = samples[static_cast<std::size_t>(corner.y / 15 * 56 + corner.x / 15 * 7)];
+        CHECK(glm::distance(reference::fillAt(samples, corner), sample) < 1e-12);
+    }
+    for (int i = 0; i < 256; ++i) {
+        const glm::ivec2 pixel(i % 16, i / 16);
+        CHECK(glm::distance(reference::fillAt(samples, pixel), parabola(glm::dvec2(pixel))) < 1e-12);
+    }
+}
+
+TEST_CASE("a ramp loses nothing, and what changes from sample to sample loses the more the more it changes") {
+    CHECK(reference::expectLoss(samplesOf([](const glm::dvec2& place) { return glm::dvec4(0.5 + 0.01 * place.x - 0.02 * place.y); })) <
+          1e-20);
+    const auto lossOf = [](double height) {
+        return reference::expectLoss(samplesOf([&](const glm::dvec2& place) {
+            return glm::dvec4(glm::dvec3(height * std::cos(glm::radians(180.0) * place.x / kApart)), 1.0);
+        }));
+    };
+    // Second differences are four times the height, at 48 of 64 samples, of which 8/6 are counted; in three channels.
+    CHECK(lossOf(0.1) == doctest::Approx(0.3 * 64 * 3 * 0.16));
+    CHECK(lossOf(0.2) == doctest::Approx(4 * lossOf(0.1)));
+    CHECK(lossOf(10.0) == doctest::Approx(0.3 * 4 * 48));  // no sample counts for more than 4
+}
+
+}  // SUITE(coarse)

@@ -1,0 +1,155 @@
+// Facts about the twins of reuse over time: pictures for which the answer is worked out by hand.
+#include "engine/twin/past.h"
+#include "tests/engine/twin/reference_scenes.h"
+
+#include <complex>
+
+SUITE(past_reference) {
+
+using namespace binosplat::reference;
+
+constexpr double kLeastGrowth = 1.9e-7;  // of a pixel that moved, squared
+
+Picture makePicture(glm::uvec2 size_px) {
+    const std::size_t pixels = std::size_t{size_px.x} * size_px.y;
+    return {size_px, std::vector<glm::dvec4>(pixels), {}, std::vector<double>(pixels), std::vector<double>(pixels)};
+}
+
+// Opaque, of `colour(x, y)` at the inverse depth `depth(x, y)`, each pixel of one depth; tiles cost 100 pairs.
+template <typename Colour, typename Depth>
+Past makePast(const Eye& eye, const Colour& colour, const Depth& depth) {
+    Picture picture = makePicture(eye.size_px);
+    for (std::size_t i = 0; i < picture.rgba.size(); ++i) {
+        const double x = static_cast<double>(i % eye.size_px.x), y = static_cast<double>(i / eye.size_px.x);
+        picture.rgba[i] = glm::dvec4(colour(x, y), 1.0);
+        picture.inverse_depth[i] = depth(x, y);
+        picture.inverse_depth_squared[i] = depth(x, y) * depth(x, y);
+    }
+    const glm::uvec2 tiles = (eye.size_px + 15u) / 16u;
+    return pastOf(eye, picture, std::vector<std::uint64_t>(std::size_t{tiles.x} * tiles.y, 100));
+}
+
+glm::dvec3 waves(double x, double y) {
+    return {0.5 + 0.4 * std::sin(0.3 * x), 0.5 + 0.4 * std::sin(0.2 * y), 0.5 + 0.4 * std::sin(0.2 * (x + y))};
+}
+
+Eye moved(Eye eye, const glm::dvec3& by) {
+    eye.world_from_camera.position += by;
+    return eye;
+}
+
+double depthAt(const WarpedPast& warped, std::size_t pixel) { return warped.picture.pixels[pixel].value_or(MovingPixel{}).inverse_depth; }
+
+TEST_CASE("the kernel of repeated sampling keeps sums, and makes no frequency stronger at any shift") {
+    for (int step = 0; step <= 200; ++step) {
+        const auto weights = lagrangeWeights(step / 200.0);
+        double sum = 0.0;
+        for (const double weight : weights) { sum += weight; }
+        CHECK(sum == doctest::Approx(1.0).epsilon(1e-12));
+        for (int wave = 0; wave <= 200; ++wave) {
+            std::complex<double> gain(0.0);
+            for (int tap = 0; tap < 6; ++tap) {
+                gain += weights[static_cast<std::size_t>(tap)] * std::polar(1.0, std::numbers::pi * wave / 200.0 * (tap - 2));
+            }
+            CHECK(std::abs(gain) <= 1.0 + 1e-12);
+        }
+    }
+    CHECK(lagrangeWeights(0.0)[2] == 1.0);
+    CHECK(lagrangeWeights(1.0)[3] == 1.0);
+}
+
+TEST_CASE("what stands still in front of a head that stands still stays as it is, however often, and has no error") {
+    const Eye eye = test::makeEye({70, 45});
+    Past past = makePast(eye, waves, [](double x, double y) { return x > 30 && y > 20 ? 0.5 : 0.2; });
+    const Past first = past;
+    for (int frame = 0; frame < 5; ++frame) {
+        WarpedPast warped = warpPast(past, eye);
+        CHECK(std::ranges::count(warped.unseen, 1) == 0);
+        growErrors(warped.picture.tiles);
+        past = std::move(warped.picture);
+    }
+    CHECK(past.rgba == first.rgba);
+    CHECK(std::ranges::equal(past.pixels, first.pixels,
+                             [](const auto& a, const auto& b) { return a->inverse_depth == b->inverse_depth && a->spread == b->spread; }));
+    CHECK(std::ranges::all_of(past.tiles, [](const PastTile& tile) {
+        return tile.age == 5 && tile.cost == 100 && tile.errors == std::array<double, 4>{} && worthOf(tile) == 0.0;
+    }));
+}
+
+TEST_CASE("a wave on a wall comes out as it would have been seen, for the least error that counts") {
+    const Eye eye = test::makeEye({96, 64});
+    // 0.005 to the right moves a wall at inverse depth 0.5 by 0.25 px to the left.
+    const Past past = makePast(eye, waves, [](double, double) { return 0.5; });
+    const WarpedPast warped = warpPast(past, moved(eye, {0.005, 0.0, 0.0}));
+    for (std::size_t y = 8; y < 56; ++y) {
+        for (std::size_t x = 8; x < 88; ++x) {
+            const std::size_t i = y * 96 + x;
+            CHECK(depthAt(warped, i) == doctest::Approx(0.5));
+            CHECK(warped.picture.rgba[i].x == doctest::Approx(0.5 + 0.4 * std::sin(0.3 * (static_cast<double>(x) + 0.25))).epsilon(1e-5));
+        }
+    }
+    CHECK(std::ranges::count(warped.unseen, 1) == 0);
+    CHECK(std::ranges::count(warped.one_by_one, 1) == 0);
+    // The fifth differences of these waves come to 2e-5 at most.
+    for (const double grown : warped.picture.tiles[1].grown) { CHECK(grown == doctest::Approx(64.0 * kLeastGrowth)); }
+    // A whole pixel on, the last column has no past; these pixels count with an amplitude of 1.
+    const WarpedPast on = warpPast(past, moved(eye, {0.02, 0.0, 0.0}));
+    CHECK(std::ranges::count(on.unseen, 1) == 64);
+    CHECK(on.picture.tiles[5].grown[1] >= 8.0);
+    CHECK(on.picture.tiles[5].grown[1] < 8.1);
+}
+
+TEST_CASE("what is lost between pixels is what alternates there, in whole blocks and pixel by pixel") {
+    const Eye eye = test::makeEye({96, 64}), half = moved(eye, {0.01, 0.0, 0.0}), quarter = moved(eye, {0.005, 0.0, 0.0});
+    const auto stripes = [](double x, double) { return glm::dvec3(std::fmod(x, 2.0) == 0.0 ? 0.7 : 0.3); };
+    const auto grownOf = [&](const Eye& to, const auto& depth) {
+        return warpPast(makePast(eye, stripes, depth), to).picture.tiles[7].grown[0];
+    };
+    const auto wall = [](double, double) { return 0.5; };
+    // An amplitude of 0.2 in 64 pixels of three channels, all of it halfway; of t from pixel to pixel the part 4 t (1 - t).
+    CHECK(grownOf(half, wall) == doctest::Approx(64 * 3 * 0.2 * 0.2));
+    CHECK(grownOf(quarter, wall) == doctest::Approx(64 * 3 * 0.15 * 0.15));
+    // Rows in pairs at two depths, so that no block is whole: half of the pixels move by 1/2, half by 1/20. Beside each is its like.
+    const auto bands = [](double, double y) { return std::fmod(y, 4.0) < 2.0 ? 0.5 : 0.05; };
+    const WarpedPast apart = warpPast(makePast(eye, stripes, bands), half);
+    CHECK(std::ranges::count(apart.one_by_one, 0) == 0);
+    CHECK(apart.picture.tiles[7].grown[0] == doctest::Approx(32 * 3 * 0.2 * 0.2 + 32 * 3 * std::pow(0.19 * 0.2, 2)).epsilon(1e-4));
+    // Not even where all is of one colour: every tile is to have its turn.
+    const auto grey = [](double, double) { return glm::dvec3(0.5); };
+    CHECK(warpPast(makePast(eye, grey, bands), half).picture.tiles[7].grown[0] == doctest::Approx(64 * kLeastGrowth));
+}
+
+TEST_CASE("what was hidden behind a nearer wall is not taken for seen, and the nearer of two is it") {
+    const Eye eye = test::makeEye({160, 48});
+    // The left half near, at inverse depth 1; a step of 0.02 to the right moves it 2 px to the left, and what is behind, at 0.1, by 0.2.
+    const Past past = makePast(eye, waves, [](double x, double) { return x < 80 ? 1.0 : 0.1; });
+    const WarpedPast warped = warpPast(past, moved(eye, {0.02, 0.0, 0.0}));
+    for (std::size_t y = 0; y < 48; ++y) {
+        const std::size_t row = 160 * y;
+        for (std::size_t x = 0; x < 78; ++x) { CHECK(depthAt(warped, row + x) == doctest::Approx(1.0)); }
+        for (std::size_t x = 78; x < 80; ++x) { CHECK(warped.unseen[row + x] == 1); }
+        for (std::size_t x = 80; x < 160; ++x) { CHECK(depthAt(warped, row + x) == doctest::Approx(0.1)); }
+        CHECK(std::count(warped.unseen.begin() + static_cast<int>(row), warped.unseen.begin() + static_cast<int>(row) + 160, 1) == 2);
+    }
+    // And to the left: the near wall covers two pixels that both would claim.
+    const WarpedPast covered = warpPast(past, moved(eye, {-0.02, 0.0, 0.0}));
+    for (std::size_t x = 78; x < 160; ++x) { CHECK(depthAt(covered, 160 * 24 + x) == doctest::Approx(x < 82 ? 1.0 : 0.1)); }
+}
+
+TEST_CASE("nothing comes from where the past was hidden, and what is hidden now is background") {
+    const Eye eye = test::makeEye({96, 64});
+    Past past = makePast(eye, waves, [](double, double) { return 0.5; });
+    std::vector<std::uint8_t> hidden(24, 0);
+    hidden[8] = 1;
+    past.hidden = hidden;
+    hidden[15] = 1;
+    const WarpedPast warped = warpPast(past, moved(eye, {0.02, 0.0, 0.0}), hidden, {0.1, 0.2, 0.3});
+    CHECK(warped.picture.rgba[40 * 96 + 50] == glm::dvec4(0.1, 0.2, 0.3, 0.0));
+    CHECK(warped.unseen[40 * 96 + 46] == 0);  // that tile was seen
+    CHECK(warped.picture.rgba[20 * 96 + 40] == glm::dvec4(0.1, 0.2, 0.3, 0.0));
+    CHECK_FALSE(warped.picture.pixels[20 * 96 + 40]);
+    CHECK(warped.unseen[20 * 96 + 31] == 1);  // the pixel beside it comes from there
+    CHECK(warped.unseen[20 * 96 + 30] == 0);
+}
+
+}  // SUITE(past_reference)

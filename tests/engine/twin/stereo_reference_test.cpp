@@ -1,0 +1,181 @@
+// Facts about the twins of the stereo passes by themselves: small pictures for which the answer is worked out by hand.
+#include "engine/twin/stereo.h"
+#include "tests/engine/twin/reference_scenes.h"
+
+SUITE(stereo_reference) {
+
+using namespace binosplat::reference;
+
+// Parallel eyes 0.1 apart, of 100 px focal length: pixels go 10 px to the left for a unit of inverse depth.
+EyePair parallelEyes(glm::uvec2 size_px) {
+    const auto eyes = stereoPair(test::makeEye(size_px), 0.1);
+    return {eyes[kLeft], eyes[kRight]};
+}
+
+// Opaque and black, all at one inverse depth.
+Picture makePicture(glm::uvec2 size_px, double inverse_depth) {
+    const std::size_t pixels = std::size_t{size_px.x} * size_px.y;
+    return {size_px, std::vector(pixels, glm::dvec4(0.0, 0.0, 0.0, 1.0)), std::vector(pixels, 1.0 / inverse_depth),
+            std::vector(pixels, inverse_depth), std::vector(pixels, inverse_depth * inverse_depth)};
+}
+// A ramp of 1/100 a pixel in green.
+Picture makeRamp(glm::uvec2 size_px) {
+    Picture picture = makePicture(size_px, 0.2);
+    for (std::size_t i = 0; i < picture.rgba.size(); ++i) { picture.rgba[i].y = 0.01 * static_cast<double>(i % size_px.x); }
+    return picture;
+}
+// Lets a pixel's depths differ by as much as `code` says.
+void spread(Picture& picture, std::size_t pixel, std::uint32_t code) {
+    const double w = picture.inverse_depth[pixel] / picture.rgba[pixel].w;
+    picture.inverse_depth_squared[pixel] = picture.rgba[pixel].w * w * w * (1.0 + spreadOf(code) * spreadOf(code));
+}
+
+std::string letters(std::span<const TileKind> kinds) {
+    std::string row;
+    for (const TileKind kind : kinds) { row += ".ecphC"[static_cast<std::size_t>(kind)]; }
+    return row;
+}
+
+std::vector<TileRange> rangesOf(const std::vector<std::uint32_t>& pairs) {
+    std::vector<TileRange> ranges;
+    std::uint32_t end = 0;
+    for (const std::uint32_t count : pairs) {
+        ranges.push_back({end, end + count});
+        end += count;
+    }
+    return ranges;
+}
+
+// A tile of the strip that `weigh` sees the pairs of: nothing moves if all is infinitely far.
+Weighed weighStrip(const std::vector<std::uint32_t>& pairs, std::uint32_t move_cost, std::vector<std::uint8_t> hidden = {},
+                   double budget = 0.0) {
+    const glm::uvec2 size_px(16 * pairs.size(), 16);
+    Picture far = makePicture(size_px, 1.0);
+    for (glm::dvec4& value : far.rgba) { value.w = 0.0; }
+    return weigh(far, rangesOf(pairs), parallelEyes(size_px),
+                 {.budget = budget, .move_cost = move_cost, .target_hidden = std::move(hidden)});
+}
+
+TEST_CASE("spread codes are half octaves from 2^-13 to 4; what is less is none, what is more the last") {
+    for (std::uint32_t code = 1; code <= 31; ++code) {
+        CHECK(spreadOf(code) == doctest::Approx(std::pow(2.0, (code - 1) / 2.0 - 13.0)));
+        CHECK(spreadCode(spreadOf(code)) == code);
+        CHECK(spreadCode(1.18 * spreadOf(code)) == code);
+        CHECK(spreadCode(0.85 * spreadOf(code)) == code);
+    }
+    CHECK(spreadOf(31) == 4.0);
+    CHECK(spreadOf(0) == 0.0);
+    CHECK(spreadCode(1e9) == 31);
+    CHECK(spreadCode(std::numeric_limits<double>::infinity()) == 31);
+    for (const double none : {0.0, -1.0, 1e-5, std::nan("")}) { CHECK(spreadCode(none) == 0); }
+}
+
+TEST_CASE("nothing is moved where that saves no more than half of moving all tiles that are shown, and the budget") {
+    // Eight tiles that cost 40 each to move: 160 must be saved.
+    CHECK(letters(weighStrip({200, 1, 1, 1, 1, 1, 1, 1}, 40).kinds) == "CCCCCCCC");
+    CHECK_FALSE(weighStrip({200, 1, 1, 1, 1, 1, 1, 1}, 40).moves);
+    CHECK(letters(weighStrip({201, 1, 1, 1, 1, 1, 1, 1}, 40).kinds) == ".CCCCCCC");
+    // Of seven 140.
+    CHECK(letters(weighStrip({181, 1, 1, 1, 1, 1, 1, 1}, 40, {0, 0, 0, 1, 0, 0, 0, 0}).kinds) == ".CChCCCC");
+    // 477 in all, of which 309 are saved: more than 160 and 143 for mending, not more than 160 and 190.
+    std::vector<std::uint32_t> pairs(8, 0);
+    pairs[0] = 349;
+    CHECK(weighStrip(pairs, 40, {}, 0.25).picture_cost == 349 + 8 * 16);
+    CHECK_FALSE(weighStrip(pairs, 40, {}, 0.4).moves);
+    CHECK(weighStrip(pairs, 40, {}, 0.3).moves);
+    // What is hidden counts for nothing.
+    const Weighed hidden = weighStrip({181, 1, 1, 9999, 1, 1, 1, 1}, 40, {0, 0, 0, 1, 0, 0, 0, 0});
+    CHECK(hidden.picture_cost == 197 + 6 * 17);
+    CHECK(hidden.saved_cost == 141);
+    CHECK_FALSE(weighStrip({500, 500}, 0, {1, 1}).moves);
+}
+
+TEST_CASE("expected errors of blended depths: half the spread in pixels times the gradient, squared, on every other row for two") {
+    // 2 px of disparity at inverse depth 0.2, a spread of 1/4 of it.
+    const glm::uvec2 size_px(48, 16);
+    Picture picture = makeRamp(size_px);
+    for (std::size_t i = 0; i < picture.rgba.size(); ++i) { spread(picture, i, spreadCode(0.25)); }
+    const EyePair eyes = parallelEyes(size_px);
+    const StereoSettings settings{.hole_error = 0.0};
+    const auto arrivals = reproject(picture, eyes, settings);
+    const auto resolved = resolve(arrivals, eyes, settings);
+    std::vector<TileKind> kinds(3, TileKind::kNone);
+    const auto errors = expectErrors(resolved, arrivals, picture, kinds, eyes, settings);
+    const double pixel = 0.25 * 0.25 * 0.01 * 0.01 / 3.0;
+    CHECK(errors[1] == doctest::Approx(256.0 * pixel));
+    // Two columns of holes at the right; beside them the source's last two pixels, where the gradient ends in itself.
+    CHECK(errors[2] == doctest::Approx(16.0 * (13.0 + 0.25) * pixel + 32.0 * 1e-4));
+    // The spread is the one that arrived, whatever the source says; and a mark takes the tile out.
+    auto spreadless = resolved;
+    for (Resolved& r : spreadless) { r.spread = 0; }
+    kinds[2] = TileKind::kCheap;
+    const auto without = expectErrors(spreadless, arrivals, picture, kinds, eyes, settings);
+    CHECK(without[0] + without[1] < 1e-24);
+    CHECK(without[2] == 0.0);
+    // Four pixels are the most.
+    for (Resolved& r : spreadless) { r.spread = 31; }
+    CHECK(expectErrors(spreadless, arrivals, picture, kinds, eyes, settings)[1] == doctest::Approx(256.0 * 16.0 * 1e-4 / 3.0));
+}
+
+TEST_CASE("expected errors of steps in depth: the greater of both, in pixels, times the gradient, on both sides of it") {
+    // 10 px of disparity at inverse depth 1, so that a step of 0.1 is one pixel.
+    const glm::uvec2 size_px(48, 16);
+    const Picture picture = makeRamp(size_px);
+    const EyePair eyes = parallelEyes(size_px);
+    const auto arrivals = reproject(picture, eyes, {});
+    const auto resolved = resolve(arrivals, eyes, {});
+    const std::vector<TileKind> kinds(3, TileKind::kNone);
+    const auto errorsOf = [&](const std::vector<Arrival>& beside) { return expectErrors(resolved, beside, picture, kinds, eyes, {}); };
+    CHECK(errorsOf(arrivals)[1] < 1e-24);
+    // One column of another depth beside each pixel of two: what a pixel itself is taken for stays.
+    auto stepped = arrivals;
+    for (std::size_t y = 0; y < 16; ++y) { stepped[y * 48 + 24].inverse_depth = 0.3; }
+    CHECK(errorsOf(stepped)[1] == doctest::Approx(16.0 * 2.0 * 0.01 * 0.01 / 3.0));
+    // The greater step decides, whichever side it is on.
+    for (std::size_t y = 0; y < 16; ++y) { stepped[y * 48 + 22].inverse_depth = 0.0; }
+    CHECK(errorsOf(stepped)[1] == doctest::Approx(16.0 * (1.0 + 4.0 + 4.0) * 0.01 * 0.01 / 3.0));
+    // Where nothing arrived there is no step.
+    for (std::size_t y = 0; y < 16; ++y) { stepped[y * 48 + 22] = stepped[y * 48 + 24] = {}; }
+    CHECK(errorsOf(stepped)[1] < 1e-24);
+}
+
+TEST_CASE("expected errors of sampling: what alternates from pixel to pixel is lost halfway between two, and not on one") {
+    const glm::uvec2 size_px(48, 16);
+    const auto errorAt = [&](double inverse_depth, bool across) {
+        Picture picture = makePicture(size_px, inverse_depth);
+        for (std::size_t i = 0; i < picture.rgba.size(); ++i) { picture.rgba[i].y = (across ? i : i / 48) % 2 == 0 ? 0.55 : 0.45; }
+        const EyePair eyes = parallelEyes(size_px);
+        const auto arrivals = reproject(picture, eyes, {});
+        return expectErrors(resolve(arrivals, eyes, {}), arrivals, picture, std::vector<TileKind>(3, TileKind::kNone), eyes, {})[1];
+    };
+    // 10 px of disparity at inverse depth 1.
+    CHECK(errorAt(0.25, true) == doctest::Approx(256.0 * 0.05 * 0.05 / 3.0));
+    CHECK(errorAt(0.225, true) == doctest::Approx(256.0 * 0.05 * 0.05 / 3.0 * 0.75 * 0.75));
+    CHECK(errorAt(0.2, true) < 1e-24);
+    // Rows stay where they are.
+    CHECK(errorAt(0.25, false) == 0.0);
+}
+
+TEST_CASE("an eye that resolves as much as the picture shows sees all of an error, farther from where it looks less and less") {
+    // Pixels of 1/1000: cycles of 2/1000 rad, 0.1146 degrees, which the eye resolves up to (0.1146 - 1/48) / 0.022 = 4.26 degrees.
+    const Eye eye{Pose{}, {1000.0, 1000.0, 8.0, 8.0}, {1024, 16}};
+    const auto shareAt = [&](double tangent, const reference::Gaze& gaze) {
+        return reference::findSeenShares(eye, gaze).at(static_cast<std::size_t>(tangent * 1000.0 / 16.0 + 0.5));
+    };
+    const reference::Gaze ahead{{0.0, 0.0, 2.0}, 0.0};
+    CHECK(shareAt(0.0, ahead) == 1.0);
+    CHECK(shareAt(0.064, ahead) == 1.0);  // 3.7 degrees
+    CHECK(shareAt(0.08, ahead) < 1.0);    // 4.6 degrees
+    const auto law = [](double degrees) { return std::pow(glm::degrees(0.002) / (1.0 / 48.0 + 0.022 * degrees), 2.0); };
+    CHECK(shareAt(0.352, ahead) == doctest::Approx(law(glm::degrees(std::atan(0.352)))));
+    CHECK(law(19.4) == doctest::Approx(0.0654).epsilon(0.01));
+    // It may look up to ten degrees beside it as well.
+    CHECK(shareAt(0.352, {{0.0, 0.0, 1.0}, glm::radians(10.0)}) == doctest::Approx(law(glm::degrees(std::atan(0.352)) - 10.0)));
+    // It looks there; straight ahead is then as far away.
+    CHECK(shareAt(0.352, {{0.352, 0.0, 1.0}, 0.0}) == 1.0);
+    CHECK(shareAt(0.0, {{0.352, 0.0, 1.0}, 0.0}) == doctest::Approx(shareAt(0.352, ahead)));
+    // Behind the eye.
+    CHECK(shareAt(0.0, {{0.0, 0.0, -1.0}, 0.0}) == doctest::Approx(law(180.0)));
+}
+
+}  // SUITE(stereo_reference)
