@@ -1,6 +1,7 @@
 // Recording a plan.
 #pragma once
 
+#include "engine/baselines/warp_passes.h"
 #include "engine/frame/room.h"
 #include "engine/passes/past_passes.h"
 

@@ -1,13 +1,13 @@
 // What a frame is asked for, and what it returns.
 #pragma once
 
+#include "engine/baselines/warp_traffic.h"
 #include "engine/frame/counters.h"
 #include "engine/geometry.h"
 #include "engine/gpu/commands.h"
 #include "engine/mode.h"
 #include "engine/passes/frame_buffers.h"
-#include "engine/passes/warp_passes.h"
-#include "engine/passes/warp_traffic.h"
+#include "engine/passes/warp_view.h"
 
 #include <array>
 #include <optional>

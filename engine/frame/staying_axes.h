@@ -2,7 +2,7 @@
 // them anyway, and is told their poses and angles.
 #pragma once
 
-#include "engine/passes/warp_passes.h"
+#include "engine/passes/warp_view.h"
 
 #include <array>
 #include <cstdint>

@@ -8,7 +8,7 @@
 //   bin         a (tile, splat) pair for each tile a splat meets
 //   sort_tiles  the pairs by tile, front to back within
 //   rasterize   blending: colour, alpha and depth
-// The passes that make the other eye from this one are in warp_passes.h.
+// The passes that make the other eye from this one are in engine/baselines.
 #pragma once
 
 #include "engine/gpu/gpu_scene.h"

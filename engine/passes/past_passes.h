@@ -7,7 +7,9 @@
 //   select       the tiles to render
 #pragma once
 
-#include "engine/passes/warp_passes.h"
+#include "engine/passes/pass_kernels.h"
+#include "engine/passes/warp_buffers.h"
+#include "engine/passes/warp_view.h"
 
 #include <span>
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "engine/files/scene_series.h"
-#include "engine/gpu/resident_scene.h"
 #include "engine/stream/live_scene.h"
+#include "engine/stream/resident_scene.h"
 #include "engine/stream/series_loader.h"
 
 #include <condition_variable>

@@ -2,8 +2,8 @@
 // one, and then the old one fades out, so that there is no moment without either.
 #pragma once
 
-#include "engine/gpu/resident_scene.h"
 #include "engine/stream/chunk_loader.h"
+#include "engine/stream/resident_scene.h"
 
 #include <cstdint>
 #include <set>

@@ -4,7 +4,6 @@
 #include "engine/passes/passes.h"
 #include "engine/passes/past_passes.h"
 #include "engine/passes/present.h"
-#include "engine/passes/warp_passes.h"
 #include "shaders/embedded_shaders.h"
 #include "tests/engine/gpu/compiled_shader.h"
 #include "tests/engine/gpu/gpu_fixture.h"

@@ -1,7 +1,7 @@
 // Scenes whose chunks come and go, as tests take them: splats that lie together come together.
 #pragma once
 
-#include "engine/gpu/resident_scene.h"
+#include "engine/stream/resident_scene.h"
 #include "tests/engine/frame/gpu_scenes.h"
 
 namespace binosplat::test {

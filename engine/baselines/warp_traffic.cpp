@@ -1,5 +1,5 @@
 // Sizes are those of the passes' arguments in shaders/shared/passes.h, named in the order they have there.
-#include "engine/passes/warp_traffic.h"
+#include "engine/baselines/warp_traffic.h"
 
 namespace binosplat {
 namespace {

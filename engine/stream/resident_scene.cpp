@@ -1,5 +1,5 @@
 // Places for pages, and their entries in the device's tables.
-#include "engine/gpu/resident_scene.h"
+#include "engine/stream/resident_scene.h"
 
 #include "engine/error.h"
 

@@ -1,7 +1,8 @@
 // The memory traffic of making the target, beyond that of the tiles that are rendered for it.
 #pragma once
 
-#include "engine/passes/warp_passes.h"
+#include "engine/passes/stereo_settings.h"
+#include "shaders/shared/passes.h"
 
 #include <string>
 #include <utility>

@@ -12,33 +12,12 @@
 #pragma once
 
 #include "engine/gpu/gpu_scene.h"
-#include "engine/passes/eye_relation.h"
 #include "engine/passes/pass_kernels.h"
 #include "engine/passes/shown_tiles.h"
-#include "engine/passes/stereo_settings.h"
 #include "engine/passes/warp_buffers.h"
-#include "shaders/shared/passes.h"
-
-#include <optional>
+#include "engine/passes/warp_view.h"
 
 namespace binosplat {
-
-// Where an eye looks, for TileChoice::kPredicted: errors that it does not see are not worth rendering again.
-struct Gaze {
-    glm::dvec3 direction{0.0, 0.0, 1.0};  // in the eye's axes, of any length
-    double clear_rad = 0.0;               // how far around it everything counts in full: the eye may look there, too
-};
-
-// `settings` and the eyes, for the device. `row_words`: of a row of moving pixels, see WarpBuffers.
-gpu::WarpView warpViewOf(const EyeRelation& relation, glm::uvec2 size_px, gpu::uint row_words, const StereoSettings& settings);
-// Initial counters of a frame: modes that do not weigh warp everything.
-gpu::WarpCounters firstCountersOf(const StereoSettings& settings, glm::uvec2 size_px);
-
-// Where the source leaves its pixels to be warped, and where they arrive: one word each; and the number of words from a row to the next.
-struct MovingWords {
-    gpu::DeviceAddress<gpu::uint> moving, arrivals;
-    gpu::uint row_words;
-};
 
 // The inputs of one frame's passes.
 struct WarpInputs {
@@ -62,9 +41,6 @@ struct WarpInputs {
 
 // True if resample moves the source's pixels itself, row by row: then reproject does not run, and no arrivals lie in memory.
 inline bool movesRows(bool rectified, const WarpBuffers& warp) { return rectified && warp.sharesRows(); }
-
-// `gaze` for the device.
-gpu::EyeGaze eyeGazeOf(const Gaze& gaze, const Intrinsics& lens);
 
 // Runs all of them: writes the target's colours, except in the tiles that are finally listed, and its depths, if it has room for them.
 // Hidden tiles become background.

@@ -1,0 +1,30 @@
+// What the device is told of making an eye from a picture, and of where the eye looks.
+#pragma once
+
+#include "engine/passes/eye_relation.h"
+#include "engine/passes/stereo_settings.h"
+#include "shaders/shared/passes.h"
+
+namespace binosplat {
+
+// Where an eye looks, for TileChoice::kPredicted: errors that it does not see are not worth rendering again.
+struct Gaze {
+    glm::dvec3 direction{0.0, 0.0, 1.0};  // in the eye's axes, of any length
+    double clear_rad = 0.0;               // how far around it everything counts in full: the eye may look there, too
+};
+
+// `settings` and the eyes, for the device. `row_words`: of a row of moving pixels, see WarpBuffers.
+gpu::WarpView warpViewOf(const EyeRelation& relation, glm::uvec2 size_px, gpu::uint row_words, const StereoSettings& settings);
+// Initial counters of a frame: modes that do not weigh warp everything.
+gpu::WarpCounters firstCountersOf(const StereoSettings& settings, glm::uvec2 size_px);
+
+// `gaze` for the device.
+gpu::EyeGaze eyeGazeOf(const Gaze& gaze, const Intrinsics& lens);
+
+// Where the source leaves its pixels to be warped, and where they arrive: one word each; and the number of words from a row to the next.
+struct MovingWords {
+    gpu::DeviceAddress<gpu::uint> moving, arrivals;
+    gpu::uint row_words;
+};
+
+}  // namespace binosplat
