@@ -78,7 +78,8 @@ inline nlohmann::json expecting(nlohmann::json json, const nlohmann::json& keys)
     return json;
 }
 
-// What belongs together, in one comparison that prints both sides: CHECK(these(a.x, a.y) == these(1, 2)).
+// What belongs together, in one comparison that prints both sides: CHECK(these(a.x, a.y) == these(1, 2)). Arguments are evaluated in any
+// order, so that calls which change what the next one finds have a CHECK each.
 template <typename... Values>
 std::tuple<Values...> these(Values&&... values) {
     return std::tuple<Values...>(std::forward<Values>(values)...);

@@ -116,8 +116,7 @@ TEST_CASE("the time of a scene that moves goes on while it plays, rests, steps a
     SceneClock clock(10.0, 5);
     CHECK(clock.frame() == 0);
     for (int i = 0; i < 7; ++i) { clock.pass(0.1); }
-    CHECK(clock.time_s() == doctest::Approx(0.7));
-    CHECK(clock.frame() == 2);
+    CHECK(these(clock.time_s(), clock.frame()) == these(doctest::Approx(0.7), 2));
     clock.togglePlaying();
     clock.pass(10.0);
     CHECK(clock.frame() == 2);
@@ -159,9 +158,7 @@ TEST_CASE_FIXTURE(PanelSketch, "a picture of a scene lies in the font's texture 
     later.key = "later";
     CHECK(bringLetters("", {other}));
     CHECK(bringLetters("", {later}));
-    CHECK(font->pictures().size() == 2);
-    CHECK(font->pictures().contains("later"));
-    CHECK(font->pictures().contains("other"));
+    CHECK(these(font->pictures().size(), font->pictures().contains("later"), font->pictures().contains("other")) == these(2, true, true));
 }
 
 TEST_CASE("size and height are changed while their buttons are held, and what moves and what is behind is chosen by name") {
@@ -295,9 +292,7 @@ TEST_CASE("no folder is read while the panel is drawn: it says that it reads unt
     const std::optional<SceneListWish> first = chooser.takeWish();
     REQUIRE(first.has_value());
     CHECK_FALSE(chooser.takeWish().has_value());
-    CHECK(chooser.isReading());
-    CHECK(chooser.list().title == work.path.string());
-    CHECK(chooser.list().entries.empty());
+    CHECK(these(chooser.isReading(), chooser.list().title, chooser.list().entries.empty()) == these(true, work.path.string(), true));
     const WidgetPlaces quiet = sketch.draw().places;
     const auto drawnVertices = [] { return ImGui::GetDrawData()->TotalVtxCount; };
     const int without = drawnVertices();
