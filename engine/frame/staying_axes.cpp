@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 namespace binosplat {
 namespace {
@@ -14,8 +15,14 @@ namespace {
 constexpr double kMostRad = 1.4;
 // A head that turns goes on for about so many frames; of the margin the axes go ahead by no more than this share.
 constexpr double kFramesAhead = 20.0, kMostAhead = 0.9;
+// However wide whole tiles are: past axes that are farther off are of no use.
+constexpr double kMostMargins = 1.5;
+// So that some tiles are hidden in every frame: one for which that begins or ends is waited for.
+constexpr std::uint32_t kLeastBorderTiles = 2;
 // The compositor's filter reads pixels beside the view's edge, and the warp some more beyond.
 constexpr double kBesidePx = 4.0;
+// Where tiles lie on the view's. What the lens hides has a margin of its own for the filter.
+constexpr double kRoundingPx = 0.02;
 // Angles may jitter by the rounding of their float32.
 constexpr double kSameShare = 1e-4;
 
@@ -52,7 +59,7 @@ std::optional<std::array<glm::dvec2, 4>> outlineOf(const Eye& view, const Eye& p
 // Whole tiles beyond an edge that is `px` from the axis.
 std::uint32_t borderTiles(double px, double focal_px, double margin_rad) {
     const double wanted_px = focal_px * std::tan(std::min(std::atan(px / focal_px) + margin_rad, kMostRad));
-    return static_cast<std::uint32_t>(std::ceil(std::max(wanted_px - px, 0.0) / gpu::kTileSize));
+    return std::max(static_cast<std::uint32_t>(std::ceil(std::max(wanted_px - px, 0.0) / gpu::kTileSize)), kLeastBorderTiles);
 }
 
 bool sameLens(const Eye& a, const Eye& b) {
@@ -95,20 +102,22 @@ void hideWhatTheLensHides(std::vector<std::uint8_t>& hidden, const Eye& view, co
     const glm::uvec2 tiles = tilesOf(picture.size_px), view_tiles = tilesOf(view.size_px);
     TileSums shown(hidden_in_view, view_tiles);
     const Homography toView(view, picture);
-    for (std::uint32_t y = 0; y < tiles.y; ++y) {
-        for (std::uint32_t x = 0; x < tiles.x; ++x) {
-            std::uint8_t& its = hidden[std::size_t{y} * tiles.x + x];
+    std::vector<std::optional<glm::dvec2>> above, below;  // the corners of a row
+    for (std::uint32_t y = 0; y <= tiles.y; ++y) {
+        above = std::exchange(below, {});
+        for (std::uint32_t x = 0; x <= tiles.x; ++x) { below.push_back(toView(glm::dvec2(x, y) * double{gpu::kTileSize})); }
+        for (std::uint32_t x = 0; y > 0 && x < tiles.x; ++x) {
+            std::uint8_t& its = hidden[std::size_t{y - 1} * tiles.x + x];
             if (its != 0) { continue; }
             glm::dvec2 low(1e9), high(-1e9);
-            for (const glm::dvec2 corner : {glm::dvec2(0, 0), glm::dvec2(1, 0), glm::dvec2(0, 1), glm::dvec2(1, 1)}) {
-                const auto at = toView((glm::dvec2(x, y) + corner) * double{gpu::kTileSize});
+            for (const auto& at : {above[x], above[x + 1], below[x], below[x + 1]}) {
                 if (!at) { continue; }
                 low = glm::min(low, *at);
                 high = glm::max(high, *at);
             }
             const glm::dvec2 last = glm::dvec2(view_tiles) - 1.0;
-            const glm::uvec2 first(glm::clamp(glm::floor((low - kBesidePx) / double{gpu::kTileSize}), glm::dvec2(0.0), last));
-            const glm::uvec2 end(glm::clamp(glm::floor((high + kBesidePx) / double{gpu::kTileSize}), glm::dvec2(0.0), last) + 1.0);
+            const glm::uvec2 first(glm::clamp(glm::floor((low + kRoundingPx) / double{gpu::kTileSize}), glm::dvec2(0.0), last));
+            const glm::uvec2 end(glm::clamp(glm::floor((high - kRoundingPx) / double{gpu::kTileSize}), glm::dvec2(0.0), last) + 1.0);
             its = shown.anyShown(first, end) ? 0 : 1;
         }
     }
@@ -168,6 +177,8 @@ std::vector<std::uint8_t> hiddenFrom(const Eye& view, const Eye& picture, std::s
     return hidden;
 }
 
+glm::dmat3 pictureFromView(const Eye& picture, const Eye& view) { return Homography(picture, view).matrix; }
+
 std::array<std::optional<Gaze>, 2> turnGazes(std::array<std::optional<Gaze>, 2> gazes, std::span<const Eye> views,
                                              std::span<const Eye> pictures) {
     for (std::size_t e = 0; e < views.size(); ++e) {
@@ -183,6 +194,11 @@ bool StayingAxes::coverAll(std::span<const Eye> views) const {
         if (!covers(pictures_[e], views[e])) { return false; }
     }
     return true;
+}
+
+bool StayingAxes::isFarFrom(const Eye& view) const {
+    const double alike = glm::dot(pictures_.front().world_from_camera.orientation, view.world_from_camera.orientation);
+    return std::abs(alike) < std::cos(0.5 * kMostMargins * margin_rad_);
 }
 
 // The views turn on as they did since the last frame.
@@ -211,7 +227,7 @@ std::span<const Eye> StayingAxes::follow(std::span<const Eye> views, const std::
     for (std::size_t e = 0; stays && e < views.size(); ++e) {
         pictures_[e].world_from_camera.position = views[e].world_from_camera.position;
     }
-    if (!stays || !coverAll(views)) { moveTo(views); }
+    if (!stays || !coverAll(views) || isFarFrom(views.front())) { moveTo(views); }
     views_.assign(views.begin(), views.end());
     for (std::size_t e = 0; e < views.size(); ++e) { hidden_[e] = hiddenFrom(views[e], pictures_[e], hidden_in_views[e]); }
     return pictures_;

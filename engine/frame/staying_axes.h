@@ -24,6 +24,9 @@ bool covers(const Eye& picture, const Eye& view);
 // empty.
 std::vector<std::uint8_t> hiddenFrom(const Eye& view, const Eye& picture, std::span<const std::uint8_t> hidden_in_view = {});
 
+// From pixels of the view to those of the picture, from the same place.
+glm::dmat3 pictureFromView(const Eye& picture, const Eye& view);
+
 // Where the eyes look, in the pictures' axes instead of the views'.
 std::array<std::optional<Gaze>, 2> turnGazes(std::array<std::optional<Gaze>, 2> gazes, std::span<const Eye> views,
                                              std::span<const Eye> pictures);
@@ -42,6 +45,7 @@ public:
 
 private:
     [[nodiscard]] bool coverAll(std::span<const Eye> views) const;
+    [[nodiscard]] bool isFarFrom(const Eye& view) const;
     void moveTo(std::span<const Eye> views);
 
     double margin_rad_;

@@ -269,7 +269,9 @@ bool StereoFrame::isUnlikeLast(std::span<const Eye> eyes, const FrameSettings& s
     for (std::size_t e = 0; e < eyes.size(); ++e) {
         const double before = plan_.targets[e].tiles_hidden, now = countHidden(settings.hidden_tiles[e]);
         const glm::uvec2 tiles = tilesOf(eyes[e].size_px);
-        if ((before > 0) != (now > 0) || std::abs(now - before) > kMostHiddenDiffer * tiles.x * tiles.y) { return true; }
+        // A view that turns over its picture shows another row and another column.
+        const double most = std::max(kMostHiddenDiffer * tiles.x * tiles.y, static_cast<double>(tiles.x + tiles.y));
+        if ((before > 0) != (now > 0) || std::abs(now - before) > most) { return true; }
     }
     return false;
 }

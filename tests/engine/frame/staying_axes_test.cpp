@@ -25,7 +25,7 @@ glm::dvec2 placeIn(const Eye& picture, const Eye& view, const glm::dvec2& place_
 }
 
 TEST_CASE("a picture covers turns within its margin with the view's own pixels, and no turn beyond") {
-    const Eye view = eyeOf({200, 150}), picture = coverOf(view, kMargin);
+    const Eye view = eyeOf({400, 300}), picture = coverOf(view, kMargin);
     CHECK(picture.intrinsics.fx == view.intrinsics.fx);
     CHECK((picture.size_px - view.size_px) % 16u == glm::uvec2(0));
     for (const glm::dvec3 axis : {glm::dvec3(1, 0, 0), glm::dvec3(-1, 0, 0), glm::dvec3(0, 1, 0), glm::dvec3(0, -1, 0)}) {
