@@ -162,6 +162,7 @@ Options makeView(const Settings& given) {
     if (line.contains("out") && !view.simulate) { throw Error(ExitCode::kUsage, "--out is given without --simulate"); }
     RunOptions standard = withPast();
     standard.stereo.half_periphery = true;
+    standard.stereo.axes = Axes::kStay;
     view.run = readRun(line, {"view"}, standard, &view.tables);
     return readRows(viewRows(), line, view);
 }

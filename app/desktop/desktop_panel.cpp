@@ -118,7 +118,7 @@ void DesktopShell::takePicture() {
         const std::filesystem::path folder = std::filesystem::current_path(error);
         check(!error, "the picture cannot be written: the working directory is gone");
         if (const std::optional<std::string> outcome = writer_.finish()) { say(*outcome); }
-        writer_.begin(scenes_.frame(), !showsTwoEyes(state_.settings().window_stereo), folder);
+        writer_.begin(scenes_.frame(), pictures_.eyes(), pictures_.eyes(), folder);
     } catch (const vk::DeviceLostError&) { throw; } catch (const vk::SystemError& error) {
         say(fmt::format("the picture cannot be read: {}", error.what()));
     } catch (const Error& error) { say(error.what()); }

@@ -153,10 +153,11 @@ std::span<const OptionRow<RunOptions>> runRows() {
           "more",
           "full; with view half", /*required*/ false, /*by_command*/ true},
          field::named<kStereo, &StereoOptions::half_periphery>({"full", "half"})},
-        {{"axes", "stereo", kPictures, "KIND",
-          "with --path or --motion: the axes of the pictures follow the view, or stay while the head turns a few degrees; then pictures "
-          "are "
-          "shown as a headset's compositor does, resampled once to the view"},
+        {{"axes", "stereo", kWearer, "KIND",
+          "in a headset, with --path or --motion: the axes of the pictures follow the view, or stay while the head turns a few degrees; "
+          "then "
+          "pictures are shown as a headset's compositor does, resampled once to the view",
+          "view; in a headset stay", /*required*/ false, /*by_command*/ true},
          field::named<kStereo, &StereoOptions::axes>({"view", "stay"})},
         {{"gaze", "stereo", kPictures, "x,y,z", "direction of the gaze, from the head: right, down, forward", "each lens's centre"},
          field::make<kStereo, &StereoOptions::gaze>("of any length", readDirection)},

@@ -16,6 +16,15 @@ glm::uvec2 scaledSize(const xr::Instance& instance, glm::uvec2 recommended_px, d
     return glm::clamp(glm::uvec2(wanted), glm::uvec2(16), instance.maxSizePx());
 }
 
+// Of the pictures of both eyes, where axes stay.
+glm::uvec2 coverPx(const FrameViews& views, glm::uvec2 view_px) {
+    glm::uvec2 size_px(0);
+    for (const xr::EyeView& eye : views.eyes) {
+        size_px = glm::max(size_px, coverOf(eyeInScene({}, {}, eye.fov, view_px), glm::radians(kAxesMarginDegrees)).size_px);
+    }
+    return size_px;
+}
+
 }  // namespace
 
 SceneRenderer::SceneRenderer(const xr::Instance& instance, const Context& context, const RunOptions& options, const FrameLog& log,
@@ -33,16 +42,36 @@ glm::uvec2 SceneRenderer::insetPx(const ConnectedHeadset& headset, double scale)
     return headset.inset ? scaledSize(instance_, headset.inset->inset_px, scale) : glm::uvec2(0);
 }
 
-void SceneRenderer::fitImages(ConnectedHeadset& headset, const ViewSettings& settings) {
+bool SceneRenderer::mayStay(const ConnectedHeadset& headset, const ViewSettings& settings, glm::uvec2 cover_px) {
+    if (settings.stereo.axes != Axes::kStay) { return false; }
+    const glm::uvec2 most_px = instance_.maxSizePx();
+    std::string why_not;
+    if (headset.inset) {
+        why_not = "the headset takes insets";
+    } else if (glm::any(glm::greaterThan(cover_px, most_px))) {
+        why_not = fmt::format("pictures of {}x{} are larger than the runtime's {}x{}", cover_px.x, cover_px.y, most_px.x, most_px.y);
+    }
+    if (std::exchange(why_not_, why_not) != why_not && !why_not.empty()) { log_.say("axes follow the view: " + why_not); }
+    return why_not.empty();
+}
+
+void SceneRenderer::fitImages(ConnectedHeadset& headset, const ViewSettings& settings, const FrameViews& views) {
     context_px_ = headset.inset ? std::optional(headset.inset->context_px) : std::nullopt;
-    const glm::uvec2 size_px = sizePx(settings), inset_px = insetPx(headset, settings.resolution_scale);
+    const glm::uvec2 view_px = sizePx(settings), inset_px = insetPx(headset, settings.resolution_scale);
+    const glm::uvec2 cover_px = coverPx(views, view_px);
+    stays_ = mayStay(headset, settings, cover_px);
+    const glm::uvec2 least_px = stays_ ? cover_px : view_px;
+    // Angles may jitter by the rounding of their float32.
+    const glm::uvec2 size_px = stays_ ? glm::min(cover_px + gpu::kTileSize, instance_.maxSizePx()) : view_px;
+    const ImagesAsked before = std::exchange(images_asked_, ImagesAsked{view_px, inset_px, stays_});
     if (!headset.images) { return makeImages(headset, size_px, inset_px); }
     const glm::uvec2 before_px = headset.images->sizePx();
     const glm::uvec2 inset_before_px = headset.inset_images ? headset.inset_images->sizePx() : glm::uvec2(0);
-    if (before_px == size_px && inset_before_px == inset_px) { return; }
+    if (before == images_asked_ && glm::all(glm::greaterThanEqual(before_px, least_px))) { return; }
     try {
         makeImages(headset, size_px, inset_px);
     } catch (const Error&) {
+        images_asked_ = before;
         makeImages(headset, before_px, inset_before_px);
         throw;
     }
@@ -59,16 +88,17 @@ void SceneRenderer::makeImages(ConnectedHeadset& headset, glm::uvec2 size_px, gl
     if (headset.inset) { make(headset.inset_images, inset_px); }
 }
 
-void SceneRenderer::govern(ConnectedHeadset& headset, const ViewSettings& settings) {
+void SceneRenderer::govern(ConnectedHeadset& headset, const ViewSettings& settings, const FrameViews& views) {
     // With coarse tiles both eyes are rendered whatever the budget.
     const StereoOptions& stereo = settings.stereo;
     const bool coarse = stereo.mode == Mode::kPredicted && stereo.half_periphery && stereo.foveation_deg > 0.0 && !headset.inset;
     governor_.wish(settings.quality, coarse ? Mode::kShared : stereo.mode,
                    {stereo.warp.budget, settings.resolution_scale, stereo.warp.error_bound_db});
-    fitImages(headset, settings);
+    fitImages(headset, settings, views);
     if (governor_.settings() != std::exchange(governed_, governor_.settings())) { ++governed_count_; }
     const double scale = governor_.settings().resolution_scale;
-    headset.images->draw(sizePx(scale));
+    view_px_ = sizePx(scale);
+    headset.images->draw(view_px_);
     if (headset.inset) { headset.inset_images->draw(insetPx(headset, scale)); }
 }
 
@@ -120,8 +150,9 @@ FrameSettings SceneRenderer::settingsOfFrame(ConnectedHeadset& headset, const Vi
     if (seesThrough(settings)) { frame.background = glm::dvec3(0.0); }
     // If both eyes share a picture, it is seen through either lens.
     if (!settings.showsOneEye() && settings.visibility_mask) {
-        frame.hidden_tiles = headset.lens_mask.update(headset.session.hiddenMeshes(), headset.session.hiddenMeshVersion(), views.eyes,
-                                                      headset.images->partPx());
+        frame.hidden_tiles =
+            headset.lens_mask.update(headset.session.hiddenMeshes(), headset.session.hiddenMeshVersion(), views.eyes, view_px_);
+        sayHidden(frame.hidden_tiles);
     }
     return frame;
 }
@@ -134,7 +165,13 @@ void SceneRenderer::prepare(ConnectedHeadset& headset, ShownScene& shown, const 
     inset_eyes_.clear();
     for (const int e : drawnEyes()) {
         const auto at = static_cast<std::size_t>(e);
-        eyes_.push_back(eyeInScene(scene_from_room, views.room_from_eyes[at], views.eyes[at].fov, headset.images->partPx()));
+        eyes_.push_back(eyeInScene(scene_from_room, views.room_from_eyes[at], views.eyes[at].fov, view_px_));
+    }
+    seen_ = eyes_;
+    if (stays_) {
+        keepAxes(headset, scene_from_room, views);
+    } else {
+        axes_ = StayingAxes(glm::radians(kAxesMarginDegrees));
     }
     if (headset.inset) { aimInsets(headset, scene_from_room, views); }
     std::vector<Eye> all = eyes_;
@@ -152,7 +189,21 @@ void SceneRenderer::prepare(ConnectedHeadset& headset, ShownScene& shown, const 
         presenter_.makeRoom(largest_px, headset.images->takesDepth());
     } catch (const Error&) {
         last_ = {};
+        eyes_.clear();
         throw;
+    }
+}
+
+void SceneRenderer::keepAxes(ConnectedHeadset& headset, const Similarity& scene_from_room, FrameViews& views) {
+    const std::span<const Eye> pictures = axes_.follow(seen_, frame_.hidden_tiles);
+    eyes_.assign(pictures.begin(), pictures.end());
+    frame_.hidden_tiles = axes_.hiddenTiles();
+    frame_.gazes = turnGazes(frame_.gazes, seen_, eyes_);
+    headset.images->draw(eyes_.front().size_px);
+    for (const int e : drawnEyes()) {
+        const auto at = static_cast<std::size_t>(e);
+        const Eye& picture = eyes_[frame_.mode == Mode::kMono ? 0 : at];
+        views.pictures[at] = pictureInRoom(scene_from_room, picture, views.eyes[at].pose.position);
     }
 }
 
@@ -173,7 +224,6 @@ void SceneRenderer::aimInsets(const ConnectedHeadset& headset, const Similarity&
 
 void SceneRenderer::render(ConnectedHeadset& headset, ShownScene& shown, const ViewSettings& settings, MirrorWindow* window,
                            const std::function<void(Commands&)>& record_panel) {
-    const bool one_eye = settings.showsOneEye();
     headset.images->seeThrough(seesThrough(settings));
     for (const int e : drawnEyes()) {
         headset.images->acquire(e, true);
@@ -209,7 +259,6 @@ void SceneRenderer::render(ConnectedHeadset& headset, ShownScene& shown, const V
                        .lost_periods = headset.session.lostPeriods(),
                        .work = last_.work_rendered});
     sayGoverned();
-    sayHidden(one_eye);
     sayCutShort();
 }
 
@@ -219,7 +268,11 @@ void SceneRenderer::recordEyes(Commands& commands, EyeImages& images, const Ster
         images.present(commands, e, frame.picture(is_mono ? 0 : e), tint ? frame.chosenTiles(e) : nullptr, frame_.near);
         // The window shows the dominant eye or, with tint, the eye that is made from it.
         const bool shown = is_mono || (e == frame_.dominant) != tint;
-        if (window != nullptr && window->drawn() && shown) { window->keepEye(commands, presenter_.pixels(), images.partPx(), format_); }
+        if (window == nullptr || !window->drawn() || !shown) { continue; }
+        const std::size_t at = is_mono ? 0 : static_cast<std::size_t>(e);
+        const Buffer& pixels =
+            stays_ ? presenter_.turn(commands, images.partPx(), view_px_, pictureFromView(eyes_[at], seen_[at])) : presenter_.pixels();
+        window->keepEye(commands, pixels, view_px_, format_);
     }
 }
 
@@ -244,13 +297,10 @@ void SceneRenderer::sayCutShort() {
     if (now > std::exchange(cut_short_, now)) { log_.say(fmt::format("frames shown incomplete because a list was full: {}", now)); }
 }
 
-void SceneRenderer::sayHidden(bool one_eye) {
-    const std::vector<TargetCounters>& targets = last_.counters.targets;
-    if (one_eye || targets.size() != 2) { return; }
-    const std::array<std::uint64_t, 2> hidden{targets[kLeft].tiles_hidden, targets[kRight].tiles_hidden};
-    // No hidden tiles: perhaps a frame for a picture file, rendered without the mask.
-    if (hidden == std::array<std::uint64_t, 2>{} || std::exchange(hidden_tiles_, hidden) == hidden) { return; }
-    log_.say(fmt::format("the lenses hide {} and {} of {} tiles", hidden[kLeft], hidden[kRight], targets[kLeft].tiles));
+void SceneRenderer::sayHidden(const std::array<std::span<const std::uint8_t>, 2>& hidden) {
+    const std::array<std::uint32_t, 2> tiles{countHidden(hidden[kLeft]), countHidden(hidden[kRight])};
+    if (tiles == std::array<std::uint32_t, 2>{} || std::exchange(hidden_tiles_, tiles) == tiles) { return; }
+    log_.say(fmt::format("the lenses hide {} and {} of {} tiles", tiles[kLeft], tiles[kRight], hidden[kLeft].size()));
 }
 
 }  // namespace binosplat

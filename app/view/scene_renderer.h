@@ -9,6 +9,7 @@
 #include "app/view/scenes/shown_scene.h"
 #include "app/view/settings/view_settings.h"
 #include "app/view/window/mirror_window.h"
+#include "engine/frame/staying_axes.h"
 
 #include <array>
 #include <functional>
@@ -32,12 +33,11 @@ public:
     // `format` is the format of every session's images; the rest outlives this.
     SceneRenderer(const xr::Instance& instance, const Context& context, const RunOptions& options, const FrameLog& log, vk::Format format);
 
-    // The size of an eye's images that the wearer wants; with insets, of the context's images.
+    // The size of what an eye sees, as the wearer wants it; with insets, of the context.
     [[nodiscard]] glm::uvec2 sizePx(const ViewSettings& settings) const { return sizePx(settings.resolution_scale); }
-    // Makes the headset's images as large as the wearer wants. Throws Error if that fails; then they keep their size.
-    void fitImages(ConnectedHeadset& headset, const ViewSettings& settings);
-    // Applies the governor to the wearer's settings, within images of their size.
-    void govern(ConnectedHeadset& headset, const ViewSettings& settings);
+    // Makes the headset's images as large as the wearer wants, or larger where axes stay, and applies the governor to the wearer's
+    // settings, within them. Throws Error if images of another size fail; then they keep their size.
+    void govern(ConnectedHeadset& headset, const ViewSettings& settings, const FrameViews& views);
     // The runtime refuses depth after all; false: depth was off already.
     bool dropDepth(ConnectedHeadset& headset);
 
@@ -54,6 +54,9 @@ public:
     [[nodiscard]] bool seesThrough(const ViewSettings& settings) const { return settings.passthrough && instance_.canSeeThrough(); }
     // The last frame that the device has finished. No counters before a scene's first frame.
     [[nodiscard]] const FrameResult& lastFrame() const { return last_; }
+    // Of the pictures that were prepared, and of what their eyes see of them.
+    [[nodiscard]] const std::vector<Eye>& pictures() const { return eyes_; }
+    [[nodiscard]] const std::vector<Eye>& views() const { return seen_; }
     // Another scene is shown: counters and costs of the previous one do not apply.
     void forgetScene() {
         last_ = {};
@@ -68,7 +71,18 @@ public:
     [[nodiscard]] Presenter& presenter() { return presenter_; }
 
 private:
+    // The sizes that images were made for.
+    struct ImagesAsked {
+        glm::uvec2 view_px{0, 0}, inset_px{0, 0};
+        bool stay = false;
+        bool operator==(const ImagesAsked&) const = default;
+    };
+    void fitImages(ConnectedHeadset& headset, const ViewSettings& settings, const FrameViews& views);
     void makeImages(ConnectedHeadset& headset, glm::uvec2 size_px, glm::uvec2 inset_px);
+    // Whether the pictures' axes stay, in images that must be this large; says once why they do not, if the wearer wants that.
+    [[nodiscard]] bool mayStay(const ConnectedHeadset& headset, const ViewSettings& settings, glm::uvec2 cover_px);
+    // Prepares pictures whose axes stay, of the eyes that were prepared.
+    void keepAxes(ConnectedHeadset& headset, const Similarity& scene_from_room, FrameViews& views);
     [[nodiscard]] glm::uvec2 sizePx(double scale) const;
     [[nodiscard]] glm::uvec2 insetPx(const ConnectedHeadset& headset, double scale) const;
     // Sets up the insets' eyes, after the eyes that they are part of.
@@ -83,7 +97,7 @@ private:
     void recordEyes(Commands& commands, EyeImages& images, const StereoFrame& frame, bool tint, MirrorWindow* window);
     // Fits the splats of a streamed scene to the frame time, unless the user sets a number.
     void fitSplats(SceneStream& stream, double period_ms);
-    void sayHidden(bool one_eye);
+    void sayHidden(const std::array<std::span<const std::uint8_t>, 2>& hidden);
     void sayCutShort();
     void sayGoverned();
 
@@ -96,9 +110,15 @@ private:
     Governor governor_;
     std::optional<SplatBudget> splat_budget_;  // of the streamed scene that is shown
     MetDisplays met_;
-    bool is_late_ = false;       // any frame of the last second
-    FrameSettings frame_;        // prepared
-    std::vector<Eye> eyes_;      // prepared
+    bool is_late_ = false;      // any frame of the last second
+    FrameSettings frame_;       // prepared
+    std::vector<Eye> eyes_;     // prepared
+    std::vector<Eye> seen_;     // their views: the same unless axes stay
+    glm::uvec2 view_px_{0, 0};  // of what an eye sees in this frame
+    ImagesAsked images_asked_;
+    bool stays_ = false;
+    std::string why_not_;  // do axes not stay, as last said
+    StayingAxes axes_{glm::radians(kAxesMarginDegrees)};
     FrameSettings inset_frame_;  // prepared, for insets
     std::vector<Eye> inset_eyes_;
     std::optional<glm::uvec2> context_px_;  // recommended for the context, if there are insets
@@ -108,7 +128,7 @@ private:
     bool said_beaten_ = false;
     std::uint64_t cut_short_ = 0;  // frames, as last said
     FrameResult last_;
-    std::array<std::uint64_t, 2> hidden_tiles_{};  // as last said
+    std::array<std::uint32_t, 2> hidden_tiles_{};  // as last said
     bool takes_depth_ = true;
 };
 

@@ -44,9 +44,6 @@ Viewer::Viewer(const ViewOptions& options, const ViewSettings& settings, xr::Ins
 
 void Viewer::run() {
     try {
-        try {
-            renderer_.fitImages(headset(), state_.settings());
-        } catch (const xr::Lost& lost) { loseHeadset(lost.what()); }
         while (options_.load_first && !scenes_.get() && !leaving_) {
             if (isInterrupted()) { leave(); }
             if (scenes_.isNextReady()) { takeScene(); }
@@ -113,7 +110,6 @@ void Viewer::loseHeadset(const std::string& why) {
 bool Viewer::comeBack() {
     if (leaving_) { return false; }
     const HeadsetConnection::Search came = connection_.search([this](const std::string& message) { say(message); });
-    if (came == HeadsetConnection::Search::kFound) { renderer_.fitImages(headset(), state_.settings()); }
     if (came == HeadsetConnection::Search::kLater) {
         drawWindowAlone("The headset is unplugged: plug it in");
         std::this_thread::sleep_for(kIdle);

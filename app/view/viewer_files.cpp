@@ -66,7 +66,7 @@ void Viewer::takePicture() {
         const std::filesystem::path folder = std::filesystem::current_path(error);
         check(!error, "the picture cannot be written: the working directory is gone");
         sayPicture(pictures_.finish());
-        pictures_.begin(scenes_.frame(), drawn_.showsOneEye(), folder);
+        pictures_.begin(scenes_.frame(), renderer_.pictures(), renderer_.views(), folder);
     } catch (const vk::DeviceLostError&) { throw; } catch (const vk::SystemError& error) {
         say(fmt::format("the picture cannot be read: {}", error.what()));
     } catch (const Error& error) { say(error.what()); }

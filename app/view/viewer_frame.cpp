@@ -100,7 +100,7 @@ bool Viewer::prepareScene(FrameViews& views) {
     if (std::exchange(waits_for_kernels_, waits) && !waits) { log_.say(fmt::format("{} is ready", nameOf(state_.settings().stereo.mode))); }
     drawn_ = waits ? drawable : state_.settings();
     try {
-        renderer_.govern(headset(), drawn_);
+        renderer_.govern(headset(), drawn_, views);
         ViewSettings wished = drawn_;
         if (picture_asked_) { wished.visibility_mask = false; }  // picture files have no lens mask
         if (scenes_.get() != nullptr) { renderer_.prepare(headset(), scenes_, state_.sceneFromRoom(), wished, views); }
@@ -113,7 +113,7 @@ bool Viewer::prepareScene(FrameViews& views) {
     }
     state_.goBack();
     drawn_ = state_.settings();
-    renderer_.govern(headset(), drawn_);
+    renderer_.govern(headset(), drawn_, views);
     return false;
 }
 

@@ -3,6 +3,7 @@
 #include "app/view/scenes/viewpoints.h"
 #include "app/view/viewer.h"
 #include "engine/error.h"
+#include "engine/picture/turned.h"
 
 namespace binosplat {
 
@@ -72,7 +73,10 @@ void Viewer::keepPictureOfScene() {
     if (scene == nullptr || std::exchange(frames_of_scene_, 0) < kLeastFramesSeen) { return; }
     try {
         waitForQueue();
-        notes_.keepPicture(*scene, scenes_.frame().readPicture(drawn_.showsOneEye() ? 0 : static_cast<int>(drawn_.stereo.dominant)));
+        const std::size_t eye = drawn_.showsOneEye() ? 0 : static_cast<std::size_t>(drawn_.stereo.dominant);
+        if (eye >= renderer_.pictures().size()) { return; }
+        const Image picture = scenes_.frame().readPicture(static_cast<int>(eye));
+        notes_.keepPicture(*scene, showTurned(picture, renderer_.pictures().at(eye), renderer_.views().at(eye)));
     } catch (const vk::DeviceLostError&) { throw; } catch (const vk::SystemError&) {
         // A missing picture is not worth a message.
     } catch (const Error&) {}

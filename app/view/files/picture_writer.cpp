@@ -4,6 +4,7 @@
 #include "engine/error.h"
 #include "engine/picture/image_io.h"
 #include "engine/picture/join.h"
+#include "engine/picture/turned.h"
 #include "engine/setup/output_files.h"
 
 #include <fmt/format.h>
@@ -39,11 +40,14 @@ std::string write(const Image& picture, const std::filesystem::path& folder) {
 
 }  // namespace
 
-void PictureWriter::begin(StereoFrame& frame, bool one_eye, const std::filesystem::path& folder) {
+void PictureWriter::begin(StereoFrame& frame, const std::vector<Eye>& pictures, const std::vector<Eye>& views,
+                          const std::filesystem::path& folder) {
     if (under_way_.valid()) { under_way_.wait(); }
-    Image left = frame.readPicture(0), right = one_eye ? Image() : frame.readPicture(1);
-    under_way_ = std::async(std::launch::async, [left = std::move(left), right = std::move(right), one_eye, folder] {
-        return write(one_eye ? left : besideOneAnother(left, right), folder);
+    std::vector<Image> images;
+    for (std::size_t e = 0; e < views.size(); ++e) { images.push_back(frame.readPicture(static_cast<int>(e))); }
+    under_way_ = std::async(std::launch::async, [images = std::move(images), pictures, views, folder] {
+        const auto seen = [&](std::size_t e) { return showTurned(images[e], pictures[e], views[e]); };
+        return write(views.size() == 1 ? seen(0) : besideOneAnother(seen(0), seen(1)), folder);
     });
 }
 

@@ -41,7 +41,7 @@ SliderRange sliderOf(const OptionRow<Owner>& row) {
     return {*row.field.least, row.field.slider_most.value_or(*row.field.most)};
 }
 
-void drawMethod(PanelWidgets& widgets, ViewSettings& settings) {
+void drawMethod(PanelWidgets& widgets, ViewSettings& settings, bool in_headset) {
     RunOptions options;
     options.stereo = settings.stereo;
     StereoOptions& stereo = options.stereo;
@@ -50,8 +50,13 @@ void drawMethod(PanelWidgets& widgets, ViewSettings& settings) {
     std::ranges::rotate(names, names.begin() + 1);  // one eye last
     choose(widgets, "Method", methods, names, options, 3);
     choose(widgets, "Dominant eye", *findRunRow("dominant"), options, 3);
-    choose(widgets, "Pixel depth", *findRunRow("depth"), options, 3);
     const float width = ImGui::GetContentRegionAvail().x;
+    if (in_headset) {
+        ImGui::SameLine(0.75f * width);
+        bool stay = stereo.axes == Axes::kStay;
+        if (widgets.checkbox("Axes stay", &stay)) { stereo.axes = stay ? Axes::kStay : Axes::kView; }
+    }
+    choose(widgets, "Pixel depth", *findRunRow("depth"), options, 3);
     widgets.checkbox("Centre ROI (paper)", &stereo.warp.center_rois);
     ImGui::SameLine(0.4f * width);
     bool by_distance = stereo.order.value_or(kWearersOrder) == Order::kDistance;
@@ -143,7 +148,7 @@ void drawFacts(const PanelStatus& status) {
 void drawStages(const FrameResult& frame) {
     const std::vector<TargetCounters>& targets = frame.counters.targets;
     if (targets.size() == 2 && targets[kLeft].tiles_hidden + targets[kRight].tiles_hidden > 0) {
-        writeLine(fmt::format("the lenses hide {} and {} of {} tiles", targets[kLeft].tiles_hidden, targets[kRight].tiles_hidden,
+        writeLine(fmt::format("hidden: {} and {} of {} tiles", targets[kLeft].tiles_hidden, targets[kRight].tiles_hidden,
                               std::max(targets[kLeft].tiles, targets[kRight].tiles)));
     }
     if (const auto& ahead = frame.counters.ahead; ahead && ahead->frames_cut_short > 0) {
@@ -162,7 +167,7 @@ void drawStages(const FrameResult& frame) {
 
 void drawMethodPage(PanelWidgets& widgets, ViewSettings& settings, const PanelStatus& status, PanelRequests& requests) {
     ImGui::PushItemWidth(ImGui::GetContentRegionAvail().x * kSliderShare);
-    drawMethod(widgets, settings);
+    drawMethod(widgets, settings, !status.window);
     drawResolution(widgets, settings);
     if (!status.window) { choose(widgets, "Frame rate", *findViewRow("quality"), settings, 4); }
     ImGui::PopItemWidth();

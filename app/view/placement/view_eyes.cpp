@@ -46,4 +46,15 @@ Eye eyeInScene(const Similarity& scene_from_room, const Pose& room_from_eye, con
     return {transform(scene_from_room, room_from_eye), intrinsicsFromAngles(xr::fromXr(fov), size_px), size_px};
 }
 
+xr::EyeView pictureInRoom(const Similarity& scene_from_room, const Eye& picture, const XrVector3f& place) {
+    const Pose room_from_eye{glm::normalize(glm::conjugate(scene_from_room.orientation) * picture.world_from_camera.orientation), {}};
+    xr::EyeView view{xr::toXr(room_from_eye), {}};
+    view.pose.position = place;
+    const Intrinsics& k = picture.intrinsics;
+    const glm::dvec2 size(picture.size_px);
+    const auto angle = [](double px, double focal_px) { return static_cast<float>(std::atan(px / focal_px)); };
+    view.fov = {angle(-k.cx, k.fx), angle(size.x - k.cx, k.fx), angle(k.cy, k.fy), angle(k.cy - size.y, k.fy)};
+    return view;
+}
+
 }  // namespace binosplat

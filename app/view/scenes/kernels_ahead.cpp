@@ -12,8 +12,8 @@ namespace binosplat {
 
 namespace {
 
-// The governor's shares of the resolution, each way.
-constexpr std::array kShares{1.0, 0.8, 0.6, 0.4};
+// The governor's shares of the resolution, each way; where axes stay, pictures are wider.
+constexpr std::array kShares{1.25, 1.0, 0.8, 0.6, 0.4};
 
 std::array<Eye, 2> smallEyes(std::uint32_t width_px, bool canted) {
     Eye middle{};
@@ -68,8 +68,7 @@ void makeKernelsAt(std::uint32_t width_px, StereoFrame& small, const CameraOptio
         settings.keep_past = true;
         settings.keep_depth = settings.keep_both_depths = ahead.with_depth;
         settings.keep_classes = ahead.tint;
-        // If both eyes share a picture, it is seen through either lens.
-        if (hides && settings.mode != Mode::kMono) { settings.hidden_tiles = {hidden, hidden}; }
+        if (hides) { settings.hidden_tiles = {hidden, hidden}; }
         makeKernelsOf(small, settings, eyes);
     }
 }
@@ -82,6 +81,7 @@ bool FramesAhead::isLike(const FramesAhead& other) const {
         options.warp.budget = 0.0;
         options.warp.margin_px = 0;
         options.foveation_deg = options.foveation_deg > 0.0 ? 1.0 : 0.0;
+        options.axes = {};
         return options;
     };
     return size_px == other.size_px && with_depth == other.with_depth && tint == other.tint &&

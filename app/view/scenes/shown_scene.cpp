@@ -91,7 +91,9 @@ ViewSettings ShownScene::drawable(ViewSettings settings) const {
     wanted.stereo = settings.stereo;
     wanted.tint = settings.tint;
     if (!wanted.isLike(*ready_)) {
+        const Axes axes = settings.stereo.axes;  // which take no other kernels
         settings.stereo = ready_->stereo;
+        settings.stereo.axes = axes;
         settings.tint = ready_->tint;
     }
     return settings;

@@ -303,6 +303,8 @@ TEST_CASE("half the resolution goes with foveation, and the headset has it unles
         CHECK(refusal(half) == "--periphery is half, but --foveation is 0, must be the angle within which resolution is full");
     }
     CHECK(view("").stereo.half_periphery);
+    CHECK(view("").stereo.axes == Axes::kStay);
+    CHECK(view("--axes view").stereo.axes == Axes::kView);
     CHECK_FALSE(view("--periphery full").stereo.half_periphery);
     CHECK(view("--foveation 20").stereo.foveation_deg == 20.0);
 }

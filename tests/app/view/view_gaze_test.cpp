@@ -36,7 +36,7 @@ std::string room() {
 ViewRun look(const Workplace& work, const std::string& keys, const std::string& script, int frames) {
     const std::string config = "[stereo]\nmode = \"predicted\"\nperiphery = \"full\"\nbudget = 0.04\nmove_cost = 0\nfoveation = 8\n";
     return runClean(work, "look", script,
-                    fmt::format("{}{} --frames {} --load-first --hide-panel --hide-hands", room(),
+                    fmt::format("{}{} --axes view --frames {} --load-first --hide-panel --hide-hands", room(),
                                 withConfig(work, config + "[view]\ntint = true\n" + keys), frames));
 }
 
@@ -105,6 +105,7 @@ TEST_CASE("with foveation a headset that takes insets has one for each eye, with
         CHECK(viewsOf(inset, frame) == 4);
     }
     CHECK(drawn > 40);
+    CHECK(inset.lines("axes follow the view: the headset takes insets").size() == 1);
     checkOrder(inset, {"mode = \"mono\"", "mode = \"predicted\"", "mode = \"temporal\"", "another one begins"});
     CHECK(inset.layers(inset.frameAt(acts.now_s - 0.1), "projection").size() == 1);
     for (const int side : {0, 1}) {

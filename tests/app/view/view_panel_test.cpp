@@ -160,7 +160,7 @@ TEST_CASE_FIXTURE(AtWork, "a resolution that the device has no memory for is ref
     CHECK(run.width(36) == 256);
     CHECK(compare(run.eye(36, kLeft), run.eye(12, kLeft), 3).psnrDb() > 60.0);
     // At the slider's middle (some 896 pixels) the eyes' pictures fit, and what is to bring them to the headset does not.
-    CHECK(choose("brought", "size 853 853\nframes none\n", kOneSplat + " --hide-panel --mode shared --memory-limit 21")
+    CHECK(choose("brought", "size 853 853\nframes none\n", kOneSplat + " --hide-panel --mode shared --axes view --memory-limit 21")
               .says("presented pixels needs "));
 }
 
@@ -184,10 +184,10 @@ TEST_CASE("tint and centre ROIs are seen in the eye made from the other, and a r
     acts.click(onMethod("Show how tiles were made")).wait(1.3 - acts.now_s).click(onMethod("predicted")).wait(0.25);
     const double walked = acts.click(onMethod("right")).press("right b").wait(0.2).look();
     // Near enough to the bars that holes open inside the picture.
-    const ViewRun run =
-        runClean(work, "walk", acts.script(),
-                 "builtin:fence --load-first --hide-panel --hide-hands --mode paper --margin 0 --eye 0,0,0.5 --look 0,0,3 --up 0,-1,0" +
-                     withConfig(work, kMethodPage));
+    const ViewRun run = runClean(
+        work, "walk", acts.script(),
+        "builtin:fence --load-first --hide-panel --hide-hands --axes view --mode paper --margin 0 --eye 0,0,0.5 --look 0,0,3 --up 0,-1,0" +
+            withConfig(work, kMethodPage));
     checkOrder(run, {"tint = true", "center-roi = true", "tint = false", "mode = \"predicted\"", "dominant = \"right\"",
                      "the runtime asked for the end"});
     // What is greener than the picture beside it.

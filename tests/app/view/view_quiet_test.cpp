@@ -22,7 +22,8 @@ struct Known {
     const char* kinds;
 };
 constexpr Known kKnown[]{
-    {0.0, 1.0, "buffer fence-of-this-frame memory"},
+    // Images are made once the eyes' angles are known.
+    {0.0, 1.0, "buffer fence-of-this-frame memory swapchain"},
     // Of what a snap turn brings into view nothing is known: what is visible is counted first, with the device at rest.
     {1.2, 1.3, "fence-of-last-frame fence-of-this-frame"},
     // Dear ImGui makes larger buffers when the panel draws more than ever before: here a mark where the hand points.

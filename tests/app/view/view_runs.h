@@ -114,7 +114,16 @@ struct ViewRun {
     [[nodiscard]] nlohmann::json view(std::size_t frame, std::size_t side = 0) const {
         return layers(frame, "projection").at(0).at("views").at(side);
     }
-    [[nodiscard]] int width(std::size_t frame) const { return view(frame).at("rect").get<std::array<int, 4>>()[2]; }
+    // How large what an eye sees is in its picture, which may be larger.
+    [[nodiscard]] glm::ivec2 sizePx(std::size_t frame, std::size_t side) const {
+        const nlohmann::json picture = view(frame, side), &fov = picture.at("fov"), &rect = picture.at("rect");
+        const auto tangent = [&](const char* name) { return std::tan(fov.at(name).get<double>()); };
+        const LoggedEye eye = loggedEye(frame, side);
+        const double across = (eye.right - eye.left) / (tangent("right") - tangent("left"));
+        const double down = (eye.up - eye.down) / (tangent("up") - tangent("down"));
+        return glm::ivec2(glm::round(glm::dvec2(across * rect.at(2).get<double>(), down * rect.at(3).get<double>())));
+    }
+    [[nodiscard]] int width(std::size_t frame) const { return sizePx(frame, 0).x; }
     // Where the eyes' views are, in the room.
     [[nodiscard]] glm::dvec3 viewPlace(std::size_t frame, std::size_t side) const { return poseOf(view(frame, side).at("pose")).position; }
     [[nodiscard]] std::int64_t periodNs(std::size_t frame) const { return frames.at(frame).at("period_ns").get<std::int64_t>(); }

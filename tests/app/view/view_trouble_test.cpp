@@ -66,8 +66,9 @@ TEST_CASE("whatever becomes of the session, the head, the hands and the view, it
     for (std::size_t frame = first + 1; frame <= run.frameAt(turned); ++frame) {
         CHECK(glm::length(headOf(frame) - headOf(frame - 1)) < 1e-5);
     }
-    CHECK(run.view(run.frameAt(other), 0).at("fov").at("left").get<double>() == doctest::Approx(-1.0471975512));
-    CHECK(run.view(run.frameAt(other), 1).at("fov").at("up").get<double>() == doctest::Approx(0.8726646260));
+    for (const std::size_t side : {0, 1}) { CHECK(run.sizePx(run.frameAt(other), side) == glm::ivec2(64)); }
+    CHECK(run.view(run.frameAt(other), 0).at("fov").at("left") < -1.047);
+    CHECK(run.view(run.frameAt(other), 1).at("fov").at("up") > 0.872);
 }
 
 TEST_CASE("a headset that lies on the desk at first, and that is unplugged later, is waited for, and the scene goes on with it") {

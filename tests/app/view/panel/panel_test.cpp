@@ -62,6 +62,8 @@ TEST_CASE_FIXTURE(PanelSketch, "a click reaches what it points at: boxes, button
     CHECK(settings.stereo.foveation_deg > 0.0);
     click("Foveation");
     CHECK(settings.stereo.foveation_deg == 0.0);
+    click("Axes stay");
+    CHECK(settings.stereo.axes == Axes::kStay);
     click("budget");
     CHECK(settings.stereo.warp.budget == doctest::Approx(0.5).epsilon(0.02));
     for (const auto& [name, request] : common) { CHECK_MESSAGE(asks(name, request), name); }
