@@ -81,8 +81,7 @@ void DesktopShell::step() {
 }
 
 double DesktopShell::secondsToWait() const {
-    const glm::uvec2 size_px = window_.sizePx();
-    if (size_px.x == 0 || size_px.y == 0) { return kIdleSeconds; }  // minimized
+    if (window_.isMinimized()) { return kIdleSeconds; }
     if (!is_shown_) { return kNoPictureSeconds; }
     if (layouts_due_ > 0 || mover_.isGliding() || window_.heldMotion().isAny()) { return 0.0; }
     const LoadedScene* const scene = scenes_.get();
@@ -169,8 +168,7 @@ FrameSettings DesktopShell::frameSettingsNow(bool at_rest) const {
 }
 
 void DesktopShell::draw(double seconds) {
-    const glm::uvec2 size_px = window_.sizePx();
-    if (size_px.x == 0 || size_px.y == 0) { return; }
+    if (window_.isMinimized()) { return; }
     if (window_.takeDamage()) { is_shown_ = false; }
     if (is_shown_ && scenes_.get() != nullptr) { drawScene(seconds); }
     const std::uint64_t panel = state_.settings().panel ? panel_.canvas().revision() : 0;

@@ -131,6 +131,11 @@ HeldMotion DesktopWindow::heldMotion() const {
 
 bool DesktopWindow::isClosed() const { return glfwWindowShouldClose(window_.get()) == GLFW_TRUE; }
 
+bool DesktopWindow::isMinimized() const {
+    const glm::uvec2 size_px = sizePx();
+    return size_px.x == 0 || size_px.y == 0 || glfwGetWindowAttrib(window_.get(), GLFW_ICONIFIED) == GLFW_TRUE;
+}
+
 bool DesktopWindow::takeDamage() { return std::exchange(is_damaged_, false); }
 
 glm::uvec2 DesktopWindow::sizePx() const {

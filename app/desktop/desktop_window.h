@@ -39,6 +39,8 @@ public:
     [[nodiscard]] HeldMotion heldMotion() const;
     [[nodiscard]] bool hasGamepad() const;
     [[nodiscard]] bool isClosed() const;
+    // Nobody sees it.
+    [[nodiscard]] bool isMinimized() const;
     // True once after the window was uncovered or has changed its size.
     [[nodiscard]] bool takeDamage();
     [[nodiscard]] glm::uvec2 sizePx() const;

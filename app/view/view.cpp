@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <future>
 #include <memory>
 #include <thread>
 
@@ -83,6 +84,25 @@ void showScene(ViewOptions options, xr::Instance& instance) {
     context.requireNoValidationMessages();
 }
 
+// Where the scene can be shown in a window, a runtime is asked in a thread of its own: one that hangs is left to itself until the program
+// ends.
+std::unique_ptr<xr::Instance> askRuntime(xr::InstanceOptions options) {
+    options.wait_for_headset = [begin = std::chrono::steady_clock::now()](const std::string& runtime) {
+        stopIfInterrupted();
+        if (std::chrono::steady_clock::now() - begin > kLongestWait) { throw Error(ExitCode::kNoDevice, runtime + " has no headset"); }
+        std::this_thread::sleep_for(kBetweenLooks);
+    };
+    std::packaged_task<std::unique_ptr<xr::Instance>()> ask([options] { return std::make_unique<xr::Instance>(options); });
+    std::future<std::unique_ptr<xr::Instance>> answer = ask.get_future();
+    std::thread(std::move(ask)).detach();
+    const auto latest = std::chrono::steady_clock::now() + kLongestWait + 2 * kBetweenLooks;
+    while (answer.wait_for(kBetweenLooks) != std::future_status::ready) {
+        stopIfInterrupted();
+        if (std::chrono::steady_clock::now() > latest) { throw Error(ExitCode::kNoDevice, "the OpenXR runtime does not answer"); }
+    }
+    return answer.get();
+}
+
 // Sets `has_headset` once there is one.
 void viewInHeadset(ViewOptions options, bool& has_headset) {
     if (options.simulate) { simulateHeadset(options); }
@@ -93,16 +113,11 @@ void viewInHeadset(ViewOptions options, bool& has_headset) {
     instance_options.eye_tracking = settings.eye_tracking;
     instance_options.foveated_inset = settings.wantsInset();
     std::unique_ptr<WaitingWindow> waiting;
-    const bool may_wait = options.simulate || options.headset_only || !hasDisplay();
-    instance_options.wait_for_headset = [&waiting, may_wait, begin = std::chrono::steady_clock::now()](const std::string& runtime) {
-        if (may_wait) { return waitForHeadset(runtime, waiting); }
-        stopIfInterrupted();
-        if (std::chrono::steady_clock::now() - begin > kLongestWait) { throw Error(ExitCode::kNoDevice, runtime + " has no headset"); }
-        std::this_thread::sleep_for(kBetweenLooks);
-    };
+    const bool must_have_one = options.simulate || options.headset_only || !hasDisplay();
+    instance_options.wait_for_headset = [&waiting](const std::string& runtime) { waitForHeadset(runtime, waiting); };
     std::unique_ptr<xr::Instance> instance;
     try {
-        instance = std::make_unique<xr::Instance>(instance_options);
+        instance = must_have_one ? std::make_unique<xr::Instance>(instance_options) : askRuntime(instance_options);
         waiting.reset();
         has_headset = true;
         showScene(options, *instance);

@@ -1,6 +1,7 @@
 // An OpenXR API layer in which calls fail as a test says: what runtimes do that the simulated one does not.
 // BINOSPLAT_XR_FAULT=CALL:RESULT[:N[:AFTER]] and more of these after commas: N calls of CALL, or all, return the number RESULT and are not
 // made, once AFTER others were. In the place of RESULT, "missing": the runtime does not have the function; "crash": it ends the program.
+// xrCreateInstance:hang never returns.
 // For BINOSPLAT_FAULT_WAITS (waits.h) it tells when a frame ends and what the runtime does itself.
 #include <vulkan/vulkan.h>
 #define XR_USE_GRAPHICS_API_VULKAN
@@ -17,6 +18,8 @@
 #include <map>
 #include <sstream>
 #include <string>
+
+#include <unistd.h>
 
 namespace {
 
@@ -139,6 +142,7 @@ struct CreateInfo {
 };
 
 XRAPI_ATTR XrResult XRAPI_CALL createInstance(const XrInstanceCreateInfo* info, const CreateInfo* layers, XrInstance* instance) {
+    while (faults().contains("xrCreateInstance")) { pause(); }
     g_next = layers->next->get_instance_proc_addr;
     CreateInfo rest = *layers;
     rest.next = layers->next->next;

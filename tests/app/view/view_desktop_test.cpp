@@ -118,4 +118,25 @@ TEST_CASE("a window whose surface is lost goes on, and in another size, too; for
     CHECK(compare(left[0], right[0]).psnrDb() < 30.0);
 }
 
+TEST_CASE("a runtime that hangs keeps no window from opening; what is dropped on one that nobody sees is drawn once somebody does") {
+    if (!haveScreen()) { return; }
+    const Workplace work;
+    work.go("scene one-splat --out one.ply");
+    Window window(work, "--hide-panel",
+                  "XR_ENABLE_API_LAYERS=XR_APILAYER_BINOSPLAT_faults XR_API_LAYER_PATH='" BINOSPLAT_FAULT_LAYER
+                  "/openxr' BINOSPLAT_XR_FAULT=xrCreateInstance:hang XR_RUNTIME_JSON='" BINOSPLAT_BUILD "/bin/simulated_runtime.json' ");
+    CHECK(window.program().said().find("does not answer; the scene is shown in a window\n") != std::string::npos);
+    window.rest();
+    const unsigned long number = numberOfWindow("^builtin:slanted-wall - binosplat$", "WINDOW");
+    desk().connection.minimize(number, true);
+    const std::uint64_t before = window.help();
+    desk().connection.drop(number, work.path / "one.ply");
+    REQUIRE(window.program().waitFor("one.ply") != "");
+    CHECK(window.help() == before);
+    desk().connection.minimize(number, false);
+    window.rest();
+    CHECK(window.help() > before);
+    window.checkEnd();
+}
+
 }  // SUITE(view_desktop)

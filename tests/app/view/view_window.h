@@ -125,20 +125,25 @@ public:
         const std::string resources = fmt::format("Xft.dpi:\t{}\n", dpi);
         const unsigned long root = find<unsigned long (*)(void*)>("XDefaultRootWindow")(display_);
         constexpr unsigned long kResourceManager = 23, kString = 31;
-        find<int (*)(void*, unsigned long, unsigned long, unsigned long, int, int, const char*, int)>("XChangeProperty")(
-            display_, root, kResourceManager, kString, 8, 0, resources.c_str(), static_cast<int>(resources.size()));
-        find<int (*)(void*, int)>("XSync")(display_, 0);
+        change(root, kResourceManager, kString, 8, resources.data(), resources.size());
     }
     // What a window manager does when somebody clicks on the cross: a message that the window may obey.
     void clickCross(unsigned long window) const {
-        const auto atomOf = [&](const char* name) {
-            return find<unsigned long (*)(void*, const char*, int)>("XInternAtom")(display_, name, 0);
-        };
-        const unsigned long protocols = atomOf("WM_PROTOCOLS"), deletes = atomOf("WM_DELETE_WINDOW");
-        // Xlib's XClientMessageEvent in an XEvent of 24 longs: its kind (33), sent, to which window, a message, bits of a number, a number.
-        std::array<unsigned long, 24> event{33, 0, 1, reinterpret_cast<unsigned long>(display_), window, protocols, 32, deletes};
-        CHECK(find<int (*)(void*, unsigned long, int, long, void*)>("XSendEvent")(display_, window, 0, 0, event.data()) != 0);
-        find<int (*)(void*, int)>("XSync")(display_, 0);
+        // Xlib's XClientMessageEvent: its kind (33), sent, to which window, a message, bits of a number, a number.
+        send(window, {33, 0, 1, reinterpret_cast<unsigned long>(display_), window, atomOf("WM_PROTOCOLS"), 32, atomOf("WM_DELETE_WINDOW")});
+    }
+    // What a window manager notes down at a window that it takes from the screen (3), or brings back (1).
+    void minimize(unsigned long window, bool is_gone) const {
+        const std::array<unsigned long, 2> state{is_gone ? 3ul : 1ul, 0};
+        change(window, atomOf("WM_STATE"), atomOf("WM_STATE"), 32, state.data(), 2);
+    }
+    // The end of dragging a file to a window: the file's name lies at the window, which is told so.
+    void drop(unsigned long window, const fs::path& file) const {
+        const std::string uri = "file://" + file.string() + "\r\n";
+        const unsigned long place = atomOf("XdndSelection"), kind = atomOf("text/uri-list");
+        change(window, place, kind, 8, uri.data(), uri.size());
+        // Xlib's XSelectionEvent: its kind (31), sent, to which window, what, as what, where it lies, when.
+        send(window, {31, 0, 1, reinterpret_cast<unsigned long>(display_), window, place, kind, place, 0});
     }
     // What the window tells a window manager: whether its size may change, and whether its shape stays.
     [[nodiscard]] std::pair<bool, bool> resizesInShape(unsigned long window) const {
@@ -154,6 +159,20 @@ public:
     }
 
 private:
+    [[nodiscard]] unsigned long atomOf(const char* name) const {
+        return find<unsigned long (*)(void*, const char*, int)>("XInternAtom")(display_, name, 0);
+    }
+    // A property of a window: `count` numbers of so many bits.
+    void change(unsigned long window, unsigned long property, unsigned long kind, int bits, const void* numbers, std::size_t count) const {
+        find<int (*)(void*, unsigned long, unsigned long, unsigned long, int, int, const void*, int)>("XChangeProperty")(
+            display_, window, property, kind, bits, 0, numbers, static_cast<int>(count));
+        find<int (*)(void*, int)>("XSync")(display_, 0);
+    }
+    // An XEvent is 24 longs.
+    void send(unsigned long window, std::array<unsigned long, 24> event) const {
+        CHECK(find<int (*)(void*, unsigned long, int, long, void*)>("XSendEvent")(display_, window, 0, 0, event.data()) != 0);
+        find<int (*)(void*, int)>("XSync")(display_, 0);
+    }
     template <typename Function>
     Function find(const char* name) const {
         const auto function = reinterpret_cast<Function>(dlsym(library_, name));
