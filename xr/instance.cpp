@@ -6,6 +6,7 @@
 #include "xr/extensions/eye_gaze.h"
 #include "xr/extensions/hand_tracking.h"
 #include "xr/extensions/local_floor.h"
+#include "xr/extensions/user_presence.h"
 #include "xr/extensions/vulkan_enable2.h"
 #include "xr/runtime_place.h"
 
@@ -35,7 +36,7 @@ std::vector<XrExtensionProperties> listExtensions() {
 // Used if the runtime has them.
 std::vector<const char*> wantedExtensions(const InstanceOptions& options) {
     std::vector<const char*> wanted{XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME, kLocalFloorExtension,
-                                    XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME, XR_EXT_HAND_TRACKING_EXTENSION_NAME};
+                                    XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME, XR_EXT_HAND_TRACKING_EXTENSION_NAME, kUserPresenceExtension};
     if (options.eye_tracking) { wanted.push_back(XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME); }
     for (const ProfileBindings& profile : allProfileBindings()) {
         if (profile.extension != nullptr) { wanted.push_back(profile.extension); }

@@ -2,6 +2,7 @@
 #include "xr/session.h"
 
 #include "engine/platform.h"
+#include "xr/extensions/user_presence.h"
 #include "xr/extensions/vulkan_enable2.h"
 
 #include <algorithm>
@@ -87,6 +88,16 @@ void Session::endFrame(std::span<const XrCompositionLayerBaseHeader* const> laye
     BINOSPLAT_XR(xrEndFrame(handle(), &info));
 }
 
+bool Session::settle(bool demanded) {
+    if (spaces_.settle(displayTime(), demanded)) {
+        wearing_.forgetPlace();
+        return true;
+    }
+    if (wearing_.hasBegun()) { return false; }
+    const std::optional<Pose> head = spaces_.locateHead(displayTime());
+    return head && wearing_.begins(is_focused_, *head, stepSeconds()) && Wearing::isElsewhere(*head) && spaces_.settle(displayTime(), true);
+}
+
 double Session::periodMs() const {
     const double period_ms = static_cast<double>(pace_.period()) * 1e-6;
     return period_ms >= kShortestPeriodMs && period_ms <= kLongestPeriodMs ? period_ms : 1e3 * kUsualPeriodSeconds;
@@ -102,6 +113,10 @@ void Session::pollEvents() {
     for (;;) {
         auto event = structure<XrEventDataBuffer>(XR_TYPE_EVENT_DATA_BUFFER);
         if (BINOSPLAT_XR(xrPollEvent(instance_.handle(), &event)) == XR_EVENT_UNAVAILABLE) { return; }
+        if (event.type == kUserPresenceChanged) {
+            const auto& change = reinterpret_cast<const UserPresenceChanged&>(event);
+            if (change.session == handle()) { wearing_.hear(change.is_present == XR_TRUE); }
+        }
         switch (event.type) {
             case XR_TYPE_EVENT_DATA_SESSION_STATE_CHANGED: {
                 const auto& change = reinterpret_cast<const XrEventDataSessionStateChanged&>(event);
@@ -132,6 +147,7 @@ void Session::pollEvents() {
 void Session::changeState(XrSessionState state) {
     pace_.interrupt();
     was_shown_ = false;
+    is_focused_ = state == XR_SESSION_STATE_FOCUSED;
     switch (state) {
         case XR_SESSION_STATE_FOCUSED:
             ++times_focused_;

@@ -8,6 +8,7 @@
 #include "xr/floor.h"
 #include "xr/instance.h"
 #include "xr/spaces.h"
+#include "xr/wearing.h"
 
 #include <array>
 #include <chrono>
@@ -63,7 +64,8 @@ public:
     std::string askForRate(double rate_hz) { return refresh_rate_.request(rate_hz); }
 
     // See Spaces and Floor; for the open frame.
-    bool settle(bool demanded) { return spaces_.settle(displayTime(), demanded); }
+    // The room is also settled once somebody begins to wear the headset, unless the head still is where the room begins.
+    bool settle(bool demanded);
     [[nodiscard]] std::optional<std::array<EyeView, 2>> locateEyes() { return spaces_.locateEyes(displayTime()); }
     [[nodiscard]] const std::optional<std::array<XrFovf, 2>>& insets() const { return spaces_.insets(); }
     [[nodiscard]] std::optional<double> floorBelowMetres() { return floor_.belowMetres(space(), displayTime()); }
@@ -98,6 +100,8 @@ private:
     XrViewConfigurationType views_;
     Handle session_;
     Spaces spaces_;
+    Wearing wearing_;
+    bool is_focused_ = false;
     Floor floor_;
     HiddenMeshes hidden_meshes_;
     RefreshRate refresh_rate_;

@@ -81,6 +81,11 @@ std::optional<std::array<EyeView, 2>> Spaces::locateEyes(XrTime time) {
     return located.eyes;
 }
 
+std::optional<Pose> Spaces::locateHead(XrTime time) const {
+    const Located located = locate(room(), time);
+    return located.place_known ? std::optional(headOf(located.eyes)) : std::nullopt;
+}
+
 bool Spaces::settle(XrTime time, bool demanded) {
     const bool moved = recentred_from_ && time >= *recentred_from_;
     if (turn_settled_ && place_settled_ && !moved && !demanded) { return false; }

@@ -1,6 +1,7 @@
 // A session's spaces, and where the eyes are in them.
 #pragma once
 
+#include "engine/geometry.h"
 #include "xr/check.h"
 #include "xr/own.h"
 
@@ -32,6 +33,9 @@ public:
     // The poses of the eyes in room(); empty if the headset's orientation is unknown. While its position is unknown, the last known one is
     // used.
     [[nodiscard]] std::optional<std::array<EyeView, 2>> locateEyes(XrTime time);
+
+    // The middle between the eyes, if it is known in full.
+    [[nodiscard]] std::optional<Pose> locateHead(XrTime time) const;
 
     // The angles of both insets as of the last locateEyes(), in a session with insets; their poses are the eyes'.
     [[nodiscard]] const std::optional<std::array<XrFovf, 2>>& insets() const { return insets_; }

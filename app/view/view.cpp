@@ -55,7 +55,7 @@ void waitForHeadset(const std::string& runtime, std::unique_ptr<WaitingWindow>& 
 // What suits the device, where the user has said nothing.
 ViewSettings suitDevice(ViewOptions& options, const Context& context) {
     const auto properties = context.physicalDevice().getProperties();
-    const DeviceDefaults device =
+    DeviceDefaults device =
         defaultsOf(context.deviceName(), properties.deviceType == vk::PhysicalDeviceType::eIntegratedGpu, context.deviceMemoryBytes());
     if (!options.run.load.sh_degree) { options.run.load.sh_degree = device.sh_degree; }
     options.run.load.most_splats = device.most_splats;
@@ -64,6 +64,7 @@ ViewSettings suitDevice(ViewOptions& options, const Context& context) {
     if (const std::string words = describeDefaults(device); !words.empty()) {
         FrameLog::print(fmt::format("{}: a small device, begins with {}, see docs/arm.md", context.deviceName(), words));
     }
+    if (context.isSoftware()) { device.quality = Quality::kOff; }  // no setting makes these fast enough
     return startSettings(options, device);
 }
 

@@ -11,7 +11,7 @@
 namespace binosplat {
 
 struct DeviceDefaults {
-    Quality quality = Quality::kOff;
+    Quality quality = Quality::kBalanced;
     double resolution_scale = 1.0;
     double refresh_rate = 0.0;               // if the headset has it; 0: the runtime's choice
     std::optional<std::uint32_t> sh_degree;  // the most that is kept

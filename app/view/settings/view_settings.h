@@ -35,10 +35,10 @@ struct ViewSettings {
     bool smooth_turn = false;     // in place of turns by 30 degrees
     Backdrop backdrop = Backdrop::kAsSet;
     PanelPage page = PanelPage::kView;
-    bool vignette = true;              // while the wearer moves by stick
-    bool passthrough = false;          // the room in place of the background, if the headset can
-    Quality quality = Quality::kOff;   // how the frame rate is held
-    double last_foveation_deg = 15.0;  // for the panel's box: as far as eyes usually turn before the head does
+    bool vignette = true;                  // while the wearer moves by stick
+    bool passthrough = false;              // the room in place of the background, if the headset can
+    Quality quality = Quality::kBalanced;  // how the frame rate is held
+    double last_foveation_deg = 15.0;      // for the panel's box: as far as eyes usually turn before the head does
     // Of a window without a headset, see WindowSight.
     WindowStereo window_stereo = WindowStereo::kMono;
     double window_eyes = 0.033, window_plane = 1.0;

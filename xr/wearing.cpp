@@ -1,0 +1,42 @@
+// Presence, or what tells of it.
+#include "xr/wearing.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace binosplat::xr {
+
+namespace {
+
+// Even a head that looks at one thing moves so far in a second or two; a headset on a desk, as far as its tracking errs, does not.
+constexpr double kMovedMetres = 0.02, kMovedRadians = 0.05;
+// A headset that lay still for so long is not worn yet when it moves, but so long after it began to.
+constexpr double kDeskSeconds = 3.0, kLiftSeconds = 2.0;
+
+double angleBetween(const glm::dquat& a, const glm::dquat& b) { return 2.0 * std::acos(std::min(std::abs(glm::dot(a, b)), 1.0)); }
+
+}  // namespace
+
+bool Wearing::begins(bool is_focused, const Pose& room_from_head, double step_seconds) {
+    if (has_begun_ || !is_focused) { return false; }
+    if (is_present_) { return has_begun_ = *is_present_; }
+    if (!first_) { first_ = room_from_head; }
+    const bool has_moved = glm::distance(first_->position, room_from_head.position) > kMovedMetres ||
+                           angleBetween(first_->orientation, room_from_head.orientation) > kMovedRadians;
+    if (has_moved || lifted_seconds_ > 0.0) {
+        lifted_seconds_ += step_seconds;
+        has_begun_ = rested_seconds_ < kDeskSeconds || lifted_seconds_ >= kLiftSeconds;
+    } else {
+        rested_seconds_ += step_seconds;
+    }
+    return has_begun_;
+}
+
+bool Wearing::isElsewhere(const Pose& room_from_head) {
+    const glm::dvec3 ahead = room_from_head.orientation * glm::dvec3(0.0, 0.0, 1.0);
+    const bool is_level = std::hypot(ahead.x, ahead.z) > 0.1;
+    return glm::length(room_from_head.position) > kElsewhereMetres ||
+           (is_level && std::abs(std::atan2(ahead.x, ahead.z)) > kElsewhereRadians);
+}
+
+}  // namespace binosplat::xr

@@ -1,0 +1,33 @@
+// When somebody begins to wear the headset: at the start it may lie on a desk.
+#pragma once
+
+#include "engine/geometry.h"
+
+#include <optional>
+
+namespace binosplat::xr {
+
+class Wearing {
+public:
+    // How far a head is from the room's origin, which is looked along its z: farther than a wearer notices.
+    static constexpr double kElsewhereMetres = 0.1, kElsewhereRadians = 0.17;
+
+    // What the runtime says, if it can tell.
+    void hear(bool is_present) { is_present_ = is_present; }
+    // The room's origin has moved.
+    void forgetPlace() { first_.reset(); }
+    [[nodiscard]] bool hasBegun() const { return has_begun_; }
+    // Once a frame, with the head's pose in the room. True once: when the program has the input and somebody wears the headset. Where the
+    // runtime cannot tell, heads are known by their moving: at once, or a while after a headset has lain still.
+    bool begins(bool is_focused, const Pose& room_from_head, double step_seconds);
+
+    [[nodiscard]] static bool isElsewhere(const Pose& room_from_head);
+
+private:
+    std::optional<bool> is_present_;
+    std::optional<Pose> first_;
+    double rested_seconds_ = 0.0, lifted_seconds_ = 0.0;
+    bool has_begun_ = false;
+};
+
+}  // namespace binosplat::xr
