@@ -124,6 +124,7 @@ void Viewer::waitForQueue() const {
 
 void Viewer::say(const std::string& message) {
     panel_.status().message = message;
+    message_ = message;
     log_.say(message);
 }
 

@@ -4,6 +4,7 @@
 #include "app/view/files/picture_writer.h"
 #include "app/view/headset/headset_connection.h"
 #include "app/view/panel/panel.h"
+#include "app/view/room/fade.h"
 #include "app/view/room/vignette.h"
 #include "app/view/scene_renderer.h"
 #include "app/view/scenes/scene_notes.h"
@@ -79,6 +80,8 @@ private:
     void sayPicture(const std::optional<std::string>& outcome);
     // In the log and on the panel.
     void say(const std::string& message);
+    // As a line before the eyes, for some seconds, while the panel is hidden.
+    void showMessage(RoomSight& sight, double step_seconds);
     void sayChange();
     void leave();
     void waitForQueue() const;
@@ -97,6 +100,10 @@ private:
     bool panel_hangs_ = false;  // in this frame
     WearerControls controls_;
     Vignette vignette_;
+    Fade fade_;
+    std::string message_;           // to be shown before the eyes
+    double message_seconds_ = 0.0;  // that are left of the one shown
+    bool is_new_view_ = false;      // another scene or another origin of the room, in this frame
     GazeFollower gaze_;
     Commands commands_;
     PictureWriter pictures_;

@@ -1,8 +1,12 @@
 // One frame of the viewer, from where the eyes are to what the runtime is told to show.
 #include "app/view/viewer.h"
 
+#include "app/view/panel/message_picture.h"
 #include "app/view/placement/view_eyes.h"
 #include "engine/error.h"
+
+#include <algorithm>
+#include <utility>
 
 namespace binosplat {
 
@@ -10,6 +14,7 @@ namespace {
 
 // While the scene loads, unless a background is set.
 constexpr glm::vec3 kWaitingColour(0.06f, 0.07f, 0.09f);
+constexpr double kMessageSeconds = 6.0;
 
 }  // namespace
 
@@ -17,6 +22,7 @@ void Viewer::settle() {
     xr::Session& session = headset().session;
     if (!session.settle(recentre_asked_)) { return; }
     recentre_asked_ = false;
+    is_new_view_ = true;
     controls_.letGo();
     const std::optional<double> floor_m = session.floorBelowMetres();
     log_.say("the room now begins where the wearer stands" +
@@ -60,6 +66,8 @@ void Viewer::drawFrame() {
     if (panel_hangs_ || window_) { layOutPanel(panel_hangs_, step_seconds); }
     // Last, since the panel and the window may change the settings.
     const bool fits = prepareScene(views);
+    fade_.update(state_.sceneFromRoom(), room_from_head_, std::exchange(is_new_view_, false), step_seconds);
+    headset().things.darken(fade_.darkness(), coverMetres(views.eyes));
     onWindow(&MirrorWindow::acquire);
     if (LoadedScene* scene = scenes_.get(); scene != nullptr && fits) {
         renderer_.render(headset(), scenes_, drawn_, window_.get(), [this](Commands& commands) { recordPanel(commands); });
@@ -128,7 +136,18 @@ void Viewer::chooseThings(const WearerNow& wearer, const FrameViews& views) {
     sight.things = panel_.inRoom().rays(sight.eye, controls_.aimingHand());
     std::ranges::copy(controls_.things(sight.eye), std::back_inserter(sight.things));
     sight.vignette_m = vignette_.widthMetres(views.eyes);
+    showMessage(sight, wearer.step_seconds);
     headset().things.choose(sight);
+}
+
+void Viewer::showMessage(RoomSight& sight, double step_seconds) {
+    const std::string message = std::exchange(message_, {});
+    message_seconds_ = state_.settings().panel ? 0.0 : std::max(message_seconds_ - step_seconds, 0.0);
+    if (!message.empty() && !state_.settings().panel) {
+        sight.message = drawMessage(message, headset().things.layout());
+        message_seconds_ = kMessageSeconds;
+    }
+    sight.has_message = message_seconds_ > 0.0;
 }
 
 void Viewer::renderWaiting() {

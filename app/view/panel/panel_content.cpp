@@ -8,21 +8,28 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include <algorithm>
 #include <array>
+#include <vector>
 
 namespace binosplat {
 
 namespace {
 
-constexpr float kTabsShare = 0.64f, kFourTabsShare = 0.78f;  // of the width; Quit is at the right, away from what is pressed often
+constexpr float kTabsShare = 0.64f, kMoreTabsShare = 0.78f;  // of the width; Quit is at the right, away from what is pressed often
 
 // Chooses the page; the list of scenes is refreshed when its page is opened.
 void drawTabs(PanelWidgets& widgets, ViewSettings& settings, SceneChooser& chooser, const PanelStatus& status) {
-    static constexpr std::array kTabs{"View", "Scenes", "Method", "Time"};
-    const std::span<const char* const> tabs(kTabs.data(), status.time ? 4u : 3u);
-    if (!status.time && settings.page == PanelPage::kTime) { settings.page = PanelPage::kView; }
-    const auto pressed = widgets.row(tabs, static_cast<std::size_t>(settings.page), kTabPx, status.time ? kFourTabsShare : kTabsShare);
-    if (pressed) { settings.page = static_cast<PanelPage>(*pressed); }
+    static constexpr std::array kNames{"View", "Scenes", "Method", "Time", "Help"};  // by PanelPage
+    std::vector<PanelPage> pages{PanelPage::kView, PanelPage::kScenes, PanelPage::kMethod};
+    if (status.time) { pages.push_back(PanelPage::kTime); }
+    if (!status.window) { pages.push_back(PanelPage::kHelp); }  // there H lists the keys
+    if (std::ranges::find(pages, settings.page) == pages.end()) { settings.page = PanelPage::kView; }
+    std::vector<const char*> tabs;
+    for (const PanelPage page : pages) { tabs.push_back(kNames[static_cast<std::size_t>(page)]); }
+    const auto chosen = static_cast<std::size_t>(std::ranges::find(pages, settings.page) - pages.begin());
+    const auto pressed = widgets.row(tabs, chosen, kTabPx, tabs.size() > 3 ? kMoreTabsShare : kTabsShare);
+    if (pressed) { settings.page = pages[*pressed]; }
     if (settings.page == PanelPage::kScenes && (pressed || chooser.isNew())) { chooser.refresh(status.scene); }
     ImGui::SameLine();
 }
@@ -83,6 +90,8 @@ PanelRequests drawPanel(glm::uvec2 size_px, const ViewSettings& current, SceneCh
         drawViewPage(widgets, settings, status, requests);
     } else if (settings.page == PanelPage::kScenes) {
         drawScenesPage(widgets, chooser, status, requests);
+    } else if (settings.page == PanelPage::kHelp) {
+        drawHelpPage(widgets, status, requests);
     } else if (settings.page == PanelPage::kTime) {
         drawTimePage(widgets, status, requests);
     } else {

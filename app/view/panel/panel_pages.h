@@ -17,6 +17,9 @@ void drawMethodPage(PanelWidgets& widgets, ViewSettings& settings, const PanelSt
 // For a scene that moves, while status.time has a value.
 void drawTimePage(PanelWidgets& widgets, const PanelStatus& status, PanelRequests& requests);
 
+// What hands and controllers do, and the way out.
+void drawHelpPage(PanelWidgets& widgets, const PanelStatus& status, PanelRequests& requests);
+
 // Outcomes and work in progress, below all buttons since it may take several lines.
 void drawSaid(const PanelStatus& status);
 

@@ -14,6 +14,8 @@ constexpr double kRayWidthMetres = 0.006, kFadingRayMetres = 0.4;
 // In front of the eyes: 27 degrees to the left, a little below, within arm's reach.
 const glm::dvec3 kPlaceMetres(-0.45, 0.1, 0.9);
 const glm::dvec3 kUp(0.0, -1.0, 0.0);
+// It hangs 27 degrees to the left: who looks far to the right looks past it, who has turned round has lost it.
+constexpr double kUnseenRadians = 1.4, kFarMetres = 3.0, kUnseenSeconds = 1.5;
 
 }  // namespace
 
@@ -26,6 +28,15 @@ void PanelInRoom::hangBefore(const Pose& room_from_head) {
     const Pose upright = lookAt(room_from_head.position, room_from_head.position + levelAhead(room_from_head), kUp);
     const glm::dvec3 place = transform(upright, kPlaceMetres);
     room_from_panel_ = lookAt(place, place + (place - room_from_head.position), kUp);
+}
+
+void PanelInRoom::comeBefore(const Pose& room_from_head, double step_seconds) {
+    const glm::dvec3 place = transform(inverse(room_from_head), room_from_panel_.position);
+    const bool is_seen = place.z > std::cos(kUnseenRadians) * glm::length(place) && glm::length(place) < kFarMetres;
+    unseen_seconds_ = is_seen || pointing_hand_ || carrier_ ? 0.0 : unseen_seconds_ + step_seconds;
+    if (unseen_seconds_ < kUnseenSeconds) { return; }
+    unseen_seconds_ = 0.0;
+    hangBefore(room_from_head);
 }
 
 std::optional<PanelInRoom::Hit> PanelInRoom::meet(const Pose& room_from_aim) const {

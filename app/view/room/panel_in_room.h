@@ -19,6 +19,8 @@ public:
     // Follows the hands while the panel is `shown`. Both may point; the one that clicked last is the pointer, as long as it hits the panel.
     // A hand that squeezes while it points carries the panel until it lets go.
     void update(const std::array<xr::Hand, 2>& hands, bool shown);
+    // While it is shown: if the wearer looks elsewhere for long enough, and neither points at it nor carries it, it comes before the eyes.
+    void comeBefore(const Pose& room_from_head, double step_seconds);
     // Hangs the panel before the eyes, a little to the left, facing them.
     void hangBefore(const Pose& room_from_head);
 
@@ -62,6 +64,7 @@ private:
     int clicked_last_ = kRight;
     std::optional<int> pointing_hand_, carrier_;
     Pose hand_from_panel_;
+    double unseen_seconds_ = 0.0;
 };
 
 }  // namespace binosplat

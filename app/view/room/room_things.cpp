@@ -11,11 +11,15 @@ namespace {
 
 // A controller of no particular make: a handle in the fist, and a knob before it.
 constexpr double kHandleWidthMetres = 0.035, kHandleBehindMetres = 0.07, kHandleAheadMetres = 0.045, kKnobMetres = 0.055;
+// A message is a little below where one looks, as wide as a newspaper.
+const glm::dvec3 kMessagePlace(0.0, 0.28, 1.0);
+constexpr double kMessageMetres = 0.8;
+constexpr std::size_t kTexelsOfUpdate = 16384;  // that fit into one update of a command buffer
 
 }  // namespace
 
 RoomThings::RoomThings(const xr::Session& session, const Context& context, vk::Format format)
-    : troubles_(session.instance().troubles()), layout_(texelLayoutOf(format)) {
+    : session_(session), context_(context), format_(format), troubles_(session.instance().troubles()), layout_(texelLayoutOf(format)) {
     if (!troubles_.tryFor("rays, controllers and the vignette", [&] { makeSheet(session, context, format); })) { sheet_ = {}; }
     if (!session.instance().tracksHands()) { return; }
     for (HandImage& hand : hands_) {
@@ -43,6 +47,7 @@ void RoomThings::giveUp() {
     quads_.clear();
     vignette_.reset();
     hands_ = {};
+    message_ = {};
     sheet_ = {};
 }
 
@@ -55,6 +60,13 @@ void RoomThings::add(const Thing& thing) {
     if (sheet_.handle() != XR_NULL_HANDLE) { quads_.push_back(quadOf(thing)); }
 }
 
+void RoomThings::darken(double darkness, double width_m) {
+    if (darkness <= 0.0 || sheet_.handle() == XR_NULL_HANDLE) { return; }
+    const SpritePlace place = placeOfShade(darkness);
+    const Pose ahead{glm::dquat(1.0, 0.0, 0.0, 0.0), {0.0, 0.0, kVignetteMetres}};
+    vignette_ = xr::LayerQuad{ahead, glm::dvec2(width_m), &sheet_, place.from_px, place.size_px, /*follows_head*/ true};
+}
+
 void RoomThings::choose(const RoomSight& sight) {
     quads_.clear();
     vignette_.reset();
@@ -65,6 +77,30 @@ void RoomThings::choose(const RoomSight& sight) {
     }
     for (std::size_t h = 0; sight.hands && h < 2; ++h) { chooseHand((*sight.hands)[h], hands_[h], sight.eye); }
     for (const Thing& thing : sight.things) { add(thing); }
+    if (sight.has_message) { chooseMessage(sight.message); }
+}
+
+void RoomThings::chooseMessage(const std::optional<TexelPicture>& picture) {
+    if (picture) {
+        const bool is_there = troubles_.tryFor("messages before the eyes", [&] {
+            if (message_.texels.bytes() == 0) {
+                message_.images = xr::Swapchain(session_, "a message", picture->size_px, format_, xr::ImageUse::kDraw);
+                message_.texels = Buffer(context_, "a message", picture->texels.size() * sizeof(std::uint32_t));
+            }
+            message_.now = message_.images.acquire();
+        });
+        if (!is_there) { message_ = {}; }
+        message_.picture = *picture;
+    }
+    if (message_.texels.bytes() == 0) { return; }
+    const glm::dvec2 size_px(message_.picture.size_px);
+    const Pose ahead{glm::dquat(1.0, 0.0, 0.0, 0.0), kMessagePlace};
+    quads_.push_back({ahead,
+                      kMessageMetres * glm::dvec2(1.0, size_px.y / size_px.x),
+                      &message_.images,
+                      {0, 0},
+                      message_.picture.size_px,
+                      /*follows_head*/ true});
 }
 
 void RoomThings::chooseHand(const xr::Hand& hand, HandImage& image, const glm::dvec3& eye) {
@@ -89,18 +125,23 @@ void RoomThings::chooseHand(const xr::Hand& hand, HandImage& image, const glm::d
 }
 
 void RoomThings::record(Commands& commands) {
-    for (HandImage& hand : hands_) {
-        if (!hand.now) { continue; }
-        commands.update(hand.texels, hand.picture.texels.data(), hand.texels.bytes());
-        commands.copyToImage(hand.texels, hand.now, kHandPicturePx, vk::ImageAspectFlagBits::eColor);
+    for (HandImage* image : {&hands_[kLeft], &hands_[kRight], &message_}) {
+        if (!image->now) { continue; }
+        const std::vector<std::uint32_t>& texels = image->picture.texels;
+        for (std::size_t from = 0; from < texels.size(); from += kTexelsOfUpdate) {
+            const std::size_t count = std::min(kTexelsOfUpdate, texels.size() - from);
+            commands.update(image->texels, &texels[from], count * sizeof texels[0], from * sizeof texels[0]);
+        }
+        commands.copyToImage(image->texels, image->now, image->picture.size_px, vk::ImageAspectFlagBits::eColor);
     }
 }
 
 void RoomThings::release() {
-    for (HandImage& hand : hands_) {
-        if (!std::exchange(hand.now, nullptr) || troubles_.tryFor("pictures of hands", [&] { hand.images.release(); })) { continue; }
-        std::erase_if(quads_, [&](const xr::LayerQuad& quad) { return quad.swapchain == &hand.images; });
-        hand = {};
+    for (HandImage* image : {&hands_[kLeft], &hands_[kRight], &message_}) {
+        const char* const what = image == &message_ ? "messages before the eyes" : "pictures of hands";
+        if (!std::exchange(image->now, nullptr) || troubles_.tryFor(what, [&] { image->images.release(); })) { continue; }
+        std::erase_if(quads_, [&](const xr::LayerQuad& quad) { return quad.swapchain == &image->images; });
+        *image = {};
     }
 }
 

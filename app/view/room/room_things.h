@@ -15,9 +15,13 @@ struct RoomSight {
     std::optional<std::array<xr::Hand, 2>> hands;  // absent: not to be drawn
     std::vector<Thing> things;                     // rays and others
     std::optional<double> vignette_m;              // its width
+    // A line of text before the head: drawn anew if there is a picture, else as it was.
+    bool has_message = false;
+    std::optional<TexelPicture> message;
 };
 
-// All of them fit into the 16 layers that every runtime takes: the vignette, two parts of each controller, a ray, the arc and its end.
+// All of them fit into the 16 layers that every runtime takes: the vignette, two parts of each controller, a ray, the arc and its end, a
+// message.
 class RoomThings {
 public:
     // For the session's lifetime, with images of `format`. Things whose images the runtime cannot make are not drawn: see xr::Troubles.
@@ -25,10 +29,14 @@ public:
 
     // Before anything is recorded: acquires the images that this frame needs.
     void choose(const RoomSight& sight);
+    // After choose(): in place of a vignette, the whole view is dark; 0: it is not. `width_m`: see coverMetres().
+    void darken(double darkness, double width_m);
     // Between begin and submitAndWait.
     void record(Commands& commands);
     // After submitAndWait: releases what choose() acquired.
     void release();
+    // Of pictures for it.
+    [[nodiscard]] const TexelLayout& layout() const { return layout_; }
     // True if that frame has any things.
     [[nodiscard]] bool areShown() const { return vignette_.has_value() || !quads_.empty(); }
     // The runtime does not show them: from now on nothing is drawn.
@@ -44,15 +52,20 @@ private:
         vk::Image now;         // of this frame; null: not acquired
         TexelPicture picture;  // of this frame
     };
+    void chooseMessage(const std::optional<TexelPicture>& picture);
     void makeSheet(const xr::Session& session, const Context& context, vk::Format format);
     void chooseHand(const xr::Hand& hand, HandImage& image, const glm::dvec3& eye);
     [[nodiscard]] xr::LayerQuad quadOf(const Thing& thing) const;
     void add(const Thing& thing);
 
+    const xr::Session& session_;
+    const Context& context_;
+    vk::Format format_;
     xr::Troubles& troubles_;
     TexelLayout layout_;
     xr::Swapchain sheet_;  // none: nothing is drawn from it
     std::array<HandImage, 2> hands_;
+    HandImage message_;                 // once there was one
     std::vector<xr::LayerQuad> quads_;  // before the panel
     std::optional<xr::LayerQuad> vignette_;
 };

@@ -18,6 +18,7 @@ constexpr glm::uvec2 kSheetPx(512, 256);
 constexpr glm::uvec2 kRimPx(2, 2);
 constexpr glm::dvec3 kRayLight(1.0, 0.7, 0.1), kTargetLight(0.2, 0.8, 1.0), kHandleLight(0.16, 0.17, 0.2), kKnobLight(0.35, 0.38, 0.42);
 constexpr double kVignetteAlpha = 0.92;
+constexpr unsigned kShadePx = 8;
 
 struct Texel {
     glm::dvec3 light;
@@ -55,6 +56,8 @@ Texel draw(Sprite sprite, const glm::dvec2& at) {
             const double ring = rise(0.72, 0.78, radius) * (1.0 - rise(0.92, 1.0, radius)), dot = 1.0 - rise(0.12, 0.2, radius);
             return {kTargetLight, std::max({ring, dot, 0.25 * (1.0 - rise(0.72, 0.78, radius))})};
         }
+        case Sprite::kShade:
+            return {glm::dvec3(0.0), std::clamp(std::ceil(0.5 * (at.x + 1.0) * kShades), 1.0, double{kShades}) / kShades};
         case Sprite::kVignette:
             return {glm::dvec3(0.0), kVignetteAlpha * rise(kVignetteClear, kVignetteDark, radius)};
     }
@@ -68,14 +71,21 @@ std::uint32_t byteOf(double value) { return static_cast<std::uint32_t>(std::clam
 }  // namespace
 
 SpritePlace placeOf(Sprite sprite) {
-    static constexpr std::array<SpritePlace, 6> kBySprite{{{{440, 0}, {16, 64}},
+    static constexpr std::array<SpritePlace, 7> kBySprite{{{{440, 0}, {16, 64}},
                                                            {{464, 0}, {16, 64}},
                                                            {{400, 0}, {32, 128}},
                                                            {{264, 136}, {64, 64}},
                                                            {{264, 0}, {128, 128}},
-                                                           {{0, 0}, {256, 256}}}};
-    static_assert(kBySprite.size() == static_cast<std::size_t>(Sprite::kVignette) + 1);
+                                                           {{0, 0}, {256, 256}},
+                                                           {{344, 140}, {kShades * kShadePx, kShadePx}}}};
+    static_assert(kBySprite.size() == static_cast<std::size_t>(Sprite::kShade) + 1);
     return kBySprite[static_cast<std::size_t>(sprite)];
+}
+
+SpritePlace placeOfShade(double darkness) {
+    const auto shade = static_cast<unsigned>(std::clamp(std::ceil(kShades * darkness), 1.0, double{kShades})) - 1;
+    // Its middle: beside it lies another one.
+    return {placeOf(Sprite::kShade).from_px + glm::uvec2(shade * kShadePx + 2, 2), glm::uvec2(kShadePx - 4)};
 }
 
 TexelLayout texelLayoutOf(vk::Format format) {
@@ -95,7 +105,8 @@ std::uint32_t texelOf(const glm::dvec3& light, double alpha, const TexelLayout& 
 
 TexelPicture drawSprites(const TexelLayout& layout) {
     TexelPicture sheet{kSheetPx, std::vector<std::uint32_t>(std::size_t{kSheetPx.x} * kSheetPx.y, 0)};
-    for (const Sprite sprite : {Sprite::kRay, Sprite::kFadingRay, Sprite::kHandle, Sprite::kKnob, Sprite::kTarget, Sprite::kVignette}) {
+    for (const Sprite sprite :
+         {Sprite::kRay, Sprite::kFadingRay, Sprite::kHandle, Sprite::kKnob, Sprite::kTarget, Sprite::kVignette, Sprite::kShade}) {
         const SpritePlace place = placeOf(sprite);
         // The picture is continued into a rim around it.
         const glm::uvec2 low = place.from_px - glm::min(kRimPx, place.from_px), high = place.from_px + place.size_px + kRimPx;

@@ -17,7 +17,9 @@ enum class Sprite {
     kKnob,       // at a controller's front
     kTarget,     // on the floor
     kVignette,   // clear in the middle
+    kShade,      // black, and transparent: the first of kShades, from the faintest to the darkest
 };
+inline constexpr int kShades = 16;
 
 // A sprite that hangs in the room.
 struct Thing {
@@ -30,6 +32,8 @@ struct SpritePlace {
     glm::uvec2 from_px, size_px;
 };
 SpritePlace placeOf(Sprite sprite);
+// That of a shade of so much darkness, above 0 up to 1.
+SpritePlace placeOfShade(double darkness);
 
 // The layout of texels in a swapchain's images.
 struct TexelLayout {

@@ -36,6 +36,8 @@ double halfWidthSeen(const std::array<xr::EyeView, 2>& views) {
 
 }  // namespace
 
+double coverMetres(const std::array<xr::EyeView, 2>& views) { return 2.0 * kVignetteMetres * kMargin * halfWidthSeen(views); }
+
 void Vignette::update(bool moves, double step_seconds) {
     closed_ = std::clamp(closed_ + (moves ? step_seconds / kClosesInSeconds : -step_seconds / kOpensInSeconds), 0.0, 1.0);
 }
@@ -43,7 +45,7 @@ void Vignette::update(bool moves, double step_seconds) {
 std::optional<double> Vignette::widthMetres(const std::array<xr::EyeView, 2>& views) const {
     if (closed_ == 0.0) { return std::nullopt; }
     constexpr double kOpen = kCorner / kVignetteClear;  // then everything visible is clear
-    return 2.0 * kVignetteMetres * kMargin * halfWidthSeen(views) * (kOpen + closed_ * (1.0 - kOpen));
+    return coverMetres(views) * (kOpen + closed_ * (1.0 - kOpen));
 }
 
 }  // namespace binosplat

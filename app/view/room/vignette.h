@@ -11,17 +11,20 @@ namespace binosplat {
 // In shares of the picture's half width: clear nearer to the middle than the first, dark beyond the second.
 constexpr double kVignetteClear = 0.55, kVignetteDark = 0.95;
 
+// The width of a square picture straight before the head, `kVignetteMetres` away, that covers what both eyes see.
+constexpr double kVignetteMetres = 5.0;
+[[nodiscard]] double coverMetres(const std::array<xr::EyeView, 2>& views);
+
 class Vignette {
 public:
     // Closes while the wearer `moves` and opens again otherwise, each within a moment.
     void update(bool moves, double step_seconds);
-    // The width of a square picture straight before the head, `kVignetteMetres` away, so that it covers what both eyes see. Its opening
-    // grows with it: the wider it is, the less of it is seen. Empty while nothing of it would be seen.
+    // The width of its picture, at least coverMetres(). Its opening grows with it: the wider it is, the less of it is seen. Empty while
+    // nothing of it would be seen.
     [[nodiscard]] std::optional<double> widthMetres(const std::array<xr::EyeView, 2>& views) const;
 
 private:
     double closed_ = 0.0;  // 0 to 1
 };
-constexpr double kVignetteMetres = 5.0;
 
 }  // namespace binosplat

@@ -11,7 +11,7 @@
 
 namespace binosplat {
 
-enum class PanelPage { kView, kScenes, kMethod, kTime };
+enum class PanelPage { kView, kScenes, kMethod, kTime, kHelp };
 // The background behind the scene; kAsSet: that of --background.
 enum class Backdrop { kAsSet, kBlack, kGrey, kWhite };
 inline glm::dvec3 colourOf(Backdrop backdrop) {

@@ -10,6 +10,23 @@
 
 namespace binosplat {
 
+namespace {
+
+constexpr double kPalmCosine = 0.75;
+
+// A hand whose palm is turned to the eyes points at nothing; its pinch is the menu button that bare hands lack.
+bool showsPalm(const xr::Hand& hand, int h, const glm::dvec3& eye) {
+    if (!hand.joints) { return false; }
+    const auto place = [&](XrHandJointEXT joint) { return (*hand.joints)[static_cast<std::size_t>(joint)].place; };
+    const glm::dvec3 wrist = place(XR_HAND_JOINT_WRIST_EXT);
+    const glm::dvec3 across = glm::cross(place(XR_HAND_JOINT_INDEX_PROXIMAL_EXT) - wrist, place(XR_HAND_JOINT_LITTLE_PROXIMAL_EXT) - wrist);
+    const glm::dvec3 to_eye = eye - place(XR_HAND_JOINT_PALM_EXT);
+    const double facing = (h == kRight ? 1.0 : -1.0) * glm::dot(across, to_eye);
+    return facing > kPalmCosine * glm::length(across) * glm::length(to_eye);
+}
+
+}  // namespace
+
 WearerControls::WearerControls() {
     tools_.push_back(std::make_unique<Walk>());
     tools_.push_back(std::make_unique<Teleport>());
@@ -17,9 +34,18 @@ WearerControls::WearerControls() {
     tools_.push_back(std::make_unique<Grab>());
 }
 
-void WearerControls::update(const WearerNow& now, PanelInRoom& panel, ViewState& state) {
+void WearerControls::update(const WearerNow& seen, PanelInRoom& panel, ViewState& state) {
+    WearerNow now = seen;
+    for (const int h : {kLeft, kRight}) {
+        xr::Hand& hand = now.hands[static_cast<std::size_t>(h)];
+        if (!showsPalm(hand, h, now.room_from_head.position)) { continue; }
+        hand.menu = hand.menu || hand.clicks;
+        hand.clicks = false;
+        hand.aim.reset();
+    }
     pressButtons(now, panel, state);
     panel.update(now.hands, state.settings().panel);
+    if (state.settings().panel) { panel.comeBefore(now.room_from_head, now.step_seconds); }
     for (const auto& tool : tools_) { tool->update(now, panel, state); }
 }
 

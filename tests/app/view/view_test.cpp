@@ -193,31 +193,61 @@ TEST_CASE("the wearer begins at the scene's own view, upright, wherever the runt
     const ViewRun usual = runClean(work, "usual",
                                    kBeginning +
                                        "head 0 position 0 1.6 0\nhead 0.1 position 0 1.6 0\nhead 0.15 position 0.8 1.4 0.5 turn 70 0\n"
-                                       "head 0.3 position 0.8 1.4 0.5 turn 70 0\nhead 0.35 position 0.8 1.4 0.5 turn -130 25\n"
-                                       "at 0.22 recentre\nat 0.4 recentre\nat 0.5 exit\n",
+                                       "head 0.6 position 0.8 1.4 0.5 turn 70 0\nhead 0.65 position 0.8 1.4 0.5 turn -130 25\n"
+                                       "at 0.22 recentre\nat 0.7 recentre\nat 1.2 exit\n",
                                    scene);
     CHECK(usual.says("1.60 m above the floor"));
     CHECK(usual.says("frame 22: the room now begins where the wearer stands, 1.40 m above the floor"));
-    for (const std::size_t frame : {5, 10, 22, 23, 25, 45}) { checkAtTheBeginning(usual, frame); }
+    for (const std::size_t frame : {5, 10, 22, 23, 25, 105}) { checkAtTheBeginning(usual, frame); }
     CHECK(usual.likeness(5, 20) < kOtherPictureDb);
-    CHECK(usual.likeness(5, 25) > kSamePictureDb);
+    CHECK(usual.likeness(5, 55) > kSamePictureDb);  // out of the dark
     CHECK(glm::length(panelInRoom(usual, 5) - panelInRoom(usual, 25)) < 1e-5);
     // Upright, too: a tilted head sees a tilted scene.
-    CHECK(usual.likeness(5, 45) < kOtherPictureDb);
-    CHECK(std::abs(panelInRoom(usual, 5).y - panelInRoom(usual, 45).y) < 1e-5);
+    CHECK(usual.likeness(5, 105) < kOtherPictureDb);
+    CHECK(std::abs(panelInRoom(usual, 5).y - panelInRoom(usual, 105).y) < 1e-5);
     // The first true pose of the head counts: it looks aside, before it was lost, and first its turn alone is known.
     const ViewRun away = runClean(work, "away",
                                   kBeginning +
                                       "local position 5 0.3 2 turn 40 0\nhead 0 position 0.4 1.25 -0.3 turn -130 0\n"
-                                      "at -1 head off\nat 0.05 head turn-only\nat 0.12 head on\nat 0.2 exit\n",
+                                      "at -1 head off\nat 0.05 head turn-only\nat 0.12 head on\nat 0.5 exit\n",
                                   scene);
     CHECK(away.says("frame 12: the room now begins where the wearer stands, 1.25 m above the floor"));
     for (const std::size_t frame : {10, 15}) {
         checkAtTheBeginning(away, frame);
         CHECK(std::abs(poseOf(away.view(frame).at("pose")).orientation.w) > 1.0 - 1e-9);
     }
-    CHECK(compare(usual.eye(5, kLeft), away.eye(15, kLeft)).psnrDb() > kSamePictureDb);
+    CHECK(compare(usual.eye(5, kLeft), away.eye(45, kLeft)).psnrDb() > kSamePictureDb);
     CHECK(glm::length(panelInRoom(usual, 5) - panelInRoom(away, 15)) < 1e-5);
+}
+
+TEST_CASE_FIXTURE(AtWork, "the room begins anew where somebody puts the headset on, not on the desk; what jumps comes out of the dark") {
+    const std::string script =
+        "size 64 64\nframes every 1\nhead 0 position 0 0.8 0\nhead 0.3 position 0 0.8 0\nhead 0.4 position 1 1.6 0 turn 40 0\n"
+        "at 0 present off\nat 0.5 present on\nat 1.2 exit\n";
+    const std::string arguments = "builtin:slanted-wall --load-first --hide-panel --hide-hands --mode mono";
+    const ViewRun run = runClean(work, "lifted", script, arguments);
+    const std::vector<std::string> begins = run.lines("the room now begins where the wearer stands");
+    REQUIRE(begins.size() == 2);
+    // As it was on the desk, after a frame in the dark.
+    CHECK(run.likeness(run.frameAt(1.0), run.frameAt(0.2)) > 40.0);
+    const auto light = [&](std::size_t frame) {
+        const Image seen = run.eye(frame, kLeft);
+        return std::accumulate(seen.values.begin(), seen.values.end(), 0.0f);
+    };
+    const std::size_t dark = std::stoul(begins[1].substr(begins[1].find(' ')));
+    CHECK(light(dark) < 0.01f * light(run.frameAt(1.0)));
+    CHECK(light(dark + 10) < 0.9f * light(dark + 18));
+    CHECK(run.quadsWhere(run.frameAt(1.0), [](const auto&) { return true; }).empty());
+}
+
+TEST_CASE_FIXTURE(AtWork, "with the panel hidden a message is a line before the eyes, for some seconds") {
+    const std::string script = "size 64 64\nframes none\npress right thumbstick 0.5 0.6\nat 8 exit\n";
+    const ViewRun run = runClean(work, "said", script, "builtin:one-splat --load-first --hide-panel --hide-hands --mode mono");
+    CHECK(run.says("this scene has no viewpoints"));
+    const auto lines = [&](double seconds) {
+        return run.quadsWhere(run.frameAt(seconds), [](const nlohmann::json& quad) { return quad.at("space") == "VIEW"; }).size();
+    };
+    for (const auto& [seconds, count] : {std::pair(0.4, 0u), {1.0, 1u}, {5.0, 1u}, {7.5, 0u}}) { CHECK(lines(seconds) == count); }
 }
 
 TEST_CASE_FIXTURE(AtWork, "the near plane is in metres of the wearer, however large the scene is") {

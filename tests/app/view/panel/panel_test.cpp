@@ -1,5 +1,6 @@
 // Facts about the panel's pages: what can be pointed at, whatever stands on them.
 #include "app/options/option_table.h"
+#include "app/view/panel/message_picture.h"
 #include "app/view/scenes/recent_scenes.h"
 #include "app/view/scenes/scene_clock.h"
 #include "app/view/settings/view_settings_table.h"
@@ -11,7 +12,7 @@
 SUITE(panel) {
 
 using Page = PanelPage;
-constexpr std::array kPages{Page::kView, Page::kScenes, Page::kMethod, Page::kTime};
+constexpr std::array kPages{Page::kView, Page::kScenes, Page::kMethod, Page::kTime, Page::kHelp};
 
 TEST_CASE("on each page every widget lies on the panel, none on another, 1.5 degrees high at least, and what is used most twice that") {
     const double half_px = 0.5 * 1.5 * kPanelPx.x / 26.0;
@@ -86,6 +87,31 @@ TEST_CASE_FIXTURE(PanelSketch, "a click reaches what it points at: boxes, button
     CHECK(asks("Next viewpoint", &Asked::viewpoint_step) == 1);
     CHECK(asks("Previous viewpoint", &Asked::viewpoint_step) == -1);
     CHECK(asks("Keep this one", &Asked::keep_viewpoint));
+    click("Help");
+    CHECK(settings.page == Page::kHelp);
+    CHECK(asks("Leave", &Asked::quit));
+    status.window.emplace();  // there H lists the keys
+    draw();
+    CHECK(settings.page == Page::kView);
+}
+
+TEST_CASE_FIXTURE(PanelSketch, "a message is white letters on a dark plate, in two lines if it is long; beside it nothing is seen") {
+    draw();
+    const auto rowsWith = [](const TexelPicture& picture) {
+        std::set<std::size_t> rows;
+        for (std::size_t i = 0; i < picture.texels.size(); ++i) {
+            if ((picture.texels[i] & 0xff) > 200) { rows.insert(i / kMessagePx.x); }
+        }
+        return rows;
+    };
+    const TexelPicture line = drawMessage("one line", {false, false}),
+                       two = drawMessage(std::string(200, 'w') + " and more", {false, false});
+    REQUIRE(line.texels.size() == std::size_t{kMessagePx.x} * kMessagePx.y);
+    CHECK(line.texels[0] == 0);
+    CHECK((line.texels[line.texels.size() / 2 + 10] >> 24) == 0);  // at the left, in the middle
+    CHECK(rowsWith(line).size() > 12);
+    CHECK(rowsWith(line).size() < 30);
+    CHECK(rowsWith(two).size() > rowsWith(line).size());
 }
 
 TEST_CASE_FIXTURE(PanelSketch, "a scene that moves has a page of its own, with what lets it rest, step, and go to a frame") {
@@ -335,7 +361,7 @@ TEST_CASE_FIXTURE(AtWork, "names of any bytes and of any length are shown, and a
     PanelSketch sketch;
     sketch.settings.page = Page::kScenes;
     sketch.chooser.showFolder(work.path.string());
-    CHECK(sketch.draw().places.size() == 16 + 2 * 5);
+    CHECK(sketch.draw().places.size() == 17 + 2 * 5);
     CHECK(sketch.click(longest).chosen_scene == (work.path / longest).string());
     CHECK(asShown("a\nb\x1b[1m\x7f") ==
           "a\xef\xbf\xbd"

@@ -1,5 +1,6 @@
 // Facts about what hangs in the room: how hands and other pictures are drawn.
 #include "app/view/room/hand_picture.h"
+#include "app/view/room/panel_in_room.h"
 #include "app/view/room/sprites.h"
 #include "tests/suite.h"
 
@@ -41,6 +42,23 @@ TEST_CASE("a hand is drawn where its joints are, and nowhere else") {
     for (const std::uint32_t border : {0u, kHandPicturePx.x - 1}) {
         CHECK(these(alphaAt(picture, border, kHandPicturePx.y / 2), alphaAt(picture, kHandPicturePx.x / 2, border)) == these(0.0, 0.0));
     }
+}
+
+TEST_CASE("a panel out of sight comes before the eyes after a while, one that is seen stays") {
+    PanelInRoom panel({100, 100}, 0.5);
+    const glm::dvec3 before = panel.roomFromPanel().position;
+    const auto look = [&](double right_rad, int frames) {
+        const Pose head{glm::angleAxis(right_rad, glm::dvec3(0.0, 1.0, 0.0)), glm::dvec3(0.0)};
+        for (int i = 0; i < frames; ++i) { panel.comeBefore(head, 0.1); }
+    };
+    look(0.5, 100);
+    look(2.0, 10);
+    look(0.0, 1);
+    look(2.0, 10);
+    CHECK(panel.roomFromPanel().position == before);
+    look(2.0, 10);
+    const glm::dvec3 ahead(std::sin(2.0), 0.0, std::cos(2.0));
+    CHECK(glm::dot(glm::normalize(panel.roomFromPanel().position), ahead) > 0.8);
 }
 
 TEST_CASE("pictures are multiplied by alpha, in the order and the encoding of their image") {

@@ -57,6 +57,28 @@ struct Wearer {
     }
 };
 
+TEST_CASE_FIXTURE(Wearer, "a pinch with the palm towards the eyes is the menu button, one with its back to them is not") {
+    xr::Hand& hand = now.hands[kLeft];
+    hand.joints.emplace();
+    const auto place = [&](XrHandJointEXT joint, double x, double y) {
+        (*hand.joints)[static_cast<std::size_t>(joint)].place = {x - 0.1, y + 0.2, 0.5};
+    };
+    place(XR_HAND_JOINT_PALM_EXT, 0.0, 0.0);
+    place(XR_HAND_JOINT_WRIST_EXT, 0.0, 0.06);
+    const auto pinch = [&](double index_x) {
+        place(XR_HAND_JOINT_INDEX_PROXIMAL_EXT, index_x, -0.03);
+        place(XR_HAND_JOINT_LITTLE_PROXIMAL_EXT, -index_x, -0.02);
+        hand.clicks = true;
+        update();
+        hand.clicks = false;
+        update();
+        return state.settings().panel;
+    };
+    CHECK_FALSE(pinch(-0.03));  // of a left hand, the index finger is at the left then
+    CHECK_FALSE(pinch(0.03));
+    CHECK(pinch(-0.03));
+}
+
 ViewSettings teleporting(bool panel) {
     ViewSettings settings;
     settings.panel = panel;
