@@ -18,10 +18,11 @@ struct PastTile {
     std::uint64_t cost = 0;  // in pairs, when it was last rendered
     std::uint32_t age = 0;   // frames since then
     // By quarters, row by row:
-    std::array<double, 4> growth = {};  // of the error's amplitude per frame, as measured then; 0: nothing is known
-    std::array<double, 4> errors = {};  // amplitudes of the expected error
-    std::array<double, 4> grown = {};   // squared errors that this frame's warp is expected to add to a quarter, summed over its pixels
-    double lost = 0.0;                  // of a coarse tile: the amplitude of what it lacks
+    std::array<double, 4> growth = {};    // of the error's amplitude per frame, as measured then; 0: nothing is known
+    std::array<double, 4> errors = {};    // amplitudes of the expected error
+    std::array<double, 4> grown = {};     // squared errors that this frame's warp is expected to add to a quarter, summed over its pixels
+    double lost = 0.0;                    // of a coarse tile: the amplitude of what it lacks
+    std::array<unsigned, 4> unseen = {};  // by quarters: pixels that the past did not see
 };
 
 // A picture of an eye, and what later ones need to know of it.
@@ -69,7 +70,8 @@ struct ChangedRect {
 void markChanged(std::span<PastTile> tiles, glm::uvec2 size_px, std::span<const ChangedRect> rects);
 
 // price: adds the error expected of this frame's warp to the errors of tiles. What is blurred already is blurred more, so that
-// it adds up as an amplitude. Half of it is the growth that was measured, if there is one and most of the quarter was seen.
+// it adds up as an amplitude. Half of it is the growth that was measured, if there is one and most of the quarter was seen; a quarter half
+// of which was not is new, and expected to be off by an amplitude of a half.
 void growErrors(std::span<PastTile> tiles);
 // Also price: what a coarse tile lacks counts as an error of all its quarters as soon as a hundredth would be seen in each pixel. `share`:
 // of an error, what the eye sees (findSharesThere).

@@ -6,6 +6,8 @@ namespace {
 
 constexpr double kChannels = 3.0, kCellPixels = kCell * kCell, kTilePixels = kTileSize * kTileSize;
 constexpr double kMeasuredShare = 0.5, kUnseenGrowth = 0.05;
+constexpr unsigned kNewPixels = 32;
+constexpr double kNewError = 0.5;
 constexpr double kMostChangedError = 0.5, kMostWorth = 2000.0, kStep = 0x1p-20;
 constexpr std::uint64_t kPairsOfTile = 16, kMostCost = 0x1fffff;
 
@@ -18,7 +20,7 @@ std::optional<MovingPixel> pixelOf(const Picture& full, std::size_t i) {
 void growErrors(std::span<PastTile> tiles) {
     for (PastTile& tile : tiles) {
         for (std::size_t q = 0; q < 4; ++q) {
-            const double expected = std::sqrt(tile.grown[q] / (kChannels * kCellPixels));
+            const double expected = tile.unseen[q] >= kNewPixels ? kNewError : std::sqrt(tile.grown[q] / (kChannels * kCellPixels));
             const double measured = tile.growth[q] > 0.0 && expected < kUnseenGrowth ? kMeasuredShare : 0.0;
             tile.errors[q] += (1.0 - measured) * expected + measured * tile.growth[q];
         }
@@ -55,8 +57,8 @@ void markChanged(std::span<PastTile> tiles, glm::uvec2 size_px, std::span<const 
 }
 
 std::uint32_t priceUnderBound(std::uint32_t price, const PastTile& tile, double error_bound) {
-    double unseen = 0.0;  // in pixels; one that the past did not see has an error of 1
-    for (const double grown : tile.grown) { unseen += std::min(grown, kCellPixels); }
+    unsigned unseen = 0;
+    for (const unsigned pixels : tile.unseen) { unseen += pixels; }
     if (unseen >= 0.25 * kTilePixels) { return kNewPrice; }
     const bool is_over = std::ranges::any_of(tile.errors, [&](double error) { return error > error_bound; });
     return std::min((is_over ? kOverPrice : 0) + price / 2, kNewPrice - 1);
@@ -85,10 +87,11 @@ void renderTiles(Past& warped, const Picture& full, std::span<const std::uint64_
         if (kinds[t] == TileKind::kNone || kinds[t] == TileKind::kHidden) { continue; }
         const std::uint32_t age = warped.tiles[t].age;
         const std::array<double, 4> grown = warped.tiles[t].grown;
+        const std::array<unsigned, 4> unseen = warped.tiles[t].unseen;
         warped.tiles[t] = {costs[t], 0, {}, {}, {}};
         if (costs[t] == 0 || age == 0) { continue; }
         for (std::size_t q = 0; q < 4; ++q) {
-            if (std::sqrt(grown[q] / (kChannels * kCellPixels)) >= kUnseenGrowth) { continue; }
+            if (unseen[q] >= kNewPixels || std::sqrt(grown[q] / (kChannels * kCellPixels)) >= kUnseenGrowth) { continue; }
             warped.tiles[t].growth[q] = std::sqrt(squares[t][q] / (kChannels * kCellPixels)) / age;
         }
     }

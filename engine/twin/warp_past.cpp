@@ -176,6 +176,7 @@ private:
             }
             const PixelFromPast made = makePixel(view_, middle_px, block.nearest, block.farthest);
             tile.grown[quarter] += made.error;
+            tile.unseen[quarter] += made.seen ? 0 : 1;
             warped_.unseen[indexOf(pixel)] = made.seen ? 0 : 1;
             put(pixel, made.pixel, made.colour);
         }

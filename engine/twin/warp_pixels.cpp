@@ -6,7 +6,7 @@ namespace {
 
 constexpr int kSteps = 3, kFrontReach = 2;
 constexpr std::uint32_t kMixedCode = 21;
-constexpr double kUnseenError = 1.0;
+constexpr double kUnseenError = 1.0, kUncoveredError = 0.001;
 
 struct Found {
     PastView::Seen seen;
@@ -108,16 +108,18 @@ PixelFromPast makePixel(const PastView& view, const glm::dvec2& wanted_px, doubl
     const std::uint32_t code = found.seen.pixel ? found.seen.pixel->spread : 0;
     const double spread = kOwnSpread * spreadOf(code) * found.seen.inverse_depth + 0.5 * (near - far);
     const glm::dvec2 off_px = view.uncertainMove(wanted_px, spread);
+    const bool nothing = !found.seen.pixel || !view.isInside(found.place_px);
+    const double unseen = found.agrees ? 0.0 : nothing ? kUnseenError : kUncoveredError;
     if (is_flat) {
         const glm::dvec2 at = glm::clamp(found.place_px, glm::dvec2(0.5), glm::dvec2(view.last) + 0.5) - 0.5, base = glm::floor(at);
         return {sampleSmoothly(view, at + 0.5),
                 {found.seen.inverse_depth, code},
                 found.agrees,
-                found.agrees ? lossAt(view, glm::ivec2(base), at - base, off_px) : kUnseenError};
+                lossAt(view, glm::ivec2(base), at - base, off_px) + unseen};
     }
     const Sample sample = sampleAround(view, found.place_px);
     const double amplitude = std::sqrt(sample.lost) + glm::length(off_px.x * sample.across + off_px.y * sample.down);
-    return {sample.colour, {found.seen.inverse_depth, code}, found.agrees, found.agrees ? squareOf(amplitude) : kUnseenError};
+    return {sample.colour, {found.seen.inverse_depth, code}, found.agrees, squareOf(amplitude) + unseen};
 }
 
 }  // namespace binosplat::reference

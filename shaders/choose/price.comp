@@ -8,6 +8,7 @@
 #include "lib/group.glsl"
 #include "lib/last_group.glsl"
 #include "lib/gaze.glsl"
+#include "lib/past_tile.glsl"
 
 layout(local_size_x = kWarpGroup) in;
 layout(push_constant, scalar) uniform Push { PricePass pass; };
@@ -31,7 +32,8 @@ uint errorOfPast(PastTile tile) {
 PastTile withGrowth(PastTile tile) {
     [[unroll]] for (uint q = 0; q < 4; ++q) {
         // The amplitude per pixel and channel.
-        const float grown = sqrt(float(tile.grown[q]) / (kErrorSteps * 3 * kCellSize * kCellSize));
+        const float grown =
+            unseenIn(tile.unseen, q) >= kNewPixels ? kNewError : sqrt(float(tile.grown[q]) / (kErrorSteps * 3 * kCellSize * kCellSize));
         tile.errors[q] += mix(grown, tile.growth[q], kMeasuredShare * float(tile.growth[q] > 0 && grown < kUnseenGrowth ? 1 : 0));
     }
     return tile;
@@ -47,10 +49,9 @@ PastTile withLoss(PastTile tile, uvec2 at) {
 
 // The bin of a tile under a bound: by two bins in one, those above it before the others and those that nobody saw before before all.
 uint binUnderBound(uint bin, PastTile tile, float share) {
-    // Errors of pixels that were seen may be greater than those of others, and count as these.
-    const uvec4 unseen = min(tile.grown, uvec4(kUnseenError * kErrorSteps * kCellSize * kCellSize));
-    const float pixels = (float(unseen.x) + float(unseen.y) + float(unseen.z) + float(unseen.w)) / (kUnseenError * kErrorSteps);
-    if (pixels >= kNewShare * kTileSize * kTileSize) { return kNewBin; }
+    uint unseen = 0;
+    [[unroll]] for (uint q = 0; q < 4; ++q) { unseen += unseenIn(tile.unseen, q); }
+    if (float(unseen) >= kNewShare * kTileSize * kTileSize) { return kNewBin; }
     const bool is_over = any(greaterThan(sqrt(share) * tile.errors, vec4(FIRST.warp.error_bound)));
     return min((is_over ? kOverBin : 0) + bin / 2, kNewBin - 1);
 }

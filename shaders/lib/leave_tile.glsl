@@ -1,5 +1,7 @@
 // What rasterize leaves to pictures that are made from its own: how far off a tile was, and how fast its error grew.
 
+#include "lib/past_tile.glsl"
+
 // Adds the difference between a pixel and what was there before.
 void addError(inout float error, vec3 shown, uvec2 colours, uint at) {
     const vec3 off = shown - colourAt(FloatColours(colours), HalfColours(colours), at).rgb;
@@ -19,6 +21,9 @@ void leaveTile(uint tile, uint cost, vec4 sums, float lost) {
     const uint age = isMade() ? past_tiles.at[tile].age : 0;  // 0: nothing was there
     // What was wrong because nobody had seen it says nothing of later frames.
     const vec4 expected = age > 0 ? amplitudeOf(vec4(past_tiles.at[tile].grown)) : vec4(1);
-    const vec4 growth = mix(amplitude / float(max(age, 1)), vec4(0), greaterThanEqual(expected, vec4(kUnseenGrowth)));
-    past_tiles.at[tile] = PastTile(cost, 0, growth, vec4(0), uvec4(0), lost);
+    vec4 growth = mix(amplitude / float(max(age, 1)), vec4(0), greaterThanEqual(expected, vec4(kUnseenGrowth)));
+    [[unroll]] for (uint q = 0; q < 4; ++q) {
+        if (isMade() && unseenIn(past_tiles.at[tile].unseen, q) >= kNewPixels) { growth[q] = 0; }
+    }
+    past_tiles.at[tile] = PastTile(cost, 0, growth, vec4(0), uvec4(0), lost, 0);
 }

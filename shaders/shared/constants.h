@@ -206,8 +206,13 @@ BINOSPLAT_CONSTANT uint kPastSteps = 3;
 // content of the words this far around; from eye to eye, with that of itself and its two neighbours in the row.
 BINOSPLAT_CONSTANT uint kMixedCode = 21;
 BINOSPLAT_CONSTANT int kFrontReach = 2;
-// The squared error, in three channels, of a pixel that the past did not see.
+// The squared error, in three channels, of a pixel of which the past shows nothing, and of one that a silhouette uncovers: the few of them
+// resemble what lies beside, and are off by little more than the picture's changes tell (measured). A quarter of a tile with this many that
+// the past did not see is new, and expected to be off by that amplitude.
 BINOSPLAT_CONSTANT float kUnseenError = 1.0f;
+BINOSPLAT_CONSTANT float kUncoveredError = 0.001f;
+BINOSPLAT_CONSTANT uint kNewPixels = 32;
+BINOSPLAT_CONSTANT float kNewError = 0.5f;
 // The least squared error that a warped pixel takes on, (1/4000)^2 in three channels, so that every tile gets its turn.
 BINOSPLAT_CONSTANT float kLeastGrowth = 1.9e-7f;
 // What the blocks of a quarter bring along from the past, amplitudes up to 1 and their squares, is summed in steps of 2^-30.

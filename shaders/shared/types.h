@@ -162,6 +162,7 @@ struct PastTile {
     vec4 errors;  // the amplitude of the expected error (root of the mean square over pixels and channels)
     uvec4 grown;  // until tiles are chosen: squared errors that the quarters are expected to take on in this frame, summed, in kErrorSteps
     float lost;   // of a coarse tile: the amplitude of what it lacks, which its eye did not see then
+    uint unseen;  // by quarters, eight bits each: pixels that the past did not see
 };
 BINOSPLAT_ARRAY_OF(PastTile, PastTiles);
 

@@ -294,7 +294,7 @@ void main() {
     const float guess = look(view, movePixelAnywhere(view.past_from_now, middle_px, 0).xy, middle_px).inverse_depth;
     const uvec2 from = pixelAt(view.past_size_px, movePixelAnywhere(view.past_from_now, middle_px, guess).xy) / kTileSize;
     const PastTile before = pass.source_tiles.at[from.y * view.past_size_tiles.x + from.x];
-    PastTile now = PastTile(before.cost, before.age + 1, vec4(0), vec4(0), uvec4(0), before.lost);
+    PastTile now = PastTile(before.cost, before.age + 1, vec4(0), vec4(0), uvec4(0), before.lost, 0);
     [[unroll]] for (uint q = 0; q < 4; ++q) {
         const uint its_cell = (q >> 1) * kRegionCells.x + thread * (kTileSize / kCellSize) + (q & 1);
         // A quarter has two blocks, side by side, if the picture does not end between them.

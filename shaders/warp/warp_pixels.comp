@@ -102,8 +102,8 @@ Sample sampleSmoothly(vec2 place_px, ivec2 size, vec2 direction) {
     return Sample(max(sum, vec4(0)), change, dot(lost_across, lost_across) + dot(lost_down, lost_down));
 }
 
-// Makes one pixel; returns its expected squared error.
-float makePixel(PastView view, uvec2 pixel, vec2 depths) {
+// Makes one pixel; returns its expected squared error, of which `unseen` is for that the past did not see it.
+float makePixel(PastView view, uvec2 pixel, vec2 depths, out float unseen) {
     const vec2 wanted_px = vec2(pixel) + 0.5;
     Seen from_near, from_far;
     vec2 near_px, far_px;
@@ -117,6 +117,7 @@ float makePixel(PastView view, uvec2 pixel, vec2 depths) {
     if (takes_near) { seen = from_near; }
     vec2 place_px = takes_near ? near_px : far_px;
     const bool found = near_found || far_found;
+    unseen = found ? 0 : seen.word == 0 || !isInPast(view, place_px) ? kUnseenError : kUncoveredError;
     // A pixel that blends two depths moves with what stands in front, so that a silhouette keeps its shape.
     if (found && !is_flat) {
         const vec3 with_front = movePixelAnywhere(view.past_from_now, wanted_px, frontAround(view, place_px));
@@ -140,7 +141,7 @@ float makePixel(PastView view, uvec2 pixel, vec2 depths) {
     putWord(view, pixel, movingPixel(seen.inverse_depth, kLanded, seen.word & kSpreadBits));
     putPixel(view, pixel, one.colour);
     const float amplitude = sqrt(one.lost) + length(one.gradient);
-    return found ? min(amplitude * amplitude, kMaxPixelError) : kUnseenError;
+    return min(amplitude * amplitude + unseen, kMaxPixelError);
 }
 
 void main() {
@@ -153,9 +154,12 @@ void main() {
         const uint in_block = i % kBlockPixels;
         const uvec2 pixel = uvec2(block.place & 0xffffu, block.place >> 16) * kBlock + uvec2(in_block % kBlock.x, in_block / kBlock.x);
         if (all(lessThan(pixel, view.size_px))) {
-            const float grown = makePixel(view, pixel, block.inverse_depths);
-            const uvec2 tile = pixel / kTileSize, quarter = pixel % kTileSize / kCellSize;
-            atomicAdd(pass.tiles.at[tile.y * view.size_tiles.x + tile.x].grown[2 * quarter.y + quarter.x], uint(grown * kErrorSteps));
+            float unseen;
+            const float grown = makePixel(view, pixel, block.inverse_depths, unseen);
+            const uvec2 place = pixel / kTileSize, in_tile = pixel % kTileSize / kCellSize;
+            const uint tile = place.y * view.size_tiles.x + place.x, quarter = 2 * in_tile.y + in_tile.x;
+            atomicAdd(pass.tiles.at[tile].grown[quarter], uint(grown * kErrorSteps));
+            if (unseen > 0) { atomicAdd(pass.tiles.at[tile].unseen, 1u << (8 * quarter)); }
         }
         i += gl_NumWorkGroups.x * kGroupSize;
     } while (i < pixels);

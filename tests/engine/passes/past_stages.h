@@ -15,6 +15,7 @@ inline reference::PastTile tileOf(const gpu::PastTile& tile) {
         twin.growth[static_cast<std::size_t>(q)] = static_cast<double>(tile.growth[q]);
         twin.errors[static_cast<std::size_t>(q)] = static_cast<double>(tile.errors[q]);
         twin.grown[static_cast<std::size_t>(q)] = tile.grown[q] / kErrorSteps;
+        twin.unseen[static_cast<std::size_t>(q)] = tile.unseen >> (8 * q) & 0xff;
     }
     return twin;
 }
@@ -133,7 +134,7 @@ inline void compareWarped(WarpDifferences& differences, const EyeOnDevice& made,
             differences.grown += a.grown[q];
             differences.twin_grown += b.grown[q];
         }
-        differences.other_tiles += a.cost == b.cost && a.age == b.age ? 0 : 1;
+        differences.other_tiles += a.cost == b.cost && a.age == b.age && a.unseen == b.unseen ? 0 : 1;
     }
     reference::growErrors(twin.tiles);
     for (std::size_t t = 0; t < twin.tiles.size(); ++t) {

@@ -37,6 +37,7 @@ Tiles drawPast(glm::uvec2 size, std::mt19937& random) {
             tile.growth[q] = is_still || random() % 3 == 0 ? 0.0f : 0.02f * draw();
             tile.errors[q] = is_still || random() % 4 == 0 ? 0.0f : 0.2f * std::pow(draw(), 6.0f);
             tile.grown[q] = is_still || random() % 4 == 0 ? 0 : static_cast<gpu::uint>(random()) >> (4 + random() % 28);
+            tile.unseen |= random() % 4 == 0 ? static_cast<gpu::uint>(random() % 65) << (8 * q) : 0;
         }
         drawn.past.push_back(tile);
         kind = random() % 12 == 0 ? gpu::kTileHidden : 0;
@@ -335,7 +336,7 @@ TEST_CASE_FIXTURE(Gpu, "of equal tiles with a past the first eye's are first, an
     std::vector<Tiles> bounded = equal;
     bounded[0].past[20].errors = gpu::vec4(0.01f, 0.11f, 0.01f, 0.01f);
     bounded[1].past[30].errors = bounded[1].past[40].errors = gpu::vec4(0.2f);
-    bounded[1].past[40].grown = gpu::uvec4(static_cast<gpu::uint>(kErrorSteps * 20.0));
+    bounded[1].past[40].unseen = 0x14141414;  // 20 pixels each
     How how{.budget = 1.0, .error_bound = 0.105};
     checkChoice(*this, bounded, how);
     const auto over = chooseOnDevice(*this, bounded, how);

@@ -131,6 +131,9 @@ TEST_CASE("what was hidden behind a nearer wall is not taken for seen, and the n
         for (std::size_t x = 80; x < 160; ++x) { CHECK(depthAt(warped, row + x) == doctest::Approx(0.1)); }
         CHECK(std::count(warped.unseen.begin() + static_cast<int>(row), warped.unseen.begin() + static_cast<int>(row) + 160, 1) == 2);
     }
+    // What a silhouette uncovers is expected to resemble what lies beside it; of a tile's quarter, 16 such pixels.
+    CHECK(warped.picture.tiles[14].unseen == std::array<unsigned, 4>{0, 16, 0, 16});
+    CHECK(warped.picture.tiles[14].grown[1] < 1.0);
     // And to the left: the near wall covers two pixels that both would claim.
     const WarpedPast covered = warpPast(past, moved(eye, {-0.02, 0.0, 0.0}));
     for (std::size_t x = 78; x < 160; ++x) { CHECK(depthAt(covered, 160 * 24 + x) == doctest::Approx(x < 82 ? 1.0 : 0.1)); }
