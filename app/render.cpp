@@ -67,7 +67,7 @@ RenderOptions asUsed(RenderOptions options, const Scene& scene, const LoadNotes&
         load.sh_degree = static_cast<std::uint32_t>(scene.sh_degree);
         load.antialiased = scene.antialiased;
     }
-    if (!options.run.stereo.order) { options.run.stereo.order = scene.by_distance ? Order::kDistance : Order::kDepth; }
+    options.run.stereo.order = orderOf(options.run.stereo, scene.by_distance ? Order::kDistance : Order::kDepth);
     return options;
 }
 

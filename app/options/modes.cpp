@@ -11,12 +11,16 @@ void requirePeriphery(const StereoOptions& stereo) {
           "--periphery is half, but --foveation is 0, must be the angle within which resolution is full");
 }
 
+Order orderOf(const StereoOptions& stereo, Order usual) {
+    return stereo.order.value_or(stereo.axes == Axes::kStay ? Order::kDistance : usual);
+}
+
 FrameSettings frameSettings(const CameraOptions& camera, const StereoOptions& stereo, Order usual) {
     return {.mode = stereo.mode,
             .dominant = stereo.dominant,
             .near = camera.near.value_or(kUsualNear),
             .background = camera.background,
-            .order = stereo.order.value_or(usual),
+            .order = orderOf(stereo, usual),
             .stereo = stereo.warp,
             .per_eye = stereo.per_eye,
             .half_periphery = stereo.half_periphery};

@@ -13,6 +13,9 @@ void requirePeriphery(const StereoOptions& stereo);
 // In a headset, unless asked otherwise: turning the head swaps no splats, and canted eyes have one order.
 inline constexpr Order kWearersOrder = Order::kDistance;
 
+// The order of splats. Where axes stay, one that does not change when they move.
+Order orderOf(const StereoOptions& stereo, Order usual);
+
 // A frame's settings from the options.
 FrameSettings frameSettings(const CameraOptions& camera, const StereoOptions& stereo, Order usual);
 

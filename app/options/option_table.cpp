@@ -125,7 +125,7 @@ std::span<const OptionRow<RunOptions>> runRows() {
         {{"depth", "stereo", kTried, "KIND", "depth that reprojects a pixel: D, D/A or A/I"},
          field::named<kStereo, kWarp, &StereoSettings::depth_choice>({"sum", "mean", "inverse"})},
         {{"order", "stereo", kTried, "KIND", "blending order: by depth, or by distance from the point midway between the eyes",
-          "the scene's, or depth; with view distance", /*required*/ false, /*by_command*/ true},
+          "the scene's, or depth; with view or --axes stay distance", /*required*/ false, /*by_command*/ true},
          field::named<kStereo, &StereoOptions::order>({"depth", "distance"})},
         {{"resampling", "stereo", kTried, "KIND",
           "reproject and paper modes: warped pixels are sampled with a cubic kernel, or copied forward with gaps interpolated, as in the "

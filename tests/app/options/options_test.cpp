@@ -281,6 +281,9 @@ TEST_CASE_FIXTURE(AtWork, "splats go by depth or by distance: as the command lin
     };
     CHECK_FALSE(renderOptions("").stereo.order);
     CHECK(frameSettings({}, renderOptions("").stereo, Order::kDepth).order == Order::kDepth);
+    StereoOptions stays;
+    stays.axes = Axes::kStay;
+    CHECK(frameSettings({}, stays, Order::kDepth).order == Order::kDistance);
     CHECK(these(orderOf("", Order::kDistance), orderOf(file, Order::kDepth), orderOf("--order depth", Order::kDistance)) ==
           these(Order::kDistance, Order::kDistance, Order::kDepth));
     CHECK(orderOf(file + " --order depth", Order::kDistance) == Order::kDepth);
