@@ -14,7 +14,7 @@ namespace {
 // dB.
 constexpr double kWorkUpPerDb = 0.1, kWorkDownPerDb = 0.05, kErrorDbPerDb = 0.6, kMostWorkPerDb = 0.2;
 // Before anything is measured: a picture of a room, and what `temporal` is off by within a bound.
-constexpr double kUsualLoss = 2e-4, kUsualBelowBoundDb = 14.0;
+constexpr double kUsualLoss = 1e-4, kUsualBelowBoundDb = 14.0;
 // A guess at the shares of a frame's time. Few visits cannot tell all four apart, and leave the others near it.
 constexpr std::array<double, 4> kUsualShares{0.1, 0.15, 0.45, 0.5};
 constexpr double kTrustInUsual = 0.0005;
@@ -22,7 +22,7 @@ constexpr std::size_t kMostVisits = 8, kMostFrames = 9;
 // By half in four seconds.
 constexpr double kLeastWeight = 0.05, kForgottenPerSecond = 0.84;
 constexpr int kFitRounds = 24;  // from the frame before's on
-constexpr double kSmoothing = 0.15;
+constexpr double kSmoothing = 0.15, kLossSmoothing = 0.05;
 // The head may move again as it did lately: work and errors fall slowly, by half in ten seconds at 90 Hz.
 constexpr double kFading = 0.99923;
 // All visits take longer, or all less, when the scene or the device's clock has changed.
@@ -40,6 +40,9 @@ void pushNew(std::deque<double>& values, double value) {
     values.push_back(value);
     if (values.size() > kMostFrames) { values.pop_front(); }
 }
+
+// What half of a resolution loses is 7 / scale^3 times this.
+double lossOf(double half_loss, double scale) { return half_loss * scale * scale * scale / 7.0; }
 
 double follow(double value, double now) { return now > value ? value + kSmoothing * (now - value) : std::max(now, value * kFading); }
 
@@ -61,11 +64,10 @@ double KnobModel::workAt(double bound_db) const {
 }
 
 void KnobModel::add(const Knobs& knobs, const KnobFrame& frame) {
-    const double pixels = knobs.scale * knobs.scale;
     if (!knows()) {
         work_ = frame.work;
         warp_error_ = frame.warp_error > 0.0 ? frame.warp_error : std::pow(10.0, -0.1 * (knobs.bound_db + kUsualBelowBoundDb));
-        loss_ = frame.half_loss > 0.0 ? frame.half_loss * pixels / 3.0 : kUsualLoss;
+        loss_ = kUsualLoss;
     } else if (visits_.back().knobs != knobs) {
         work_ = workAt(knobs.bound_db);
         warp_error_ *= std::pow(10.0, 0.1 * kErrorDbPerDb * (visits_.back().knobs.bound_db - knobs.bound_db));
@@ -82,7 +84,10 @@ void KnobModel::add(const Knobs& knobs, const KnobFrame& frame) {
     if (visits_.size() > 1 && now.all_ms.size() == kSeenForChange) { learnWork(visits_[visits_.size() - 2], now); }
     work_ = follow(work_, frame.work);
     if (frame.warp_error > 0.0) { warp_error_ = follow(warp_error_, frame.warp_error); }
-    if (frame.half_loss > 0.0) { loss_ += kSmoothing * (frame.half_loss * pixels / 3.0 - loss_); }
+    // Once losses are measured, a frame without one had none on its few tiles.
+    if (frame.half_loss > 0.0 || losses_ > 0) {
+        loss_ += std::max(1.0 / ++losses_, kLossSmoothing) * (lossOf(frame.half_loss, knobs.scale) - loss_);
+    }
     fit();
 }
 
@@ -165,7 +170,7 @@ double KnobModel::expectedMs(const Knobs& knobs) const { return sumOf(termsOf(kn
 
 double KnobModel::expectedError(const Knobs& knobs) const {
     const double over_db = knobs.bound_db - visits_.back().knobs.bound_db;
-    return loss_ * (1.0 / (knobs.scale * knobs.scale) - 1.0) + warp_error_ * std::pow(10.0, -0.1 * kErrorDbPerDb * over_db);
+    return loss_ * (std::pow(knobs.scale, -3.0) - 1.0) + warp_error_ * std::pow(10.0, -0.1 * kErrorDbPerDb * over_db);
 }
 
 Knobs KnobModel::best(double most_ms, const KnobLimits& limits) const {

@@ -68,7 +68,8 @@ private:
     double work_ = 0.0;          // of the present bound, while the head moves
     double work_per_db_ = 0.0;   // its growth, when the bound was changed last
     double warp_error_ = 0.0;    // likewise
-    double loss_ = 0.0;          // of the resolution r: loss_ * (1/r^2 - 1)
+    double loss_ = 0.0;          // of the resolution r: loss_ * (1/r^3 - 1)
+    int losses_ = 0;             // that were measured
     Terms shares_{};             // as fitted to the visits
     std::size_t changed_ = 0;    // frames in a row that took so many times as long as expected
     double changed_ratio_ = 1.0;
