@@ -180,6 +180,7 @@ MethodFrames::Rendered MethodFrames::render(const Cameras& full_cameras, const C
     settings.gazes = gazesOf(cameras, stereo);
     settings.keep_classes = compared;
     settings.keep_past = keep_past;
+    if (chosen) { settings.measured_part = frames_governed_++ % gpu::kMeasuredParts; }
     settings.half_floats = !compared;  // as in the viewer
     settings.keep_depth = false;       // nobody reads it here, so a mode pays for it only if it needs it itself
     StereoFrame& frame = frameFor(method);

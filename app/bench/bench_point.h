@@ -52,6 +52,7 @@ private:
     const Context& context_;
     const GpuScene& scene_;
     std::vector<Entry> frames_;
+    std::uint32_t frames_governed_ = 0;
 };
 
 struct BenchPoint {

@@ -133,7 +133,11 @@ MethodFrames::Rendered MotionPoint::render(const Posed& pose, MethodHistory& seq
     governor.wish(Quality::kBalanced, Mode::kTemporal, {sequence.method.stereo.warp.budget, 1.0});
     if (sequence.next == sequence.chosen.size()) { sequence.chosen.push_back(governor.settings()); }
     MethodFrames::Rendered rendered = render(pose, sequence.method, true, sequence.chosen[sequence.next++]);
-    governor.measure({.gpu_ms = rendered.result.gpu_total_ms, .period_ms = frame_ms_, .work = rendered.result.work_rendered});
+    governor.measure({.gpu_ms = rendered.result.gpu_total_ms,
+                      .period_ms = frame_ms_,
+                      .work = rendered.result.work_rendered,
+                      .warp_error = rendered.result.warp_error,
+                      .half_loss = rendered.result.half_loss});
     return rendered;
 }
 
@@ -194,6 +198,8 @@ void MotionPoint::play(const Cameras& cameras, std::size_t number, double time_s
         row.time_s = time_s;
         setTimes(row, rendered.result);
         if (sequence.governor) { row.chosen = sequence.chosen[sequence.next - 1]; }
+        row.warp_error = rendered.result.warp_error;
+        row.half_loss = rendered.result.half_loss;
         row.work_rendered = pairsOf(rendered.result) / full.pairs;
         std::array<Image, 2> pictures;
         for (const int eye : {kLeft, kRight}) {

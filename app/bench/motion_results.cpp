@@ -201,7 +201,7 @@ std::string motionCsv(const MotionRun& run) {
     const bool is_bounded = std::ranges::any_of(run.frames, [](const MotionFrame& frame) { return frame.bounded.has_value(); });
     if (is_bounded) { csv += ",tiles_kept,tiles_under_bound"; }
     const bool is_governed = std::ranges::any_of(run.frames, [](const MotionFrame& frame) { return frame.chosen.has_value(); });
-    if (is_governed) { csv += ",resolution,error_bound_db"; }
+    if (is_governed) { csv += ",warp_error,half_loss,resolution,error_bound_db"; }
     const bool is_seen = std::ranges::any_of(run.frames, [](const MotionFrame& frame) { return frame.seen.has_value(); });
     csv += is_seen ? ",seen_bad_share,seen_worst_tiles_db,seen_edge,seen_seam,seen_rival\n" : "\n";
     for (const MotionFrame& frame : run.frames) {
@@ -225,7 +225,9 @@ std::string motionCsv(const MotionRun& run) {
         }
         if (is_bounded) { csv += frame.bounded ? fmt::format(",{},{}", frame.bounded->kept, frame.bounded->under) : ",,"; }
         if (is_governed) {
-            csv += frame.chosen ? fmt::format(",{:.6g},{:.6g}", frame.chosen->resolution_scale, frame.chosen->error_bound_db) : ",,";
+            csv += frame.chosen ? fmt::format(",{:.6g},{:.6g},{:.6g},{:.6g}", frame.warp_error, frame.half_loss,
+                                              frame.chosen->resolution_scale, frame.chosen->error_bound_db)
+                                : ",,,,";
         }
         if (is_seen) { csv += visibleCells(frame.seen.value_or(VisibleErrors())); }
         csv += '\n';

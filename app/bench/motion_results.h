@@ -34,9 +34,10 @@ struct MotionFrame {
     std::array<double, 2> flicker{};
     double full_change = 0.0;  // of the full renders, mean of both eyes
     VisibleErrors visible;
-    std::optional<VisibleErrors> seen;       // through the lenses, if there is a headset: SeenThroughLens
-    std::optional<GovernedSettings> chosen;  // if a governor chose the resolution and the bound
-    std::optional<BoundedTiles> bounded;     // of both eyes, if the method has an error bound
+    std::optional<VisibleErrors> seen;         // through the lenses, if there is a headset: SeenThroughLens
+    double warp_error = 0.0, half_loss = 0.0;  // FrameResult
+    std::optional<GovernedSettings> chosen;    // if a governor chose the resolution and the bound
+    std::optional<BoundedTiles> bounded;       // of both eyes, if the method has an error bound
     // The pixels that the scene's motion has changed since the previous frame, seen from this pose (kLeastMoved): their share in both
     // pictures, and their mean squared error, if there are any.
     double moved_share = 0.0;

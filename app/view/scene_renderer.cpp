@@ -145,6 +145,7 @@ FrameSettings SceneRenderer::settingsOfFrame(ConnectedHeadset& headset, const Vi
     frame.gazes = views.gazes;
     frame.times_passes = settings.page == PanelPage::kMethod;
     frame.mark = governed_count_;
+    frame.measured_part = measured_part_ = (measured_part_ + 1) % gpu::kMeasuredParts;
     frame.keep_past = true;
     if (settings.backdrop != Backdrop::kAsSet) { frame.background = colourOf(settings.backdrop); }
     if (seesThrough(settings)) { frame.background = glm::dvec3(0.0); }
@@ -257,7 +258,9 @@ void SceneRenderer::render(ConnectedHeadset& headset, ShownScene& shown, const V
                        .period_ms = headset.session.periodMs(),
                        .is_old = !is_of_now,
                        .lost_periods = headset.session.lostPeriods(),
-                       .work = last_.work_rendered});
+                       .work = last_.work_rendered,
+                       .warp_error = last_.warp_error,
+                       .half_loss = last_.half_loss});
     sayGoverned();
     sayCutShort();
 }

@@ -125,6 +125,7 @@ private:
     double insets_ms_ = 0.0;                // GPU time of the last known insets
     GovernedSettings governed_;             // in the frame drawn last
     std::uint64_t governed_count_ = 0;
+    std::uint32_t measured_part_ = 0;
     bool said_beaten_ = false;
     std::uint64_t cut_short_ = 0;  // frames, as last said
     FrameResult last_;

@@ -83,6 +83,7 @@ void planTemporal(FramePlan& plan, const FrameSettings& settings, std::span<cons
     for (const int e : order) { plan.steps.push_back({Step::Kind::kPast, e}); }
     plan.budget = settings.stereo.budget;
     plan.error_bound_db = settings.stereo.error_bound_db;
+    plan.measured_part = settings.measured_part;
     plan.steps.push_back({Step::Kind::kChoose, 0});
     renderChosen(plan, order, list);
 }

@@ -81,12 +81,13 @@ struct FramePlan {
     bool shares_order = false;  // one order of the splats serves all eyes
     double near = 0.2;
     glm::dvec3 background{0.0};
-    double budget = 0.0;                    // of the choice among what pasts have left: a share of the work of the targets that have one
-    double error_bound_db = 0.0;            // of that choice: StereoSettings
-    int dominant = 0;                       // of the targets
-    bool keeps_past = false;                // later frames are made from this one
-    std::optional<int> spare_picture = {};  // the room's picture for the frame after this one
-    int shares_ahead = 1;                   // how many pictures that frame renders at the same time
+    double budget = 0.0;          // of the choice among what pasts have left: a share of the work of the targets that have one
+    double error_bound_db = 0.0;  // of that choice: StereoSettings
+    std::uint32_t measured_part = gpu::kMeasuredParts;  // FrameSettings
+    int dominant = 0;                                   // of the targets
+    bool keeps_past = false;                            // later frames are made from this one
+    std::optional<int> spare_picture = {};              // the room's picture for the frame after this one
+    int shares_ahead = 1;                               // how many pictures that frame renders at the same time
 
     // The target that others are made from, or the one that is rendered in full.
     [[nodiscard]] int firstTarget() const;

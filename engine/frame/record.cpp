@@ -77,6 +77,7 @@ void FrameRecorder::describe(const FramePlan& plan, int index, TargetState& stat
         state.row_words = words.row_words;
     }
     if (plan.shares() > 1 && index > 0) { state.first_tile = tileCountOf(plan.targets[0]); }
+    state.measured = plan.measured_part;
     state.is_made = target.past ? 1 : 0;
     state.area = static_cast<float>(target.past ? 1.0 / (target.eye.own_pixel_px * target.eye.own_pixel_px) : 1.0);
     state.counters.may_be_coarse = target.coarse ? 1 : 0;

@@ -56,6 +56,7 @@ void countPast(const FrameFacts& frame, FrameResult& result) {
     WarpedCounters& counters = result.counters.warped.emplace();
     std::uint64_t shown = 0;
     WarpedCounters::Work work;
+    double left = 0.0, expected = 0.0, found = 0.0, wider = 0.0;
     if (frame.plan.error_bound_db > 0.0) { counters.tiles_over_bound = 0; }
     for (std::size_t t = 0; t < frame.plan.targets.size(); ++t) {
         if (!frame.plan.targets[t].past) { continue; }
@@ -67,9 +68,18 @@ void countPast(const FrameFacts& frame, FrameResult& result) {
         counters.bytes += buffers.bytes();
         work.full += state.warp_counters.picture_cost;
         work.patched += state.warp_counters.chosen_cost;
+        left += state.warp_counters.left_squares;
+        expected += state.warp_counters.expected_squares;
+        found += state.warp_counters.found_squares;
+        wider += state.warp_counters.wider_squares;
         shown += buffers.tileCount() - frame.plan.targets[t].tiles_hidden;
     }
     counters.tiles_shown = shown;
+    const double all_steps = static_cast<double>(gpu::kSquareSteps * 3 * gpu::kTileSize * gpu::kTileSize) *
+                             static_cast<double>(std::max<std::uint64_t>(shown, 1));
+    // Expectations err alike where tiles are rendered, which says by how much.
+    result.warp_error = left / all_steps * (expected > 0.0 ? std::min(found / expected, 1.0) : 1.0);
+    result.half_loss = wider / all_steps * gpu::kMeasuredParts;
     result.tiles_rendered = shown > 0 ? static_cast<double>(counters.tiles_patched) / static_cast<double>(shown) : 0.0;
     if (work.full > 0) {
         result.work_rendered = static_cast<double>(work.patched) / static_cast<double>(work.full);

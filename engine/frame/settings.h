@@ -45,7 +45,10 @@ struct FrameSettings {
     // with keep_past, too.
     bool keep_past = false;
     bool times_passes = true;  // for FrameResult::gpu_ms: two timestamps a pass instead of two a frame
-    std::uint64_t mark = 0;    // the caller's own; comes back with the result
+    // kTemporal: frames also measure what half of the resolution would lose, on so many parts of their tiles in turn: this is the turn. As
+    // many as there are parts, or more: they do not.
+    std::uint32_t measured_part = gpu::kMeasuredParts;
+    std::uint64_t mark = 0;  // the caller's own; comes back with the result
 };
 
 // Of such a mask.
@@ -58,7 +61,10 @@ struct FrameResult {
     PassTimes gpu_ms;           // of FrameSettings::times_passes
     double gpu_total_ms = 0.0;  // from the first pass to the last
     FrameCounters counters;
-    Traffic stereo_bytes_per_pixel;                    // of the passes that make one eye from the other, if the mode has any
+    Traffic stereo_bytes_per_pixel;  // of the passes that make one eye from the other, if the mode has any
+    // Of `temporal`, as mean squares over pixels and channels, of values 0 to 1; 0 if not known: what its tiles that were not rendered are
+    // expected to be off by, and what half of the resolution would lose.
+    double warp_error = 0.0, half_loss = 0.0;
     double tiles_rendered = 1.0, work_rendered = 1.0;  // shares of the affiliated eye's tiles, and of its work if the mode weighs it
     std::uint64_t peak_gpu_bytes = 0;                  // the most device memory that this program ever held at a time
     std::vector<std::string> left_out;                 // what this scene and mode did not need

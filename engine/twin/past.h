@@ -100,7 +100,17 @@ std::uint64_t budgetUnderBound(std::span<const PricedTiles> pictures, std::uint6
 
 // rasterize and tile_ranges: puts the tiles of `full` that are rendered over the warped ones. Their error turns out, and is measured for
 // each frame since they were last rendered; not for a tile without pairs, nor where nobody had seen it. `costs`: pairs of each
-// tile.
-void renderTiles(Past& warped, const Picture& full, std::span<const std::uint64_t> costs, std::span<const TileKind> kinds);
+// tile. Returns squared errors of those that were there before, of what had been seen: as they were expected, and as found.
+struct SquaresOfTiles {
+    double expected = 0.0, found = 0.0;
+};
+SquaresOfTiles renderTiles(Past& warped, const Picture& full, std::span<const std::uint64_t> costs, std::span<const TileKind> kinds);
+// Also rasterize: what the tile's pixels would lose as pixels twice as wide, of which `wider` is a picture, times the frames since it was
+// rendered, at most 32.
+double widerSquares(const PastTile& tile, const Picture& full, const Picture& wider, std::size_t index, glm::uvec2 size_px);
+// A disc as these see it, in whatever tile it is.
+ProjectedSplat asSeenWider(const ProjectedSplat& disc, glm::uvec2 size_px);
+// select: the squared errors expected of tiles that are not rendered.
+double leftSquares(std::span<const PastTile> tiles, std::span<const TileKind> kinds);
 
 }  // namespace binosplat::reference

@@ -8,7 +8,7 @@ constexpr double kChannels = 3.0, kCellPixels = kCell * kCell, kTilePixels = kTi
 constexpr double kMeasuredShare = 0.5, kUnseenGrowth = 0.05;
 constexpr unsigned kNewPixels = 32;
 constexpr double kNewError = 0.5;
-constexpr double kMostChangedError = 0.5, kMostWorth = 2000.0, kStep = 0x1p-20;
+constexpr double kMostChangedError = 0.5, kMostWorth = 2000.0, kMostSquares = 48.0, kStep = 0x1p-20;
 constexpr std::uint64_t kPairsOfTile = 16, kMostCost = 0x1fffff;
 
 std::optional<MovingPixel> pixelOf(const Picture& full, std::size_t i) {
@@ -72,7 +72,35 @@ double worthOf(const PastTile& tile) {
 
 std::uint64_t costOf(const PastTile& tile) { return std::min(tile.cost + kPairsOfTile, kMostCost); }
 
-void renderTiles(Past& warped, const Picture& full, std::span<const std::uint64_t> costs, std::span<const TileKind> kinds) {
+double leftSquares(std::span<const PastTile> tiles, std::span<const TileKind> kinds) {
+    double squares = 0.0;
+    for (std::size_t t = 0; t < tiles.size(); ++t) {
+        double its = 0.0;
+        for (const double error : tiles[t].errors) { its += kChannels * kCellPixels * error * error; }
+        squares += kinds[t] == TileKind::kNone ? std::min(its, kMostSquares) : 0.0;
+    }
+    return squares;
+}
+
+ProjectedSplat asSeenWider(const ProjectedSplat& disc, glm::uvec2 size_px) {
+    ProjectedSplat wider = disc;
+    wider.low_pass_factor /= 4.0;
+    wider.box_px = glm::ivec4(0, 0, glm::ivec2(size_px));
+    return wider;
+}
+
+double widerSquares(const PastTile& tile, const Picture& full, const Picture& wider, std::size_t index, glm::uvec2 size_px) {
+    const std::size_t columns = tileGrid(size_px).x;
+    double squares = 0.0;
+    for (std::size_t y = index / columns * kTileSize; y < std::min<std::size_t>((index / columns + 1) * kTileSize, size_px.y); ++y) {
+        for (std::size_t x = index % columns * kTileSize; x < std::min<std::size_t>((index % columns + 1) * kTileSize, size_px.x); ++x) {
+            squares += squareOf(glm::length(glm::dvec3(full.rgba[y * size_px.x + x] - wider.rgba[y * size_px.x + x])));
+        }
+    }
+    return squares * std::clamp(tile.age, 1u, 32u);
+}
+
+SquaresOfTiles renderTiles(Past& warped, const Picture& full, std::span<const std::uint64_t> costs, std::span<const TileKind> kinds) {
     const std::size_t width = warped.eye.size_px.x, columns = tileGrid(warped.eye.size_px).x;
     std::vector<std::array<double, 4>> squares(kinds.size(), std::array<double, 4>{});
     for (std::size_t i = 0; i < warped.rgba.size(); ++i) {
@@ -83,18 +111,25 @@ void renderTiles(Past& warped, const Picture& full, std::span<const std::uint64_
         warped.rgba[i] = full.rgba[i];
         warped.pixels[i] = pixelOf(full, i);
     }
+    SquaresOfTiles sums;
     for (std::size_t t = 0; t < kinds.size(); ++t) {
         if (kinds[t] == TileKind::kNone || kinds[t] == TileKind::kHidden) { continue; }
         const std::uint32_t age = warped.tiles[t].age;
-        const std::array<double, 4> grown = warped.tiles[t].grown;
+        const std::array<double, 4> grown = warped.tiles[t].grown, errors = warped.tiles[t].errors;
         const std::array<unsigned, 4> unseen = warped.tiles[t].unseen;
         warped.tiles[t] = {costs[t], 0, {}, {}, {}};
         if (costs[t] == 0 || age == 0) { continue; }
+        SquaresOfTiles its;
         for (std::size_t q = 0; q < 4; ++q) {
             if (unseen[q] >= kNewPixels || std::sqrt(grown[q] / (kChannels * kCellPixels)) >= kUnseenGrowth) { continue; }
             warped.tiles[t].growth[q] = std::sqrt(squares[t][q] / (kChannels * kCellPixels)) / age;
+            its.expected += kChannels * kCellPixels * errors[q] * errors[q];
+            its.found += squares[t][q];
         }
+        sums.expected += std::min(its.expected, kMostSquares);
+        sums.found += std::min(its.found, kMostSquares);
     }
+    return sums;
 }
 
 Past pastOf(const Eye& eye, const Picture& full, std::span<const std::uint64_t> costs) {

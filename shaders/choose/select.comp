@@ -64,6 +64,12 @@ bool isChosen(uint tile, uint tiles, out bool waits) {
     return chosen;
 }
 
+// What the tile is expected to be off by.
+uint squaresOf(uint tile) {
+    const vec4 off = PastTiles(TARGET.past_tiles).at[tile].errors;
+    return uint(min(3 * float(kCellSize * kCellSize) * dot(off, off), kMostSquares) * kSquareSteps + 0.5);
+}
+
 void main() [[subgroup_uniform_control_flow]] {
     const uvec2 size_tiles = TARGET.warp.size_tiles;
     const uint tiles = size_tiles.x * size_tiles.y;
@@ -84,6 +90,8 @@ void main() [[subgroup_uniform_control_flow]] {
     const uint predicted = subgroupAdd(kind == kTilePredicted ? 1 : 0), cheap = subgroupAdd(kind == kTileCheap ? 1 : 0);
     const uint edges = subgroupAdd(kind == kTileEdge ? 1 : 0), waiting = kPast ? subgroupAdd(waits ? 1 : 0) : 0;
     if (kPast && waiting > 0 && subgroupElect()) { atomicAdd(TARGET.warp_counters.waiting_tiles, waiting); }
+    const uint left = kPast ? subgroupAdd(kind == 0 ? squaresOf(tile) : 0) : 0;
+    if (kPast && left > 0 && subgroupElect()) { atomicAdd(TARGET.warp_counters.left_squares, left); }
     uint place = 0;
     if (subgroupElect() && count > 0) {
         place = atomicAdd(TARGET.chosen_tiles.needed, count);

@@ -13,6 +13,8 @@ bool isMade() { return kMasked && (!kCoarse || TARGET.is_made != 0); }
 // Of sums over a quarter's pixels and channels, in kErrorSteps.
 vec4 amplitudeOf(vec4 sums) { return sqrt(sums / (kErrorSteps * 3 * kCellSize * kCellSize)); }
 
+uint inSquareSteps(float squares) { return uint(min(squares, kMostSquares) * kSquareSteps + 0.5); }
+
 // Writes what a picture that is made from this one must know of the tile; `sums` is what its quarters turned out to have had, and
 // `lost` the amplitude that it lacks.
 void leaveTile(uint tile, uint cost, vec4 sums, float lost) {
@@ -21,9 +23,30 @@ void leaveTile(uint tile, uint cost, vec4 sums, float lost) {
     const uint age = isMade() ? past_tiles.at[tile].age : 0;  // 0: nothing was there
     // What was wrong because nobody had seen it says nothing of later frames.
     const vec4 expected = age > 0 ? amplitudeOf(vec4(past_tiles.at[tile].grown)) : vec4(1);
-    vec4 growth = mix(amplitude / float(max(age, 1)), vec4(0), greaterThanEqual(expected, vec4(kUnseenGrowth)));
+    vec4 counts = mix(vec4(1), vec4(0), greaterThanEqual(expected, vec4(kUnseenGrowth)));
     [[unroll]] for (uint q = 0; q < 4; ++q) {
-        if (isMade() && unseenIn(past_tiles.at[tile].unseen, q) >= kNewPixels) { growth[q] = 0; }
+        if (isMade() && unseenIn(past_tiles.at[tile].unseen, q) >= kNewPixels) { counts[q] = 0; }
+    }
+    const vec4 growth = counts * amplitude / float(max(age, 1)), off = past_tiles.at[tile].errors;
+    if (kMasked && age > 0) {
+        atomicAdd(TARGET.warp_counters.expected_squares, inSquareSteps(3 * float(kCellSize * kCellSize) * dot(counts, off * off)));
+        atomicAdd(TARGET.warp_counters.found_squares, inSquareSteps(dot(counts, sums) / kErrorSteps));
     }
     past_tiles.at[tile] = PastTile(cost, 0, growth, vec4(0), uvec4(0), lost, 0);
+}
+
+// True if it is going to be measured what pixels twice as wide would lose of the tile, once it is rendered.
+bool isMeasured(uint tile) {
+    const bool measured = kMeasures && !is_wider && TARGET.is_made != 0 && tile % kMeasuredParts == TARGET.measured;
+    if (measured && gl_LocalInvocationIndex == 0) { frames_waited = clamp(PastTiles(TARGET.past_tiles).at[tile].age, 1, kMostWaited); }
+    return measured;
+}
+
+// What its pixels have found: its error or, if they are twice as wide, their loss.
+void leaveFound(uint tile, uint cost, vec4 sums) {
+    if (kMeasures && is_wider) {
+        atomicAdd(TARGET.warp_counters.wider_squares, inSquareSteps(dot(sums, vec4(1)) / kErrorSteps) * frames_waited);
+    } else {
+        leaveTile(tile, cost, sums, 0);
+    }
 }

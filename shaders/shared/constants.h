@@ -235,6 +235,14 @@ BINOSPLAT_CONSTANT uint kHiddenMargin = 3;
 // is at most kMaxPixelError (more than black and white differ in three channels), so that a tile's sum stays under 2^31.
 BINOSPLAT_CONSTANT float kErrorSteps = 1048576.0f;
 BINOSPLAT_CONSTANT float kMaxPixelError = 4.0f;
+// Squared errors of whole tiles are summed in steps of 2^-10, each at most this, so that the sum over 65,536 tiles has room.
+BINOSPLAT_CONSTANT float kSquareSteps = 1024.0f;
+BINOSPLAT_CONSTANT float kMostSquares = 48.0f;
+// On one tile of so many a frame measures what pixels twice as wide would lose, on others in the next frame. With that alone a picture of
+// half the size is foretold within half a dB on most views: docs/tried.md.
+BINOSPLAT_CONSTANT uint kMeasuredParts = 64;
+BINOSPLAT_CONSTANT float kWiderLowPass = 0.25f;
+BINOSPLAT_CONSTANT uint kMostWaited = 32;  // frames, by which a tile's loss counts, as others like it were not rendered
 // The least error of a hole's pixel, since what is hidden there need not look like what stands next to it: (1/100)^2, so
 // little that it only decides between tiles that are otherwise equal.
 BINOSPLAT_CONSTANT float kLeastHoleError = 1e-4f;

@@ -206,16 +206,22 @@ struct WarpCounters {
     uint predicted_tiles;
     uint cheap_tiles;
     uint newcomers;
-    uint moved_tiles;               // before any is chosen for its error
-    uint picture_cost;              // of all tiles that are shown, in pairs: the work of rendering an eye
-    uint shown_tiles;               // that no lens hides
-    uint saved_cost;                // by warping tiles, as far as known before the choice
-    uint chosen_cost;               // of what is rendered
-    uint moves;                     // 1: something is warped
-    uint pays;                      // 1: warping pays, or would have paid in a frame that could not
-    uint last_bin;                  // of the price list: the one in which the budget ends
-    uint left_for_last;             // of the budget; all ones: it does not end
-    uint waiting_tiles;             // above a bound, but the budget is not enough for them
+    uint moved_tiles;    // before any is chosen for its error
+    uint picture_cost;   // of all tiles that are shown, in pairs: the work of rendering an eye
+    uint shown_tiles;    // that no lens hides
+    uint saved_cost;     // by warping tiles, as far as known before the choice
+    uint chosen_cost;    // of what is rendered
+    uint moves;          // 1: something is warped
+    uint pays;           // 1: warping pays, or would have paid in a frame that could not
+    uint last_bin;       // of the price list: the one in which the budget ends
+    uint left_for_last;  // of the budget; all ones: it does not end
+    uint waiting_tiles;  // above a bound, but the budget is not enough for them
+    // With a past, squared errors of tiles, summed in kSquareSteps: as expected of those that are not rendered, as expected of those that
+    // are and as found, and what pixels twice as wide would lose on measured ones, times the frames that each has waited.
+    uint left_squares;
+    uint expected_squares;
+    uint found_squares;
+    uint wider_squares;
     uvec4 borders_px;               // paper: left, top, right, bottom
     DispatchSize per_pixel_block;   // workgroups over the pixels, 16x8 each; none if nothing is warped
     DispatchSize per_row;           // the same over the rows
@@ -281,6 +287,8 @@ struct TargetState {
     ListState chosen_visible;  // its visible splats, or none if there is no such tile
     uint first_tile;           // of its tiles, which are numbered through all targets that are rendered at once
     uint row_words;            // of `moving` and `arrivals`
+    uint measured;             // of every kMeasuredParts tiles the one on which a loss is measured; kMeasuredParts: none
+    uint unused;               // a multiple of eight bytes in both languages
     uint is_made;              // 1: every tile shows a picture warped from a past, which stays where lists have no room
     float area;                // of a pixel, in pixels of the eye's own picture: the weight of an error in it
 };

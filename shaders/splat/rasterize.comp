@@ -26,6 +26,9 @@ layout(constant_id = 7) const bool kMasked = false;    // only the tiles of its 
 layout(constant_id = 8) const bool kPast = false;      // the picture is going to be a past
 layout(constant_id = 9) const bool kCoarse = false;    // some tiles of the list may be coarse
 
+// Of 3D Gaussians the low-pass is in what is projected.
+const bool kMeasures = kPast && kMasked && kSplatKind == kDiscs;
+
 #include "lib/splat.glsl"
 #include "lib/outline.glsl"
 #include "lib/picture.glsl"
@@ -49,6 +52,9 @@ shared uint cell_splats[kCellsPerTile][kBatchSize / 32];  // four words: blendBa
 shared uint threads_done;
 shared uint squares[kCellsPerTile];  // of the differences between what is rendered and what was there before, in kErrorSteps; by coarse tile
 
+shared uint frames_waited;  // by a measured tile
+bool is_wider = false;       // what is blended is as pixels twice as wide would see it
+
 #include "lib/coarse_tile.glsl"
 
 // The cells of the tile that the splat meets, a bit each.
@@ -69,7 +75,7 @@ uint cellsOf(ProjectedSplat splat, uvec2 tile_px, float low_pass) {
 
 void loadSplat(uint slot, uint lanes_in_subgroup, uint rank, uvec2 tile_px, bool is_coarse) {
     const vec2 middle_px = vec2(pass.eyes.at[gl_WorkGroupID.z].size_px) * 0.5;
-    const float low_pass = pass.eyes.at[gl_WorkGroupID.z].low_pass;
+    const float low_pass = pass.eyes.at[gl_WorkGroupID.z].low_pass * (kMeasures && is_wider ? kWiderLowPass : 1);
     const ProjectedSplat splat = pass.splats.at[rank];
     const bool has_reference = kSplatKind != kDiscs || hasReference(splat);
     const float scale = sqrt(kLog2PerRho);
@@ -270,12 +276,14 @@ void putTile(uint tile, uvec2 range, uvec2 first_pixel) {
             const float left = abs(transmittance[p]);
             const vec3 shown = shownOf(colour[p], left);
             if (kPast && isMade()) { addError(error, shown, colours, at); }
-            putColour(FloatColours(colours), HalfColours(colours), at, vec4(shown, 1 - left));
-            if (kDepth && isThere(depths)) { Floats(depths).at[at] = depth[p]; }
-            if (keeps_moments) { Vec2s(sums).at[at] = moments[p]; }
-            if (moves && (!kEvenRows || (pixel.y & 1) == 0)) {
-                Uints(moving).at[pixel.y * row_words + pixel.x] = toMove(1 - left, depth[p], moments[p]);
-                if (clears_arrivals) { Uints(arrivals).at[pixel.y * row_words + pixel.x] = 0; }
+            if (!kMeasures || !is_wider) {
+                putColour(FloatColours(colours), HalfColours(colours), at, vec4(shown, 1 - left));
+                if (kDepth && isThere(depths)) { Floats(depths).at[at] = depth[p]; }
+                if (keeps_moments) { Vec2s(sums).at[at] = moments[p]; }
+                if (moves && (!kEvenRows || (pixel.y & 1) == 0)) {
+                    Uints(moving).at[pixel.y * row_words + pixel.x] = toMove(1 - left, depth[p], moments[p]);
+                    if (clears_arrivals) { Uints(arrivals).at[pixel.y * row_words + pixel.x] = 0; }
+                }
             }
         }
     }
@@ -284,7 +292,7 @@ void putTile(uint tile, uvec2 range, uvec2 first_pixel) {
         atomicAdd(squares[cellIndex()], uint(error * kErrorSteps));
         barrier();
     }
-    if (gl_LocalInvocationIndex == 0) { leaveTile(tile, range.y - range.x, vec4(squares[0], squares[1], squares[2], squares[3]), 0); }
+    if (gl_LocalInvocationIndex == 0) { leaveFound(tile, range.y - range.x, vec4(squares[0], squares[1], squares[2], squares[3])); }
 }
 
 // Fills each cell's coarse tile from the samples that were blended, unless the eye would see what it lacks: a bit for each of these.
@@ -373,7 +381,13 @@ void main() [[subgroup_uniform_control_flow]] {
         if (is_coarse) {
             again = fillTiles(tile, tile_px, range);
         } else {
+            const bool measured = isMeasured(tile);
             putTile(tile, range, first_pixel);
+            is_wider = measured;
+            if (measured) {
+                barrier();  // its squares are being read
+                continue;
+            }
             if (kCoarse && gl_LocalInvocationIndex == 0) { atomicAdd(TARGET.counters.sharp_pairs, range.y - range.x); }
         }
         if (!kCoarse || again == 0) { break; }

@@ -3,6 +3,7 @@
 // depth or a place lies on a threshold, float32 may come to the other side: such flips have a budget.
 #include "engine/frame/changes.h"
 #include "shaders/embedded_shaders.h"
+#include "tests/engine/passes/pass_stages.h"
 #include "tests/engine/passes/past_stages.h"
 
 SUITE(past_passes) {
@@ -187,14 +188,30 @@ TEST_CASE_FIXTURE(Gpu, "pictures from pasts and without are so in floats and hal
     }
 }
 
+// What pixels twice as wide lose of a tile, of splats that meet it as pixels of its own size see them.
+double widerSquares(const ViewedScene& view, const Eye& eye, const reference::PastTile& tile, std::size_t index) {
+    const reference::Settings settings{.background = {0.1, 0.2, 0.3}};
+    test::TwinStages stages({view.name, view.scene, eye}, settings);
+    const auto picture = [&] { return reference::rasterize(stages.splats, stages.sorted_pairs, stages.ranges, eye, settings); };
+    const reference::Picture full = picture();
+    for (reference::ProjectedSplat& splat : stages.splats) { splat = reference::asSeenWider(splat, eye.size_px); }
+    return reference::widerSquares(tile, full, picture(), index, eye.size_px);
+}
+
 TEST_CASE_FIXTURE(Gpu, "a frame's choice is the twin's, and tiles that were rendered again say what they had been off by") {
     for (const ViewedScene* view : {&atelier(), &fence()}) {
         CAPTURE(view->name);
         // Of two walks that are alike so far one renders tiles again in the last frame.
         PastWalk walk(*this, *view), only_warps(*this, *view);
         constexpr int kFrames = 3;
+        PastWalk before(*this, *view);
+        for (int step = 0; step <= kFrames; ++step) { before.go(step, step == kFrames ? 0.5 : 0.0); }
+        const std::vector<gpu::uint> chosen = before.read(kLeft).kinds;
+        const auto measured = static_cast<std::uint32_t>(std::find(chosen.begin() + 6, chosen.end(), gpu::kTilePredicted) - chosen.begin());
+        REQUIRE(measured < gpu::kMeasuredParts);
+        FrameResult result;
         for (int step = 0; step <= kFrames; ++step) {
-            walk.go(step, step == kFrames ? 0.5 : 0.0);
+            result = walk.go(step, step == kFrames ? 0.5 : 0.0, measured);
             only_warps.go(step, 0.0);
         }
         std::array<std::vector<TileKind>, 2> kinds;
@@ -218,6 +235,8 @@ TEST_CASE_FIXTURE(Gpu, "a frame's choice is the twin's, and tiles that were rend
             std::array{reference::PricedTiles{kinds[0], prices[0], costs[0]}, reference::PricedTiles{kinds[1], prices[1], costs[1]}},
             static_cast<std::uint64_t>(0.5f * static_cast<float>(picture_cost)));
         std::size_t rendered = 0;
+        double left = 0.0, wider = 0.0;
+        reference::SquaresOfTiles sums;
         for (std::size_t e = 0; e < 2; ++e) {
             CHECK(made[e].kinds == test::kindsOf(kinds[e]));
             // What is rendered is the device's own, so that what the twin measures is exact.
@@ -226,7 +245,12 @@ TEST_CASE_FIXTURE(Gpu, "a frame's choice is the twin's, and tiles that were rend
             std::vector<std::uint64_t> pairs;
             for (const reference::PastTile& tile : made[e].past.tiles) { pairs.push_back(tile.cost); }
             reference::Past twin = warped[e].past;
-            reference::renderTiles(twin, full, pairs, kinds[e]);
+            const reference::SquaresOfTiles its = reference::renderTiles(twin, full, pairs, kinds[e]);
+            sums = {sums.expected + its.expected, sums.found + its.found};
+            left += reference::leftSquares(warped[e].past.tiles, kinds[e]);
+            if (kinds[e][measured] == TileKind::kPredicted) {
+                wider += widerSquares(*view, walk.eyes()[e], warped[e].past.tiles[measured], measured);
+            }
             for (std::size_t t = 0; t < kinds[e].size(); ++t) {
                 const reference::PastTile &a = made[e].past.tiles[t], &b = twin.tiles[t];
                 CHECK(a.age == b.age);
@@ -240,6 +264,10 @@ TEST_CASE_FIXTURE(Gpu, "a frame's choice is the twin's, and tiles that were rend
             CHECK(twin.rgba == made[e].past.rgba);
         }
         CHECK(rendered > 40);
+        const double all = 2.0 * 768.0 * static_cast<double>(kinds[0].size());
+        CHECK(wider > 0.0);
+        CHECK(test::isNear(result.half_loss, wider * gpu::kMeasuredParts / all, 0.01, 1e-6));
+        CHECK(test::isNear(result.warp_error, left / all * std::min(sums.found / sums.expected, 1.0), 0.01, 1e-6));
     }
 }
 

@@ -65,7 +65,7 @@ public:
     PastWalk(Gpu& gpu, const ViewedScene& view, WalkSettings settings = {})
         : gpu_(gpu), view_(view), settings_(std::move(settings)), scene_(gpu.context(), view.scene), frame_(gpu.context(), scene_) {}
 
-    FrameResult go(double step, double budget) {
+    FrameResult go(double step, double budget, std::uint32_t measured_part = gpu::kMeasuredParts) {
         Eye eye = view_.eye;
         eye.world_from_camera.position += step * glm::dvec3(0.003, 0.001, 0.001);
         eye.world_from_camera.orientation =
@@ -73,7 +73,9 @@ public:
         eyes_ = stereoPair(eye, 0.063);
         glm::dquat& right = eyes_[kRight].world_from_camera.orientation;
         right = right * glm::angleAxis(settings_.cant, glm::dvec3(0, 1, 0));
-        return frame_.render(eyes_, settingsOf(Mode::kTemporal, budget));
+        FrameSettings settings = settingsOf(Mode::kTemporal, budget);
+        settings.measured_part = measured_part;
+        return frame_.render(eyes_, settings);
     }
     // The last frame's eyes in full.
     std::array<Image, 2> full() {
