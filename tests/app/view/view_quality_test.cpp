@@ -117,7 +117,7 @@ TEST_CASE("a load that comes and goes: a lower bound and resolution at once, and
     // "frame 41: temporal at 60 %, errors within 20 dB; why"
     const std::vector<std::string> changes = run.lines(" dB; ");
     INFO(run.outcome.output);
-    REQUIRE(changes.size() >= 3);
+    REQUIRE(changes.size() >= 2);
     const auto frameOf = [](const std::string& line) { return std::stoi(line.substr(6)); };
     CHECK(frameOf(changes.front()) > kComes);
     CHECK(frameOf(changes.front()) <= kComes + 10);
