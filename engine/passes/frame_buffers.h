@@ -16,6 +16,8 @@ namespace binosplat {
 inline constexpr std::size_t kMostTargets = 2;
 
 using gpu::TargetState;
+// Shaders step from one to the next by whole addresses.
+static_assert(sizeof(TargetState) % sizeof(gpu::DeviceAddress<gpu::uint>) == 0);
 
 // What the device gets at the start of a frame, and what it reports at the end.
 struct FrameState {
