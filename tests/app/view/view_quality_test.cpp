@@ -128,6 +128,7 @@ TEST_CASE("a load that comes and goes: a lower bound and resolution at once, and
         if (frameOf(changes[i]) > kGoes) { CHECK(frameOf(changes[i]) - frameOf(changes[i - 1]) >= kSecond); }
     }
     CHECK(changes.back().find("temporal at 100 %, errors within 30 dB; better for the same time") != std::string::npos);
+    CHECK(frameOf(changes.back()) <= kGoes + kSecond);
     CHECK(run.width(run.frames.size() - 4) == 64);
 }
 
