@@ -88,7 +88,7 @@ void FrameRecorder::recordCulling(Commands& commands, const FramePlan& plan) con
     begin(commands, false);
     describeFrame(commands, plan);
     for (const ListPlan& list : plan.lists) {
-        if (list.culls) { binosplat::recordCull(kernels, commands, scene, room.lists(), list.eyes, Role::kNone); }
+        if (list.culls) { recordCull(kernels, commands, scene, room.lists(), list.eyes, Role::kNone); }
     }
 }
 
@@ -101,8 +101,8 @@ void FrameRecorder::record(Commands& commands, const FramePlan& plan, bool times
             case Step::Kind::kList: {
                 const ListPlan& list = plan.lists[static_cast<std::size_t>(step.index)];
                 const EyesOfList eyes = eyesOf(list);
-                if (list.culls) { binosplat::recordCull(kernels, commands, scene, room.lists(), eyes, list.role); }
-                binosplat::recordOrder(kernels, commands, scene, room.lists(), eyes, list.role);
+                if (list.culls) { recordCull(kernels, commands, scene, room.lists(), eyes, list.role); }
+                recordOrder(kernels, commands, scene, room.lists(), eyes, list.role);
                 break;
             }
             case Step::Kind::kWarp:
