@@ -13,9 +13,17 @@ install(FILES README.md CONTRIBUTING.md CHANGELOG.md LICENSE DESTINATION ${CMAKE
 install(FILES third_party/NOTICES.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/third_party COMPONENT viewer)  # where the pages link to it
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT viewer)             # where Debian looks for it
 
-# The program itself writes its man page and its completion.
+# Menus, file managers and software centres: opening a scene by a double click.
+set(desktop ${CMAKE_CURRENT_LIST_DIR}/linux/org.binosplat.viewer)
+install(FILES ${desktop}.desktop DESTINATION ${CMAKE_INSTALL_DATADIR}/applications COMPONENT viewer)
+install(FILES ${desktop}.metainfo.xml DESTINATION ${CMAKE_INSTALL_DATADIR}/metainfo COMPONENT viewer)
+install(FILES ${desktop}.xml DESTINATION ${CMAKE_INSTALL_DATADIR}/mime/packages COMPONENT viewer)
+install(FILES ${desktop}.svg DESTINATION ${CMAKE_INSTALL_DATADIR}/icons/hicolor/scalable/apps COMPONENT viewer)
+
+# The program itself writes its man page and its completions.
 set(documents ${CMAKE_CURRENT_BINARY_DIR}/documents)
-foreach(document "man binosplat.1 man/man1" "bash binosplat bash-completion/completions")
+foreach(document "man binosplat.1 man/man1" "bash binosplat bash-completion/completions" "zsh _binosplat zsh/site-functions"
+        "fish binosplat.fish fish/vendor_completions.d")
     string(REPLACE " " ";" document ${document})
     list(GET document 0 kind)
     list(GET document 1 name)

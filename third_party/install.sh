@@ -14,8 +14,8 @@ packages=(
     doctest-dev python3 xvfb xdotool openssl nghttp2-server
     dpkg-dev file
 )
-# For continuous integration besides: the check of the format, and the library from Python.
-[[ ${1:-} != --ci ]] || packages+=(clang-format python3-numpy)
+# For continuous integration besides: the check of the format, the library from Python, shells and desktops that completions and entries are for.
+[[ ${1:-} != --ci ]] || packages+=(clang-format python3-numpy zsh fish desktop-file-utils appstream)
 # For Windows: the compiler, and what unpacks and compiles Debian's source packages.
 [[ ${1:-} != --windows ]] || packages+=(g++-mingw-w64-x86-64-posix libz-mingw-w64-dev xz-utils patch make python3-jinja2)
 # For aarch64: the compiler, and what runs its programs here.

@@ -126,7 +126,9 @@ std::string documentOf(const std::string& kind) {
     if (kind == "config") { return defaultConfig(); }
     if (kind == "man") { return man(); }
     if (kind == "bash") { return completionsOfBash(); }
-    throw Error(ExitCode::kUsage, fmt::format("document: KIND is {}, must be markdown, config, man or bash", kind));
+    if (kind == "zsh") { return completionsOfZsh(); }
+    if (kind == "fish") { return completionsOfFish(); }
+    throw Error(ExitCode::kUsage, fmt::format("document: KIND is {}, must be markdown, config, man, bash, zsh or fish", kind));
 }
 
 }  // namespace binosplat

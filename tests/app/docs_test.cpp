@@ -3,6 +3,7 @@
 #include "app/command_line/option_documents.h"
 #include "tests/app/options/parsed.h"
 #include "tests/run_program.h"
+#include "tests/xr/simulated/installed.h"
 
 #include <cctype>
 #include <regex>
@@ -144,6 +145,34 @@ TEST_CASE("every library that is built with has its row in the notices, and its 
         findAll(textIn(kSource / "third_party" / "CMakeLists.txt"), R"(add_library\(third_party_([a-z0-9]+) )");
     CHECK(libraries.size() > 10);
     for (const std::string& library : libraries) { CHECK_MESSAGE(rows.find(library) != std::string::npos, "no row of " << library); }
+}
+
+TEST_CASE_FIXTURE(test::AtWork, "fish completes commands, options, choices and files, and zsh can read its completion") {
+    if (!test::isInstalled("fish", "fish") || !test::isInstalled("zsh", "zsh")) { return; }
+    work.write("complete.fish", documentOf("fish") +
+                                    "for words in re 'render --mode pre' 'compare --lp' 'render --path pos'\n"
+                                    "    complete -C \"binosplat $words\" | string split -f 1 \\t\nend\n");
+    work.write("poses.csv", "x");
+    CHECK(work.runCommand("fish --no-config complete.fish").output == "render\npredicted\n--lpips\nposes.csv\n");
+    work.write("complete.zsh", documentOf("zsh"));
+    const Outcome zsh = work.runCommand("zsh -f -n complete.zsh");
+    CHECK(these(zsh.exit_code, zsh.errors) == these(0, ""));
+}
+
+TEST_CASE_FIXTURE(test::AtWork, "desktops accept the program's entry, formats and description, and these name the same formats") {
+    if (!test::isInstalled("desktop-file-validate", "desktop-file-utils") || !test::isInstalled("appstreamcli", "appstream")) { return; }
+    const std::string base = (kSource / "app" / "linux" / "org.binosplat.viewer").string();
+    for (const std::string& command :
+         {"desktop-file-validate " + base + ".desktop", "appstreamcli validate --no-net " + base + ".metainfo.xml"}) {
+        const Outcome judged = work.runCommand(command);
+        CHECK_MESSAGE(judged.exit_code == 0, command << ": " << judged.output << judged.errors);
+    }
+    std::string opened;  // in the order of the entry
+    for (const std::string& type : findAll(textIn(base + ".metainfo.xml"), "<mediatype>([^<]+)</mediatype>")) { opened += type + ";"; }
+    CHECK(findAll(textIn(base + ".desktop"), "MimeType=(.*)\n") == std::vector<std::string>{opened});
+    for (const std::string& type : findAll(textIn(base + ".xml"), "mime-type type=\"([^\"]+)\"")) {
+        CHECK_MESSAGE(opened.find(type + ";") != std::string::npos, type);
+    }
 }
 
 TEST_CASE_FIXTURE(test::AtWork, "bash completes commands, options, the values of choices, and files where an option takes one") {

@@ -27,7 +27,10 @@ TEST_CASE("an installed program finds its headsets, from any folder and by the l
     install(work, prefix, "viewer");
     for (const char* file : {"bin/binosplat", "share/binosplat/configs/headsets/quest2.toml", "share/binosplat/configs/bench/paper.toml",
                              "share/doc/binosplat/LICENSE", "share/doc/binosplat/copyright", "share/man/man1/binosplat.1",
-                             "share/bash-completion/completions/binosplat"}) {
+                             "share/bash-completion/completions/binosplat", "share/zsh/site-functions/_binosplat",
+                             "share/fish/vendor_completions.d/binosplat.fish", "share/applications/org.binosplat.viewer.desktop",
+                             "share/metainfo/org.binosplat.viewer.metainfo.xml", "share/mime/packages/org.binosplat.viewer.xml",
+                             "share/icons/hicolor/scalable/apps/org.binosplat.viewer.svg"}) {
         CHECK_MESSAGE(fs::exists(prefix / file), file);
     }
     const std::string program = "'" + (prefix / "bin" / "binosplat").string() + "' ";
