@@ -72,8 +72,8 @@ FilmTags filmTags(const RenderOptions& options) {
             panorama ? std::optional(panorama->width_rad) : std::nullopt};
 }
 
-void writeFilm(const fs::path& folder, const std::string& pattern, double rate_hz, const FilmTags& tags) {
-    const fs::path film = folder / "video.mp4", log = folder / ".ffmpeg";
+void writeFilm(const fs::path& folder, const std::string& pattern, const fs::path& film, double rate_hz, const FilmTags& tags) {
+    const fs::path log = film.parent_path() / ".ffmpeg";
     // The colours of high-definition television; near to what a careful eye tells apart; every second pixel's colour, as players ask for.
     const bool made = runProgram({kFfmpeg,
                                   "-loglevel",

@@ -15,7 +15,9 @@ void requireFfmpeg();
 // What galleries and players are told of the pictures.
 FilmTags filmTags(const RenderOptions& options);
 
-// `folder`/video.mp4 of its pictures `pattern`, in which %06d stands for their numbers from 0 on. Throws Error with what ffmpeg says.
-void writeFilm(const std::filesystem::path& folder, const std::string& pattern, double rate_hz, const FilmTags& tags);
+// `film`, an MP4, of the pictures `pattern` in `folder`, in which %06d stands for their numbers from 0 on. Throws Error with what ffmpeg
+// says.
+void writeFilm(const std::filesystem::path& folder, const std::string& pattern, const std::filesystem::path& film, double rate_hz,
+               const FilmTags& tags);
 
 }  // namespace binosplat

@@ -60,7 +60,8 @@ int runProgram(int argument_count, const char* const* arguments) {
         const Error explained = deviceError("Vulkan", error);
         return report(explained.code(), explained.what());
     } catch (const Interrupted& stop) {
-        fmt::print(stderr, "binosplat: stopped by {}, nothing was written\n", stop.signal == SIGINT ? "SIGINT" : "SIGTERM");
+        fmt::print(stderr, "binosplat: stopped by {}, {}\n", stop.signal == SIGINT ? "SIGINT" : "SIGTERM",
+                   stop.written.empty() ? "nothing was written" : stop.written);
         return 128 + stop.signal;  // as in a shell
     } catch (const std::exception& error) { return report(ExitCode::kBadInput, error.what()); }
 }

@@ -82,6 +82,19 @@ void warnOfBlindFrames(const PathReport& report, std::span<const glm::vec3> posi
                      describeNearest(first->cameras.middle.world_from_camera, positions, first->cameras.near, first->cameras.origin)));
 }
 
+// Once its frames are published: a film of all, or, if a signal has come, what is to be said of it.
+void finishPath(const RenderOptions& options, const HeadPath& path, std::size_t rendered, OutputFiles& files) {
+    const std::size_t done = path.first + rendered, all = path.times_s.size();
+    try {
+        stopIfInterrupted();
+    } catch (const Interrupted& stop) {
+        throw Interrupted{stop.signal, fmt::format("{} of {} frames are in {}, --resume goes on", done, all, options.out.string())};
+    }
+    if (!options.video) { return; }
+    writeFilm(options.out, path.film_pattern, files.staging() / "video.mp4", path.rate_hz, filmTags(options));
+    files.publish();
+}
+
 }  // namespace
 
 void runRender(const RenderOptions& options) {
@@ -126,7 +139,6 @@ void runRender(const RenderOptions& options) {
     const auto report = [&](const auto& said) {
         writeText(files.staging() / "report.json", reportJson(said));
         context.requireNoValidationMessages();
-        stopIfInterrupted();
         files.publish();
         fmt::print("{}", reportTable(said));
     };
@@ -135,13 +147,14 @@ void runRender(const RenderOptions& options) {
         const double units_per_metre = 1.0 / options.run.metres_per_unit;
         const PathReport said{context.deviceName(), used, cameras,
                               renderPath(frame, live, settings, cameras, stereo.axes, units_per_metre, *path, files)};
-        if (options.video) { writeFilm(files.staging(), path->film_pattern, path->rate_hz, filmTags(options)); }
         report(said);
+        finishPath(options, *path, said.frames.size(), files);
         warnOfBlindFrames(said, positions);
     } else if (panorama) {
         const Cameras upright = panoramaCameras(cameras, *panorama);
         EyePictures made = renderPanorama(frame, live, settings, upright, *panorama);
         writeEyes(files, namedPictures(std::move(made.pictures), options.layout), panorama);
+        stopIfInterrupted();
         report(FrameReport{context.deviceName(), used, upright, made.result});
         if (made.result.sees_nothing) { warn(fmt::format("{}: no splat is seen from there", options.scene)); }
     } else {
@@ -151,6 +164,7 @@ void runRender(const RenderOptions& options) {
         FrameResult result = renderTimed(frame, eyes, settings);
         if (live != nullptr) { result.counters.streaming = streamingOf(*live); }
         writePictures(files, frame, settings, options.layout);
+        stopIfInterrupted();
         report(FrameReport{context.deviceName(), used, cameras, result});
         for (const std::string& phrase : result.left_out) { fmt::print("  left out: {}\n", phrase); }
         if (result.sees_nothing) {

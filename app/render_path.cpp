@@ -59,6 +59,25 @@ void requireNoOthers(const std::filesystem::path& folder, std::size_t frames, co
     }
 }
 
+// How many of the first frames are there, of all eyes.
+std::size_t countFinished(const std::filesystem::path& folder, std::size_t frames, const std::vector<std::string_view>& eyes) {
+    const auto isThere = [&](std::size_t number, std::string_view eye) {
+        std::error_code ignored;
+        return std::filesystem::exists(folder / (pictureName(number, eye) + extensionOf(PictureKind::kDisplay)), ignored);
+    };
+    std::size_t number = 0;
+    while (number < frames && std::ranges::all_of(eyes, [&](std::string_view eye) { return isThere(number, eye); })) { ++number; }
+    return number;
+}
+
+// Of a path that goes on: its frames are as large as those before.
+void requireSameSize(const std::filesystem::path& folder, std::size_t number, std::string_view eye, glm::uvec2 size_px) {
+    const std::filesystem::path path = folder / (pictureName(number, eye) + extensionOf(PictureKind::kDisplay));
+    const glm::uvec2 before_px = readPicture(path).size_px;
+    check(before_px == size_px, "{}: has {}x{} pixels, must be {}x{} as the frames that --resume adds", path.string(), before_px.x,
+          before_px.y, size_px.x, size_px.y);
+}
+
 }  // namespace
 
 NamedPictures namedPictures(std::vector<Image> eyes, PictureLayout layout) {
@@ -81,10 +100,14 @@ HeadPath readHeadPath(const RenderOptions& options) {
     std::vector<double> times_s = frameTimes(motion, options.segment, options.path);
     const std::vector<std::string_view> eyes = eyeNames(options.run.stereo.mode == Mode::kMono, options.layout);
     requireNoOthers(options.out, times_s.size(), eyes);
+    // The last one is made again if all are there: a film may be missing.
+    const std::size_t first = options.resume ? std::min(countFinished(options.out, times_s.size(), eyes), times_s.size() - 1) : 0;
     const double length_s = times_s.back() - times_s.front();
     const double mean_rate_hz = length_s > 0.0 ? static_cast<double>(times_s.size() - 1) / length_s : 1.0;
     return {std::move(motion),
             std::move(times_s),
+            first,
+            options.out,
             options.layout,
             askedPanorama(options),
             options.segment.rate_hz.value_or(mean_rate_hz),
@@ -115,20 +138,28 @@ std::vector<PathFrame> renderPath(StereoFrame& frame, LiveScene* live, const Fra
         }
         return made;
     };
-    ProgressLine line(fmt::format("rendering {} frames", path.times_s.size()));
-    for (const double time_s : path.times_s) {
+    const std::size_t all = path.times_s.size();
+    ProgressLine line(fmt::format("rendering {} frames", all - path.first));
+    const auto renderNext = [&](std::size_t number) {
+        const double time_s = path.times_s[number];
         const Pose world_from_middle = path.motion.cameraAt(time_s, start.middle.world_from_camera, units_per_metre);
         Cameras cameras = moveCameras(start, world_from_middle);
         if (path.panorama) { cameras = panoramaCameras(cameras, *path.panorama); }
         if (live != nullptr) { live->setTime(time_s - path.times_s.front()); }
-        line.show(static_cast<double>(frames.size()) / static_cast<double>(path.times_s.size()));
+        line.show(static_cast<double>(number - path.first) / static_cast<double>(all - path.first));
         EyePictures made = path.panorama ? renderPanorama(frame, live, settings, cameras, *path.panorama) : renderFlat(cameras);
+        stopIfInterrupted();
         if (live != nullptr) { made.result.counters.streaming = streamingOf(*live); }
         for (const auto& [name, picture] : namedPictures(std::move(made.pictures), path.layout)) {
-            stopIfInterrupted();
-            writeDisplay(files.staging() / pictureName(frames.size(), name), picture, path.panorama);
+            if (frames.empty() && number > 0) { requireSameSize(path.folder, number - 1, name, picture.size_px); }
+            writeDisplay(files.staging() / pictureName(number, name), picture, path.panorama);
         }
         frames.push_back({time_s, cameras, std::move(made.result)});
+    };
+    try {
+        for (std::size_t number = path.first; number < all; ++number) { renderNext(number); }
+    } catch (const Interrupted&) {
+        if (frames.empty()) { throw; }
     }
     // How the tiles of the last frame were made, if both eyes have tiles that were not rendered.
     if (!mono && !frame.readTileKinds(kLeft).empty() && !frame.readTileKinds(kRight).empty()) {

@@ -89,7 +89,8 @@ struct RenderOptions {
     MotionSegment segment;                       // --from, --seconds, --rate: of the path
     PictureLayout layout = PictureLayout::kSeparate;
     Projection projection = Projection::kFlat;
-    bool video = false;  // --video: also a film of the path
+    bool video = false;   // --video: also a film of the path
+    bool resume = false;  // --resume: go on after the path's frames that are there
 };
 
 struct BenchOptions {

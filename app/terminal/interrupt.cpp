@@ -33,7 +33,7 @@ Interrupt::~Interrupt() {
 bool isInterrupted() { return g_signal != 0; }
 
 void stopIfInterrupted() {
-    if (g_signal != 0) { throw Interrupted{g_signal}; }
+    if (g_signal != 0) { throw Interrupted{g_signal, {}}; }
 }
 
 }  // namespace binosplat

@@ -142,13 +142,36 @@ TEST_CASE("a path that cannot be used is one line and one, and leaves nothing") 
     Way().checkRefused(kRender + "--path nowhere.csv --out frames", 1, "nowhere.csv");
 }
 
-TEST_CASE_FIXTURE(Way, "a signal on the way ends it with nothing written") {
-    // While the scene is uploaded, in the first frame, and in later ones.
-    for (const int number : {1, 3, 9}) {
-        checkNoWay("", 130, "stopped by SIGINT, nothing was written",
-                   fmt::format("VK_ADD_LAYER_PATH='" BINOSPLAT_FAULT_LAYER
-                               "' VK_INSTANCE_LAYERS=VK_LAYER_BINOSPLAT_faults BINOSPLAT_FAULT=submit:{}:SIGINT",
-                               number));
+// Stops with a signal at the Nth submission to the device.
+std::string stoppedAt(int submission) {
+    return fmt::format("VK_ADD_LAYER_PATH='" BINOSPLAT_FAULT_LAYER
+                       "' VK_INSTANCE_LAYERS=VK_LAYER_BINOSPLAT_faults BINOSPLAT_FAULT=submit:{}:SIGINT",
+                       submission);
+}
+
+TEST_CASE_FIXTURE(Way, "a signal before the first frame is whole ends the path with nothing written") {
+    for (const int submission : {1, 3}) { checkNoWay("", 130, "stopped by SIGINT, nothing was written", stoppedAt(submission)); }
+}
+
+TEST_CASE_FIXTURE(Way, "frames that were finished before a signal are kept, and --resume makes the others") {
+    const std::string walk = kRender + "--path poses.csv --mode shared --rate 4 --out ";
+    go(walk + "whole");
+    const Outcome stopped = run(walk + "frames", stoppedAt(9));
+    CHECK(stopped.exit_code == 130);
+    std::size_t kept = 0;
+    while (holds(fmt::format("frames/frame_{:06}_right{}", kept, kExtension))) { ++kept; }
+    CHECK(kept > 0);
+    CHECK(stopped.errors.find(fmt::format("{} of 7 frames are in frames, --resume goes on", kept)) != std::string::npos);
+    CHECK(these(files().contains("frames/report.json"), report().at("frames").size()) == these(true, kept));
+    checkRefused("render builtin:fence --size 32x32 --eye 0,0,0 --look 0,0,3 --path poses.csv --mode shared --rate 4 --resume --out frames",
+                 1, "must be 32x32 as the frames that --resume adds");
+    go(walk + "frames --resume");
+    CHECK(report().at("frames").size() == 7 - kept);
+    for (int frame = 0; frame < 7; ++frame) {
+        for (const char* eye : {"left", "right"}) {
+            const std::string name = fmt::format("frame_{:06}_{}{}", frame, eye, kExtension);
+            CHECK_MESSAGE(bytesOf("frames/" + name) == bytesOf("whole/" + name), name);
+        }
     }
 }
 
