@@ -94,7 +94,7 @@ void benchSpeed(const BenchOptions& options, const BenchPlan& plan) {
     context.requireNoValidationMessages();
     stopIfInterrupted();
     files.publish();
-    fmt::print("{}", benchTable(run));
+    fmt::print("{}", benchTable(run, terminalColumns()));
 }
 
 }  // namespace

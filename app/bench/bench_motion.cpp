@@ -91,7 +91,7 @@ void benchMotion(const BenchOptions& options, const BenchPlan& plan) {
     context.requireNoValidationMessages();
     stopIfInterrupted();
     files.publish();
-    fmt::print("{}", motionTable(run));
+    fmt::print("{}", motionTable(run, terminalColumns()));
 }
 
 }  // namespace binosplat

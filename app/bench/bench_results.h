@@ -77,7 +77,7 @@ const OriginScores* scoresOf(const BenchResult& result, const std::string& origi
 // True if LPIPS was measured: its column is absent otherwise.
 bool hasLpips(const std::vector<BenchResult>& results);
 
-std::string benchTable(const BenchRun& run);
+std::string benchTable(const BenchRun& run, std::size_t most_columns = SIZE_MAX);
 std::string benchJson(const BenchRun& run);
 std::string benchCsv(const BenchRun& run);
 // Error against run time at every point, with the front; and time against splats and pixels if a series varies them.

@@ -24,7 +24,7 @@ std::uint64_t ofBothEyes(const BenchResult& result, const std::string& name) {
     return counterOf(result, name) + counterOf(result, name + "_left") + counterOf(result, name + "_right");
 }
 
-std::string methodsTable(const std::vector<const BenchResult*>& point, bool with_lpips) {
+std::string methodsTable(const std::vector<const BenchResult*>& point, bool with_lpips, std::size_t most) {
     TextColumns columns;
     std::vector<std::string> head{"method",   "front",   "ms",          "least",        "most",    "/ two-pass", "/ shared",
                                   "peak MiB", "PSNR dB", "reprojected", "interpolated", "patched", "SSIM",       "FLIP"};
@@ -55,10 +55,10 @@ std::string methodsTable(const std::vector<const BenchResult*>& point, bool with
         row.push_back(!r->mode ? "-" : fmt::format("{}", ofBothEyes(*r, "tile_pairs")));
         columns.addRow(std::move(row));
     }
-    return columns.text();
+    return columns.text(most);
 }
 
-std::string timesTable(const std::vector<const BenchResult*>& point) {
+std::string timesTable(const std::vector<const BenchResult*>& point, std::size_t most) {
     std::vector<std::string> passes;
     for (const BenchResult* r : point) {
         auto next = passes.begin();  // a new pass is inserted after its predecessor
@@ -79,12 +79,12 @@ std::string timesTable(const std::vector<const BenchResult*>& point) {
         for (const std::string& name : passes) { row.push_back(thousandths(sumOf(times, name))); }
         columns.addRow(std::move(row));
     }
-    return columns.text();
+    return columns.text(most);
 }
 
 }  // namespace
 
-std::string benchTable(const BenchRun& run) {
+std::string benchTable(const BenchRun& run, std::size_t most_columns) {
     std::string table = fmt::format("device: {}\n", run.device);
     for (std::size_t begin = 0, end = 0; begin < run.results.size(); begin = end) {
         std::vector<const BenchResult*> point;
@@ -92,7 +92,7 @@ std::string benchTable(const BenchRun& run) {
             point.push_back(&run.results[end]);
         }
         table += fmt::format("\n{}: {}, median of {} frames\n", point[0]->series, namePoint(*point[0]), point[0]->frames);
-        table += methodsTable(point, hasLpips(run.results)) + timesTable(point);
+        table += methodsTable(point, hasLpips(run.results), most_columns) + timesTable(point, most_columns);
         for (const BenchResult* r : point) {
             if (r->move_cost) {
                 table += fmt::format("  {}: moving a tile took as long as rendering {:.0f} pairs\n", r->method, *r->move_cost);

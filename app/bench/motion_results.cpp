@@ -2,6 +2,7 @@
 #include "app/bench/motion_results.h"
 
 #include "app/plot/svg_plot.h"
+#include "app/report/text_columns.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -175,9 +176,43 @@ void addVisible(Json& json, const Visible& visible) {
     json["rival"] = visible.rival;
 }
 
-std::string visibleText(const Visible& visible) {
-    return fmt::format(" {:>7.2f} {:>7.2f} {:>8} {:>6.2f} {:>7.3f} {:>6.3f}", 100.0 * visible.bad, 100.0 * visible.worst_bad,
-                       psnrText(visible.worst_tiles), 100.0 * visible.edge, 255.0 * visible.seam, visible.rival);
+void addVisible(std::vector<std::string>& row, const Visible& visible) {
+    for (const double percent : {100.0 * visible.bad, 100.0 * visible.worst_bad}) { row.push_back(fmt::format("{:.2f}", percent)); }
+    row.push_back(psnrText(visible.worst_tiles));
+    row.push_back(fmt::format("{:.2f}", 100.0 * visible.edge));
+    for (const double value : {255.0 * visible.seam, visible.rival}) { row.push_back(fmt::format("{:.3f}", value)); }
+}
+
+// Its row and, with a headset, that of what is seen through the lenses; what has no column goes to `notes`.
+void addRows(TextColumns& columns, std::string& notes, const Sequence& sequence) {
+    const std::vector<double> times = valuesOf(sequence.frames, &MotionFrame::total_ms), errors = steadySquares(sequence);
+    std::vector<std::string> row{sequence.method};
+    for (const double value : {median(times), percentile(times, 0.95), std::ranges::max(times),
+                               median(valuesOf(sequence.frames, &MotionFrame::work_rendered))}) {
+        row.push_back(fmt::format("{:.3f}", value));
+    }
+    if (!isLossy(sequence)) { return columns.addRow(std::move(row)); }
+    for (const double square : {runSquare(sequence), percentile(errors, 0.95), std::ranges::max(errors)}) {
+        row.push_back(psnrText(square));
+    }
+    row.push_back(fmt::format("{:.6f}", median(flickerOf(sequence))));
+    const std::size_t before_visible = row.size();
+    addVisible(row, visibleOf(sequence));
+    if (const std::vector<double> moved = movedSquares(sequence); !moved.empty()) {
+        row.insert(row.end(), {psnrText(movedRunSquare(sequence)), psnrText(std::ranges::max(moved))});
+    }
+    columns.addRow(std::move(row));
+    if (const std::optional<Visible> seen = seenOf(sequence)) {
+        std::vector<std::string> through(before_visible);
+        through[0] = "  seen through the lenses";
+        addVisible(through, *seen);
+        columns.addRow(std::move(through));
+    }
+    if (const std::optional<UnderBound> under = underBoundOf(sequence)) {
+        notes += fmt::format(
+            "  {}: of the tiles that were not rendered, {:.3f} % are more than {:.0f} dB under its bound; worst frame {:.3f} %\n",
+            sequence.method, 100.0 * under->tiles.underShare(), kMuchUnder_db, 100.0 * under->worst_share);
+    }
 }
 
 std::string visibleCells(const VisibleErrors& visible) {
@@ -277,42 +312,26 @@ std::string motionJson(const MotionRun& run) {
     return root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-std::string motionTable(const MotionRun& run) {
-    std::string table = fmt::format("device: {}, motion: {}\n", run.device, run.motion), point;
+std::string motionTable(const MotionRun& run, std::size_t most_columns) {
+    std::string table = fmt::format("device: {}, motion: {}\n", run.device, run.motion);
     const bool moves = std::ranges::any_of(run.frames, [](const MotionFrame& frame) { return frame.moved_square.has_value(); });
-    for (const Sequence& sequence : sequencesOf(run)) {
-        if (sequence.point != point) {
-            point = sequence.point;
-            table += fmt::format(
-                "\n{}, {} poses; PSNR of the run, and what 95 % of the frames and all reach in both eyes; tiles under 30 dB, mean and "
-                "worst "
-                "frame; the worst 0.1 % of tiles; lost edges; steps between tiles; sharpness that differs between the eyes\n",
-                point, sequence.frames.size());
-            table += fmt::format("  {:<28} {:>10} {:>10} {:>10} {:>6} {:>8} {:>8} {:>8} {:>10} {:>7} {:>7} {:>8} {:>6} {:>7} {:>6}{}\n",
-                                 "method", "ms median", "ms p95", "ms worst", "work", "dB run", "dB 95", "dB worst", "flicker", "bad %",
-                                 "worst %", "dB tiles", "edge %", "seam", "rival",
-                                 moves ? fmt::format(" {:>9} {:>8}", "dB moved", "worst") : "");
-        }
-        const std::vector<double> times = valuesOf(sequence.frames, &MotionFrame::total_ms), errors = steadySquares(sequence),
-                                  flicker = flickerOf(sequence);
-        table += fmt::format("  {:<28} {:>10.3f} {:>10.3f} {:>10.3f} {:>6.3f}", sequence.method, median(times), percentile(times, 0.95),
-                             std::ranges::max(times), median(valuesOf(sequence.frames, &MotionFrame::work_rendered)));
-        if (isLossy(sequence)) {
-            table += fmt::format(" {:>8} {:>8} {:>8} {:>10.6f}{}", psnrText(runSquare(sequence)), psnrText(percentile(errors, 0.95)),
-                                 psnrText(std::ranges::max(errors)), median(flicker), visibleText(visibleOf(sequence)));
-            if (const std::vector<double> moved = movedSquares(sequence); !moved.empty()) {
-                table += fmt::format(" {:>9} {:>8}", psnrText(movedRunSquare(sequence)), psnrText(std::ranges::max(moved)));
-            }
-        }
-        table += "\n";
-        if (const std::optional<Visible> seen = isLossy(sequence) ? seenOf(sequence) : std::nullopt) {
-            table += fmt::format("  {:<28}{:78}{}\n", "    seen through the lenses", "", visibleText(*seen));
-        }
-        if (const std::optional<UnderBound> under = underBoundOf(sequence)) {
-            table += fmt::format(
-                "    of the tiles that it did not render, {:.3f} % are more than {:.0f} dB under its bound; worst frame {:.3f} %\n",
-                100.0 * under->tiles.underShare(), kMuchUnder_db, 100.0 * under->worst_share);
-        }
+    const std::vector<Sequence> sequences = sequencesOf(run);
+    for (auto begin = sequences.begin(), end = begin; begin != sequences.end(); begin = end) {
+        end = std::find_if(begin, sequences.end(), [&](const Sequence& other) { return other.point != begin->point; });
+        table += fmt::format(
+            "\n{}, {} poses\n"
+            "  dB: PSNR of the run, and what 95 % of the frames and all reach in both eyes; bad: tiles under 30 dB, mean\n"
+            "  and worst frame; tiles: the worst 0.1 % of them; edge: lost edges; seam: steps between tiles; rival:\n"
+            "  sharpness that differs between the eyes\n",
+            begin->point, begin->frames.size());
+        TextColumns columns;
+        std::vector<std::string> head{"method",  "ms median", "ms p95",  "ms worst", "work",   "dB run", "dB 95", "dB worst",
+                                      "flicker", "bad %",     "worst %", "dB tiles", "edge %", "seam",   "rival"};
+        if (moves) { head.insert(head.end(), {"dB moved", "worst"}); }
+        columns.addRow(std::move(head));
+        std::string notes;
+        for (auto sequence = begin; sequence != end; ++sequence) { addRows(columns, notes, *sequence); }
+        table += columns.text(most_columns) + notes;
     }
     return table;
 }

@@ -63,7 +63,7 @@ std::string motionCsv(const MotionRun& run);
 // and the run's, from both eyes' mean square; and what shows of them (app/scores/visible_errors.h), with a headset also through its
 // lenses. Errors are of all frames after the tenth, or of all if there are no more.
 std::string motionJson(const MotionRun& run);
-std::string motionTable(const MotionRun& run);
+std::string motionTable(const MotionRun& run, std::size_t most_columns = SIZE_MAX);
 std::string motionPlot(const MotionRun& run);
 
 }  // namespace binosplat

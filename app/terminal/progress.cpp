@@ -13,6 +13,8 @@
 
 namespace binosplat {
 
+std::size_t terminalColumns() { return isTerminal(stdout) ? 100 : SIZE_MAX; }
+
 ProgressLine::ProgressLine(std::string what) : what_(std::move(what)), terminal_(isTerminal(stderr)) {}
 
 ProgressLine::~ProgressLine() {

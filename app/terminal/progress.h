@@ -9,6 +9,9 @@
 
 namespace binosplat {
 
+// How wide a table on stdout may be: 100 characters on a terminal, any width in a file.
+std::size_t terminalColumns();
+
 class ProgressLine {
 public:
     explicit ProgressLine(std::string what);

@@ -247,6 +247,25 @@ TEST_CASE("the front holds what is worth its time, and a picture that holds what
     CHECK(!contains(benchTable({"GPU", "", {withError(1.0, std::nan(""))}}), "equal"));
 }
 
+TEST_CASE("a table that is wider than a terminal is several, each with its methods and no wider") {
+    const std::string whole = benchTable({"GPU", "", {withError(1.0, 0.5)}}), parts = benchTable({"GPU", "", {withError(1.0, 0.5)}}, 100);
+    const auto wordsOf = [](const std::string& text) {
+        std::istringstream stream(text);
+        return std::multiset<std::string>(std::istream_iterator<std::string>(stream), {});
+    };
+    std::multiset<std::string> words = wordsOf(parts);
+    CHECK(words.size() > wordsOf(whole).size());
+    for (const std::string& word : wordsOf(whole)) {
+        const auto found = words.find(word);
+        CHECK_MESSAGE(found != words.end(), word);
+        if (found != words.end()) { words.erase(found); }
+    }
+    // What is there more than once are the names of rows.
+    CHECK(words.count("method") >= 1);
+    std::istringstream lines(parts);
+    for (std::string line; std::getline(lines, line);) { CHECK_MESSAGE(line.size() <= 100, line); }
+}
+
 TEST_CASE("of an error an eye sees each tile's share, and notices it from a hundredth of the contrast on") {
     const glm::uvec2 size_px(32, 16);  // two tiles
     const Image full{size_px, 4, std::vector<float>(4 * 512, 0.5f)};
