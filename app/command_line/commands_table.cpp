@@ -105,7 +105,7 @@ Options makeRender(const Settings& given) {
     if (render.layout != PictureLayout::kSeparate && render.run.stereo.mode == Mode::kMono) {
         throw Error(ExitCode::kUsage, "--layout and --mode mono contradict each other: there is one eye");
     }
-    for (const char* key : {"path-axes", "from", "seconds", "rate", "video"}) {
+    for (const char* key : {"path-axes", "from", "seconds", "rate", "video", "resume"}) {
         if (line.contains(key) && render.path.empty()) { throw Error(ExitCode::kUsage, fmt::format("--{} is given without --path", key)); }
     }
     return render;
@@ -258,8 +258,8 @@ std::span<const Command> commands() {
         {"kernels", kKernels, "Compile every GPU kernel and print the driver's statistics", {}, describe(kernelsRows()), makeKernels},
         {"document",
          CommandBit{},
-         "Print the list of options: markdown, config, man or bash",
-         {{"KIND", "markdown, config, man or bash"}},
+         "Print the list of options: markdown, config, man, bash, zsh or fish",
+         {{"KIND", "markdown, config, man, bash, zsh or fish"}},
          {},
          makeDocument,
          "",

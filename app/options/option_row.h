@@ -135,6 +135,15 @@ auto number(double least, double most) {
     return made;
 }
 
+// From 0 to 1, also in per cent.
+template <auto... Members>
+auto share() {
+    auto made = make<Members...>("0 to 1, or 0% to 100%", readShare);
+    made.least = 0.0;
+    made.most = 1.0;
+    return made;
+}
+
 template <auto... Members>
 auto count(std::uint64_t least, std::uint64_t most) {
     const bool unlimited = most >= std::numeric_limits<std::uint32_t>::max();

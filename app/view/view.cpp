@@ -5,6 +5,7 @@
 #include "app/options/camera_options.h"
 #include "app/options/device_options.h"
 #include "app/terminal/interrupt.h"
+#include "app/view/scenes/view_scenes.h"
 #include "app/view/settings/device_defaults.h"
 #include "app/view/simulate.h"
 #include "app/view/viewer.h"
@@ -49,7 +50,7 @@ void waitForHeadset(const std::string& runtime, std::unique_ptr<WaitingWindow>& 
         window = std::make_unique<WaitingWindow>();
     }
     stopIfInterrupted();
-    if (window->wait(kBetweenLooks)) { throw Interrupted{SIGINT}; }
+    if (window->wait(kBetweenLooks)) { throw Interrupted{SIGINT, {}}; }
 }
 
 // What suits the device, where the user has said nothing.
@@ -137,7 +138,12 @@ void viewInHeadset(ViewOptions options, bool& has_headset) {
 
 }  // namespace
 
-void runView(const ViewOptions& options) {
+void runView(const ViewOptions& asked) {
+    ViewOptions options = asked;
+    if (const std::string first = firstSceneIn(asked.scene); !first.empty()) {
+        options.scene = first;
+        options.browse = true;
+    }
     const auto showInWindow = [&] {
         readCameraFiles(options.run.camera);
         runDesktop(options, startSettings(options));

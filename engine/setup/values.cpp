@@ -48,6 +48,15 @@ double readNumber(const Setting& setting, double least, double most) {
     return *value;
 }
 
+double readShare(const Setting& setting) {
+    const std::string text = setting.text();
+    const bool per_cent = text.ends_with('%');
+    const std::optional<double> value = parseNumber(std::string_view(text).substr(0, text.size() - (per_cent ? 1 : 0)));
+    const double share = value.value_or(-1.0) / (per_cent ? 100.0 : 1.0);
+    if (share < 0.0 || share > 1.0) { refuse(setting, "a number from 0 to 1, or from 0% to 100%"); }
+    return share;
+}
+
 double readPositive(const Setting& setting) {
     const std::optional<double> value = parseNumber(setting.text());
     if (!value || *value <= 0.0) { refuse(setting, "a number greater than 0"); }
@@ -94,10 +103,12 @@ glm::uvec2 readSize(const Setting& setting) {
     const std::string text = setting.text();
     const std::size_t cross = text.find('x');
     const std::string_view all = text;
-    const auto width = cross == std::string::npos ? std::nullopt : parseCount(all.substr(0, cross));
-    const auto height = cross == std::string::npos ? std::nullopt : parseCount(all.substr(cross + 1));
+    const auto width = parseCount(all.substr(0, cross));
+    const auto height = cross == std::string::npos ? width : parseCount(all.substr(cross + 1));
     const auto fits = [](const std::optional<std::uint64_t>& side) { return side && *side >= 1 && *side <= kMaxSide; };
-    if (!fits(width) || !fits(height)) { refuse(setting, fmt::format("WIDTHxHEIGHT with 1 to {} pixels per side", kMaxSide)); }
+    if (!fits(width) || !fits(height)) {
+        refuse(setting, fmt::format("WIDTHxHEIGHT with 1 to {} pixels per side, or one number for both", kMaxSide));
+    }
     return {static_cast<std::uint32_t>(*width), static_cast<std::uint32_t>(*height)};
 }
 

@@ -5,6 +5,7 @@
 #include "engine/address.h"
 #include "engine/files/packed_scene.h"
 #include "engine/files/scene_folder.h"
+#include "engine/files/scene_series.h"
 #include "engine/scene/procedural.h"
 
 #include <algorithm>
@@ -39,6 +40,17 @@ bool holdsOneScene(const fs::path& folder) {
     return scenes == 1;
 }
 
+// Hidden ones are left out. The paths begin with `as`.
+std::vector<std::string> scenesIn(const fs::path& folder, const fs::path& as) {
+    std::vector<std::string> scenes;
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+        const fs::path name = entry.path().filename();
+        if (!name.string().starts_with('.') && looksLikeScene(entry.path())) { scenes.push_back((as / name).string()); }
+    }
+    return scenes;
+}
+
 }  // namespace
 
 bool looksLikeScene(const fs::path& path) {
@@ -60,16 +72,19 @@ std::vector<std::string> scenesBeside(const std::string& scene) {
         fs::path place = scene;
         if (!place.has_filename()) { place = place.parent_path(); }
         const fs::path folder = place.has_parent_path() ? place.parent_path() : ".";
-        std::error_code ignored;
-        for (const auto& entry : fs::directory_iterator(folder, ignored)) {
-            if (!entry.path().filename().string().starts_with('.') && looksLikeScene(entry.path())) {
-                scenes.push_back((place.parent_path() / entry.path().filename()).string());
-            }
-        }
+        scenes = scenesIn(folder, place.parent_path());
         if (std::ranges::find(scenes, place.string()) == scenes.end()) { scenes.push_back(place.string()); }
     }
     std::ranges::sort(scenes, comesBefore);
     return scenes;
+}
+
+std::string firstSceneIn(const std::string& scene) {
+    std::error_code ignored;
+    if (isBuiltin(scene) || isAddress(scene) || !fs::is_directory(scene, ignored)) { return {}; }
+    if (looksLikeScene(scene) || isMovingScene(scene) || findOnlyScene(scene)) { return {}; }
+    const std::vector<std::string> scenes = scenesIn(scene, scene);
+    return scenes.empty() ? "" : *std::ranges::min_element(scenes, comesBefore);
 }
 
 std::string sceneBeside(const std::string& scene, int step) {

@@ -14,6 +14,9 @@ bool looksLikeScene(const std::filesystem::path& path);
 // is included.
 std::vector<std::string> scenesBeside(const std::string& scene);
 
+// The first of the scenes in a folder that is not one itself. Empty: `scene` is a file, is itself a scene, or holds none.
+std::string firstSceneIn(const std::string& scene);
+
 // The scene `step` further on, wrapping around.
 std::string sceneBeside(const std::string& scene, int step);
 

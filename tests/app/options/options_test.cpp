@@ -108,9 +108,15 @@ TEST_CASE("a number beyond its range, and a word that is none of a few, are refu
 }
 
 TEST_CASE("other values that are none say what they must be") {
-    for (const char* size : {"0x0", "70000x70000", "16385x1", "0x16", "-1x5", "12", "axb", "1x2x3", "99999999999999999999x1"}) {
+    for (const char* size : {"0x0", "70000x70000", "16385x1", "0x16", "-1x5", "0", "12x", "axb", "1x2x3", "99999999999999999999x1"}) {
         checkRefused(kRenderOne + "--size=" + size, ExitCode::kBadInput,
                      fmt::format("--size is {}, must be WIDTHxHEIGHT with 1 to 16384 pixels per side", size));
+    }
+    CHECK(renderOptions("--size 24").camera.size_px == glm::uvec2(24));
+    CHECK(these(renderOptions("--budget 20%").stereo.warp.budget, renderOptions("--budget 100%").stereo.warp.budget) == these(0.2, 1.0));
+    for (const char* share : {"120%", "-1%", "20%%", "%", "1.5"}) {
+        checkRefused(fmt::format("{}--budget={}", kRenderOne, share), ExitCode::kBadInput,
+                     "must be a number from 0 to 1, or from 0% to 100%");
     }
     for (const char* crop : {"0,0,0", "0,0,0,0", "0,0,0,-1", "0,0,nan,1", "0,0,0,inf", "0,0,0,1,2", ","}) {
         checkRefused(fmt::format("convert a b.ply --crop={}", crop), ExitCode::kBadInput, "must be four finite numbers x,y,z,r");

@@ -239,6 +239,10 @@ TEST_CASE("a folder with one scene in it is that scene, as it is on the command 
     fs::remove(work.path / "garden" / "one-more.txt");
     work.add("garden/second.spz");
     CHECK_FALSE(looksLikeScene(work.path / "garden"));
+    // A folder of several is opened at its first, in natural order; others are none of one's own.
+    CHECK(firstSceneIn(work.at("garden")) == work.at("garden/garden.ply"));
+    CHECK(these(firstSceneIn(work.path.string()), firstSceneIn(work.at("garden/garden.ply")), firstSceneIn("builtin:atelier")) ==
+          these("", "", ""));
 }
 
 TEST_CASE("at a viewpoint the eyes are there, look that way and stand upright, wherever the head is in the room, at the same scale") {
