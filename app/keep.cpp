@@ -3,8 +3,8 @@
 
 #include "app/terminal/progress.h"
 #include "engine/error.h"
+#include "engine/places/standpoint.h"
 #include "engine/scene/pick_splats.h"
-#include "engine/scene/standpoint.h"
 #include "engine/setup/camera_file.h"
 #include "engine/temporary_folder.h"
 

@@ -1,11 +1,11 @@
 // Frames along a recorded path of the head.
 #include "app/render_path.h"
 
+#include "app/axes/staying_axes.h"
 #include "app/load.h"
 #include "app/terminal/interrupt.h"
 #include "app/terminal/progress.h"
 #include "engine/error.h"
-#include "engine/frame/staying_axes.h"
 #include "engine/picture/image_io.h"
 #include "engine/picture/join.h"
 #include "engine/picture/panorama_tags.h"

@@ -1,9 +1,9 @@
 // `binosplat scene`: a built-in scene as a 2DGS PLY file.
 #include "app/commands.h"
 #include "app/terminal/progress.h"
+#include "engine/builtin/procedural.h"
 #include "engine/error.h"
 #include "engine/files/ply.h"
-#include "engine/scene/procedural.h"
 
 #include <filesystem>
 

@@ -24,6 +24,12 @@ glm::dvec3 transform(const Pose& target_from_source, const glm::dvec3& point_sou
 // Throws Error if the three points do not span a view (equal points, or `up` along the line of sight).
 Pose lookAt(const glm::dvec3& eye, const glm::dvec3& look, const glm::dvec3& up);
 
+// A view before there is a picture: from where, at what, which way is up, and how wide.
+struct View {
+    glm::dvec3 eye, look, up;
+    double fov_x_deg;
+};
+
 // Pixel (x, y) = (fx X/Z + cx, fy Y/Z + cy); the centre of the first pixel is (0.5, 0.5).
 struct Intrinsics {
     double fx = 1.0, fy = 1.0, cx = 0.5, cy = 0.5;

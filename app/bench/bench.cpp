@@ -7,6 +7,7 @@
 #include "app/terminal/interrupt.h"
 #include "app/terminal/progress.h"
 #include "engine/address.h"
+#include "engine/builtin/procedural.h"
 #include "engine/error.h"
 #include "engine/setup/output_files.h"
 

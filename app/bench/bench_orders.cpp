@@ -7,6 +7,7 @@
 #include "app/scores/metrics.h"
 #include "app/terminal/interrupt.h"
 #include "app/terminal/progress.h"
+#include "engine/builtin/procedural.h"
 #include "engine/setup/output_files.h"
 #include "engine/twin/reference.h"
 

@@ -9,7 +9,7 @@
 #include "app/terminal/progress.h"
 #include "engine/error.h"
 #include "engine/picture/image_io.h"
-#include "engine/scene/standpoint.h"
+#include "engine/places/standpoint.h"
 #include "engine/setup/output_files.h"
 
 #include <nlohmann/json.hpp>

@@ -1,11 +1,11 @@
 // All methods at one scene, view and size.
 #include "app/bench/bench_point.h"
 
+#include "app/axes/staying_axes.h"
 #include "app/load.h"
 #include "app/options/modes.h"
 #include "app/report/report.h"
 #include "app/terminal/interrupt.h"
-#include "engine/frame/staying_axes.h"
 #include "engine/twin/coarse.h"
 #include "engine/twin/reference.h"
 

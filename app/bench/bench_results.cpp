@@ -1,7 +1,7 @@
 // Evaluating the results of `bench`.
 #include "app/bench/bench_results.h"
 
-#include "engine/scene/procedural.h"
+#include "engine/builtin/procedural.h"
 
 #include <fmt/format.h>
 

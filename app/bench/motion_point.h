@@ -1,10 +1,10 @@
 // `bench --motion`: one scene, view and size at every pose of a recorded head, with all methods at each pose.
 #pragma once
 
+#include "app/axes/staying_axes.h"
 #include "app/bench/bench_point.h"
 #include "app/bench/motion_results.h"
 #include "app/bench/seen_through_lens.h"
-#include "engine/frame/staying_axes.h"
 
 #include <array>
 #include <map>

@@ -5,7 +5,7 @@
 #include "app/terminal/interrupt.h"
 #include "app/view/panel/panel_style.h"
 #include "engine/error.h"
-#include "engine/scene/standpoint.h"
+#include "engine/places/standpoint.h"
 
 #include <algorithm>
 #include <cmath>

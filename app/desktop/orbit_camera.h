@@ -2,7 +2,6 @@
 #pragma once
 
 #include "engine/geometry.h"
-#include "engine/scene/procedural.h"
 
 namespace binosplat {
 

@@ -4,8 +4,7 @@
 #include "app/options/options.h"
 #include "engine/frame/stereo_frame.h"
 #include "engine/geometry.h"
-#include "engine/scene/procedural.h"
-#include "engine/scene/standpoint.h"
+#include "engine/places/standpoint.h"
 #include "engine/setup/camera_file.h"
 #include "engine/setup/headset.h"
 

@@ -2,7 +2,7 @@
 #include "app/options/modes.h"
 
 #include "engine/error.h"
-#include "engine/scene/standpoint.h"
+#include "engine/places/standpoint.h"
 
 namespace binosplat {
 

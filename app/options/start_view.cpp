@@ -2,9 +2,10 @@
 #include "app/options/start_view.h"
 
 #include "app/options/camera_options.h"
+#include "engine/builtin/procedural.h"
 #include "engine/error.h"
 #include "engine/files/scene_folder.h"
-#include "engine/scene/floor_choice.h"
+#include "engine/places/floor_choice.h"
 
 #include <algorithm>
 #include <cmath>

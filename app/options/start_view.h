@@ -2,8 +2,8 @@
 #pragma once
 
 #include "app/options/options.h"
+#include "engine/places/standpoint.h"
 #include "engine/scene/scene.h"
-#include "engine/scene/standpoint.h"
 #include "engine/setup/camera_file.h"
 
 #include <filesystem>

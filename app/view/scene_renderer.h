@@ -1,6 +1,7 @@
 // From the scene to the headset's images: resolution, method, both eyes' pictures.
 #pragma once
 
+#include "app/axes/staying_axes.h"
 #include "app/terminal/frame_log.h"
 #include "app/view/governor/met_displays.h"
 #include "app/view/governor/splat_budget.h"
@@ -9,7 +10,6 @@
 #include "app/view/scenes/shown_scene.h"
 #include "app/view/settings/view_settings.h"
 #include "app/view/window/mirror_window.h"
-#include "engine/frame/staying_axes.h"
 
 #include <array>
 #include <functional>

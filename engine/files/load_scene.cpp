@@ -1,6 +1,7 @@
 // loadScene: which reader a source belongs to.
 #include "engine/files/load_scene.h"
 
+#include "engine/builtin/procedural.h"
 #include "engine/error.h"
 #include "engine/files/compressed_ply.h"
 #include "engine/files/gltf.h"
@@ -15,7 +16,6 @@
 #include "engine/files/splat_file.h"
 #include "engine/files/spz.h"
 #include "engine/files/streamed_sog.h"
-#include "engine/scene/procedural.h"
 
 #include <algorithm>
 #include <array>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "engine/geometry.h"
-#include "engine/passes/contribute.h"
+#include "engine/levels/contribute.h"
 
 #include <cstdint>
 #include <vector>

@@ -2,9 +2,9 @@
 #include "engine/levels/thin_out.h"
 
 #include "engine/files/sog_pack.h"
+#include "engine/places/standing_views.h"
 #include "engine/scene/pick_splats.h"
 #include "engine/scene/sh_basis.h"
-#include "engine/scene/standing_views.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // Frames that are waited for, and their pictures.
 #include "engine/library/objects.h"
 #include "engine/library/structures.h"
-#include "engine/scene/standpoint.h"
+#include "engine/places/standpoint.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 // Scenes: loaded on threads of their own.
+#include "engine/builtin/procedural.h"
 #include "engine/files/web/web_files.h"
 #include "engine/library/objects.h"
 #include "engine/library/structures.h"
-#include "engine/scene/procedural.h"
-#include "engine/scene/standpoint.h"
+#include "engine/places/standpoint.h"
 
 #include <limits>
 

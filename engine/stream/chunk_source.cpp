@@ -2,8 +2,8 @@
 #include "engine/stream/chunk_source.h"
 
 #include "engine/address.h"
+#include "engine/builtin/procedural.h"
 #include "engine/files/streamed_sog.h"
-#include "engine/scene/procedural.h"
 
 #include <filesystem>
 #include <system_error>

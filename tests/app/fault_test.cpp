@@ -1,8 +1,8 @@
 // Facts about machines that fail under the program: a device that is lost or full, a disk that is full, a signal. What fails, and where, a
 // Vulkan layer says (tests/faults), or the shell's limit of file sizes; each time one line, its exit code, and nothing left behind.
+#include "engine/builtin/procedural.h"
 #include "engine/files/ply.h"
-#include "engine/scene/procedural.h"
-#include "engine/scene/standpoint.h"
+#include "engine/places/standpoint.h"
 #include "tests/run_program.h"
 
 SUITE(fault) {

@@ -1,8 +1,8 @@
 // What the program says of a scene, and how it takes one of several levels.
 #include "app/scores/metrics.h"
+#include "engine/builtin/procedural.h"
 #include "engine/files/ply.h"
 #include "engine/picture/image_io.h"
-#include "engine/scene/procedural.h"
 #include "tests/run_program.h"
 #ifdef BINOSPLAT_SOG
 #include "tests/engine/files/streamed_scenes.h"

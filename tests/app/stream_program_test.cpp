@@ -1,6 +1,6 @@
 // The program with streamed scenes: what it shows within a budget of splats, what it says of that, and what it refuses.
+#include "engine/builtin/procedural.h"
 #include "engine/picture/image_io.h"
-#include "engine/scene/procedural.h"
 #include "tests/engine/stream/split_scene.h"
 #include "tests/run_program.h"
 

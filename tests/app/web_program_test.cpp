@@ -1,7 +1,7 @@
 // Commands whose SCENE is an address, run as a program.
+#include "engine/builtin/procedural.h"
 #include "engine/files/ply.h"
 #include "engine/picture/image_io.h"
-#include "engine/scene/procedural.h"
 #include "tests/engine/files/web/web_runs.h"
 #include "tests/run_program.h"
 

@@ -1,7 +1,7 @@
 // Where the wearer's room lies in the scene. Room axes are those of a camera looking ahead (x right, y down, z forward), metres.
 #pragma once
 
-#include "engine/scene/procedural.h"
+#include "engine/geometry.h"
 #include "engine/similarity.h"
 
 namespace binosplat {

@@ -3,8 +3,8 @@
 
 #include "app/view/settings/view_files.h"
 #include "engine/address.h"
+#include "engine/builtin/procedural.h"
 #include "engine/error.h"
-#include "engine/scene/procedural.h"
 #include "engine/setup/output_files.h"
 #include "engine/setup/text_file.h"
 

@@ -2,9 +2,9 @@
 #include "app/view/scenes/scene_facts.h"
 
 #include "engine/address.h"
+#include "engine/builtin/procedural.h"
 #include "engine/gpu/gpu_scene.h"
-#include "engine/scene/procedural.h"
-#include "engine/scene/standpoint.h"
+#include "engine/places/standpoint.h"
 
 #include <fmt/format.h>
 

@@ -6,8 +6,8 @@
 #include "app/view/scenes/scene_facts.h"
 #include "app/view/scenes/view_scenes.h"
 #include "engine/address.h"
+#include "engine/builtin/procedural.h"
 #include "engine/platform.h"
-#include "engine/scene/procedural.h"
 
 #include <algorithm>
 #include <filesystem>

@@ -7,8 +7,8 @@
 #include "app/view/scenes/scene_up.h"
 #include "app/view/settings/view_files.h"
 #include "engine/address.h"
+#include "engine/builtin/procedural.h"
 #include "engine/error.h"
-#include "engine/scene/procedural.h"
 
 #include <utility>
 

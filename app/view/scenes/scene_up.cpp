@@ -2,7 +2,7 @@
 #include "app/view/scenes/scene_up.h"
 
 #include "app/options/start_view.h"
-#include "engine/scene/procedural.h"
+#include "engine/builtin/procedural.h"
 
 #include <algorithm>
 #include <cmath>

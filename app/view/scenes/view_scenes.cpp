@@ -3,10 +3,10 @@
 
 #include "app/view/scenes/natural_order.h"
 #include "engine/address.h"
+#include "engine/builtin/procedural.h"
 #include "engine/files/packed_scene.h"
 #include "engine/files/scene_folder.h"
 #include "engine/files/scene_series.h"
-#include "engine/scene/procedural.h"
 
 #include <algorithm>
 #include <filesystem>

@@ -1,7 +1,7 @@
 // Places in a scene to go to: the cameras that it was trained from, and those that the wearer kept.
 #pragma once
 
-#include "engine/scene/procedural.h"
+#include "engine/geometry.h"
 #include "engine/similarity.h"
 
 #include <cstddef>

@@ -3,9 +3,9 @@
 
 #include "app/options/option_layers.h"
 #include "engine/address.h"
+#include "engine/builtin/procedural.h"
 #include "engine/error.h"
 #include "engine/platform.h"
-#include "engine/scene/procedural.h"
 #include "engine/setup/output_files.h"
 
 #include <algorithm>

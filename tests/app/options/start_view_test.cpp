@@ -1,6 +1,7 @@
 // Facts about the eyes of a picture: where one stands at first, at a camera that lies with the scene or where the options say.
 #include "app/options/start_view.h"
 #include "app/options/camera_options.h"
+#include "engine/builtin/procedural.h"
 #include "engine/files/load_scene.h"
 #include "engine/files/ply.h"
 #include "engine/files/scene_folder.h"

@@ -1,5 +1,5 @@
 // The viewer where the headset sees where its wearer looks, or takes foveated insets: it is sharp there, if the wearer lets it.
-#include "engine/scene/procedural.h"
+#include "engine/builtin/procedural.h"
 #include "tests/app/view/view_acts.h"
 
 SUITE(view_gaze) {

@@ -1,8 +1,8 @@
 // Facts about scene files that change while they are read, which they do where reading reports its progress.
+#include "engine/builtin/procedural.h"
 #include "engine/files/ply.h"
 #include "engine/files/read_ahead.h"
 #include "engine/files/spz.h"
-#include "engine/scene/procedural.h"
 #include "tests/engine/files/hostile_scenes.h"
 #ifdef BINOSPLAT_SOG
 #include "tests/engine/files/sog_scenes.h"

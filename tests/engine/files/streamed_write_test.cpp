@@ -1,7 +1,7 @@
 // Facts about writing streamed SOG scenes.
 #include "engine/files/streamed_write.h"
+#include "engine/builtin/procedural.h"
 #include "engine/scene/pick_splats.h"
-#include "engine/scene/procedural.h"
 #include "tests/engine/files/sog_scenes.h"
 
 SUITE(streamed_write) {

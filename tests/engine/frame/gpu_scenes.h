@@ -1,8 +1,8 @@
 // Scenes and eyes that GPU tests render, and the twin's pictures as images.
 #pragma once
 
+#include "engine/builtin/procedural.h"
 #include "engine/picture/image.h"
-#include "engine/scene/procedural.h"
 #include "shaders/shared/constants.h"
 #include "tests/engine/twin/reference_scenes.h"
 

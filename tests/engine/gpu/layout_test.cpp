@@ -1,6 +1,6 @@
 // The structs that C++ and GLSL share have the same fields at the same offsets in both: what the compiled shaders say of them is
 // held against offsetof and sizeof. Also what shaders do with their constants, and with structs of addresses.
-#include "engine/passes/contribute.h"
+#include "engine/levels/contribute.h"
 #include "engine/passes/passes.h"
 #include "engine/passes/past_passes.h"
 #include "engine/passes/present.h"

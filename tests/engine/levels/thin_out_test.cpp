@@ -2,9 +2,9 @@
 #include "engine/levels/thin_out.h"
 #include "engine/files/load_scene.h"
 
+#include "engine/builtin/procedural.h"
+#include "engine/places/standpoint.h"
 #include "engine/scene/pick_splats.h"
-#include "engine/scene/procedural.h"
-#include "engine/scene/standpoint.h"
 #include "tests/engine/gpu/gpu_fixture.h"
 #include "tests/shared_data.h"
 

@@ -1,7 +1,7 @@
 // Facts about libbinosplat as other programs meet it: what it exports, its pictures, and what it says where something is wrong.
+#include "engine/builtin/procedural.h"
 #include "engine/files/ply.h"
 #include "engine/picture/image_io.h"
-#include "engine/scene/procedural.h"
 #include "tests/engine/library/earlier_program.h"
 #include "tests/run_program.h"
 #include "tests/shared_data.h"

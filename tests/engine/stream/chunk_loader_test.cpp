@@ -1,7 +1,7 @@
 // Parts of streamed scenes beside whoever wants them: what is wished for and nothing else, in that order, whatever files and servers do.
 #include "engine/stream/chunk_loader.h"
 
-#include "engine/scene/procedural.h"
+#include "engine/builtin/procedural.h"
 #include "tests/engine/files/streamed_scenes.h"
 #include "tests/engine/stream/split_scene.h"
 #include "tests/run_program.h"

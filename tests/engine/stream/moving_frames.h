@@ -1,8 +1,8 @@
 // Films: numbered files in a folder, and the scenes in them.
 #pragma once
 
+#include "engine/builtin/procedural.h"
 #include "engine/files/ply.h"
-#include "engine/scene/procedural.h"
 #include "tests/suite.h"
 
 namespace binosplat::test {

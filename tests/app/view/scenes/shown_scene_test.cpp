@@ -5,7 +5,7 @@
 #include "app/view/panel/panel_content.h"
 #include "app/view/panel/panel_style.h"
 #include "app/view/settings/view_files.h"
-#include "engine/scene/procedural.h"
+#include "engine/builtin/procedural.h"
 #include "tests/engine/gpu/device_image.h"
 #include "tests/run_program.h"
 
