@@ -29,7 +29,7 @@ ROOMS = {
     "engine/frame": "engine engine/gpu engine/passes engine/baselines engine/picture",
     "engine/levels": "engine engine/files engine/scene engine/places engine/gpu engine/passes shaders/shared",
     "engine/stream": "engine engine/scene engine/builtin engine/files engine/files/web engine/gpu shaders/shared",
-    "engine/library": "engine engine/scene engine/builtin engine/places engine/files engine/files/web engine/picture engine/gpu engine/passes engine/frame",
+    "engine/library": "engine engine/scene engine/builtin engine/places engine/files engine/files/web engine/picture engine/gpu engine/passes engine/frame engine/stream",
     "xr": "engine engine/gpu shaders/shared",
     "app/scores": "engine engine/picture shaders/shared",
     "app/axes": "engine engine/passes shaders/shared",

@@ -179,7 +179,8 @@ void WarpRecorder::findNewcomers() {
                                   .counters = counters(),
                                   .chunk_bits = in_.scene.chunkBits(),
                                   .eye = static_cast<gpu::uint>(in_.index)};
-    dispatchByCounter(NewcomersKernel{.splat_kind = in_.scene.splatKind()}, pass, offsetof(gpu::WarpCounters, per_visible));
+    dispatchByCounter(NewcomersKernel{.splat_kind = in_.scene.splatKind(), .placed = in_.scene.isPlaced()}, pass,
+                      offsetof(gpu::WarpCounters, per_visible));
 }
 
 void WarpRecorder::groupHoles() {

@@ -40,7 +40,7 @@ void makeFromPast(TargetPlan& target, const Past& past, const FrameSettings& set
 bool hasCoarseTiles(const FrameSettings& settings, std::size_t eyes) {
     const bool may = settings.mode == Mode::kMono || settings.mode == Mode::kPredicted || hasPast(settings.mode);
     const auto gazes = std::span(settings.gazes).first(eyes);
-    return settings.half_periphery && may && !settings.keep_moments &&
+    return settings.half_periphery && may && !settings.keep_moments && !settings.mesh_depths[0] &&
            std::ranges::all_of(gazes, [](const auto& gaze) { return gaze.has_value(); });
 }
 
@@ -179,7 +179,9 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
                                 .kept = {.depth = is_first ? settings.keep_depth : settings.keep_both_depths,
                                          .moments = is_first && settings.keep_moments,
                                          .half_floats = settings.half_floats,
+                                         .cut = settings.mesh_depths[static_cast<std::size_t>(e)].has_value(),
                                          .past = keeps_past},
+                                .mesh_depths = settings.mesh_depths[static_cast<std::size_t>(e)],
                                 .picture = e,
                                 .from_past_later = keeps_past && settings.mode == Mode::kTemporal,
                                 .coarse = coarse});

@@ -50,7 +50,8 @@ struct TargetPlan {
     int list = 0;  // of visible splats
     std::uint32_t tiles_hidden = 0;
     Kept kept;
-    TileChoice choice = TileChoice::kAll;  // of the tiles that are rendered
+    std::optional<MeshDepths> mesh_depths = {};  // that cut through it
+    TileChoice choice = TileChoice::kAll;        // of the tiles that are rendered
     std::optional<Warp> warp = {};
     std::optional<Past> past = {};  // what it is made from instead: its eye's last picture
     std::optional<Gaze> gaze = {};  // for the choice among what the past has left, and of coarse tiles

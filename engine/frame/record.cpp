@@ -26,7 +26,7 @@ gpu::uint tileCountOf(const TargetPlan& target) {
 
 void FrameRecorder::begin(Commands& commands, bool times_passes) const {
     commands.begin(times_passes);
-    if (changes_known) { scene.recordChanges(commands); }
+    if (changes_known && brings_changes) { scene.recordChanges(commands); }
 }
 
 void FrameRecorder::describeFrame(Commands& commands, const FramePlan& plan) const {
@@ -62,6 +62,11 @@ void FrameRecorder::describe(const FramePlan& plan, int index, TargetState& stat
     }
     state.colours = picture.colours.address<gpu::vec4>();
     if (target.kept.depth) { state.depths = picture.depths.address<float>(); }
+    if (target.mesh_depths) {
+        state.mesh_depths = target.mesh_depths->depths;
+        state.depth_scale = target.mesh_depths->depth_scale;
+        state.depth_offset = target.mesh_depths->depth_offset;
+    }
     if (target.kept.moments) { state.moments = room.moments().address<gpu::vec2>(); }
     if (target.kept.past) {
         state.past_tiles = picture.tiles.address<gpu::PastTile>();
@@ -92,8 +97,10 @@ void FrameRecorder::recordCulling(Commands& commands, const FramePlan& plan) con
     }
 }
 
-void FrameRecorder::record(Commands& commands, const FramePlan& plan, bool times_passes) const {
+void FrameRecorder::record(Commands& commands, const FramePlan& plan, bool times_passes,
+                           const std::function<void(Commands&)>& before) const {
     begin(commands, times_passes);
+    if (before) { before(commands); }
     room.recordShown(commands);  // which says where the masks are
     describeFrame(commands, plan);
     for (const Step& step : plan.steps) {

@@ -14,9 +14,11 @@ struct FrameRecorder {
     FrameRoom& room;
     // If the recording is going to be submitted, and so brings the scene's changes: those that the pasts know, see GpuScene.
     std::optional<std::uint64_t> changes_known;
+    bool brings_changes = true;
 
     // The whole frame, from Commands::begin on.
-    void record(Commands& commands, const FramePlan& plan, bool times_passes = true) const;
+    void record(Commands& commands, const FramePlan& plan, bool times_passes = true,
+                const std::function<void(Commands&)>& before = {}) const;
     // Only the culling: how many splats the lists need.
     void recordCulling(Commands& commands, const FramePlan& plan) const;
     // The end of that: what the device reports is copied to `readback`.

@@ -10,12 +10,19 @@
 #include "engine/passes/warp_view.h"
 
 #include <array>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace binosplat {
+
+// A program's own depths, one a pixel: depth_scale / z + depth_offset.
+struct MeshDepths {
+    gpu::DeviceAddress<float> depths;
+    float depth_scale = 1.0f, depth_offset = 0.0f;
+};
 
 struct FrameSettings {
     Mode mode = Mode::kPredicted;
@@ -36,6 +43,10 @@ struct FrameSettings {
     // By eye, tiles that nobody will see: a byte a tile, row-major, 1 if it is hidden; empty: none is. They become background, cost no
     // pairs and are left out of the budget, which is a share of the others.
     std::array<std::span<const std::uint8_t>, 2> hidden_tiles = {};
+    // Modes that render every tile (isInFull), by eye: splats show only where they are nearer than this.
+    std::array<std::optional<MeshDepths>, 2> mesh_depths = {};
+    // Recorded before anything of the frame.
+    std::function<void(Commands&)> before = {};
     // kPredicted, by eye: where it looks; empty: nobody knows. Only what it sees of the affiliated eye's errors counts.
     std::array<std::optional<Gaze>, 2> gazes = {};
     // kMono, kPredicted, kAlternate, kTemporal: if it is known where the eyes look (`gazes`), tiles elsewhere are coarse, except where they

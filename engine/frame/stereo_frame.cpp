@@ -295,8 +295,9 @@ void StereoFrame::record(Flight& flight, const FrameSettings& settings, const Ap
     flight.plan = plan_;
     flight.settings = settings;
     flight.settings.hidden_tiles = {};
+    flight.settings.before = {};
     flight.asked = moving_pays_.asked();
-    recorder().record(flight.commands, plan_, settings.times_passes);
+    recorder().record(flight.commands, plan_, settings.times_passes, settings.before);
     changes_known_ = scene_->changesRecorded();
     recorder().recordReport(flight.commands, flight.readback);
     pasts_ = pastsAfter(plan_, pastsFor(eyes_, settings));

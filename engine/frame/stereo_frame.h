@@ -57,6 +57,8 @@ public:
     FrameResult takeBack(std::uint64_t number);
     // Nobody will submit it.
     void takeBackUnused(std::uint64_t number);
+    // From now on somebody else records the scene's changes, and submits them before each frame.
+    void leaveChanges() { brings_changes_ = false; }
     // The next frame is made from no past.
     void forgetPast() { pasts_ = {}; }
 
@@ -123,7 +125,7 @@ private:
     [[nodiscard]] Flight& flight() { return flights_[turn_]; }
     // `drops`: the recording is dropped, and so must leave the scene's changes to the next.
     [[nodiscard]] FrameRecorder recorder(bool drops = false) {
-        return {kernels_, *scene_, room_, drops ? std::nullopt : std::optional(changes_known_)};
+        return {kernels_, *scene_, room_, drops ? std::nullopt : std::optional(changes_known_), brings_changes_};
     }
     // The pasts that the frames before leave to such a frame.
     [[nodiscard]] Pasts pastsFor(std::span<const Eye> eyes, const FrameSettings& settings) const;
@@ -165,6 +167,7 @@ private:
     FrameState state_{};              // the report of the last known frame
     std::uint32_t splats_known_ = 0;  // how many the scene held then
     MovingPays moving_pays_;
+    bool brings_changes_ = true;
     std::uint64_t changes_known_ = 0;  // the scene's changes that the last frame shows, see GpuScene::changesSince
     FrameShape shape_;
     std::vector<Eye> eyes_;

@@ -262,6 +262,12 @@ void Commands::waitForDevice() const {
     } catch (const vk::SystemError& error) { throw deviceError(context_.deviceName(), error); }
 }
 
+bool Commands::isDone() const {
+    try {
+        return fence_.getStatus() == vk::Result::eSuccess;
+    } catch (const vk::SystemError& error) { throw deviceError(context_.deviceName(), error); }
+}
+
 void Commands::wait() {
     if (!under_way_) { return; }
     waitForDevice();

@@ -118,6 +118,8 @@ public:
         wait();
     }
     [[nodiscard]] bool isUnderWay() const { return under_way_; }
+    // Of what was submitted: true once the device is done.
+    [[nodiscard]] bool isDone() const;
 
     // For anything that is not a pass: pictures that leave for a headset or a window. Between begin and submit.
     [[nodiscard]] const vk::raii::CommandBuffer& buffer() const { return command_buffer_; }

@@ -5,6 +5,7 @@
 #include "engine/gpu/commands.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace binosplat {
 namespace {
@@ -15,14 +16,32 @@ constexpr std::uint32_t kUploadSplats = 65536;
 // Words of a chunk are then counted in less than 31 bits, see kMaxItems.
 constexpr std::uint64_t kMaxChunkBytes = std::uint64_t{4} << 30;
 
+constexpr auto kPageBits = static_cast<std::uint32_t>(std::countr_zero(gpu::kPageSplats));
+
+// The chunk's splats from the page's first on.
+gpu::SceneChunk pageOf(const gpu::SceneChunk& chunk, std::uint64_t first, std::uint64_t sh_words) {
+    gpu::SceneChunk page = chunk;
+    page.positions = chunk.positions.at(first);
+    page.rotations = chunk.rotations.at(first);
+    page.scales = chunk.scales.at(first);
+    page.thicknesses = chunk.thicknesses.at(first);
+    page.opacities = chunk.opacities.at(first);
+    page.base_colours = chunk.base_colours.at(first);
+    page.sh = chunk.sh.at(first * sh_words);
+    return page;
+}
+
 }  // namespace
 
-GpuScene::GpuScene(const Context& context, const Scene& scene, const Progress& progress) : traits_(traitsOf(scene)) {
+GpuScene::GpuScene(const Context& context, const Scene& scene, const Progress& progress, bool keeps_table) : traits_(traitsOf(scene)) {
     check(scene.size() <= gpu::kMaxItems, "{}: {} splats, at most {} can be shown", scene.name, scene.size(), gpu::kMaxItems);
     splat_count_ = splats_held_ = splats_coming_ = static_cast<std::uint32_t>(scene.size());
+    const std::uint32_t least_bits = keeps_table ? kPageBits : 0;
+    chunk_bits_ = least_bits;
     while ((1ull << chunk_bits_) < splat_count_) { ++chunk_bits_; }
     const std::uint64_t most_bytes = std::min(context.maxAllocationBytes(), kMaxChunkBytes);
-    while (chunk_bits_ > 0 && ChunkLayout(std::min<std::uint64_t>(1ull << chunk_bits_, splat_count_), traits_).bytes > most_bytes) {
+    while (chunk_bits_ > least_bits &&
+           ChunkLayout(std::min<std::uint64_t>(1ull << chunk_bits_, splat_count_), traits_).bytes > most_bytes) {
         --chunk_bits_;
     }
 
@@ -36,9 +55,15 @@ GpuScene::GpuScene(const Context& context, const Scene& scene, const Progress& p
     Commands commands(context);
     for (std::uint64_t first = 0; first < splat_count_; first += chunk_splats) {
         const std::uint64_t count = std::min<std::uint64_t>(chunk_splats, splat_count_ - first);
-        const ChunkLayout layout(count, traits_);
+        const std::uint64_t page_splats = keeps_table ? gpu::kPageSplats : 1, room = (count + page_splats - 1) / page_splats * page_splats;
+        const ChunkLayout layout(room, traits_);
         const Buffer& buffer = buffers_.emplace_back(context, fmt::format("scene chunk {}", buffers_.size()), layout.bytes);
         table.push_back(layout.chunkAt(buffer, 0, 1.0f));
+        if (room > count) {  // the rest of the last page is never seen
+            commands.begin();
+            commands.fillZero(buffer);
+            commands.submitAndWait();
+        }
         for (std::uint64_t done = 0; done < count; done += upload_splats) {
             const std::uint64_t block = std::min<std::uint64_t>(upload_splats, count - done);
             packSplats(scene, first + done, block, traits_, upload_layout, upload.mapped<std::uint8_t>().data());
@@ -61,6 +86,7 @@ GpuScene::GpuScene(const Context& context, const Scene& scene, const Progress& p
     table.resize(table_bytes / sizeof(gpu::SceneChunk));
     check(table_bytes <= 65536, "{}: {} splats need more than {} allocations of {} MiB", scene.name, scene.size(),
           65536 / sizeof(gpu::SceneChunk), context.maxAllocationBytes() >> 20);
+    if (keeps_table) { keepTable(scene, table); }
     chunk_table_ = Buffer(context, "scene chunks", table_bytes);
     commands.begin();
     commands.update(chunk_table_, table.data(), table_bytes);
@@ -69,6 +95,19 @@ GpuScene::GpuScene(const Context& context, const Scene& scene, const Progress& p
     chunk_count_ = buffers_.size();
     bytes_ = chunk_table_.bytes();
     for (const Buffer& buffer : buffers_) { bytes_ += buffer.bytes(); }
+}
+
+void GpuScene::keepTable(const Scene& scene, const std::vector<gpu::SceneChunk>& chunks) {
+    const std::uint64_t sh_words = ChunkLayout(1, traits_).sh_bytes_per_splat / sizeof(std::uint32_t);
+    for (std::uint64_t first = 0; first < splat_count_; first += gpu::kPageSplats) {
+        table_.chunks.push_back(pageOf(chunks[first >> chunk_bits_], first & ((1ull << chunk_bits_) - 1), sh_words));
+        PageBounds bounds;
+        for (std::uint64_t i = first; i < std::min<std::uint64_t>(first + gpu::kPageSplats, splat_count_); ++i) {
+            const float thickness = traits_.isGaussian3d() ? scene.thicknesses[i] : 0.0f;
+            bounds.add(scene.positions[i], scene.rotations[i], {scene.scales[i], thickness}, scene.opacities[i]);
+        }
+        table_.bounds.push_back(bounds.page());
+    }
 }
 
 }  // namespace binosplat

@@ -18,12 +18,19 @@ struct SceneChange {
     float amount;
 };
 
+// The pages of a scene, as the device has them.
+struct PageTable {
+    std::vector<gpu::SceneChunk> chunks;
+    std::vector<gpu::ScenePage> bounds;
+};
+
 // Positions, rotations, scales and opacities stay float32, rotations are normalised; colours are half floats (off by at most 2^-11 of
 // themselves, and not beyond 65504). A splat with an attribute that is not finite, or a rotation of length zero, is never seen.
 class GpuScene {
 public:
     // All of a scene that stays as it is. Splits it into chunks of a power of two splats if one allocation cannot hold it.
-    GpuScene(const Context& context, const Scene& scene, const Progress& progress = {});
+    // `keeps_table`: it may be placed among others.
+    GpuScene(const Context& context, const Scene& scene, const Progress& progress = {}, bool keeps_table = false);
 
     // Places for splats; in a scene of pages some may be free.
     [[nodiscard]] std::uint32_t splatCount() const { return splat_count_; }
@@ -33,6 +40,7 @@ public:
     [[nodiscard]] std::uint32_t pagesHeld() const { return pages_held_; }
     // Splats that will be there once all pending changes are recorded.
     [[nodiscard]] std::uint32_t splatsComing() const { return splats_coming_; }
+    [[nodiscard]] const SceneTraits& traits() const { return traits_; }
     [[nodiscard]] int shDegree() const { return traits_.sh_degree; }
     // kDiscs, kGaussians or kAntialiasedGaussians.
     [[nodiscard]] std::uint32_t splatKind() const { return traits_.splat_kind; }
@@ -49,6 +57,10 @@ public:
     // True if chunks come and go: each is a page then, and pages() are their bounds.
     [[nodiscard]] bool isInPages() const { return pages_.value != 0; }
     [[nodiscard]] gpu::DeviceAddress<gpu::ScenePage> pages() const { return pages_; }
+    // Of what the next frame reads; empty if it was not kept. Scenes in pages always keep it.
+    [[nodiscard]] const PageTable& table() const { return table_; }
+    // True if its chunks are those of several scenes, each with a placement.
+    [[nodiscard]] bool isPlaced() const { return is_placed_; }
     [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
     // Records what changes from one frame to the next, before any pass of the next; nothing for a scene that stays as it is.
     void recordChanges(Commands& commands) const {
@@ -65,7 +77,9 @@ public:
 
 private:
     friend class ResidentScene;
+    friend class PlacedScenes;
     GpuScene() = default;
+    void keepTable(const Scene& scene, const std::vector<gpu::SceneChunk>& chunks);
 
     SceneTraits traits_;
     std::uint32_t splat_count_ = 0, splats_held_ = 0, splats_coming_ = 0, pages_held_ = 0;
@@ -76,6 +90,8 @@ private:
     std::uint64_t bytes_ = 0;
     std::vector<Buffer> buffers_;
     Buffer chunk_table_;
+    PageTable table_;
+    bool is_placed_ = false;
     std::function<void(Commands&)> record_changes_;
     std::vector<SceneChange> changes_noted_, changes_;  // changes_: only the latest
     std::uint64_t changes_forgotten_ = 0;

@@ -93,6 +93,7 @@ ChunkLayout::ChunkLayout(std::uint64_t capacity, const SceneTraits& traits)
         bytes += (capacity * bytes_per_splat + 15) / 16 * 16;
         return at;
     };
+    sh_degree = static_cast<std::uint32_t>(traits.sh_degree);
     positions = place(sizeof(glm::vec3));
     rotations = place(sizeof(glm::vec4));
     scales = place(sizeof(glm::vec2));
@@ -110,8 +111,9 @@ gpu::SceneChunk ChunkLayout::chunkAt(const Buffer& buffer, std::uint64_t offset_
             buffer.address<float>(offset_bytes + opacities),
             buffer.address<gpu::uvec2>(offset_bytes + base_colours),
             buffer.address<std::uint32_t>(offset_bytes + sh),
+            {},
             fade,
-            0};
+            sh_degree};
 }
 
 void packSplats(const Scene& scene, std::uint64_t first, std::uint64_t count, const SceneTraits& traits, const ChunkLayout& layout,

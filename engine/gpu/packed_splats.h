@@ -37,6 +37,7 @@ struct ChunkLayout {
 
     std::uint64_t positions = 0, rotations = 0, scales = 0, thicknesses = 0, opacities = 0, base_colours = 0, sh = 0, bytes = 0;
     std::uint64_t sh_bytes_per_splat = 0;
+    std::uint32_t sh_degree = 0;
 };
 
 // Half the size of the axis-aligned box, in the world, around all of a splat that is not fainter than kMinAlpha, and a hair for what the

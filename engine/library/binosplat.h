@@ -60,7 +60,9 @@ typedef enum bsp_type {
     // binosplat_vulkan.h
     BSP_TYPE_VULKAN_DEVICE = 8,
     BSP_TYPE_TARGET = 9,
-    BSP_TYPE_SUBMIT_INFO = 10
+    BSP_TYPE_SUBMIT_INFO = 10,
+    // binosplat.h
+    BSP_TYPE_INSTANCE = 11
 } bsp_type;
 
 // The beginning of every structure. `next`: another structure that says more, where a comment names one; else null.
@@ -121,6 +123,12 @@ typedef struct bsp_scene_info {
     const void* next;
     const char* source;  // a file of any format that the README lists, a folder, builtin:NAME, or an address on the web; null: `splats`
     const bsp_splats* splats;  // null: `source`
+    // 1: a streamed scene brings what the views ask for, frame by frame, and a folder of numbered files moves, see bsp_frame_info::time_s.
+    // Such a scene belongs to one renderer at a time. 0: all of it is loaded, or the first file.
+    uint32_t live;
+    uint32_t unused;
+    uint64_t splat_budget;  // of a streamed scene: the most splats that are shown; 0: as many as half of the memory takes
+    double rate_hz;         // of one that moves: files a second; 0: 30
 } bsp_scene_info;
 
 // Begins to load in the background, and returns at once. Arrays are read before it returns. Beside any call with the same device.
@@ -139,7 +147,8 @@ BSP_API void bsp_scene_destroy(bsp_scene scene);
 typedef struct bsp_scene_properties {
     uint32_t type, size;  // BSP_TYPE_SCENE_PROPERTIES
     void* next;
-    uint64_t splats, skipped;  // skipped: with a NaN, an infinity, or a rotation of length 0
+    uint64_t splats, skipped;  // skipped: with a NaN, an infinity, or a rotation of length 0. Of a live scene: of its coarsest level
+                               // or first file, as all from here on
     uint64_t device_bytes;     // that it takes on the device
     uint32_t scale_count;      // 2 or 3, as bsp_splats
     uint32_t sh_degree;        // the highest with a coefficient that is not 0
@@ -163,6 +172,7 @@ typedef struct bsp_view {
     double position[3];                            // in the coordinates of the scene's file
     double left_rad, right_rad, up_rad, down_rad;  // signed angles from the axis, as OpenXR's: of a usual eye, left and down are negative
     uint32_t width, height;                        // pixels, 1 to 16384
+    double gaze[3];                                // with foveation: where the eye looks, in its axes, of any length; 0: straight ahead
 } bsp_view;
 
 // Sets all but the headers of `count` views, 1 or 2, with square pixels: from `eye` to `look`, `up` points up; two are `eye_distance`
@@ -183,13 +193,25 @@ typedef enum bsp_mode {
 typedef enum bsp_frame_flags {
     BSP_FRAME_HALF_FLOATS = 1,  // pictures of 11 bits a value, for display: half the memory, and less time
     BSP_FRAME_DEPTH = 2,        // depths are kept, for bsp_read_depth
-    BSP_FRAME_CUT = 4           // the past is of no use: the head jumped, or the scene changed
+    BSP_FRAME_CUT = 4,          // the past is of no use: the head jumped, or the scene changed
+    BSP_FRAME_SETTLED = 8       // of bsp_render and bsp_prepare: all that the views ask for of live scenes is waited for
 } bsp_frame_flags;
+
+// A scene where it is placed among others: p in the frame = scale * (orientation p) + position, with p in the coordinates of its file.
+typedef struct bsp_instance {
+    uint32_t type, size;  // BSP_TYPE_INSTANCE
+    const void* next;
+    bsp_scene scene;        // that is there; several instances may be of one
+    double orientation[4];  // a quaternion; all 0: as in the file
+    double position[3];
+    double scale;     // 0: 1
+    uint32_t hidden;  // 1: not shown
+} bsp_instance;
 
 typedef struct bsp_frame_info {
     uint32_t type, size;  // BSP_TYPE_FRAME_INFO
     const void* next;
-    bsp_scene scene;        // one that is there; null: an empty one
+    bsp_scene scene;        // one that is there; null: an empty one, or `instances`
     const bsp_view* views;  // the first two are a pair of eyes, left and right, of one size; so are the third and the fourth
     uint32_t view_count;    // 1 to 4; an odd one at the end is drawn by itself, in full
     bsp_mode mode;
@@ -197,6 +219,13 @@ typedef struct bsp_frame_info {
     double budget;         // share of an eye's work (predicted) or of both eyes' (temporal) that mends the warp; 0: 0.2; less than 0: none
     double near_depth;     // the nearest depth that is drawn; 0: the scene's
     double background[3];  // red, green, blue, as they are displayed
+    // Several scenes in place of `scene`, at most 4096: all discs, or all Gaussians trained alike. A `near_depth` of 0 is
+    // then the least of theirs. Where an instance comes or goes it is a cut; where one moves or is hidden it is none.
+    const bsp_instance* instances;
+    uint32_t instance_count;
+    uint32_t unused;
+    double foveation_rad;  // within this angle of its gaze an eye sees all; farther out tiles may be coarse, as it would not see; 0: none
+    double time_s;         // which scenes that move are shown at, in their loop
 } bsp_frame_info;
 
 BSP_API bsp_result bsp_renderer_create(bsp_device device, bsp_renderer* renderer);

@@ -93,6 +93,7 @@ public:
         info.splats = &splats;
         create(device, info);
     }
+    Scene(const Device& device, const bsp_scene_info& info) { create(device, info); }
     [[nodiscard]] bool isThere(double* progress = nullptr) const {
         const bsp_result state = bsp_scene_state(get(), progress);
         check(state);

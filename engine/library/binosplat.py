@@ -56,7 +56,8 @@ class _Splats(_Structure):
 
 class _SceneInfo(_Structure):
     TYPE = 3
-    _fields_ = _HEADER + [("source", ctypes.c_char_p), ("splats", ctypes.POINTER(_Splats))]
+    _fields_ = _HEADER + [("source", ctypes.c_char_p), ("splats", ctypes.POINTER(_Splats)), ("live", _U32), ("unused", _U32),
+                          ("splat_budget", _U64), ("rate_hz", ctypes.c_double)]
 
 
 class _SceneProperties(_Structure):
@@ -71,14 +72,21 @@ class _View(_Structure):
     _fields_ = _HEADER + [("orientation", ctypes.c_double * 4), ("position", _DOUBLES3), ("angles", ctypes.c_double * 4), ("width", _U32), ("height", _U32)]
 
 
+class _Instance(_Structure):
+    TYPE = 11
+    _fields_ = _HEADER + [("scene", _PTR), ("orientation", ctypes.c_double * 4), ("position", _DOUBLES3), ("scale", ctypes.c_double), ("hidden", _U32)]
+
+
 class _FrameInfo(_Structure):
     TYPE = 6
     _fields_ = _HEADER + [("scene", _PTR), ("views", ctypes.POINTER(_View)), ("view_count", _U32), ("mode", ctypes.c_int), ("flags", _U32),
-                          ("budget", ctypes.c_double), ("near_depth", ctypes.c_double), ("background", _DOUBLES3)]
+                          ("budget", ctypes.c_double), ("near_depth", ctypes.c_double), ("background", _DOUBLES3),
+                          ("instances", ctypes.POINTER(_Instance)), ("instance_count", _U32), ("unused", _U32), ("foveation_rad", ctypes.c_double),
+                          ("time_s", ctypes.c_double)]
 
 
 _MODES = {"predicted": 4, "two-pass": 1, "shared": 2, "paper": 3, "temporal": 5}
-_FLAG_DEPTH, _FLAG_CUT = 2, 4
+_FLAG_DEPTH, _FLAG_CUT, _FLAG_SETTLED = 2, 4, 8
 _NOT_READY = 1
 
 
@@ -133,6 +141,31 @@ class Device:
         return _library.bsp_device_name(self._handle).decode()
 
 
+def _quaternion(m):
+    """Of a rotation matrix: w, x, y, z."""
+    # The greatest of the four components first, which nothing small divides.
+    squares = np.array([m[0, 0] + m[1, 1] + m[2, 2], m[0, 0] - m[1, 1] - m[2, 2], m[1, 1] - m[0, 0] - m[2, 2], m[2, 2] - m[0, 0] - m[1, 1]])
+    products = np.array([[0, m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1]], [0, 0, m[1, 0] + m[0, 1], m[0, 2] + m[2, 0]],
+                         [0, 0, 0, m[2, 1] + m[1, 2]], [0, 0, 0, 0]])
+    products = products + products.T + np.diag(squares + 1.0)
+    row = products[int(np.argmax(squares))]
+    return (ctypes.c_double * 4)(*(row / np.linalg.norm(row)))
+
+
+def _placed(scene, matrix):
+    """A scene where a matrix of a rotation, a scale and a place has it."""
+    if not isinstance(scene, Scene):
+        raise ValueError("beside has something that is no Scene")
+    matrix = np.asarray(matrix, dtype=np.float64)
+    if matrix.shape != (4, 4):
+        raise ValueError(f"a matrix of beside has the shape {matrix.shape}, must be (4, 4)")
+    scale = np.cbrt(np.linalg.det(matrix[:3, :3]))
+    rotation = matrix[:3, :3] / scale if scale > 0 else np.zeros((3, 3))
+    if not np.allclose(rotation @ rotation.T, np.eye(3), atol=1e-4):
+        raise ValueError("a matrix of beside is no rotation times a scale")
+    return _Instance(scene=scene._scene, orientation=_quaternion(rotation), position=_DOUBLES3(*matrix[:3, 3]), scale=scale)
+
+
 class View:
     """A camera.
 
@@ -171,14 +204,7 @@ class View:
         return cls(matrix, view.angles, width, height)
 
     def _structure(self):
-        m = self.world_from_camera
-        # The greatest of the four components first, which nothing small divides.
-        squares = np.array([m[0, 0] + m[1, 1] + m[2, 2], m[0, 0] - m[1, 1] - m[2, 2], m[1, 1] - m[0, 0] - m[2, 2], m[2, 2] - m[0, 0] - m[1, 1]])
-        products = np.array([[0, m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1]], [0, 0, m[1, 0] + m[0, 1], m[0, 2] + m[2, 0]],
-                             [0, 0, 0, m[2, 1] + m[1, 2]], [0, 0, 0, 0]])
-        products = products + products.T + np.diag(squares + 1.0)
-        row = products[int(np.argmax(squares))]
-        return _View(orientation=(ctypes.c_double * 4)(*(row / np.linalg.norm(row))), position=_DOUBLES3(*m[:3, 3]),
+        return _View(orientation=_quaternion(self.world_from_camera[:3, :3]), position=_DOUBLES3(*self.world_from_camera[:3, 3]),
                      angles=(ctypes.c_double * 4)(*self.angles), width=self.width, height=self.height)
 
 
@@ -210,9 +236,12 @@ class Scene:
         _check(_library.bsp_scene_get_properties(self._scene, ctypes.byref(self._properties)))
 
     @classmethod
-    def from_file(cls, source, device=None):
-        """A file of any format that binosplat reads, a folder, builtin:NAME, or an address on the web. device: None opens one."""
-        return cls(device, _SceneInfo(source=os.fspath(source).encode()))
+    def from_file(cls, source, device=None, live=False):
+        """A file of any format that binosplat reads, a folder, builtin:NAME, or an address on the web. device: None opens one.
+
+        live: True: of a streamed scene, levels of detail come as views ask for them; a folder of numbered files moves, 30 files a second.
+        """
+        return cls(device, _SceneInfo(source=os.fspath(source).encode(), live=1 if live else 0))
 
     @classmethod
     def from_arrays(cls, positions, rotations, scales, opacities, sh, activated=False, antialiased=False, origin=(0, 0, 0), device=None):
@@ -260,13 +289,15 @@ class Scene:
         start = self._properties
         return View.look_at(start.eye, start.look, start.up, fov_x, width, height)
 
-    def render(self, views, mode=None, background=(0, 0, 0), near=None, budget=0.2, cut=False):
+    def render(self, views, mode=None, background=(0, 0, 0), near=None, budget=0.2, cut=False, beside=(), time=0.0):
         """Draws views, all of one size.
 
         views: a View or a sequence of them. mode: None draws each by itself, in full. Otherwise views are one or two pairs of eyes, left and
         right: "two-pass", "shared" (in full), "paper", "predicted" (the right one from the left one), or "temporal" (both from the frame before:
         call it along a path; cut=True forgets that frame). budget: 0 to 1, the share of the work that mends what was warped.
         background: (3,) red, green, blue, as displayed. near: the nearest depth that is drawn; None: the scene's.
+        beside: pairs of a Scene on the same device and a (4, 4) matrix of a rotation, a scale and a place, where it is drawn with this one.
+        time: in seconds, of a live scene that moves.
 
         Returns colour, (V, H, W, 4) float32: red, green, blue as displayed (not clamped) over the background, and alpha; and depth,
         (V, H, W) float32: along the camera's axis, the mean by what each splat adds to the pixel, 0 where there is nothing.
@@ -280,14 +311,18 @@ class Scene:
             raise ValueError(f"mode is {mode!r}, must be None or one of {', '.join(_MODES)}")
         if mode is not None and len(views) not in (2, 4):
             raise ValueError(f"there are {len(views)} views, must be 2 or 4 for the mode {mode}")
+        instances = [_Instance(scene=self._scene)] + [_placed(scene, matrix) for scene, matrix in beside]
+        placed = (_Instance * len(instances))(*instances) if beside else None
         colour = np.empty((len(views), views[0].height, views[0].width, 4), np.float32)
         depth = np.empty(colour.shape[:3], np.float32)
         background = _DOUBLES3(*_vector("background", background))
         step = len(views) if mode is not None else 1
         for first in range(0, len(views), step):
             array = (_View * step)(*[view._structure() for view in views[first:first + step]])
-            frame = _FrameInfo(scene=self._scene, views=array, view_count=step, mode=_MODES.get(mode, 0), flags=_FLAG_DEPTH | (_FLAG_CUT if cut else 0),
-                               budget=budget if budget > 0 else -1.0, near_depth=near or 0.0, background=background)
+            frame = _FrameInfo(scene=None if placed else self._scene, views=array, view_count=step, mode=_MODES.get(mode, 0),
+                               flags=_FLAG_DEPTH | _FLAG_SETTLED | (_FLAG_CUT if cut else 0), budget=budget if budget > 0 else -1.0,
+                               near_depth=near or 0.0, background=background, instances=placed, instance_count=len(placed) if placed else 0,
+                               time_s=time)
             _check(_library.bsp_render(self._renderer, ctypes.byref(frame), None))
             for index in range(step):
                 _check(_library.bsp_read_colour(self._renderer, index, colour[first + index].ctypes.data, colour[0].size))

@@ -50,9 +50,13 @@ typedef struct bsp_vulkan_device {
 } bsp_vulkan_device;
 
 typedef enum bsp_target_flags {
-    BSP_TARGET_BLEND = 1,       // the picture is blended over what is in the image; the frame's background must be 0
-    BSP_TARGET_LIGHT = 2,       // an image without sRGB in its format holds light, as OpenXR has it, not values as they are displayed
-    BSP_TARGET_DEPTH_TEST = 4,  // with BLEND: `depth` holds the depths of what is there, behind which splats do not show
+    BSP_TARGET_BLEND = 1,  // the picture is blended over what is in the image; the frame's background must be 0
+    BSP_TARGET_LIGHT = 2,  // an image without sRGB in its format holds light, as OpenXR has it, not values as they are displayed
+    // With BLEND: `depth` holds the depths of what is there, behind which splats do not show. A single view, and those of modes that render
+    // both eyes in full (two-pass, shared), are tested splat by splat as they are blended. Other modes warp pictures that know of no mesh:
+    // there one depth stands for all splats of a pixel, the mean of what it shows.
+    BSP_TARGET_DEPTH_TEST = 4,
+    BSP_TARGET_DEPTH_BY_PIXEL = 8  // with DEPTH_TEST: that, in any mode
 } bsp_target_flags;
 
 // For bsp_view::next: where the picture of a view goes.

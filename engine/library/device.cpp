@@ -104,16 +104,16 @@ bsp_result bsp_look_at(const double eye[3], const double look[3], const double u
         check(fov_x_rad > 0.0 && fov_x_rad < std::numbers::pi, "field of view is {}, must be more than 0 and less than pi", fov_x_rad);
         check(std::isfinite(eye_distance), "eye distance is not finite");
         check(count == 1 || count == 2, "there are {} views, must be 1 or 2", count);
-        checkHeader(views, BSP_TYPE_VIEW, sizeof(bsp_view), "bsp_view");
+        checkHeader(views, BSP_TYPE_VIEW, kFirstViewSize, "bsp_view");
         const Eye middle{lookAt(vectorAt(eye, "eye"), vectorAt(look, "look"), vectorAt(up, "up")), {}, {width, height}};
         const std::array<Eye, 2> eyes = count == 2 ? stereoPair(middle, eye_distance) : std::array{middle, middle};
         const double x = fov_x_rad / 2.0, y = std::atan(std::tan(x) * height / width);
         const std::uint32_t stride = views[0].size;
         for (std::size_t i = 0; i < count; ++i) {
             auto* view = reinterpret_cast<bsp_view*>(reinterpret_cast<unsigned char*>(views) + i * stride);
-            checkHeader(view, BSP_TYPE_VIEW, sizeof(bsp_view), "bsp_view");
+            checkHeader(view, BSP_TYPE_VIEW, kFirstViewSize, "bsp_view");
             const auto& [q, p] = eyes[i].world_from_camera;
-            writeStructure(view, {0, 0, nullptr, {q.w, q.x, q.y, q.z}, {p.x, p.y, p.z}, -x, x, y, -y, width, height});
+            writeStructure(view, {0, 0, nullptr, {q.w, q.x, q.y, q.z}, {p.x, p.y, p.z}, -x, x, y, -y, width, height, {}});
         }
         return BSP_SUCCESS;
     });

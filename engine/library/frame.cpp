@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
 
 using namespace binosplat;
 
@@ -12,6 +14,7 @@ namespace {
 
 constexpr std::size_t kMostViews = 4;
 constexpr double kUsualBudget = 0.2;
+constexpr std::size_t kFirstTargetSize = offsetof(bsp_target, flags) + sizeof(std::uint32_t);
 
 Mode modeOf(bsp_mode mode) {
     switch (mode) {
@@ -30,10 +33,19 @@ Mode modeOf(bsp_mode mode) {
     fail("mode is {}, must be one of bsp_mode", static_cast<int>(mode));
 }
 
-FrameSettings settingsOf(const bsp_frame_info& frame, const bsp_scene_t* scene) {
+// The least of what its scenes have.
+double usualNear(const AskedFrame& asked) {
+    double near = asked.scenes.empty() ? kUsualNear : std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < asked.scenes.size(); ++i) {
+        const double scale = asked.placed.empty() ? 1.0 : asked.placed[i].world_from_scene.scale;
+        near = std::min(near, scale * asked.scenes[i]->properties.near);
+    }
+    return near;
+}
+
+FrameSettings settingsOf(const bsp_frame_info& frame, const AskedFrame& asked) {
     check(frame.budget <= 1.0, "budget is {}, must be at most 1", frame.budget);
-    const double usual_near = scene != nullptr ? scene->properties.near : kUsualNear;
-    const double near = frame.near_depth == 0.0 ? usual_near : frame.near_depth;
+    const double near = frame.near_depth == 0.0 ? usualNear(asked) : frame.near_depth;
     check(std::isfinite(near) && near > 0.0, "near_depth is {}, must be more than 0", near);
     const glm::dvec3 background(frame.background[0], frame.background[1], frame.background[2]);
     check(std::isfinite(background.x + background.y + background.z), "background is not finite");
@@ -41,32 +53,42 @@ FrameSettings settingsOf(const bsp_frame_info& frame, const bsp_scene_t* scene) 
     settings.mode = modeOf(frame.mode);
     settings.near = near;
     settings.background = background;
-    if (scene != nullptr) { settings.order = scene->gpu->usualOrder(); }
     settings.keep_past = hasPast(settings.mode);
     settings.times_passes = false;
     settings.keep_depth = settings.keep_both_depths = (frame.flags & BSP_FRAME_DEPTH) != 0;
     settings.half_floats = (frame.flags & BSP_FRAME_HALF_FLOATS) != 0;
     settings.stereo.budget = frame.budget == 0.0 ? kUsualBudget : std::max(frame.budget, 0.0);
     settings.stereo.move_cost = kDefaultMoveCost;
+    check(frame.foveation_rad >= 0.0 && frame.foveation_rad < std::numbers::pi, "foveation_rad is {}, must be 0 to pi",
+          frame.foveation_rad);
+    settings.half_periphery = frame.foveation_rad > 0.0;
     return settings;
+}
+
+// Within which foveation takes nothing away; nothing without it.
+std::optional<Gaze> gazeOf(const bsp_view& view, double foveation_rad) {
+    if (foveation_rad == 0.0) { return std::nullopt; }
+    const glm::dvec3 gaze(view.gaze[0], view.gaze[1], view.gaze[2]);
+    const double length = glm::length(gaze);
+    check(std::isfinite(length), "gaze of a view is not finite");
+    return Gaze{length > 0.0 ? gaze : glm::dvec3(0.0, 0.0, 1.0), foveation_rad};
 }
 
 // The eyes, and targets if they are wanted.
 void readViews(const bsp_frame_info& frame, bool with_targets, AskedFrame& asked) {
     check(frame.view_count >= 1 && frame.view_count <= kMostViews, "there are {} views, must be 1 to {}", frame.view_count, kMostViews);
-    constexpr std::size_t kFirstSize = offsetof(bsp_view, height) + sizeof(std::uint32_t);
-    checkHeader(frame.views, BSP_TYPE_VIEW, kFirstSize, "bsp_view");
-    const glm::dvec3 origin = asked.scene != nullptr ? asked.scene->origin : glm::dvec3(0.0);
+    checkHeader(frame.views, BSP_TYPE_VIEW, kFirstViewSize, "bsp_view");
     for (std::size_t i = 0; i < frame.view_count; ++i) {
         const auto* view = reinterpret_cast<const bsp_view*>(reinterpret_cast<const unsigned char*>(frame.views) + i * frame.views->size);
-        const auto known = readStructure(view, BSP_TYPE_VIEW, kFirstSize, "bsp_view");
-        asked.eyes.push_back(eyeOf(known, origin));
+        const auto known = readStructure(view, BSP_TYPE_VIEW, kFirstViewSize, "bsp_view");
+        asked.eyes.push_back(eyeOf(known, asked.origin));
+        asked.gazes.push_back(gazeOf(known, frame.foveation_rad));
         check(i % 2 == 0 || asked.eyes[i].size_px == asked.eyes[i - 1].size_px,
               "views {} and {} have different sizes, must be equal: they are a pair", i - 1, i);
         if (!with_targets) { continue; }
         const auto* target = reinterpret_cast<const bsp_target*>(findNext(known.next, BSP_TYPE_TARGET));
         check(target != nullptr, "view {} has no bsp_target, must have one", i);
-        const auto known_target = readStructure(target, BSP_TYPE_TARGET, sizeof(bsp_target), "bsp_target");
+        const auto known_target = readStructure(target, BSP_TYPE_TARGET, kFirstTargetSize, "bsp_target");
         checkTarget(known_target, asked.settings.half_floats, asked.settings.background != glm::dvec3(0.0));
         asked.targets.push_back(known_target);
         asked.settings.keep_depth = asked.settings.keep_both_depths = asked.settings.keep_depth || known_target.depth != VK_NULL_HANDLE;
@@ -92,7 +114,8 @@ bsp_frame_result binosplat::resultOf(const FrameResult& result) {
     return told;
 }
 
-bsp_renderer_t::bsp_renderer_t(bsp_device_t& of_device) : device(of_device), targets_(of_device.context) {
+bsp_renderer_t::bsp_renderer_t(bsp_device_t& of_device)
+    : device(of_device), uploads_(of_device.context), on_device_(&of_device.empty), targets_(of_device.context) {
     part(0);
     const std::lock_guard lock(device.renderers_mutex);
     device.renderers.insert(this);
@@ -110,49 +133,30 @@ void bsp_renderer_t::dropAll() noexcept {
     }
     lent_.clear();
     while (!parts_.empty()) { parts_.pop_back(); }  // the first one last
-    shown = nullptr;
+    group_.reset();
+    on_device_ = &device.empty;
     views_read_ = 0;
+    const std::lock_guard lock(shown_mutex_);
+    shown_.clear();
 }
 
 StereoFrame& bsp_renderer_t::part(std::size_t index) {
     while (parts_.size() <= index) {
-        parts_.push_back(parts_.empty() ? std::make_unique<StereoFrame>(device.context, gpuOf(shown))
+        parts_.push_back(parts_.empty() ? std::make_unique<StereoFrame>(device.context, *on_device_)
                                         : StereoFrame::beside(*parts_.front()));
+        parts_.back()->leaveChanges();
     }
     return *parts_[index];
 }
 
-void bsp_renderer_t::show(bsp_scene_t* scene) {
-    if (scene == shown) { return; }
-    const GpuScene &gpu = gpuOf(scene), &before = gpuOf(shown);
-    part(0);
-    for (std::size_t p = 0; p < parts_.size(); ++p) {
-        try {
-            parts_[p]->show(gpu);
-        } catch (...) {
-            while (p-- > 0) { parts_[p]->show(before); }
-            throw;
-        }
-    }
-    shown = scene;
-    views_read_ = 0;
-}
-
-void bsp_renderer_t::forget() noexcept {
-    try {
-        show(nullptr);
-    } catch (...) { dropAll(); }
-}
-
 AskedFrame bsp_renderer_t::ask(const bsp_frame_info& frame, bool with_targets) const {
     AskedFrame asked;
-    asked.scene = frame.scene;
     asked.is_cut = (frame.flags & BSP_FRAME_CUT) != 0;
-    if (frame.scene != nullptr) {
-        check(&frame.scene->device == &device, "the scene is of another device than the renderer");
-        frame.scene->requireThere();
-    }
-    asked.settings = ::settingsOf(frame, frame.scene);
+    asked.settles = (frame.flags & BSP_FRAME_SETTLED) != 0;
+    check(std::isfinite(frame.time_s), "time_s is not finite");
+    asked.time_s = frame.time_s;
+    readScenes(frame, asked);
+    asked.settings = ::settingsOf(frame, asked);
     readViews(frame, with_targets, asked);
     return asked;
 }
@@ -163,6 +167,7 @@ std::span<const Eye> bsp_renderer_t::eyesOf(const AskedFrame& asked, std::size_t
 
 FrameSettings bsp_renderer_t::settingsOf(const AskedFrame& asked, std::size_t index) {
     FrameSettings settings = asked.settings;
+    for (std::size_t e = 0; e < eyesOf(asked, index).size(); ++e) { settings.gazes[e] = asked.gazes[2 * index + e]; }
     if (eyesOf(asked, index).size() == 1) {
         settings.mode = Mode::kMono;
         settings.keep_past = settings.keep_both_depths = false;
@@ -170,14 +175,7 @@ FrameSettings bsp_renderer_t::settingsOf(const AskedFrame& asked, std::size_t in
     return settings;
 }
 
-void bsp_renderer_t::begin(const AskedFrame& asked) {
-    show(asked.scene);
-    views_read_ = 0;
-    if (!asked.is_cut) { return; }
-    for (const auto& part : parts_) { part->forgetPast(); }
-}
-
-void bsp_renderer_t::render(const AskedFrame& asked, bsp_frame_result* result) {
+void bsp_renderer_t::render(AskedFrame& asked, bsp_frame_result* result) {
     begin(asked);
     for (std::size_t p = 0; 2 * p < asked.eyes.size(); ++p) {
         const FrameResult done = part(p).render(eyesOf(asked, p), settingsOf(asked, p));
@@ -217,7 +215,8 @@ bsp_result bsp_render(bsp_renderer renderer, const bsp_frame_info* frame, bsp_fr
     return guarded([&] {
         check(renderer != nullptr, "renderer is null");
         if (result != nullptr) { checkHeader(result, BSP_TYPE_FRAME_RESULT, sizeof(bsp_header), "bsp_frame_result"); }
-        renderer->render(renderer->ask(readFrame(frame), false), result);
+        AskedFrame asked = renderer->ask(readFrame(frame), false);
+        renderer->render(asked, result);
         return BSP_SUCCESS;
     });
 }

@@ -5,8 +5,11 @@
 #include "engine/gpu/gpu_scene.h"
 #include "engine/library/errors.h"
 #include "engine/library/targets.h"
+#include "engine/stream/live_scene.h"
+#include "engine/stream/placed_scenes.h"
 
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <map>
 #include <memory>
@@ -21,16 +24,36 @@ namespace binosplat {
 // Scenes of bsp_splats. Throws Error where a field makes no sense.
 Scene sceneOf(const bsp_splats& splats, LoadNotes& notes);
 
+// Of the first version.
+constexpr std::size_t kFirstViewSize = offsetof(bsp_view, height) + sizeof(std::uint32_t);
 // A view as the engine has it; positions count from `origin`.
 Eye eyeOf(const bsp_view& view, const glm::dvec3& origin);
 
 // What a frame is asked for, as the engine has it.
 struct AskedFrame {
     std::vector<Eye> eyes;
+    std::vector<std::optional<Gaze>> gazes;
     std::vector<bsp_target> targets;  // for each eye, if the frame has them
     FrameSettings settings;
-    bsp_scene_t* scene = nullptr;
-    bool is_cut = false;
+    std::vector<bsp_scene_t*> scenes;  // one, or those of the instances
+    std::vector<PlacedScene> placed;   // the instances; empty: the scene by itself
+    glm::dvec3 origin{0.0};            // that eyes count from
+    double time_s = 0.0;
+    bool is_cut = false, settles = false;
+
+    [[nodiscard]] bool isLive() const;
+};
+
+// Brings what changes in a scene to the device by submissions of its own: frames that the program holds may then be dropped.
+class ChangeUploads {
+public:
+    explicit ChangeUploads(const Context& context) : context_(context) {}
+    // Waits for nothing.
+    void bring(const GpuScene& scene);
+
+private:
+    const Context& context_;
+    std::vector<std::unique_ptr<Commands>> commands_;
 };
 
 bsp_frame_info readFrame(const bsp_frame_info* frame);
@@ -63,8 +86,12 @@ struct bsp_device_t {
 
 // Loads on a thread of its own, which ends with the object at the latest.
 struct bsp_scene_t {
-    bsp_scene_t(bsp_device_t& of_device, std::string from_source, std::optional<binosplat::Scene> of_splats, binosplat::LoadNotes notes);
+    bsp_scene_t(bsp_device_t& of_device, const bsp_scene_info& info, std::optional<binosplat::Scene> of_splats, binosplat::LoadNotes notes);
     ~bsp_scene_t();
+
+    [[nodiscard]] const binosplat::GpuScene& onDevice() const { return live ? live->scene() : *gpu; }
+    // If it is live: asks for what the eyes see at that time, and brings what is there; all of it, if it settles.
+    void advance(std::span<const binosplat::Eye> eyes, double time_s, bool settles);
 
     [[nodiscard]] bsp_result state(double* progress, bool waits);
     // Throws unless it is there.
@@ -72,16 +99,22 @@ struct bsp_scene_t {
 
     bsp_device_t& device;
     const std::string source;
+    const bsp_scene_info asked;  // without its pointers
     std::atomic<bool> cancelled{false};
     // The rest is there once loading has ended well.
     std::unique_ptr<binosplat::GpuScene> gpu;
+    std::unique_ptr<binosplat::LiveScene> live;  // instead
     bsp_scene_properties properties{};
     glm::dvec3 origin{0.0};
 
 private:
     void load(std::optional<binosplat::Scene> scene, binosplat::LoadNotes notes);
+    // Makes `live`, and returns what it is judged by; nothing if the source is not one that streams or moves.
+    std::optional<binosplat::Scene> openLive(binosplat::LoadNotes& notes, const binosplat::Progress& progress);
     void judge(const binosplat::Scene& scene, const binosplat::LoadNotes& notes);
 
+    binosplat::ChangeUploads uploads_;
+    std::optional<std::chrono::steady_clock::time_point> advanced_;
     std::mutex mutex_;
     std::condition_variable ended_;
     bool has_ended_ = false;
@@ -95,21 +128,21 @@ struct bsp_renderer_t {
     ~bsp_renderer_t();
 
     [[nodiscard]] binosplat::AskedFrame ask(const bsp_frame_info& frame, bool with_targets) const;
-    void render(const binosplat::AskedFrame& asked, bsp_frame_result* result);
+    void render(binosplat::AskedFrame& asked, bsp_frame_result* result);
     binosplat::Image read(std::uint32_t view, bool depth);
     // From now on frames are of nothing.
     void forget() noexcept;
+    [[nodiscard]] bool shows(const bsp_scene_t* scene);
 
     // For programs with images of their own (record.cpp).
-    void prepare(const binosplat::AskedFrame& asked);
-    std::uint64_t record(const binosplat::AskedFrame& asked, VkCommandBuffer commands);
-    std::uint64_t submit(const binosplat::AskedFrame& asked, const bsp_submit_info& info);
+    void prepare(binosplat::AskedFrame& asked);
+    std::uint64_t record(binosplat::AskedFrame& asked, VkCommandBuffer commands);
+    std::uint64_t submit(binosplat::AskedFrame& asked, const bsp_submit_info& info);
     // False if the device is not done with it.
     bool collect(std::uint64_t number, bsp_frame_result* result);
     void discard(std::uint64_t number);
 
     bsp_device_t& device;
-    std::atomic<bsp_scene_t*> shown{nullptr};  // another thread may destroy another scene
 
 private:
     // A frame that was recorded: for each part its number there.
@@ -120,18 +153,28 @@ private:
 
     static std::span<const binosplat::Eye> eyesOf(const binosplat::AskedFrame& asked, std::size_t part);
     static binosplat::FrameSettings settingsOf(const binosplat::AskedFrame& asked, std::size_t part);
-    [[nodiscard]] const binosplat::GpuScene& gpuOf(const bsp_scene_t* scene) const { return scene != nullptr ? *scene->gpu : device.empty; }
+    // Reads what is to be shown.
+    void readScenes(const bsp_frame_info& frame, binosplat::AskedFrame& asked) const;
+    // True if splats are tested against the program's depths one by one as this part is rendered.
+    [[nodiscard]] static bool isCut(const binosplat::AskedFrame& asked, std::size_t part);
     // Of a pair of views, or of the last one alone.
     binosplat::StereoFrame& part(std::size_t index);
-    // From now on frames are of it; null: of nothing.
-    void show(bsp_scene_t* scene);
-    // Shows its scene, and drops pasts if it says so.
-    void begin(const binosplat::AskedFrame& asked);
+    // From now on frames are of its scenes.
+    void show(const binosplat::AskedFrame& asked);
+    void showOnDevice(const binosplat::GpuScene& scene);
+    // Shows its scenes as they now are, and drops pasts if it says so.
+    void begin(binosplat::AskedFrame& asked);
     // Records all parts; none if one fails.
-    std::vector<vk::CommandBuffer> lend(const binosplat::AskedFrame& asked, Lent& lent);
+    std::vector<vk::CommandBuffer> lend(binosplat::AskedFrame& asked, Lent& lent);
     void drop(Lent& lent);
     void dropAll() noexcept;
 
+    // Of another thread, too, which may destroy another scene.
+    std::mutex shown_mutex_;
+    std::vector<bsp_scene_t*> shown_;
+    std::unique_ptr<binosplat::PlacedScenes> group_;              // of these, if they are instances
+    binosplat::ChangeUploads uploads_;                            // of the group
+    const binosplat::GpuScene* on_device_;                        // what parts show
     std::vector<std::unique_ptr<binosplat::StereoFrame>> parts_;  // the first one owns the kernels of all
     binosplat::TargetImages targets_;
     std::uint64_t last_number_ = 0;

@@ -3,6 +3,8 @@
 #include "engine/library/objects.h"
 #include "engine/library/structures.h"
 
+#include <algorithm>
+
 using namespace binosplat;
 
 namespace {
@@ -18,13 +20,28 @@ Submission::Submission(const Context& context)
         std::move(vk::raii::CommandBuffers(context.device(), vk::CommandBufferAllocateInfo(*pool, vk::CommandBufferLevel::ePrimary, 1))[0]);
 }
 
-void bsp_renderer_t::prepare(const AskedFrame& asked) {
+void bsp_renderer_t::prepare(AskedFrame& asked) {
+    begin(asked);
+    for (std::size_t p = 0; 2 * p < asked.eyes.size(); ++p) {
+        if (!isCut(asked, p)) { continue; }
+        FrameSettings settings = settingsOf(asked, p);
+        settings.mesh_depths = {MeshDepths{}, MeshDepths{}};  // which kernels are made; nothing is drawn
+        part(p).makeKernels(eyesOf(asked, p), settings);
+    }
     render(asked, nullptr);
     views_read_ = 0;
     targets_.makeKernels(asked.settings.half_floats);
 }
 
-std::vector<vk::CommandBuffer> bsp_renderer_t::lend(const AskedFrame& asked, Lent& lent) {
+bool bsp_renderer_t::isCut(const AskedFrame& asked, std::size_t index) {
+    const std::span<const Eye> eyes = eyesOf(asked, index);
+    const auto targets = std::span(asked.targets).subspan(2 * index, eyes.size());
+    return (eyes.size() == 1 || rendersBothInFull(asked.settings.mode)) && std::ranges::all_of(targets, [](const bsp_target& target) {
+               return (target.flags & (BSP_TARGET_DEPTH_TEST | BSP_TARGET_DEPTH_BY_PIXEL)) == BSP_TARGET_DEPTH_TEST;
+           });
+}
+
+std::vector<vk::CommandBuffer> bsp_renderer_t::lend(AskedFrame& asked, Lent& lent) {
     check(lent_.size() < kMostUncollected, "{} frames are recorded and not collected, must be less than {}", lent_.size(),
           kMostUncollected);
     begin(asked);
@@ -33,9 +50,21 @@ std::vector<vk::CommandBuffer> bsp_renderer_t::lend(const AskedFrame& asked, Len
         for (std::size_t p = 0; 2 * p < asked.eyes.size(); ++p) {
             StereoFrame& frame = part(p);
             const std::span<const Eye> eyes = eyesOf(asked, p);
-            const StereoFrame::Lent its = frame.lend(eyes, settingsOf(asked, p), [&](Commands& after) {
+            const bool is_cut = isCut(asked, p);
+            FrameSettings settings = settingsOf(asked, p);
+            for (std::size_t e = 0; is_cut && e < eyes.size(); ++e) {
+                settings.mesh_depths[e] = targets_.meshDepths(asked.targets[2 * p + e], eyes[e].size_px, 2 * p + e);
+            }
+            if (is_cut) {
+                settings.before = [&](Commands& before) {
+                    for (std::size_t e = 0; e < eyes.size(); ++e) {
+                        targets_.readDepths(before, asked.targets[2 * p + e], eyes[e].size_px, 2 * p + e);
+                    }
+                };
+            }
+            const StereoFrame::Lent its = frame.lend(eyes, settings, [&](Commands& after) {
                 for (std::size_t e = 0; e < eyes.size(); ++e) {
-                    targets_.record(after, frame.picture(static_cast<int>(e)), asked.targets[2 * p + e]);
+                    targets_.record(after, frame.picture(static_cast<int>(e)), asked.targets[2 * p + e], 2 * p + e, is_cut);
                 }
             });
             lent.numbers.push_back(its.number);
@@ -53,7 +82,7 @@ void bsp_renderer_t::drop(Lent& lent) {
     lent.numbers.clear();
 }
 
-std::uint64_t bsp_renderer_t::record(const AskedFrame& asked, VkCommandBuffer commands) {
+std::uint64_t bsp_renderer_t::record(AskedFrame& asked, VkCommandBuffer commands) {
     check(commands != VK_NULL_HANDLE, "commands is null");
     Lent lent;
     const std::vector<vk::CommandBuffer> parts = lend(asked, lent);
@@ -62,7 +91,7 @@ std::uint64_t bsp_renderer_t::record(const AskedFrame& asked, VkCommandBuffer co
     return last_number_;
 }
 
-std::uint64_t bsp_renderer_t::submit(const AskedFrame& asked, const bsp_submit_info& info) {
+std::uint64_t bsp_renderer_t::submit(AskedFrame& asked, const bsp_submit_info& info) {
     const Context& context = device.context;
     Lent lent;
     lent.submission = idle_submission_ ? std::move(idle_submission_) : std::make_unique<Submission>(context);
@@ -128,7 +157,8 @@ std::uint32_t bsp_required_device_extensions(const char* const** names) {
 bsp_result bsp_prepare(bsp_renderer renderer, const bsp_frame_info* frame) {
     return guarded([&] {
         check(renderer != nullptr, "renderer is null");
-        renderer->prepare(renderer->ask(readFrame(frame), true));
+        AskedFrame asked = renderer->ask(readFrame(frame), true);
+        renderer->prepare(asked);
         return BSP_SUCCESS;
     });
 }
@@ -136,7 +166,8 @@ bsp_result bsp_prepare(bsp_renderer renderer, const bsp_frame_info* frame) {
 bsp_result bsp_record(bsp_renderer renderer, const bsp_frame_info* frame, VkCommandBuffer commands, std::uint64_t* number) {
     return guarded([&] {
         check(renderer != nullptr && number != nullptr, "{} is null", renderer == nullptr ? "renderer" : "number");
-        *number = renderer->record(renderer->ask(readFrame(frame), true), commands);
+        AskedFrame asked = renderer->ask(readFrame(frame), true);
+        *number = renderer->record(asked, commands);
         return BSP_SUCCESS;
     });
 }
@@ -146,7 +177,8 @@ bsp_result bsp_submit(bsp_renderer renderer, const bsp_frame_info* frame, const 
         check(renderer != nullptr && number != nullptr, "{} is null", renderer == nullptr ? "renderer" : "number");
         const auto known =
             info != nullptr ? readStructure(info, BSP_TYPE_SUBMIT_INFO, sizeof(bsp_header), "bsp_submit_info") : bsp_submit_info{};
-        *number = renderer->submit(renderer->ask(readFrame(frame), true), known);
+        AskedFrame asked = renderer->ask(readFrame(frame), true);
+        *number = renderer->submit(asked, known);
         return BSP_SUCCESS;
     });
 }

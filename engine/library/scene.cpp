@@ -4,6 +4,8 @@
 #include "engine/library/objects.h"
 #include "engine/library/structures.h"
 #include "engine/places/standpoint.h"
+#include "engine/stream/moving_scene.h"
+#include "engine/stream/scene_stream.h"
 
 #include <limits>
 
@@ -12,7 +14,8 @@ using namespace binosplat;
 namespace {
 
 constexpr std::uint64_t kCacheBytes = std::uint64_t{4} << 30;  // of scenes from the web, as --cache-limit
-constexpr double kReadingShare = 0.8;                          // of loading; the rest is uploading
+WebSettings usualWeb() { return {webCacheFolder(), kCacheBytes, {}}; }
+constexpr double kReadingShare = 0.8;  // of loading; the rest is uploading
 
 void put(double (&to)[3], const glm::dvec3& from) {
     for (int i = 0; i < 3; ++i) { to[i] = from[i]; }
@@ -20,13 +23,13 @@ void put(double (&to)[3], const glm::dvec3& from) {
 
 }  // namespace
 
-bsp_scene_t::bsp_scene_t(bsp_device_t& of_device, std::string from_source, std::optional<Scene> of_splats, LoadNotes notes)
-    : device(of_device), source(std::move(from_source)) {
+bsp_scene_t::bsp_scene_t(bsp_device_t& of_device, const bsp_scene_info& info, std::optional<Scene> of_splats, LoadNotes notes)
+    : device(of_device), source(info.source != nullptr ? info.source : "splats"), asked(info), uploads_(of_device.context) {
     thread_ = std::thread([this, scene = std::move(of_splats), known = std::move(notes)]() mutable {
         try {
             load(std::move(scene), std::move(known));
         } catch (...) { failure_ = failureNow(); }
-        if (failure_.code != BSP_SUCCESS) { gpu.reset(); }
+        if (failure_.code != BSP_SUCCESS) { gpu.reset(), live.reset(); }
         const std::lock_guard lock(mutex_);
         has_ended_ = true;
         ended_.notify_all();
@@ -38,7 +41,7 @@ bsp_scene_t::~bsp_scene_t() {
     thread_.join();
     const std::lock_guard lock(device.renderers_mutex);
     for (bsp_renderer_t* renderer : device.renderers) {
-        if (renderer->shown == this) { renderer->forget(); }
+        if (renderer->shows(this)) { renderer->forget(); }
     }
 }
 
@@ -50,13 +53,36 @@ void bsp_scene_t::load(std::optional<Scene> scene, LoadNotes notes) {
             if (cancelled && std::this_thread::get_id() == own) { throw Cancelled(); }
         };
     };
-    if (!scene) { scene = loadSceneFromAnywhere(source, 0, notes, stepOf(0.0, kReadingShare), {}, {webCacheFolder(), kCacheBytes, {}}); }
+    if (!scene && asked.live != 0) { scene = openLive(notes, stepOf(0.0, kReadingShare)); }
+    if (!scene) { scene = loadSceneFromAnywhere(source, 0, notes, stepOf(0.0, kReadingShare), {}, usualWeb()); }
     for (const std::string& line : notes.lines) { device.log(line); }
     judge(*scene, notes);
-    gpu = std::make_unique<GpuScene>(device.context, *scene, stepOf(kReadingShare, 1.0 - kReadingShare));
-    properties.device_bytes = gpu->bytes();
+    if (!live) { gpu = std::make_unique<GpuScene>(device.context, *scene, stepOf(kReadingShare, 1.0 - kReadingShare), true); }
+    properties.device_bytes = onDevice().bytes();
     if (cancelled) { throw Cancelled(); }
     progress_ = 1.0;
+}
+
+std::optional<Scene> bsp_scene_t::openLive(LoadNotes& notes, const Progress& progress) {
+    const int threads = std::clamp(static_cast<int>(std::thread::hardware_concurrency()) / 2, 1, 4);
+    if (!isStreamedScene(source)) {
+        if (!isMovingScene(source)) { return std::nullopt; }
+        MovingSettings settings{.threads = threads};
+        if (asked.rate_hz > 0.0) { settings.rate_hz = asked.rate_hz; }
+        auto moving = std::make_unique<MovingScene>(device.context, SceneSeries(source), std::move(settings), progress);
+        notes = moving->notes();
+        Scene first = moving->takeFirst();
+        live = std::move(moving);
+        return first;
+    }
+    WebSettings web = usualWeb();
+    web.fetch.attempts = 2;  // the loader retries by itself
+    auto chunks = std::make_unique<ChunkSource>(source, web, progress);
+    const auto coarsest = static_cast<std::uint32_t>(chunks->meta().levels.size() - 1);
+    Scene scene = loadSceneFromAnywhere(source, 0, notes, progress, {.level = coarsest, .fits = {}}, usualWeb());
+    StreamSettings settings{.splat_budget = asked.splat_budget};
+    live = std::make_unique<SceneStream>(device.context, std::move(chunks), std::move(settings));
+    return scene;
 }
 
 void bsp_scene_t::judge(const Scene& scene, const LoadNotes& notes) {
@@ -101,12 +127,13 @@ bsp_result bsp_scene_create(bsp_device device, const bsp_scene_info* info, bsp_s
         const auto known = readStructure(info, BSP_TYPE_SCENE_INFO, offsetof(bsp_scene_info, splats), "bsp_scene_info");
         check((known.source == nullptr) != (known.splats == nullptr), "bsp_scene_info has {}, must have a source or splats",
               known.source == nullptr ? "neither" : "both");
+        check(known.rate_hz >= 0.0 && std::isfinite(known.rate_hz), "rate_hz is {}, must be 0 or more", known.rate_hz);
         LoadNotes notes;
         std::optional<Scene> of_splats;
         if (known.splats != nullptr) {
             of_splats = sceneOf(readStructure(known.splats, BSP_TYPE_SPLATS, offsetof(bsp_splats, activated), "bsp_splats"), notes);
         }
-        *scene = new bsp_scene_t(*device, known.source != nullptr ? known.source : "splats", std::move(of_splats), std::move(notes));
+        *scene = new bsp_scene_t(*device, known, std::move(of_splats), std::move(notes));
         return BSP_SUCCESS;
     });
 }

@@ -41,6 +41,11 @@ struct Part {
     }
 };
 
+void growTo(Buffer& buffer, const Context& context, const char* name, glm::uvec2 size_px) {
+    const std::uint64_t bytes = std::uint64_t{4} * size_px.x * size_px.y;
+    if (buffer.bytes() < bytes) { buffer = Buffer(context, name, bytes); }
+}
+
 }  // namespace
 
 void checkTarget(const bsp_target& target, bool half_floats, bool has_background) {
@@ -67,28 +72,37 @@ void checkTarget(const bsp_target& target, bool half_floats, bool has_background
 
 TargetImages::TargetImages(const Context& context) : context_(context), kernels_(context, presentKernels()) {}
 
-void TargetImages::record(Commands& commands, const Picture& picture, const bsp_target& target) {
-    const auto grow = [&](Buffer& buffer, const char* name) {
-        const std::uint64_t bytes = std::uint64_t{4} * picture.size_px.x * picture.size_px.y;
-        if (buffer.bytes() < bytes) { buffer = Buffer(context_, name, bytes); }
-    };
+Buffer& TargetImages::depthsOf(std::size_t view, glm::uvec2 size_px) {
+    growTo(depths_[view], context_, "a program's depths", size_px);
+    return depths_[view];
+}
+
+MeshDepths TargetImages::meshDepths(const bsp_target& target, glm::uvec2 size_px, std::size_t view) {
+    return {depthsOf(view, size_px).address<float>(), target.depth_scale, target.depth_offset};
+}
+
+void TargetImages::readDepths(Commands& commands, const bsp_target& target, glm::uvec2 size_px, std::size_t view) {
+    const Part depth{target.depth, vk::ImageAspectFlagBits::eDepth, target.layer, size_px};
+    depth.read(commands, static_cast<Layout>(target.depth_before), depthsOf(view, size_px));
+}
+
+void TargetImages::record(Commands& commands, const Picture& picture, const bsp_target& target, std::size_t view, bool is_cut) {
     const Part colour{target.colour, vk::ImageAspectFlagBits::eColor, target.layer, picture.size_px};
     const Part depth{target.depth, vk::ImageAspectFlagBits::eDepth, target.layer, picture.size_px};
     const bool is_floats = isFloats(target.colour_format), blends = (target.flags & BSP_TARGET_BLEND) != 0,
                tests = (target.flags & BSP_TARGET_DEPTH_TEST) != 0, has_depth = target.depth != VK_NULL_HANDLE;
     commands.beginPass({Role::kNone, PresentKernel::kStage, PresentKernel::kShader});
     if (!is_floats || has_depth) {
-        grow(pixels_, "a program's pixels");
-        if (has_depth) { grow(depths_, "a program's depths"); }
+        growTo(pixels_, context_, "a program's pixels", picture.size_px);
         if (blends) { colour.read(commands, static_cast<Layout>(target.colour_before), pixels_); }
-        if (tests) { depth.read(commands, static_cast<Layout>(target.depth_before), depths_); }
+        if (tests && !is_cut) { readDepths(commands, target, picture.size_px, view); }
         gpu::PresentPass pass{};
         pass.colours = picture.colours.address<gpu::vec4>();
         pass.half_colours = picture.colours.address<gpu::uvec2>();
         pass.depths = picture.depths.address<float>();
         pass.words = picture.words.address<gpu::uint>();
         pass.pixels = pixels_.address<gpu::uint>();
-        if (has_depth) { pass.device_depths = depths_.address<float>(); }
+        if (has_depth) { pass.device_depths = depthsOf(view, picture.size_px).address<float>(); }
         if (tests) { pass.mesh_depths = pass.device_depths; }
         pass.size_px = picture.size_px;
         pass.depth_scale = target.depth_scale;
@@ -98,13 +112,15 @@ void TargetImages::record(Commands& commands, const Picture& picture, const bsp_
         const bool is_srgb = format == VK_FORMAT_R8G8B8A8_SRGB || format == VK_FORMAT_B8G8R8A8_SRGB;
         pass.linear = !is_srgb && (target.flags & BSP_TARGET_LIGHT) != 0 ? 1 : 0;
         pass.over = blends ? 1 : 0;
+        pass.is_cut = is_cut ? 1 : 0;
         commands.dispatch(kernels_.get(PresentKernel{.half_colours = picture.half_floats}), pass, (picture.size_px.x + 15) / 16,
                           (picture.size_px.y + 7) / 8);
     }
     colour.write(commands, blends ? Layout::eTransferSrcOptimal : Layout::eUndefined, is_floats ? picture.colours : pixels_,
                  static_cast<Layout>(target.colour_after));
     if (has_depth) {
-        depth.write(commands, tests ? Layout::eTransferSrcOptimal : Layout::eUndefined, depths_, static_cast<Layout>(target.depth_after));
+        depth.write(commands, tests ? Layout::eTransferSrcOptimal : Layout::eUndefined, depths_[view],
+                    static_cast<Layout>(target.depth_after));
     }
     commands.endPass();
 }

@@ -21,20 +21,21 @@ std::uint32_t cellThreads(const Context& context, std::uint32_t wanted) {
 // Of cull to rasterize, without sorting.
 KernelTable frameKernels(std::uint32_t threads) {
     KernelTable table = everyVariant<CullPagesKernel>();
-    append(table, everyVariant<CullKernel>());
-    append(table, everyVariant<CompactKernel>());
+    append(table, everyVariant<CullKernel>([](const CullKernel& k) { return k.placed <= k.in_pages; }));
+    append(table, everyVariant<CompactKernel>([](const CompactKernel& k) { return k.placed <= k.in_pages; }));
     append(table, everyVariant<ProjectKernel>());
     append(table, everyVariant<BinKernel>());
     append(table, everyVariant<BinLargeKernel>());
     append(table, everyVariant<TileRangesKernel>([](const TileRangesKernel& k) { return k.masked == 1 || k.half_colours == 0; }));
     for (std::uint32_t choices = 0; choices < 8; ++choices) {
         const Kept plain{.depth = (choices & 1) != 0, .half_floats = (choices & 2) != 0};
-        Kept moving = plain, even_rows = plain, past = plain;
+        Kept moving = plain, even_rows = plain, past = plain, cut = plain;
+        cut.cut = true;
         moving.moving = even_rows.moving = even_rows.even_rows = past.past = true;
         const auto add = [&](const Kept& kept, bool masked, bool coarse = false) {
             table.push_back(variantOf(rasterizeKernel(threads, kept, choices >> 2, masked, coarse)));
         };
-        for (const Kept& kept : {plain, moving, even_rows}) { add(kept, false); }
+        for (const Kept& kept : {plain, moving, even_rows, cut}) { add(kept, false); }
         add(plain, true);
         if (plain.depth) { continue; }  // a past's depths follow from its words
         add(past, false);
@@ -109,7 +110,8 @@ RasterizeKernel rasterizeKernel(std::uint32_t threads_per_cell, const Kept& kept
             .even_rows = kept.even_rows,
             .masked = masked,
             .past = kept.past,
-            .coarse = coarse};
+            .coarse = coarse,
+            .cut = kept.cut};
 }
 
 }  // namespace binosplat

@@ -81,8 +81,10 @@ void recordProjected(const Recording& recording) {
                                    .chunk_bits = scene.chunkBits(),
                                    .splats_apart = recording.splatsApart(),
                                    .capacity = recording.targets.pairs.capacity};
-    const ProjectKernel kernel{
-        .sh_degree = static_cast<std::uint32_t>(scene.shDegree()), .masked = recording.targets.masked, .splat_kind = scene.splatKind()};
+    const ProjectKernel kernel{.sh_degree = static_cast<std::uint32_t>(scene.shDegree()),
+                               .masked = recording.targets.masked,
+                               .splat_kind = scene.splatKind(),
+                               .placed = scene.isPlaced()};
     recording.commands.dispatchIndirect(recording.kernels.get(kernel), project, recording.buffers.state,
                                         recording.visibleList() + offsetof(gpu::ListState, per_block));
 }
@@ -172,7 +174,8 @@ void recordCull(PassKernels& kernels, Commands& commands, const GpuScene& scene,
                              .at_once = static_cast<gpu::uint>(eyes.shares),
                              .first_tile_mask = eyes.first_mask,
                              .last_tile_mask = eyes.last_mask};
-    const CullKernel kernel{.splat_kind = scene.splatShape(), .masked = eyes.first_mask.value != 0, .in_pages = scene.isInPages()};
+    const CullKernel kernel{
+        .splat_kind = scene.splatShape(), .masked = eyes.first_mask.value != 0, .in_pages = scene.isInPages(), .placed = scene.isPlaced()};
     dispatchOverBlocks(commands, kernels.get(kernel), pass, scene, buffers, eyes.list);
 }
 
@@ -193,7 +196,7 @@ void recordOrder(PassKernels& kernels, Commands& commands, const GpuScene& scene
                                 .chunk_bits = scene.chunkBits(),
                                 .order_eye = static_cast<gpu::uint>(eyes.order_eye),
                                 .middle = eyes.middle.value_or(gpu::Place{})};
-    const CompactKernel kernel{.by_distance = eyes.middle.has_value(), .in_pages = scene.isInPages()};
+    const CompactKernel kernel{.by_distance = eyes.middle.has_value(), .in_pages = scene.isInPages(), .placed = scene.isPlaced()};
     dispatchOverBlocks(commands, kernels.get(kernel), pass, scene, buffers, eyes.list);
     commands.beginPass({role, FrameStage::kSort, "sort_depth"});
     static_assert(Sort::endsInSpare(gpu::kDepthKeyBits));

@@ -28,6 +28,7 @@ struct Kept {
     bool even_rows = false;                       // only its even rows are warped; needs kDepthInverse, and no moments kept
     gpu::uint depth_choice = gpu::kDepthInverse;  // of a warped pixel; that of a past is always this
     bool half_floats = false;                     // colours are stored as half floats
+    bool cut = false;                             // splats show only where they are nearer than the target's mesh_depths
     bool past = false;                            // later pictures are going to be made from this one: its words and tiles are kept
 };
 

@@ -60,10 +60,12 @@ ResidentScene::ResidentScene(const Context& context, const SceneTraits& traits, 
         const std::uint32_t pages = std::min(pages_per_buffer_, capacity - first);
         const Buffer& buffer =
             scene_.buffers_.emplace_back(context, fmt::format("scene pages {}", scene_.buffers_.size()), pages * page_bytes_);
-        for (std::uint32_t page = 0; page < pages; ++page) { chunks_.push_back(layout.chunkAt(buffer, page * page_bytes_, 0.0f)); }
+        for (std::uint32_t page = 0; page < pages; ++page) {
+            scene_.table_.chunks.push_back(layout.chunkAt(buffer, page * page_bytes_, 0.0f));
+        }
         scene_.bytes_ += buffer.bytes();
     }
-    pages_.resize(capacity);
+    scene_.table_.bounds.resize(capacity);
     is_changed_.resize(capacity, false);
     scene_.chunk_table_ = Buffer(context, "scene pages' addresses", capacity * sizeof(gpu::SceneChunk));
     page_table_ = Buffer(context, "scene pages' bounds", capacity * sizeof(gpu::ScenePage));
@@ -83,8 +85,8 @@ ResidentScene::ResidentScene(const Context& context, const SceneTraits& traits, 
 }
 
 void ResidentScene::change(std::uint32_t page, const gpu::ScenePage& bounds, float fade) {
-    pages_[page] = bounds;
-    chunks_[page].fade = fade;
+    scene_.table_.bounds[page] = bounds;
+    scene_.table_.chunks[page].fade = fade;
     if (is_changed_[page]) { return; }
     is_changed_[page] = true;
     changed_.push_back(page);
@@ -187,7 +189,8 @@ void ResidentScene::recordChanges(Commands& commands) {
     if (!hasChanges()) { return; }
     std::uint64_t waiting_pages = 0;
     for (const Part part : waiting_) { waiting_pages += parts_[part].pages_to_copy; }
-    const Buffer& staging = commands.staging(std::min(waiting_pages, most_pages_a_frame_) * page_bytes_ + pages_.size() * kEntryBytes);
+    const Buffer& staging =
+        commands.staging(std::min(waiting_pages, most_pages_a_frame_) * page_bytes_ + scene_.table_.bounds.size() * kEntryBytes);
     const std::vector<PageCopy> copies = takeWaiting();
     std::ranges::sort(changed_);
     std::uint8_t* const to = staging.mapped<std::uint8_t>().data();
@@ -202,9 +205,11 @@ void ResidentScene::recordChanges(Commands& commands) {
         stage(of_buffers[copy.page / pages_per_buffer_], copy.from, copy.page % pages_per_buffer_ * page_bytes_, page_bytes_);
     }
     CopyParts of_chunks, of_pages;
-    for (const std::uint32_t page : changed_) { stage(of_chunks, &chunks_[page], page * sizeof(gpu::SceneChunk), sizeof(gpu::SceneChunk)); }
     for (const std::uint32_t page : changed_) {
-        stage(of_pages, &pages_[page], page * sizeof(gpu::ScenePage), sizeof(gpu::ScenePage));
+        stage(of_chunks, &scene_.table_.chunks[page], page * sizeof(gpu::SceneChunk), sizeof(gpu::SceneChunk));
+    }
+    for (const std::uint32_t page : changed_) {
+        stage(of_pages, &scene_.table_.bounds[page], page * sizeof(gpu::ScenePage), sizeof(gpu::ScenePage));
         is_changed_[page] = false;
     }
     changed_.clear();

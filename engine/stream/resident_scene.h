@@ -29,7 +29,7 @@ public:
     // The scene that frames render: they ask it for changes.
     [[nodiscard]] const GpuScene& scene() const { return scene_; }
     [[nodiscard]] const SceneTraits& traits() const { return scene_.traits_; }
-    [[nodiscard]] std::uint32_t capacityPages() const { return static_cast<std::uint32_t>(pages_.size()); }
+    [[nodiscard]] std::uint32_t capacityPages() const { return static_cast<std::uint32_t>(scene_.table_.bounds.size()); }
     [[nodiscard]] std::uint32_t freePages() const { return static_cast<std::uint32_t>(free_.size()); }
     // Of all parts, and of those that frames see.
     [[nodiscard]] std::uint32_t splatsAdded() const { return scene_.splats_coming_; }
@@ -80,9 +80,7 @@ private:
     std::uint32_t pages_per_buffer_ = 1;
     GpuScene scene_;  // its buffers hold the pages
     Buffer page_table_;
-    // As on the device once the pages in `changed_` are copied.
-    std::vector<gpu::SceneChunk> chunks_;
-    std::vector<gpu::ScenePage> pages_;
+    // Of scene_.table_, which is as on the device once these are copied.
     std::vector<std::uint32_t> changed_;
     std::vector<bool> is_changed_;
     std::priority_queue<std::uint32_t, std::vector<std::uint32_t>, std::greater<>> free_;

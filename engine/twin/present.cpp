@@ -45,8 +45,8 @@ std::vector<std::uint32_t> presentOver(std::span<const glm::dvec4> rgba, std::sp
     std::vector<glm::dvec4> mixed;
     std::vector<double> shares;
     for (std::size_t i = 0; i < rgba.size(); ++i) {
-        const bool hidden =
-            !mesh_depths.empty() && !(presentation.near * rgba[i].a / depth_sums[i] > mesh_depths[i] - presentation.depth_offset);
+        const bool hidden = !presentation.is_cut && !mesh_depths.empty() &&
+                            !(presentation.near * rgba[i].a / depth_sums[i] > mesh_depths[i] - presentation.depth_offset);
         const glm::dvec4 pixel = hidden ? glm::dvec4(0.0) : rgba[i];
         const double left = 1.0 - std::clamp(pixel.a, 0.0, 1.0);
         glm::dvec4& result = mixed.emplace_back();

@@ -15,6 +15,7 @@ struct Presentation {
     double near = 0.2;
     bool see_through = false;  // alpha is output, too, and the bytes' light is multiplied by it
     double depth_offset = 0.0;
+    bool is_cut = false;  // splats were tested against the meshes one by one, and pixels are not
 };
 
 // A word a pixel, the first channel lowest: nearest of 0 to 255, NaN as 0; opaque, or with the pixel's own alpha.

@@ -3,8 +3,12 @@
 #include "engine/twin/blend.h"
 #include "engine/twin/reach.h"
 
+#include <limits>
+
 namespace binosplat::reference {
 namespace {
+
+constexpr double kNoMesh = std::numeric_limits<double>::infinity();
 
 void blendTile(Tile& tile, std::span<const ProjectedSplat> splats, std::span<const TilePair> pairs, glm::uvec2 size_px,
                const Settings& settings) {
@@ -20,7 +24,10 @@ void blendTile(Tile& tile, std::span<const ProjectedSplat> splats, std::span<con
                 for (int x = run.begin; x < run.end; ++x) {
                     PixelState& pixel = tile.at(x, y);
                     Hit hit;
-                    if (pixel.open && meet(plane, {x + 0.5, y + 0.5}, hit) && !blend(pixel, splat, hit, settings.inverse_depth_moments)) {
+                    const auto at = static_cast<std::size_t>(y) * size_px.x + static_cast<std::size_t>(x);
+                    const double behind = settings.mesh_depths.empty() ? kNoMesh : settings.mesh_depths[at];
+                    if (pixel.open && meet(plane, {x + 0.5, y + 0.5}, hit) && hit.depth < behind &&
+                        !blend(pixel, splat, hit, settings.inverse_depth_moments)) {
                         --open_count;
                     }
                 }

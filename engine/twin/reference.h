@@ -20,6 +20,8 @@ struct Settings {
     bool is_light = false;       // colours are light, to be encoded after blending: taken from the scene, if one is given
     // Front to back is by the distance of centres from here (the middle between the eyes); nothing: by their camera z.
     std::optional<glm::dvec3> order_from = {};
+    // By pixel, row by row: how far along z a mesh lies that cuts through the splats, and hides what is not nearer; empty: there is none.
+    std::span<const double> mesh_depths = {};
     bool inverse_depth_moments = false;  // also I = sum w/z and J = sum w/z^2
     int threads = 2;
     double* seconds = nullptr;  // render(): if given, an array of kPassCount, filled with each pass's time

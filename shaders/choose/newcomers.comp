@@ -7,6 +7,7 @@
 #include "lib/group.glsl"
 
 layout(constant_id = 0) const uint kSplatKind = kDiscs;
+layout(constant_id = 1) const bool kPlaced = false;
 
 #include "lib/splat.glsl"
 #include "lib/gaussian.glsl"

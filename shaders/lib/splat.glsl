@@ -1,5 +1,5 @@
 // A splat from the scene to the camera: loading, and the ray-disc intersection of 2DGS (Huang et al. 2024, section 4.2) in the form
-// that ProjectedSplat holds. Needs kSplatKind.
+// that ProjectedSplat holds. Needs kSplatKind and kPlaced.
 //
 // A disc point is P(u, v) = u a + v b + c with a = s_u t_u, b = s_v t_v, c in camera space. A pixel's ray is z r with
 // r = ((x - cx)/fx, (y - cy)/fy, 1). From u a + v b + c = z r follows (u, v, 1)/z = [a b c]^-1 r, and with t_w = t_u x t_v and
@@ -33,7 +33,27 @@ struct SplatPlace {
     uint chunk, in_chunk;
 };
 SplatPlace placeOfSplat(uint i, uint chunk_bits) { return SplatPlace(i >> chunk_bits, i & ((1u << chunk_bits) - 1)); }
-vec3 positionOf(SceneChunks chunks, SplatPlace at) { return Vec3s(chunks.at[at.chunk].positions).at[at.in_chunk]; }
+
+// Of a chunk's scene among others, where there are any.
+vec3 placed(SceneChunks chunks, uint chunk, vec3 position) {
+    if (!kPlaced) { return position; }
+    Placements placements = Placements(chunks.at[chunk].placement);
+    const vec3 turned = position.x * placements.at[0].x + position.y * placements.at[0].y + position.z * placements.at[0].z;
+    return placements.at[0].scale * turned + placements.at[0].position;
+}
+vec3 placedDirection(SceneChunks chunks, uint chunk, vec3 direction) {
+    if (!kPlaced) { return direction; }
+    Placements placements = Placements(chunks.at[chunk].placement);
+    return direction.x * placements.at[0].x + direction.y * placements.at[0].y + direction.z * placements.at[0].z;
+}
+vec3 directionInScene(SceneChunks chunks, uint chunk, vec3 direction) {
+    if (!kPlaced) { return direction; }
+    Placements placements = Placements(chunks.at[chunk].placement);
+    return vec3(dot(direction, placements.at[0].x), dot(direction, placements.at[0].y), dot(direction, placements.at[0].z));
+}
+float placedScale(SceneChunks chunks, uint chunk) { return kPlaced ? Placements(chunks.at[chunk].placement).at[0].scale : 1; }
+
+vec3 positionOf(SceneChunks chunks, SplatPlace at) { return placed(chunks, at.chunk, Vec3s(chunks.at[at.chunk].positions).at[at.in_chunk]); }
 
 // The splat in world space, without its chunk's fade.
 CameraSplat loadUnfadedSplat(SceneChunks chunks, SplatPlace at) {
@@ -43,9 +63,12 @@ CameraSplat loadUnfadedSplat(SceneChunks chunks, SplatPlace at) {
     const uvec2 thicknesses = chunks.at[at.chunk].thicknesses, opacities = chunks.at[at.chunk].opacities;
     CameraSplat splat;
     tangents(rotations.at[at.in_chunk], splat.t_u, splat.t_v);
-    splat.centre = Vec3s(positions).at[at.in_chunk];
-    splat.scale = scales.at[at.in_chunk];
-    splat.thickness = kSplatKind != kDiscs ? Floats(thicknesses).at[at.in_chunk] : 0;
+    splat.t_u = placedDirection(chunks, at.chunk, splat.t_u);
+    splat.t_v = placedDirection(chunks, at.chunk, splat.t_v);
+    splat.centre = placed(chunks, at.chunk, Vec3s(positions).at[at.in_chunk]);
+    const float scale = placedScale(chunks, at.chunk);
+    splat.scale = scale * scales.at[at.in_chunk];
+    splat.thickness = kSplatKind != kDiscs ? scale * Floats(thicknesses).at[at.in_chunk] : 0;
     splat.opacity = Floats(opacities).at[at.in_chunk];
     return splat;
 }

@@ -1,6 +1,6 @@
 // present: an eye's picture in the format of the headset's swapchain image: 8 bits per channel and, on request, its depth. Trained values
 // are display-encoded already, as are the bytes of an sRGB image. A program's own picture may lie behind it, and before it where the
-// program's depth says so: by the depth that stands for all splats of a pixel.
+// program's depth says so: by the depth that stands for all splats of a pixel, unless each was tested by itself.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "passes.h"
@@ -62,7 +62,7 @@ void main() {
     const bool has_mesh = isThere(uvec2(pass.mesh_depths)), has_depth = has_mesh || isThere(uvec2(pass.device_depths));
     const float inverse_depth = has_depth ? inverseDepthAt(i, pixel.a) : 0;
     const float mesh_depth = has_mesh ? pass.mesh_depths.at[i] : 0;
-    if (has_mesh && !(inverse_depth > (mesh_depth - pass.depth_offset) / pass.depth_scale)) { pixel = vec4(0); }
+    if (has_mesh && pass.is_cut == 0 && !(inverse_depth > (mesh_depth - pass.depth_offset) / pass.depth_scale)) { pixel = vec4(0); }
     vec3 colour = clampToDisplay(pixel.rgb);
     // Colours were multiplied by alpha as display-encoded values, but headsets blend light: alpha is divided out and multiplied back in.
     const bool see_through = pass.see_through != 0, linear = pass.linear != 0;

@@ -302,6 +302,7 @@ struct PresentPass {
     uint linear;       // 1: the image is not an sRGB one: its bytes count as light
     uint see_through;  // 1: output alpha, for what the headset shows behind it
     uint over;         // 1: blended over what is in `pixels`; then the picture has no background
+    uint is_cut;       // 1: splats were tested one by one as they were blended, and pixels are not
     uint kept_bits;    // of each word of pixels: stay as they are, for a picture of both eyes
 };
 

@@ -18,6 +18,16 @@ BINOSPLAT_ALIGNED_ARRAY_OF(vec4, 16, Vec4s);
 BINOSPLAT_ALIGNED_ARRAY_OF(vec4, 16, FloatColours);
 BINOSPLAT_ALIGNED_ARRAY_OF(uvec2, 8, HalfColours);
 
+// Where a scene lies among others: scale (x, y, z) p + position, with the columns of a rotation.
+struct Placement {
+    vec3 x;
+    vec3 y;
+    vec3 z;
+    vec3 position;
+    float scale;
+};
+BINOSPLAT_ARRAY_OF(Placement, Placements);
+
 // A run of splats in one allocation: 48 bytes per disc, 52 per 3D Gaussian, and 20, 48 or 92 for the SH bands 1 to 3 if the scene has
 // them.
 struct SceneChunk {
@@ -26,10 +36,11 @@ struct SceneChunk {
     Vec2s scales;
     BINOSPLAT_STORED(Floats) thicknesses;  // of 3D Gaussians: the third scale, along t_u x t_v
     BINOSPLAT_STORED(Floats) opacities;
-    UVec2s base_colours;         // f_dc: r | g << 16, b, as half floats
-    BINOSPLAT_STORED(Uints) sh;  // f_rest, coefficient by coefficient, rgb interleaved, two half floats a word
-    float fade;                  // 0 to 1, multiplies the opacity of each
-    uint unused;
+    UVec2s base_colours;                     // f_dc: r | g << 16, b, as half floats
+    BINOSPLAT_STORED(Uints) sh;              // f_rest, coefficient by coefficient, rgb interleaved, two half floats a word
+    BINOSPLAT_STORED(Placements) placement;  // in a scene of placed ones; otherwise null
+    float fade;                              // 0 to 1, multiplies the opacity of each
+    uint sh_degree;                          // of `sh`
 };
 BINOSPLAT_ALIGNED_ARRAY_OF(SceneChunk, 8, SceneChunks);
 
@@ -265,6 +276,7 @@ BINOSPLAT_ARRAY_OF(EyeCounters, EyeCounterss);
 struct TargetState {
     BINOSPLAT_STORED(FloatColours) colours;  // of half floats this is their address, too
     BINOSPLAT_STORED(Floats) depths;         // D = sum w z
+    BINOSPLAT_STORED(Floats) mesh_depths;    // where meshes cut through the splats: depth_scale / z + depth_offset
     BINOSPLAT_STORED(Vec2s) moments;         // I = sum w/z and J = sum w/z^2
     BINOSPLAT_STORED(Uints) moving;          // if the picture is going to be warped: lib/moving_pixel.glsl
     BINOSPLAT_STORED(Uints) arrivals;        // where these will arrive in the other eye
@@ -288,9 +300,11 @@ struct TargetState {
     uint first_tile;           // of its tiles, which are numbered through all targets that are rendered at once
     uint row_words;            // of `moving` and `arrivals`
     uint measured;             // of every kMeasuredParts tiles the one on which a loss is measured; kMeasuredParts: none
-    uint unused;               // a multiple of eight bytes in both languages
-    uint is_made;              // 1: every tile shows a picture warped from a past, which stays where lists have no room
-    float area;                // of a pixel, in pixels of the eye's own picture: the weight of an error in it
+    float depth_scale;         // of mesh_depths
+    float depth_offset;
+    uint unused;   // a multiple of eight bytes in both languages
+    uint is_made;  // 1: every tile shows a picture warped from a past, which stays where lists have no room
+    float area;    // of a pixel, in pixels of the eye's own picture: the weight of an error in it
 };
 BINOSPLAT_ALIGNED_ARRAY_OF(TargetState, 8, TargetStates);
 

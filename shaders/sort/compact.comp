@@ -7,6 +7,7 @@
 #include "lib/group.glsl"
 #include "lib/list.glsl"
 const uint kSplatKind = kDiscs;  // only the centre is read, whatever the kind
+layout(constant_id = 2) const bool kPlaced = false;
 #include "lib/splat.glsl"
 #include "lib/eye.glsl"
 

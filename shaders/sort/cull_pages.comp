@@ -11,6 +11,7 @@
 
 layout(constant_id = 0) const uint kSplatKind = kDiscs;
 
+const bool kPlaced = false;  // no splat of the scene is read
 #include "lib/splat.glsl"
 #include "lib/eye.glsl"
 #include "lib/sign.glsl"

@@ -14,6 +14,7 @@ layout(push_constant, scalar) uniform Push { BinPass pass; };
 layout(constant_id = 0) const bool kMasked = false;  // only pairs in tiles of the mask
 layout(constant_id = 1) const uint kSplatKind = kDiscs;  // dimmed or not makes no difference here
 
+const bool kPlaced = false;  // no splat of the scene is read
 #include "lib/splat.glsl"
 #include "lib/outline.glsl"
 #include "lib/pair.glsl"

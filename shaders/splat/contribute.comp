@@ -11,6 +11,7 @@ layout(push_constant, scalar) uniform Push { ContributePass pass; };
 layout(constant_id = 0) const uint kSplatKind = kDiscs;  // dimmed or not makes no difference here
 layout(constant_id = 1) const bool kFits = false;        // there is a wanted picture
 
+const bool kPlaced = false;  // no splat of the scene is read
 #include "lib/splat.glsl"
 
 const uint kPixels = kTileSize * kTileSize / kGroupSize;  // of a thread, the second one half a tile below the first

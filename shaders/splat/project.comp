@@ -13,6 +13,7 @@ layout(local_size_x = kGroupSize) in;
 layout(push_constant, scalar) uniform Push { ProjectPass pass; };
 layout(constant_id = 1) const bool kMasked = false;  // only tiles of the mask count; splats that meet none cost little
 layout(constant_id = 2) const uint kSplatKind = kDiscs;
+layout(constant_id = 3) const bool kPlaced = false;  // scenes among others
 
 #include "lib/splat.glsl"
 #include "lib/gaussian.glsl"

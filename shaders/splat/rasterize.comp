@@ -25,10 +25,12 @@ layout(constant_id = 6) const bool kEvenRows = false;  // an odd row is going to
 layout(constant_id = 7) const bool kMasked = false;    // only the tiles of its target's list
 layout(constant_id = 8) const bool kPast = false;      // the picture is going to be a past
 layout(constant_id = 9) const bool kCoarse = false;    // some tiles of the list may be coarse
+layout(constant_id = 10) const bool kCut = false;      // splats show only where they are nearer than a mesh
 
 // Of 3D Gaussians the low-pass is in what is projected.
 const bool kMeasures = kPast && kMasked && kSplatKind == kDiscs;
 
+const bool kPlaced = false;  // no splat of the scene is read
 #include "lib/splat.glsl"
 #include "lib/outline.glsl"
 #include "lib/picture.glsl"
@@ -120,7 +122,8 @@ void loadBatch(uint lanes, uint begin, uint first_slot, uint splats, uvec2 tile_
 vec3 colour[kPixels];
 float depth[kPixels];
 vec2 moments[kPixels];
-float transmittance[kPixels];  // negated once the pixel takes no more light
+float mesh_inverse_depth[kPixels];  // of what cuts through the splats
+float transmittance[kPixels];       // negated once the pixel takes no more light
 bool any_open;
 
 // `first_px`: the middle of the thread's first pixel, relative to the tile; the others lie `apart` below each other.
@@ -154,7 +157,9 @@ void blend(uint slot, vec2 first_px, float apart, uint max_inverse_depth_bits) {
         const float exponent = depth_form.w + (kSplatKind != kDiscs ? square : on_disc ? rho3 : rho2);
         const float opacity = exp2(-exponent);
         const float alpha = min(kMaxAlpha, opacity);
-        const float full_weight = exponent <= kLog2Of255 ? alpha * max(transmittance[p], 0) : 0;
+        const float inverse_z = kSplatKind != kDiscs || on_disc ? q_p : depth_form.x;
+        const bool shows = exponent <= kLog2Of255 && (!kCut || inverse_z > mesh_inverse_depth[p]);
+        const float full_weight = shows ? alpha * max(transmittance[p], 0) : 0;
         const float after = full_weight > 0 ? transmittance[p] * max(1 - opacity, kMinPassing) : transmittance[p];
         const bool closes = after < kMinTransmittance && after >= 0;
         const float weight = closes ? 0 : full_weight;
@@ -163,7 +168,6 @@ void blend(uint slot, vec2 first_px, float apart, uint max_inverse_depth_bits) {
         colour[p] += weight * splat_colour;
         if (kDepth) { depth[p] += weight * (kSplatKind != kDiscs || on_disc ? z : centre_z); }
         if (kMoments && (!kEvenRows || (p & 1) == 0)) {
-            const float inverse_z = kSplatKind != kDiscs || on_disc ? q_p : depth_form.x;
             const float weighted = weight * inverse_z;
             moments[p].x += weighted;
             moments[p].y += weighted * inverse_z;
@@ -216,6 +220,10 @@ void blendTile(uint lanes, uvec2 range, uvec2 tile_px, vec2 first_px, bool is_co
         const bool open = is_coarse ? range.x < range.y : inside;
         transmittance[p] = open ? 1 : -1;
         any_open = any_open || open;
+        if (kCut) {
+            const uint at = (tile_px.y + uint(first_px.y) + p) * size_px.x + tile_px.x + uint(first_px.x);
+            mesh_inverse_depth[p] = inside ? (Floats(TARGET.mesh_depths).at[at] - TARGET.depth_offset) / TARGET.depth_scale : 0;
+        }
     }
     if (kCoarse) { barrier(); }  // of the tile before
     if (gl_LocalInvocationIndex == 0) {

@@ -6,6 +6,8 @@
 // them took. BINOSPLAT_FAULT_TRACE=FILE: a line for each submission and each wait, in their order, with the fence: "submit 55d0", "wait
 // 55d0"; "wait all" where the queue or the device is waited for. BINOSPLAT_FAULT_LIVE=FILE: what is alive, see live.h.
 // BINOSPLAT_FAULT_LOAD=...: how long frames take, see load.h. BINOSPLAT_FAULT_WAITS=FILE: what frames do that may wait, see waits.h.
+// BINOSPLAT_FAULT_ANY=1: any call may fail, see any.h.
+#include "tests/faults/any.h"
 #include "tests/faults/live.h"
 #include "tests/faults/load.h"
 #include "tests/faults/waits.h"
@@ -235,7 +237,7 @@ PFN_vkVoidFunction ownFunction(const char* name) {
 
 VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL getDeviceProcAddr(VkDevice device, const char* name) {
     const PFN_vkVoidFunction own = ownFunction(name);
-    return own != nullptr ? own : faults::device_next(device, name);
+    return faults::fallible(name, own != nullptr ? own : faults::device_next(device, name));
 }
 
 VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL getInstanceProcAddr(VkInstance instance, const char* name) {

@@ -157,6 +157,11 @@ void countMemory(VkDeviceMemory memory, VkDeviceSize bytes) {
     g_objects.add(1);
 }
 
+long long liveObjects() {
+    const std::lock_guard lock(g_mutex);
+    return g_objects.now;
+}
+
 void noteSubmission() {
     std::FILE* const file = output();
     if (file == nullptr) { return; }

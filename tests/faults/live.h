@@ -32,6 +32,8 @@ PFN_vkVoidFunction asVoid(Function* function) {
 bool countsLive();
 // A function of the device that makes or destroys something; null: it does neither.
 PFN_vkVoidFunction countingFunction(const char* name);
+// Objects and allocations, now.
+long long liveObjects();
 // Of a call that the layer makes itself.
 void countMemory(VkDeviceMemory memory, VkDeviceSize bytes);
 void noteSubmission();

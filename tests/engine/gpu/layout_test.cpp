@@ -26,7 +26,8 @@ SUITE(layout) {
 
 std::vector<Layout> hostLayouts() {
     return {
-        LAYOUT(SceneChunk, positions, rotations, scales, thicknesses, opacities, base_colours, sh, fade, unused),
+        LAYOUT(SceneChunk, positions, rotations, scales, thicknesses, opacities, base_colours, sh, placement, fade, sh_degree),
+        LAYOUT(Placement, x, y, z, position, scale),
         LAYOUT(ScenePage, low, reach, high, count),
         LAYOUT(EyeView, camera_from_world_x, camera_from_world_y, camera_from_world_z, position, focal_px, principal_px, size_px,
                size_tiles, near, max_inverse_depth, camera_from_world_x_low, camera_from_world_y_low, camera_from_world_z_low, position_low,
@@ -52,9 +53,9 @@ std::vector<Layout> hostLayouts() {
         LAYOUT(PixelBox, x0, y0, x1, y1),
         LAYOUT(EyeCounters, pairs, large_splats, full_tiles, coarse_tiles, per_full_tile, coarse_kept, coarse_pairs, sharp_pairs,
                may_be_coarse, gaze),
-        LAYOUT(TargetState, colours, depths, moments, moving, arrivals, past_tiles, tile_mask, tile_list, full_tiles, tile_kinds,
-               tile_costs, tile_errors, tile_prices, pairs, counters, warp, warp_counters, past, past_blocks, chosen_tiles, chosen_visible,
-               first_tile, row_words, measured, unused, is_made, area),
+        LAYOUT(TargetState, colours, depths, mesh_depths, moments, moving, arrivals, past_tiles, tile_mask, tile_list, full_tiles,
+               tile_kinds, tile_costs, tile_errors, tile_prices, pairs, counters, warp, warp_counters, past, past_blocks, chosen_tiles,
+               chosen_visible, first_tile, row_words, measured, depth_scale, depth_offset, unused, is_made, area),
         LAYOUT(CullPagesPass, pages, eyes, page_bits, word_offsets, page_list, visible_pages, page_count, first_eye, eye_count),
         LAYOUT(CullPass, chunks, eyes, page_list, visible_pages, visible_bits, group_counts, visible, splat_count, chunk_bits, first_eye,
                eye_count, capacity, at_once, first_tile_mask, last_tile_mask),
@@ -85,7 +86,7 @@ std::vector<Layout> hostLayouts() {
         LAYOUT(SortCountPass, keys, histograms, run_sums, digit_begins, list, shift, digits),
         LAYOUT(SortScatterPass, keys_in, values_in, keys_out, values_out, histograms, run_sums, digit_begins, list, shift, digits),
         LAYOUT(PresentPass, colours, half_colours, depths, words, tile_kinds, pixel_classes, pixels, device_depths, mesh_depths, size_px,
-               depth_scale, depth_offset, blue_first, linear, see_through, over, kept_bits),
+               depth_scale, depth_offset, blue_first, linear, see_through, over, is_cut, kept_bits),
         LAYOUT(TurnPass, pixels, shown, column_x, column_y, column_z, picture_px, view_px, linear),
     };
 }

@@ -1,5 +1,5 @@
-/* For library_test: C that was compiled against an earlier header, whose frames ended with the mode, and against a later one, whose frames
-   have a field more. Each draws the splat of builtin:one-splat and says how red its middle is. */
+/* For library_test: C that was compiled against an earlier header, whose frames ended with the mode and views with their size, and against
+   a later one, whose frames have a field more. Each draws the splat of builtin:one-splat and says how red its middle is. */
 #include "tests/engine/library/earlier_program.h"
 
 #include <binosplat.h>
@@ -12,6 +12,14 @@ typedef struct earlier_frame {
     uint32_t view_count;
     bsp_mode mode;
 } earlier_frame;
+
+typedef struct earlier_view {
+    uint32_t type, size;
+    const void* next;
+    double orientation[4], position[3];
+    double left_rad, right_rad, up_rad, down_rad;
+    uint32_t width, height;
+} earlier_view;
 
 typedef struct later_frame {
     bsp_frame_info known;
@@ -30,15 +38,18 @@ static bsp_result draw(bsp_renderer renderer, const void* frame, float* red) {
 int draw_as_compiled(struct bsp_renderer_t* renderer, struct bsp_scene_t* scene, enum compiled_against header, float* red) {
     bsp_scene_properties properties = {BSP_TYPE_SCENE_PROPERTIES, sizeof properties};
     bsp_view view = {BSP_TYPE_VIEW, sizeof view};
+    earlier_view views[2] = {{BSP_TYPE_VIEW, sizeof views[0]}, {BSP_TYPE_VIEW, sizeof views[0]}};
     if (bsp_scene_get_properties(scene, &properties) != BSP_SUCCESS ||
-        bsp_look_at(properties.eye, properties.look, properties.up, 0.0, 1.0, 16, 16, 1, &view) != BSP_SUCCESS) {
+        bsp_look_at(properties.eye, properties.look, properties.up, 0.0, 1.0, 16, 16, 1, &view) != BSP_SUCCESS ||
+        bsp_look_at(properties.eye, properties.look, properties.up, 0.0, 1.0, 16, 16, 2, (bsp_view*)views) != BSP_SUCCESS) {
         return BSP_ERROR_INPUT;
     }
     if (header == AN_EARLIER_ONE) {
         earlier_frame frame = {BSP_TYPE_FRAME_INFO, sizeof frame};
         frame.scene = scene;
-        frame.views = &view;
-        frame.view_count = 1;
+        frame.views = (const bsp_view*)views;
+        frame.view_count = 2;
+        frame.mode = BSP_MODE_SHARED;
         return draw(renderer, &frame, red);
     } else {
         later_frame frame = {{BSP_TYPE_FRAME_INFO, sizeof frame}};

@@ -54,12 +54,13 @@ bsp_frame_result drawBetween(const ForeignProgram& program, bsp::Renderer& rende
     return result;
 }
 
-TEST_CASE("splats lie before and behind a wall that the program drew, over its picture, and its own draws go on after them") {
+TEST_CASE("by pixel, splats lie before and behind a wall that the program drew, over its picture, and its own draws go on after them") {
     ForeignProgram program;
     const bsp::Device device = program.open();
     const bsp::Scene scene = load(device, "builtin:atelier");
     bsp::Renderer renderer(device);
-    const Asked asked(program, scene);
+    Asked asked(program, scene);
+    asked.target.flags |= BSP_TARGET_DEPTH_BY_PIXEL;
     bsp::check(bsp_prepare(renderer.get(), &asked.frame));
     // What is to be seen, by the picture and its depths.
     renderer.render(asked.frame);
@@ -97,6 +98,76 @@ TEST_CASE("splats lie before and behind a wall that the program drew, over its p
     CHECK(depths_off == 0);
 }
 
+// Translucent discs that face an eye at the origin, in layers from near to far: those nearer than `end`.
+bsp::Scene loadLayers(const bsp::Device& device, float end) {
+    std::vector<std::array<float, 3>> positions, colours;
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> aside(-1.0f, 1.0f);
+    for (int i = 0; i < 600; ++i) {
+        const float z = 1.0f + 0.01f * static_cast<float>(i);
+        const std::array<float, 3> position{z * aside(random), z * aside(random), z}, colour{aside(random), aside(random), aside(random)};
+        if (z >= end) { break; }
+        positions.push_back(position);
+        colours.push_back(colour);
+    }
+    const std::vector<std::array<float, 4>> rotations(positions.size(), {1, 0, 0, 0});
+    const std::vector<std::array<float, 2>> scales(positions.size(), {0.3f, 0.2f});
+    const std::vector<float> opacities(positions.size(), 0.4f);
+    auto splats = bsp::make<bsp_splats>(BSP_TYPE_SPLATS);
+    splats.count = positions.size();
+    splats.positions.values = positions[0].data();
+    splats.rotations.values = rotations[0].data();
+    splats.scales.values = scales[0].data();
+    splats.opacities.values = opacities.data();
+    splats.sh.values = colours[0].data();
+    splats.scale_count = 2;
+    splats.activated = 1;
+    bsp::Scene scene(device, splats);
+    scene.wait();
+    return scene;
+}
+
+TEST_CASE("a wall through a cloud hides at every pixel the splats behind it and none before it") {
+    ForeignProgram program;
+    const bsp::Device device = program.open();
+    constexpr float kWall = 3.505f;
+    const bsp::Scene all = loadLayers(device, 100.0f), nearer = loadLayers(device, kWall);
+    bsp::Renderer renderer(device);
+    Asked asked(program, all);
+    const double eye[]{0, 0, 0}, look[]{0, 0, 1}, up[]{0, -1, 0};
+    asked.view = bsp::lookAt(eye, look, up, 0.0, 1.2, kSize.x, kSize.y)[0];
+    asked.view.next = &asked.target;
+    const auto draw = [&](const bsp::Scene& scene) {
+        asked.frame.scene = scene.get();
+        renderer.render(asked.frame);
+        return std::pair(renderer.colour(asked.view, 0).values, renderer.depth(asked.view, 0).values);
+    };
+    const auto [of_nearer, nearer_depths] = draw(nearer);
+    const auto [of_all, all_depths] = draw(all);
+    bsp::check(bsp_prepare(renderer.get(), &asked.frame));
+    (void)drawBetween(program, renderer, asked, kNear / kWall);
+    const std::vector<std::uint32_t> seen = program.readWords(*program.colour, kColourUse);
+    const std::vector<float> seen_depths = program.readFloats(*program.depth, kDepthUse, 1);
+    int differ = 0, off = 0, depths_off = 0;
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+        const std::size_t x = i % kSize.x, y = i / kSize.x;
+        if (x < 4 && y < 4) { continue; }  // the sign
+        const bool is_wall = x < kSize.x / 2;
+        const float *splats = is_wall ? &of_nearer[4 * i] : &of_all[4 * i], z = is_wall ? nearer_depths[i] : all_depths[i];
+        const std::array<float, 3> own = is_wall ? std::array{1.0f, 0.0f, 0.0f} : std::array{0.2f, 0.4f, 0.6f};
+        for (std::size_t c = 0; c < 3; ++c) {
+            const float value = std::clamp(std::clamp(splats[c], 0.0f, 1.0f) + (1.0f - splats[3]) * own[c], 0.0f, 1.0f);
+            off += std::abs(static_cast<float>(seen[i] >> (8 * c) & 255) - 255.0f * value) > 1.01f ? 1 : 0;
+        }
+        const float depth = splats[3] >= 0.5f ? kNear / z : is_wall ? kNear / kWall : 0.0f;
+        depths_off += std::abs(seen_depths[i] - depth) > 1e-4f * depth ? 1 : 0;
+        differ += is_wall && std::abs(of_nearer[4 * i + 3] - of_all[4 * i + 3]) > 0.05f ? 1 : 0;
+    }
+    CHECK(off == 0);
+    CHECK(depths_off == 0);
+    CHECK(differ > 100);  // pixels of the wall with splats before and behind it
+}
+
 TEST_CASE("an image of floats gets the picture to the last bit, recorded or submitted with semaphores, also where another renderer draws") {
     ForeignProgram program;
     const bsp::Device device = program.open();
@@ -124,6 +195,83 @@ TEST_CASE("an image of floats gets the picture to the last bit, recorded or subm
     CHECK(bsp_collect(renderer.get(), numbers[0], nullptr) == BSP_SUCCESS);
     CHECK(bsp_collect(renderer.get(), numbers[0], nullptr) == BSP_ERROR_INPUT);
     CHECK(program.readFloats(*program.floats, vk::ImageLayout::eTransferDstOptimal, 4) == expected);
+}
+
+TEST_CASE("a frame that is discarded takes nothing along: what moved before it is where it should be in the next") {
+    ForeignProgram program;
+    const bsp::Device device = program.open();
+    const bsp::Scene scene = load(device, "builtin:fence"), other = load(device, "builtin:one-splat");
+    bsp::Renderer renderer(device), exact(device);
+    Asked asked(program, scene);
+    std::array instances{bsp::make<bsp_instance>(BSP_TYPE_INSTANCE), bsp::make<bsp_instance>(BSP_TYPE_INSTANCE)};
+    instances[0].scene = scene.get();
+    instances[1].scene = other.get();
+    asked.frame.scene = nullptr;
+    asked.frame.instances = instances.data();
+    asked.frame.instance_count = 2;
+    asked.target.colour = *program.floats->image;
+    asked.target.colour_format = VK_FORMAT_R32G32B32A32_SFLOAT;
+    asked.target.colour_before = VK_IMAGE_LAYOUT_UNDEFINED;
+    asked.target.colour_after = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+    asked.target.depth = VK_NULL_HANDLE;
+    asked.target.flags = 0;
+    std::uint64_t number = 0;
+    for (const double x : {0.9, 0.3, 0.6, 0.9}) {
+        instances[0].position[0] = x;
+        if (x == 0.9) { bsp::check(bsp_prepare(renderer.get(), &asked.frame)); }
+        const vk::raii::CommandBuffer unused = program.begin();
+        bsp::check(bsp_record(renderer.get(), &asked.frame, *unused, &number));
+        bsp::check(bsp_discard(renderer.get(), number));
+    }
+    exact.render(asked.frame);
+    const vk::raii::CommandBuffer commands = program.begin();
+    bsp::check(bsp_record(renderer.get(), &asked.frame, *commands, &number));
+    const vk::raii::Fence fence(program.device, vk::FenceCreateInfo());
+    program.submit(commands, fence);
+    (void)program.device.waitForFences(*fence, VK_TRUE, UINT64_MAX);
+    bsp::check(bsp_collect(renderer.get(), number, nullptr));
+    CHECK(program.readFloats(*program.floats, vk::ImageLayout::eTransferDstOptimal, 4) == exact.colour(asked.view, 0).values);
+}
+
+TEST_CASE("two of the library's devices on one device of the program draw into one command buffer, each what it would draw alone") {
+    ForeignProgram program;
+    const bsp::Device first = program.open(), second = program.open();
+    const bsp::Scene of_first = load(first, "builtin:one-splat"), of_second = load(second, "builtin:fence");
+    bsp::Renderer renderer(first), other(second);
+    Asked asked(program, of_first), asked_other(program, of_second);
+    asked_other.view = asked.view;
+    asked_other.view.next = &asked_other.target;
+    for (Asked* each : {&asked, &asked_other}) {
+        each->target.flags = BSP_TARGET_BLEND;
+        each->target.depth = VK_NULL_HANDLE;
+        each->frame.flags = 0;
+        bsp::check(bsp_prepare((each == &asked ? renderer : other).get(), &each->frame));
+    }
+    const auto draw = [&](bool of_one, bool of_other) {
+        const vk::raii::CommandBuffer commands = program.begin();
+        program.drawWall(commands, 0.05f);
+        std::array<std::uint64_t, 2> numbers{};
+        if (of_one) { bsp::check(bsp_record(renderer.get(), &asked.frame, *commands, &numbers[0])); }
+        if (of_other) { bsp::check(bsp_record(other.get(), &asked_other.frame, *commands, &numbers[1])); }
+        program.drawSign(commands);
+        const vk::raii::Fence fence(program.device, vk::FenceCreateInfo());
+        program.submit(commands, fence);
+        (void)program.device.waitForFences(*fence, VK_TRUE, UINT64_MAX);
+        if (of_one) { bsp::check(bsp_collect(renderer.get(), numbers[0], nullptr)); }
+        if (of_other) { bsp::check(bsp_collect(other.get(), numbers[1], nullptr)); }
+        return program.readWords(*program.colour, kColourUse);
+    };
+    const std::vector<std::uint32_t> none = draw(false, false), one = draw(true, false), two = draw(false, true), both = draw(true, true);
+    CHECK(one != none);
+    CHECK(two != none);
+    CHECK(one != two);
+    int unlike = 0;
+    for (std::size_t i = 0; i < both.size(); ++i) {
+        // Where only one of them shows anything.
+        if (one[i] == none[i] && both[i] != two[i]) { ++unlike; }
+        if (two[i] == none[i] && both[i] != one[i]) { ++unlike; }
+    }
+    CHECK(unlike == 0);
 }
 
 TEST_CASE("two frames are under way while the head moves, scenes come and go and lists grow, and nothing waits or is said by the layers") {

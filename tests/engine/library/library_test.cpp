@@ -2,6 +2,7 @@
 #include "engine/builtin/procedural.h"
 #include "engine/files/ply.h"
 #include "engine/picture/image_io.h"
+#include "engine/twin/reference.h"
 #include "tests/engine/library/earlier_program.h"
 #include "tests/run_program.h"
 #include "tests/shared_data.h"
@@ -69,6 +70,67 @@ TEST_CASE_FIXTURE(Opened, "its pictures are render's to the last bit, and its de
         }
         CHECK(worst < 1e-5);
     }
+}
+
+TEST_CASE_FIXTURE(Opened, "depths of what is opaque are the twin's within 1e-4 of themselves") {
+    const Scene made = makeBuiltin("builtin:slanted-wall");
+    const bsp::Scene scene = load("builtin:slanted-wall");
+    bsp::Views views = scene.startViews(0.0, 1.0, 96, 72);
+    bsp_frame_info frame = bsp::frame();
+    frame.mode = BSP_MODE_SHARED;
+    frame.flags = BSP_FRAME_DEPTH;
+    renderer->render(scene, views, frame);
+    const std::vector<float> depth = renderer->depth(views[0], 0).values, colour = renderer->colour(views[0], 0).values;
+    const auto& [w, x, y, z] = views[0].orientation;
+    const auto& p = views[0].position;
+    const glm::uvec2 size_px(96, 72);
+    const Eye eye{{glm::dquat(w, x, y, z), {p[0], p[1], p[2]}},
+                  intrinsicsFromAngles({views[0].left_rad, views[0].right_rad, views[0].up_rad, views[0].down_rad}, size_px),
+                  size_px};
+    reference::Settings settings;
+    settings.near = scene.properties().near;
+    const reference::Picture twin = reference::render(made, eye, settings);
+    int off = 0, opaque = 0;
+    for (std::size_t i = 0; i < depth.size(); ++i) {
+        if (colour[4 * i + 3] < 0.5f) { continue; }
+        const double wanted = twin.depth[i] / twin.rgba[i].a;
+        ++opaque;
+        off += std::abs(static_cast<double>(depth[i]) - wanted) > 1e-4 * wanted ? 1 : 0;
+    }
+    CHECK(opaque > 3000);
+    CHECK(off == 0);
+}
+
+TEST_CASE_FIXTURE(Opened, "twenty threads load, show, cancel and destroy scenes beside each other") {
+    struct Shared {
+        std::mutex mutex;  // a renderer belongs to one thread at a time
+        bsp::Renderer renderer;
+    };
+    std::array<Shared, 2> renderers{Shared{{}, bsp::Renderer(*device)}, Shared{{}, bsp::Renderer(*device)}};
+    std::atomic<int> shown = 0, cancelled = 0, wrong = 0;
+    const auto work = [&](int number) {
+        for (int round = 0; round < 3; ++round) {
+            bsp::Scene scene(*device, (number + round) % 2 == 0 ? "builtin:one-splat" : "builtin:fence");
+            if ((number + round) % 3 == 0) { scene.cancel(); }
+            try {
+                while (!scene.isThere()) { std::this_thread::yield(); }
+                const bsp::Views views = scene.startViews(0.063, 1.0, 32, 24);
+                Shared& shared = renderers.at(static_cast<std::size_t>(number) % 2);
+                const std::lock_guard lock(shared.mutex);
+                bsp_frame_info frame = bsp::frame();
+                frame.mode = BSP_MODE_SHARED;
+                shared.renderer.render(scene, views, frame);
+                shown += shared.renderer.colour(views[0], 0).values.size() == 4 * 32 * 24 ? 1 : 0;
+                const bsp::Scene gone = std::move(scene);  // while it is shown, and nobody uses the renderer
+            } catch (const bsp::Error& error) { ++(error.code() == BSP_ERROR_CANCELLED ? cancelled : wrong); }
+        }
+    };
+    std::vector<std::thread> threads;
+    for (int number = 0; number < 20; ++number) { threads.emplace_back(work, number); }
+    for (std::thread& thread : threads) { thread.join(); }
+    CHECK(wrong == 0);
+    CHECK(shown >= 40);
+    CHECK(shown + cancelled == 60);
 }
 
 TEST_CASE_FIXTURE(Opened, "three views are a pair and one alone, and arrays with gaps between them make the scene that their file makes") {

@@ -48,6 +48,7 @@ Presented runPresent(Gpu& gpu, const Shown& shown, const reference::Presentation
     pass.depth_offset = static_cast<float>(how.depth_offset);
     pass.over = shown.behind.empty() || shown.kept_bits != 0 ? 0 : 1;
     if (!shown.mesh_depths.empty()) { pass.mesh_depths = depths.address<float>(); }
+    pass.is_cut = how.is_cut ? 1 : 0;
     pass.blue_first = how.blue_first ? 1 : 0;
     pass.linear = how.linear ? 1 : 0;
     pass.see_through = how.see_through ? 1 : 0;
@@ -181,14 +182,14 @@ TEST_CASE_FIXTURE(Gpu, "a picture lies over a program's own bytes, in any order,
         shown.depth_sums.push_back(static_cast<float>(sums.back()));
         shown.mesh_depths.push_back(static_cast<float>(meshes.back()));
     }
-    for (int choice = 0; choice < 4; ++choice) {
-        const reference::Presentation how{(choice & 1) != 0, (choice & 2) != 0, 0.25, false, 0.125};
+    for (int choice = 0; choice < 8; ++choice) {
+        const reference::Presentation how{(choice & 1) != 0, (choice & 2) != 0, 0.25, false, 0.125, (choice & 4) != 0};
         const Bytes expected = reference::presentOver(asDoubles(shown.colours), sums, shown.behind, meshes, how);
         const Presented presented = runPresent(*this, shown, how);
         CHECK(countOff(presented.pixels, expected, 1) == 0);
         const std::vector<double> own = reference::presentDepths(asDoubles(shown.colours), sums, how);
         for (std::size_t i = 0; i < own.size(); ++i) {
-            const bool is_splats = own[i] > meshes[i] && shown.colours[i].a >= 0.5f;
+            const bool is_splats = (how.is_cut || own[i] > meshes[i]) && shown.colours[i].a >= 0.5f;
             CHECK(presented.depths[i] == doctest::Approx(is_splats ? own[i] : meshes[i]).epsilon(1e-6));
         }
     }
