@@ -81,7 +81,18 @@ void showScene(ViewOptions options, xr::Instance& instance) {
     const glm::uvec2 size_px = instance.recommendedSizePx();
     FrameLog::print(fmt::format("{}, {}x{} per eye, on {}", instance.description(), size_px.x, size_px.y, context.deviceName()));
     const ViewSettings settings = suitDevice(options, context);
-    Viewer(options, settings, instance, context, windows != nullptr).run();
+    std::unique_ptr<EventWindow> window;
+    try {
+        if (windows) { window = std::make_unique<EventWindow>(MirrorWindow::sizeFor(kPanelPx)); }
+    } catch (const Error& error) { FrameLog::print(fmt::format("no window: {}", error.what())); }
+    // Frames have a thread of their own, since a window's events may hold this one up.
+    std::future<void> shown = std::async(std::launch::async, [&] {
+        const auto end = [](EventWindow* held) { held->end(); };
+        const std::unique_ptr<EventWindow, decltype(end)> held(window.get());
+        Viewer(options, settings, instance, context, window.get()).run();
+    });
+    if (window) { window->run(); }
+    shown.get();
     if (!options.out.empty()) { fmt::print("what the wearer saw: {}\n", options.out.string()); }
     context.requireNoValidationMessages();
 }

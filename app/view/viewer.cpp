@@ -18,7 +18,8 @@ constexpr std::chrono::milliseconds kIdle(5);
 
 }  // namespace
 
-Viewer::Viewer(const ViewOptions& options, const ViewSettings& settings, xr::Instance& instance, const Context& context, bool mirrored)
+Viewer::Viewer(const ViewOptions& options, const ViewSettings& settings, xr::Instance& instance, const Context& context,
+               EventWindow* window)
     : options_(options),
       instance_(instance),
       context_(context),
@@ -39,7 +40,7 @@ Viewer::Viewer(const ViewOptions& options, const ViewSettings& settings, xr::Ins
     }
     panel_.status().can_reload_shaders = !shaderFolder(options.shaders).empty();
     if (const std::string& complaint = panel_.canvas().font().complaint(); !complaint.empty()) { log_.print(complaint); }
-    if (mirrored) { openWindow(); }
+    if (window != nullptr) { openWindow(*window); }
 }
 
 void Viewer::run() {

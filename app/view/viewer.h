@@ -21,8 +21,8 @@ namespace binosplat {
 
 class Viewer {
 public:
-    // `instance` and `context` outlive the viewer. Begins to load the scene. With a window beside the headset if `mirrored`.
-    Viewer(const ViewOptions& options, const ViewSettings& settings, xr::Instance& instance, const Context& context, bool mirrored);
+    // `instance` and `context` outlive the viewer. Begins to load the scene. Its frames are shown in `window`, too, if it is given.
+    Viewer(const ViewOptions& options, const ViewSettings& settings, xr::Instance& instance, const Context& context, EventWindow* window);
 
     // Runs until the runtime, the wearer, Ctrl-C or --frames ends it. Prints changes by frame, and why it ended, to stdout. A lost session
     // is followed by another one, with the scene as it is, once there is a headset. Throws errors of the scene and the device, and Error
@@ -32,6 +32,8 @@ public:
 private:
     // One turn of the loop; false at its end.
     bool step();
+    // The eyes at the time for which the open frame is drawn; empty if the headset cannot tell.
+    [[nodiscard]] std::optional<FrameViews> locate();
     [[nodiscard]] ConnectedHeadset& headset() const { return *connection_.headset(); }  // while there is one
     void loseHeadset(const std::string& why);
     // Replaces a lost session if there is a headset; false at the end.
@@ -41,8 +43,8 @@ private:
     void drawWindowAlone(const std::string& why);
     // Shows the next scene, once it is there.
     void takeScene();
-    // Optional: if the window does not open, a line says why.
-    void openWindow();
+    // Optional: if the window cannot be drawn on, a line says why.
+    void openWindow(EventWindow& window);
     // Moves the room's origin to the head, once its pose is known or on request.
     void settle();
     void renderWaiting();

@@ -30,9 +30,21 @@ void Viewer::settle() {
     panel_.inRoom().hangBefore({});
 }
 
+std::optional<FrameViews> Viewer::locate() {
+    const std::optional<std::array<xr::EyeView, 2>> located = headset().session.locateEyes();
+    if (!located) { return std::nullopt; }
+    const std::array<xr::EyeView, 2> eyes = withoutNoise(*located);
+    const std::array<Pose, 2> room_from_eyes = roomFromEyes(eyes);
+    FrameViews views{eyes, room_from_eyes, roomFromHead(room_from_eyes), {}, {}, eyes};
+    if (const auto& insets = headset().session.insets()) {
+        views.insets = withoutNoise({xr::EyeView{eyes[kLeft].pose, (*insets)[kLeft]}, xr::EyeView{eyes[kRight].pose, (*insets)[kRight]}});
+    }
+    return views;
+}
+
 void Viewer::drawFrame() {
     settle();
-    const std::optional<std::array<xr::EyeView, 2>> located = headset().session.locateEyes();
+    std::optional<FrameViews> located = locate();
     if (!located) {
         drawWindowAlone("The headset cannot tell where it is");
         headset().session.endFrame({});
@@ -41,18 +53,13 @@ void Viewer::drawFrame() {
     renderer_.meetDisplay(headset().session);
     files_.deliver();
     if (scenes_.isNextReady()) { takeScene(); }
-    const std::array<xr::EyeView, 2> eyes = withoutNoise(*located);
-    const std::array<Pose, 2> room_from_eyes = roomFromEyes(eyes);
-    FrameViews views{eyes, room_from_eyes, roomFromHead(room_from_eyes), {}, {}, eyes};
-    if (const auto& insets = headset().session.insets()) {
-        views.insets = withoutNoise({xr::EyeView{eyes[kLeft].pose, (*insets)[kLeft]}, xr::EyeView{eyes[kRight].pose, (*insets)[kRight]}});
-    }
+    FrameViews& views = *located;
     room_from_head_ = views.room_from_head;
     const double step_seconds = headset().session.stepSeconds();
     const WearerNow wearer{headset().input.read(), room_from_head_, headset().session.floorBelowMetres(), step_seconds};
     controls_.update(wearer, panel_.inRoom(), state_);
     if (const double clear_deg = state_.settings().stereo.foveation_deg; clear_deg > 0.0 && !views.insets) {
-        views.gazes = gaze_.update(headset().input.gaze(), room_from_eyes, glm::radians(clear_deg), step_seconds);
+        views.gazes = gaze_.update(headset().input.gaze(), views.room_from_eyes, glm::radians(clear_deg), step_seconds);
     } else {
         gaze_ = {};
     }
@@ -64,6 +71,11 @@ void Viewer::drawFrame() {
     panel_.status().state.clear();
     panel_hangs_ = state_.settings().panel;
     if (panel_hangs_ || window_) { layOutPanel(panel_hangs_, step_seconds); }
+    // Meanwhile the runtime knows better where the eyes will be.
+    if (std::optional<FrameViews> later = locate()) {
+        later->gazes = views.gazes;
+        views = *later;
+    }
     // Last, since the panel and the window may change the settings.
     const bool fits = prepareScene(views);
     fade_.update(state_.sceneFromRoom(), room_from_head_, std::exchange(is_new_view_, false), step_seconds);

@@ -12,11 +12,15 @@ constexpr std::chrono::milliseconds kWindowAlone(16);
 
 }  // namespace
 
-void Viewer::openWindow() {
+void Viewer::openWindow(EventWindow& window) {
+    const auto goOnWithout = [&](const char* why) {
+        log_.print(fmt::format("no window: {}", why));
+        window.close();
+    };
     try {
-        window_ = std::make_unique<MirrorWindow>(context_, panel_.canvas());
-    } catch (const Error& error) { log_.print(fmt::format("no window: {}", error.what())); } catch (const vk::SystemError& error) {
-        log_.print(fmt::format("no window: {}", error.what()));
+        window_ = std::make_unique<MirrorWindow>(context_, panel_.canvas(), window);
+    } catch (const Error& error) { goOnWithout(error.what()); } catch (const vk::SystemError& error) {
+        goOnWithout(error.what());
     }
 }
 

@@ -2,6 +2,7 @@
 // BINOSPLAT_XR_FAULT=CALL:RESULT[:N[:AFTER]] and more of these after commas: N calls of CALL, or all, return the number RESULT and are not
 // made, once AFTER others were. In the place of RESULT, "missing": the runtime does not have the function; "crash": it ends the program.
 // xrCreateInstance:hang never returns.
+// BINOSPLAT_XR_EARLY=METRES: what a frame asks first about its eyes is a worse prediction, so much too high; what it asks then is right.
 // For BINOSPLAT_FAULT_WAITS (waits.h) it tells when a frame ends and what the runtime does itself.
 #include <vulkan/vulkan.h>
 #define XR_USE_GRAPHICS_API_VULKAN
@@ -18,6 +19,7 @@
 #include <map>
 #include <sstream>
 #include <string>
+#include <utility>
 
 #include <unistd.h>
 
@@ -86,6 +88,37 @@ struct Faulty<Tag, XrResult(XRAPI_PTR*)(Arguments...)> {
     };
 BINOSPLAT_FAULTY(BINOSPLAT_TAG)
 
+// Of the open frame: how often its eyes were located.
+std::atomic<int> g_looks{0};
+PFN_xrLocateViews g_locate_views = nullptr;
+PFN_xrBeginFrame g_begin_frame = nullptr;
+
+XRAPI_ATTR XrResult XRAPI_CALL locateViews(XrSession session, const XrViewLocateInfo* info, XrViewState* state, std::uint32_t capacity,
+                                           std::uint32_t* count, XrView* views) {
+    const XrResult result = g_locate_views(session, info, state, capacity, count, views);
+    if (XR_FAILED(result) || capacity == 0 || g_looks++ != 0) { return result; }
+    for (std::uint32_t i = 0; i < *count; ++i) { views[i].pose.position.y += std::strtof(std::getenv("BINOSPLAT_XR_EARLY"), nullptr); }
+    return result;
+}
+
+XRAPI_ATTR XrResult XRAPI_CALL beginFrame(XrSession session, const XrFrameBeginInfo* info) {
+    g_looks = 0;
+    return g_begin_frame(session, info);
+}
+
+// Whether BINOSPLAT_XR_EARLY takes the function.
+bool takesEarly(const char* name, PFN_xrVoidFunction* function) {
+    if (std::getenv("BINOSPLAT_XR_EARLY") == nullptr) { return false; }
+    if (std::strcmp(name, "xrLocateViews") == 0) {
+        g_locate_views = reinterpret_cast<PFN_xrLocateViews>(std::exchange(*function, reinterpret_cast<PFN_xrVoidFunction>(locateViews)));
+    } else if (std::strcmp(name, "xrBeginFrame") == 0) {
+        g_begin_frame = reinterpret_cast<PFN_xrBeginFrame>(std::exchange(*function, reinterpret_cast<PFN_xrVoidFunction>(beginFrame)));
+    } else {
+        return false;
+    }
+    return true;
+}
+
 XRAPI_ATTR XrResult XRAPI_CALL getInstanceProcAddr(XrInstance instance, const char* name, PFN_xrVoidFunction* function) {
     const auto found = faults().find(name);
     if (found != faults().end() && found->second.is_missing) {
@@ -93,7 +126,9 @@ XRAPI_ATTR XrResult XRAPI_CALL getInstanceProcAddr(XrInstance instance, const ch
         return XR_ERROR_FUNCTION_UNSUPPORTED;
     }
     const XrResult result = g_next(instance, name, function);
-    if (XR_FAILED(result) || (found == faults().end() && binosplat::faults::waitsFile() == nullptr)) { return result; }
+    if (XR_FAILED(result) || takesEarly(name, function) || (found == faults().end() && binosplat::faults::waitsFile() == nullptr)) {
+        return result;
+    }
 #define BINOSPLAT_WRAP(wrapped)                                          \
     if (std::strcmp(name, #wrapped) == 0) {                              \
         using Wrapped = Faulty<Tag_##wrapped, PFN_##wrapped>;            \

@@ -18,6 +18,27 @@ namespace binosplat {
 
 namespace {
 
+// Recordings that may be under way: those before are done.
+constexpr int kFramesInFlight = 2;
+// More than any page of the panel draws.
+constexpr int kMostVertices = 1 << 16, kMostIndices = 3 * kMostVertices / 2;
+
+// Draws nothing, of so many vertices that later frames find buffers that are large enough: one for each of the two in flight.
+void makeBuffersAhead(vk::CommandBuffer commands) {
+    ImDrawList list(ImGui::GetDrawListSharedData());
+    list.VtxBuffer.resize(kMostVertices, ImDrawVert());
+    list.IdxBuffer.resize(kMostIndices, 0);
+    ImDrawList* lists[] = {&list};
+    ImDrawData data;
+    data.Valid = true;
+    data.CmdLists = lists;
+    data.CmdListsCount = 1;
+    data.TotalVtxCount = kMostVertices;
+    data.TotalIdxCount = kMostIndices;
+    data.DisplaySize = data.FramebufferScale = ImVec2(1.0f, 1.0f);
+    for (int frame = 0; frame < 2; ++frame) { ImGui_ImplVulkan_RenderDrawData(&data, commands); }
+}
+
 void requireSuccess(VkResult result) { check(result == VK_SUCCESS, "the panel cannot be drawn: {}", vk::to_string(vk::Result(result))); }
 
 }  // namespace
@@ -49,6 +70,7 @@ Canvas::Canvas(const Context& context, glm::uvec2 size_px, vk::Format format) : 
 }
 
 Canvas::~Canvas() {
+    dropOld();
     ImGui_ImplVulkan_Shutdown();
     ImGui::DestroyContext();
 }
@@ -77,16 +99,23 @@ void Canvas::makeRenderPass(vk::Format format) {
 }
 
 void Canvas::startImGui() {
-    const vk::DescriptorPoolSize size(vk::DescriptorType::eCombinedImageSampler, 1);
-    descriptors_ = vk::raii::DescriptorPool(context_.device(),
-                                            vk::DescriptorPoolCreateInfo(vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, 1, size));
     ImGui::CreateContext();
     ImGuiIO& io = ImGui::GetIO();
     io.IniFilename = nullptr;
     io.DisplaySize = ImVec2(static_cast<float>(size_px_.x), static_cast<float>(size_px_.y));
     stylePanel();
     font_ = std::make_unique<PanelFont>();
+    startBackendNow();
+}
+
+void Canvas::startBackendNow() {
     startBackend();
+    Commands commands(context_);
+    commands.begin();
+    upload(*commands.buffer());
+    commands.submitAndWait();
+    ImGui_ImplVulkan_DestroyFontUploadObjects();
+    is_uploading_ = false;
 }
 
 void Canvas::startBackend() {
@@ -103,25 +132,42 @@ void Canvas::startBackend() {
     info.QueueFamily = context_.queueFamily();
     info.Queue = *context_.queue();
     info.PipelineCache = *context_.pipelineCache();
+    const vk::DescriptorPoolSize size(vk::DescriptorType::eCombinedImageSampler, 1);
+    descriptors_ = vk::raii::DescriptorPool(context_.device(),
+                                            vk::DescriptorPoolCreateInfo(vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, 1, size));
     info.DescriptorPool = *descriptors_;
     info.MinImageCount = info.ImageCount = 2;
     info.MSAASamples = VK_SAMPLE_COUNT_1_BIT;
     info.CheckVkResultFn = requireSuccess;
     ImGui_ImplVulkan_Init(&info, *render_pass_);
-    Commands commands(context_);
-    commands.begin();
-    ImGui_ImplVulkan_CreateFontsTexture(*commands.buffer());
-    commands.submitAndWait();
-    ImGui_ImplVulkan_DestroyFontUploadObjects();
+    has_letters_ = false;
+    is_uploading_ = true;
+    records_ = 0;
+}
+
+void Canvas::upload(vk::CommandBuffer commands) {
+    ImGui_ImplVulkan_CreateFontsTexture(commands);
+    makeBuffersAhead(commands);
+    has_letters_ = true;
+}
+
+void Canvas::setBackendAside() {
+    old_.emplace_back(std::exchange(ImGui::GetIO().BackendRendererUserData, nullptr), std::move(descriptors_));
+}
+
+void Canvas::dropOld() {
+    ImGuiIO& io = ImGui::GetIO();
+    void* const now = io.BackendRendererUserData;
+    for (const auto& [backend, descriptors] : old_) {
+        io.BackendRendererUserData = backend;
+        ImGui_ImplVulkan_Shutdown();
+    }
+    old_.clear();
+    io.BackendRendererUserData = now;
 }
 
 void Canvas::takeLetters() {
-    {
-        const std::lock_guard lock(context_.queueMutex());
-        context_.queue().waitIdle();  // frames in flight read the old letters
-    }
-    ImGui_ImplVulkan_Shutdown();
-    descriptors_.reset();
+    setBackendAside();  // frames in flight read the old letters
     font_->take();
     startBackend();
     draw_list_.clear();  // the letters' places may have changed
@@ -154,6 +200,15 @@ void Canvas::end() {
 void Canvas::giveUp() {
     if (std::exchange(is_begun_, false)) { ImGui::EndFrame(); }
     is_recorded_ = false;
+    if (!is_uploading_) { return; }
+    // The recording that uploads the letters may have been the one that is discarded.
+    {
+        const std::lock_guard lock(context_.queueMutex());
+        context_.queue().waitIdle();
+    }
+    setBackendAside();
+    startBackendNow();
+    dropOld();
 }
 
 Canvas::DrawList Canvas::drawList() {
@@ -184,7 +239,13 @@ void Canvas::copyTo(Commands& commands, vk::Image target) const {
 }
 
 void Canvas::record(Commands& commands) {
+    if (is_uploading_ && has_letters_ && ++records_ > kFramesInFlight) {
+        is_uploading_ = false;
+        ImGui_ImplVulkan_DestroyFontUploadObjects();
+        dropOld();
+    }
     if (!is_new_) { return; }
+    if (!has_letters_) { upload(*commands.buffer()); }
     is_recorded_ = true;
     const vk::ClearValue black(vk::ClearColorValue(std::array<float, 4>{0.0f, 0.0f, 0.0f, 1.0f}));
     const vk::raii::CommandBuffer& buffer = commands.buffer();

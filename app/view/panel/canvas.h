@@ -9,6 +9,7 @@
 
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace binosplat {
@@ -31,13 +32,14 @@ public:
     Canvas& operator=(const Canvas&) = delete;
     ~Canvas();
 
-    // Letters wanted before begin() are shown as boxes until takeLetters(), between frames, has brought them; that waits for the queue.
+    // Letters wanted before begin() are shown as boxes until takeLetters(), between frames, has brought them. What frames before use lives
+    // until they are done.
     [[nodiscard]] PanelFont& font() const { return *font_; }
     void takeLetters();
     // Widgets are drawn between this and end() or giveUp().
     void begin(const PanelPointer& pointer, double step_seconds);
     void end();
-    // Discards the widgets and the last recording.
+    // Discards the widgets and the last recording; may wait for the queue.
     void giveUp();
     // Draws, unless the image is up to date; then the canvas may be copied from.
     void record(Commands& commands);
@@ -54,7 +56,13 @@ private:
     void makeImage(vk::Format format);
     void makeRenderPass(vk::Format format);
     void startImGui();
+    // Without letters until upload().
     void startBackend();
+    void upload(vk::CommandBuffer commands);
+    void startBackendNow();
+    void setBackendAside();
+    // What was set aside, once no frame uses it.
+    void dropOld();
 
     // ImGui's draw data, byte by byte.
     using DrawList = std::vector<unsigned char>;
@@ -73,6 +81,9 @@ private:
     vk::raii::RenderPass render_pass_{nullptr};
     vk::raii::Framebuffer framebuffer_{nullptr};
     vk::raii::DescriptorPool descriptors_{nullptr};
+    std::vector<std::pair<void*, vk::raii::DescriptorPool>> old_;  // backends that frames under way may use
+    bool has_letters_ = false, is_uploading_ = false;              // the backend; its letters may not be there yet
+    int records_ = 0;                                              // since they were uploaded
 };
 
 }  // namespace binosplat

@@ -1,4 +1,4 @@
-// GLFW, and what is drawn on its window.
+// What is drawn on the window, and what its mouse and keyboard mean.
 #include "app/view/window/mirror_window.h"
 
 #include "app/view/room/sprites.h"
@@ -6,7 +6,6 @@
 #include "engine/error.h"
 
 #define GLFW_INCLUDE_NONE
-#define GLFW_INCLUDE_VULKAN
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
@@ -24,70 +23,35 @@ constexpr double kRadiansPerPixel = 0.004;
 using Layout = vk::ImageLayout;
 using Usage = vk::ImageUsageFlagBits;
 
-// Width of the window: a square for the eye, and the panel beside it.
-int widthOf(const Canvas& canvas) {
-    return kHeightPx + kHeightPx * static_cast<int>(canvas.sizePx().x) / static_cast<int>(canvas.sizePx().y);
-}
-
 }  // namespace
 
-std::unique_ptr<WindowSystem> WindowSystem::find() {
-    if (glfwInit() != GLFW_TRUE) { return nullptr; }
-    std::unique_ptr<WindowSystem> system(new WindowSystem());
-    return glfwVulkanSupported() == GLFW_TRUE && !instanceExtensions().empty() ? std::move(system) : nullptr;
+glm::ivec2 MirrorWindow::sizeFor(glm::uvec2 canvas_px) {
+    return {kHeightPx + kHeightPx * static_cast<int>(canvas_px.x) / static_cast<int>(canvas_px.y), kHeightPx};
 }
 
-WindowSystem::~WindowSystem() { glfwTerminate(); }
-
-std::vector<const char*> WindowSystem::instanceExtensions() {
-    std::uint32_t count = 0;
-    const char** names = glfwGetRequiredInstanceExtensions(&count);
-    return names == nullptr ? std::vector<const char*>{} : std::vector<const char*>(names, names + count);
-}
-
-MirrorWindow::MirrorWindow(const Context& context, const Canvas& canvas)
-    : context_(context), canvas_(canvas), window_(nullptr, glfwDestroyWindow) {
+MirrorWindow::MirrorWindow(const Context& context, const Canvas& canvas, EventWindow& events)
+    : context_(context), canvas_(canvas), events_(events) {
     check(context.hasDeviceExtension(VK_KHR_SWAPCHAIN_EXTENSION_NAME), "{} has no window pictures", context.deviceName());
-    glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
-    glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
-    window_.reset(glfwCreateWindow(widthOf(canvas), kHeightPx, "binosplat", nullptr, nullptr));
-    check(window_ != nullptr, "the window does not open");
-    glfwSetWindowAspectRatio(window_.get(), widthOf(canvas), kHeightPx);
-    // Presses released before the next frame still count once.
-    glfwSetInputMode(window_.get(), GLFW_STICKY_KEYS, GLFW_TRUE);
-    glfwSetInputMode(window_.get(), GLFW_STICKY_MOUSE_BUTTONS, GLFW_TRUE);
-    glfwSetWindowUserPointer(window_.get(), this);
-    glfwSetKeyCallback(window_.get(), [](GLFWwindow* window, int key, int, int action, int) {
-        if (action == GLFW_PRESS) { static_cast<MirrorWindow*>(glfwGetWindowUserPointer(window))->pressed_.push_back(key); }
-    });
-    glfwSetScrollCallback(window_.get(), [](GLFWwindow* window, double, double steps) {
-        static_cast<MirrorWindow*>(glfwGetWindowUserPointer(window))->wheel_ += steps;
-    });
-    glfwSetDropCallback(window_.get(), [](GLFWwindow* window, int count, const char** paths) {
-        if (count > 0) { static_cast<MirrorWindow*>(glfwGetWindowUserPointer(window))->dropped_ = paths[count - 1]; }
-    });
-    VkSurfaceKHR surface = VK_NULL_HANDLE;
-    const VkResult result = glfwCreateWindowSurface(*context.instance(), window_.get(), nullptr, &surface);
-    check(result == VK_SUCCESS, "the window cannot be drawn on: {}", vk::to_string(vk::Result(result)));
-    pictures_ = std::make_unique<WindowPictures>(context, vk::raii::SurfaceKHR(context.instance(), surface), [this] {
-        int width = 0, height = 0;
-        glfwGetFramebufferSize(window_.get(), &width, &height);
-        return glm::uvec2(width, height);
-    });
+    pictures_ = std::make_unique<WindowPictures>(context, vk::raii::SurfaceKHR(context.instance(), events.surface(context)),
+                                                 [this] { return events_.sizePx(); });
 }
 
 MirrorWindow::~MirrorWindow() {
-    const std::lock_guard lock(context_.queueMutex());
-    try {
-        context_.device().waitIdle();
-    } catch (const vk::SystemError&) {}  // a lost device draws nothing more
+    {
+        const std::lock_guard lock(context_.queueMutex());
+        try {
+            context_.device().waitIdle();
+        } catch (const vk::SystemError&) {}  // a lost device draws nothing more
+    }
+    pictures_.reset();  // before the window
+    events_.close();
 }
 
 WindowInput MirrorWindow::poll() {
-    glfwPollEvents();
-    const auto pressed = [&](int key) { return glfwGetKey(window_.get(), key) == GLFW_PRESS ? 1.0 : 0.0; };
+    const WindowEvents events = events_.take();
+    const auto pressed = [&](int key) { return events.down.contains(key) ? 1.0 : 0.0; };
     WindowInput input;
-    for (const int key : std::exchange(pressed_, {})) {
+    for (const int key : events.pressed) {
         input.toggle_panel ^= key == GLFW_KEY_TAB;
         input.reload_shaders |= key == GLFW_KEY_F5;
         input.recentre |= key == GLFW_KEY_R;
@@ -95,32 +59,26 @@ WindowInput MirrorWindow::poll() {
         input.frame_step += (key == GLFW_KEY_PERIOD ? 1 : 0) - (key == GLFW_KEY_COMMA ? 1 : 0);
         input.quit |= key == GLFW_KEY_ESCAPE;
     }
-    input.dropped = std::exchange(dropped_, {});
-    input.quit |= glfwWindowShouldClose(window_.get()) == GLFW_TRUE;
+    input.dropped = events.dropped;
+    input.quit |= events.quit;
     input.walk = {pressed(GLFW_KEY_D) - pressed(GLFW_KEY_A), pressed(GLFW_KEY_Q) - pressed(GLFW_KEY_E),
                   pressed(GLFW_KEY_W) - pressed(GLFW_KEY_S)};
     input.turn_rate = pressed(GLFW_KEY_RIGHT) - pressed(GLFW_KEY_LEFT);
-    glm::dvec2 cursor;
-    glfwGetCursorPos(window_.get(), &cursor.x, &cursor.y);
-    // A compositor may give the window another size than requested.
-    int width = 0, height = 0;
-    glfwGetWindowSize(window_.get(), &width, &height);
-    cursor *= glm::dvec2(widthOf(canvas_), kHeightPx) / glm::dvec2(std::max(width, 1), std::max(height, 1));
-    const bool down = glfwGetMouseButton(window_.get(), GLFW_MOUSE_BUTTON_LEFT) == GLFW_PRESS;
+    const glm::dvec2 cursor = events.cursor * glm::dvec2(sizeFor(canvas_.sizePx()));
+    const bool down = events.buttons_down.contains(GLFW_MOUSE_BUTTON_LEFT);
     const double scale = static_cast<double>(canvas_.sizePx().y) / kHeightPx;
     const glm::dvec2 place = scale * (cursor - glm::dvec2(kHeightPx, 0.0));
     const glm::dvec2 size(canvas_.sizePx());
-    const double wheel = std::exchange(wheel_, 0.0);
     const bool is_over = glm::all(glm::greaterThanEqual(place, glm::dvec2(0.0))) && glm::all(glm::lessThan(place, size));
     // If another window lies above this one, the mouse belongs to that one.
-    if (is_over && (down || glfwGetWindowAttrib(window_.get(), GLFW_HOVERED) == GLFW_TRUE)) {
-        input.pointer = {place, down, wheel};
-        input.uses_panel = cursor != cursor_ || down || was_down_ || wheel != 0.0;
+    if (is_over && (down || events.is_hovered)) {
+        input.pointer = {place, down, events.wheel};
+        input.uses_panel = cursor != cursor_ || down || was_down_ || events.wheel != 0.0;
     } else {
-        input.wheel = wheel;
+        input.wheel = events.wheel;
         // The picture follows the mouse.
         if (down) { input.turn_rad = kRadiansPerPixel * (cursor_.x - cursor.x); }
-        if (glfwGetMouseButton(window_.get(), GLFW_MOUSE_BUTTON_RIGHT) == GLFW_PRESS) {
+        if (events.buttons_down.contains(GLFW_MOUSE_BUTTON_RIGHT)) {
             input.tilt_rad = kRadiansPerPixel * glm::dvec2(cursor.x - cursor_.x, cursor_.y - cursor.y);
         }
     }
@@ -152,7 +110,7 @@ void MirrorWindow::record(Commands& commands) {
     if (!target) { return; }
     const int width = static_cast<int>(pictures_->sizePx().x), height = static_cast<int>(pictures_->sizePx().y);
     clearWindow(commands, target);
-    const int split = std::clamp(width * kHeightPx / widthOf(canvas_), 1, std::max(width - 1, 1));
+    const int split = std::clamp(width * kHeightPx / sizeFor(canvas_.sizePx()).x, 1, std::max(width - 1, 1));
     const auto show = [&](vk::Image image, glm::uvec2 size_px, const WindowPart& part) {
         blitInto(commands, image, size_px, target, fittedInto(size_px, part));
     };

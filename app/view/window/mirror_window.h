@@ -2,6 +2,7 @@
 #pragma once
 
 #include "app/view/panel/canvas.h"
+#include "app/view/window/event_window.h"
 #include "app/view/window/window_input.h"
 #include "app/view/window/window_pictures.h"
 
@@ -9,36 +10,20 @@
 
 #include <memory>
 #include <optional>
-#include <string>
-#include <vector>
-
-struct GLFWwindow;
 
 namespace binosplat {
 
-// GLFW, if there is a display. Must come before the Vulkan instance, which needs its extensions.
-class WindowSystem {
-public:
-    // Null if there is no display, or none that Vulkan can show on.
-    static std::unique_ptr<WindowSystem> find();
-    WindowSystem(const WindowSystem&) = delete;
-    WindowSystem& operator=(const WindowSystem&) = delete;
-    ~WindowSystem();
-
-    [[nodiscard]] static std::vector<const char*> instanceExtensions();
-
-private:
-    WindowSystem() = default;
-};
-
 class MirrorWindow {
 public:
-    // Throws Error if the device cannot show on the display.
-    MirrorWindow(const Context& context, const Canvas& canvas);
+    // The size that a window for such a canvas has at first.
+    [[nodiscard]] static glm::ivec2 sizeFor(glm::uvec2 canvas_px);
+    // `events` outlives this, and its window closes with this. Throws Error if the device cannot show on the display.
+    MirrorWindow(const Context& context, const Canvas& canvas, EventWindow& events);
     MirrorWindow(const MirrorWindow&) = delete;
     MirrorWindow& operator=(const MirrorWindow&) = delete;
     ~MirrorWindow();
 
+    // What mouse and keyboard did since the last call.
     [[nodiscard]] WindowInput poll();
     // Before anything is recorded: a picture to draw on, if one is free; the headset does not wait for it.
     void acquire() { pictures_->acquire(); }
@@ -54,15 +39,12 @@ public:
 private:
     const Context& context_;
     const Canvas& canvas_;
-    std::unique_ptr<GLFWwindow, void (*)(GLFWwindow*)> window_;  // outlives what is drawn on it
+    EventWindow& events_;
     std::unique_ptr<WindowPictures> pictures_;
     std::optional<OwnImage> eye_;
     glm::uvec2 eye_px_{0, 0};
     glm::dvec2 cursor_{0.0};  // at the last poll, and whether its left button was down
     bool was_down_ = false;
-    std::vector<int> pressed_;  // GLFW keys since the last poll
-    std::string dropped_;       // since the last poll
-    double wheel_ = 0.0;        // since the last poll
 };
 
 }  // namespace binosplat

@@ -6,6 +6,7 @@
 #include <GLFW/glfw3.h>
 
 #include <chrono>
+#include <thread>
 
 SUITE(view_window) {
 
@@ -14,10 +15,14 @@ const std::string kSmall = "rate 60\nsize 96 96\nframes none\n";
 
 std::string onDesk() { return "XDG_CONFIG_HOME=\"$PWD/../config\" WAYLAND_DISPLAY= DISPLAY=" + desk().screen.name; }
 
-// In the fork that is the viewer: files, with a colon between, that are dropped when it first looks for events, and others, after a comma,
+// In the fork that is the viewer: files, with a colon between, that are dropped once it shows frames, and others, after a comma,
 // a second and a half later. What a desktop and a window say to each other meanwhile is GLFW's business: here GLFW only says that it has
 // happened.
 constexpr const char* kDropped = "BINOSPLAT_TEST_DROPPED";
+
+// There too: the log of frames for some of which the window's events hold the program up, once.
+constexpr const char* kHeldUntil = "BINOSPLAT_TEST_HELD_UNTIL";
+constexpr std::size_t kFramesHeld = 60;
 
 GLFWwindow* window_of_drop = nullptr;
 GLFWdropfun tell_of_drop = nullptr;
@@ -39,6 +44,25 @@ void drop(const std::string& list) {
     std::vector<const char*> paths;
     for (const std::string& file : files) { paths.push_back(file.c_str()); }
     tell_of_drop(window_of_drop, static_cast<int>(paths.size()), paths.data());
+}
+
+std::ptrdiff_t countFrames(const std::string& log) {
+    std::ifstream file(log);
+    return std::count(std::istreambuf_iterator<char>(file), {}, '\n');
+}
+
+// It gives up in the end, for a program in which no frame comes meanwhile.
+void holdUp() {
+    static bool is_over = false;
+    const char* const log = std::getenv(kHeldUntil);
+    if (log == nullptr || window_of_drop == nullptr || std::exchange(is_over, true)) { return; }
+    const auto latest = std::chrono::steady_clock::now() + std::chrono::milliseconds(kPatienceMs);
+    const std::ptrdiff_t enough = countFrames(log) + static_cast<std::ptrdiff_t>(kFramesHeld);
+    while (countFrames(log) < enough) {
+        if (std::chrono::steady_clock::now() > latest) { return; }
+        std::this_thread::yield();
+    }
+    std::ofstream(std::string(log) + ".went-on");
 }
 
 // The pixels of the window next to the middles of the eye's, which it shows magnified.
@@ -110,17 +134,32 @@ extern "C" GLFWdropfun glfwSetDropCallback(GLFWwindow* window, GLFWdropfun callb
     return next<decltype(&glfwSetDropCallback)>("glfwSetDropCallback")(window, callback);
 }
 
-extern "C" void glfwPollEvents() {
+extern "C" void glfwWaitEventsTimeout(double seconds) {
     static std::vector<std::string> drops;
     static std::chrono::steady_clock::time_point next_drop;
-    next<decltype(&glfwPollEvents)>("glfwPollEvents")();
+    next<decltype(&glfwWaitEventsTimeout)>("glfwWaitEventsTimeout")(seconds);
+    holdUp();
     const char* const files = std::getenv(kDropped);
     if (files == nullptr || tell_of_drop == nullptr) { return; }
-    if (next_drop == std::chrono::steady_clock::time_point()) { drops = splitAt(files, ','); }
+    if (next_drop == std::chrono::steady_clock::time_point()) {
+        if (countFrames("dropped/frames.jsonl") == 0) { return; }
+        drops = splitAt(files, ',');
+    }
     if (drops.empty() || std::chrono::steady_clock::now() < next_drop) { return; }
     next_drop = std::chrono::steady_clock::now() + std::chrono::milliseconds(1500);
     drop(drops.front());
     drops.erase(drops.begin());
+}
+
+TEST_CASE("frames go on while the window's events hold its thread up, as they do on Windows while it is dragged") {
+    if (!haveScreen() || run_in_fork == nullptr) { return; }
+    const Workplace work;
+    const ViewRun run = runView(work, "dragged", kSmall + "at 3 exit\n", kScene, onDesk() + " " + kHeldUntil + "=dragged/frames.jsonl");
+    INFO(run.outcome.output);
+    CHECK(these(run.outcome.exit_code, run.outcome.errors.empty()) == these(0, true));
+    CHECK(run.frames.size() > kFramesHeld);
+    CHECK_FALSE(run.says("no window"));
+    CHECK(std::filesystem::exists(work.path / "dragged" / "frames.jsonl.went-on"));
 }
 
 TEST_CASE("the last of the scenes dropped on the window is shown, and one that cannot be read is named and changes nothing") {
@@ -295,7 +334,8 @@ TEST_CASE("a picture of a frame that was given up is drawn in the next, and a wi
         canvas.takeLetters();
         canvas.begin({}, 0.01);
         canvas.giveUp();
-        MirrorWindow window(context, canvas);
+        EventWindow events(MirrorWindow::sizeFor(kPanelPx));
+        MirrorWindow window(context, canvas, events);
         // The display may still be reading it.
         for (int asked = 0; !window.drawn() && asked < 100'000; ++asked) { window.acquire(); }
         const vk::Semaphore first = window.drawn();
@@ -308,7 +348,10 @@ TEST_CASE("a picture of a frame that was given up is drawn in the next, and a wi
     }
     const Context without_windows({.device = {}, .device_extensions = pictures});
     const Canvas canvas(without_windows, kPanelPx, vk::Format::eR8G8B8A8Unorm);
-    CHECK_THROWS_AS(MirrorWindow(without_windows, canvas), Error);
+    EventWindow events(MirrorWindow::sizeFor(kPanelPx));
+    CHECK_THROWS_AS(MirrorWindow(without_windows, canvas, events), Error);
+    events.close();
+    events.handle(0.0);
     CHECK(std::system(see_window.c_str()) != 0);
 }
 

@@ -1,0 +1,82 @@
+// The window as the main thread has it: GLFW and its events, which may hold that thread up for as long as somebody drags the window.
+#pragma once
+
+#include <vulkan/vulkan.h>
+
+#include <glm/glm.hpp>
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <string>
+#include <vector>
+
+struct GLFWwindow;
+
+namespace binosplat {
+
+class Context;
+
+// GLFW, if there is a display. Must come before the Vulkan instance, which needs its extensions.
+class WindowSystem {
+public:
+    // Null if there is no display, or none that Vulkan can show on.
+    static std::unique_ptr<WindowSystem> find();
+    WindowSystem(const WindowSystem&) = delete;
+    WindowSystem& operator=(const WindowSystem&) = delete;
+    ~WindowSystem();
+
+    [[nodiscard]] static std::vector<const char*> instanceExtensions();
+
+private:
+    WindowSystem() = default;
+};
+
+// What the window is like, and what happened to it since it was last asked. Keys and buttons are GLFW's.
+struct WindowEvents {
+    std::vector<int> pressed;    // keys, in their order
+    std::set<int> down;          // keys, also if they were let go since
+    std::set<int> buttons_down;  // of the mouse, likewise
+    glm::dvec2 cursor{0.0};      // as a share of the window
+    bool is_hovered = false;     // the mouse is over it, and no other window between
+    double wheel = 0.0;          // steps upwards
+    std::string dropped;         // the last file dropped on it
+    glm::uvec2 size_px{0, 0};    // of its pictures
+    bool quit = false;           // its close button was pressed
+};
+
+class EventWindow {
+public:
+    // Throws Error if it does not open.
+    explicit EventWindow(glm::ivec2 size);
+    EventWindow(const EventWindow&) = delete;
+    EventWindow& operator=(const EventWindow&) = delete;
+    ~EventWindow();
+
+    // Of the main thread, as are the constructor and the destructor: handles what happens, until end().
+    void run();
+    // Once, waiting for so long at most.
+    void handle(double most_seconds);
+
+    // Of any thread: what happened since the last call.
+    [[nodiscard]] WindowEvents take();
+    [[nodiscard]] glm::uvec2 sizePx() const;
+    // To be destroyed before close(). Throws Error if the window cannot be drawn on.
+    [[nodiscard]] VkSurfaceKHR surface(const Context& context) const;
+    // The window goes away, soon.
+    void close();
+    // run() returns, soon.
+    void end();
+
+private:
+    void look();
+
+    std::unique_ptr<GLFWwindow, void (*)(GLFWwindow*)> window_;
+    std::atomic<bool> closes_ = false, ends_ = false;
+    mutable std::mutex mutex_;
+    WindowEvents events_;
+    std::set<int> held_, buttons_held_;
+};
+
+}  // namespace binosplat
