@@ -6,6 +6,8 @@
 #include "engine/error.h"
 #include "engine/files/scene_targets.h"
 #include "engine/files/streamed_write.h"
+#include "engine/levels/scene_levels.h"
+#include "engine/places/standpoint.h"
 
 #include <filesystem>
 
@@ -47,25 +49,26 @@ std::uintmax_t bytesWritten(const ConvertOptions& options) {
     return bytes;
 }
 
-// Every level is thinned out from the whole scene.
-void writeLevels(const ConvertOptions& options, const Scene& scene, LoadNotes& notes) {
-    StreamedWriteSettings settings;
-    if (options.chunk_splats != 0) { settings.chunk_splats = options.chunk_splats; }
-    StreamedWriter writer(options.out, settings);
-    const std::uint32_t levels = options.levels != 0 ? options.levels : levelsFor(scene.size());
-    std::optional<JudgedScene> judged;
-    if (levels > 1) { judged.emplace(options, scene); }
-    for (std::uint32_t level = 0; level < levels; ++level) {
-        ProgressLine line(fmt::format("writing level {} of {}", level, options.out.string()));
-        const std::uint64_t count = std::max<std::uint64_t>(scene.size() >> level, 1);
-        if (level == 0) {
-            writer.addLevel(scene, line.progress());
-        } else {
-            writer.addLevel(judged->keep(count), line.progress());
-        }
-        notes.lines.push_back(fmt::format("level {}: {} splats", level, count));
+void writeLevels(const ConvertOptions& options, Scene scene, LoadNotes& notes) {
+    StreamedWriteSettings files;
+    if (options.chunk_splats != 0) { files.chunk_splats = options.chunk_splats; }
+    StreamedWriter writer(options.out, files);
+    LevelSettings settings;
+    settings.levels = options.levels != 0 ? options.levels : levelsFor(scene.size());
+    settings.near = usualNear(scene);
+    ProgressLine line("writing " + options.out.string());
+    if (settings.levels > 1) {
+        settings.eyes = judgingEyes(options, scene);
+        const Context context({.device = options.device});
+        writeSceneLevels(context, std::move(scene), settings, writer, line.progress());
+    } else {
+        writer.cutLeaves(scene.positions);
+        writer.add(0, scene, {}, 0, line.progress());
     }
     writer.finish();
+    for (std::size_t level = 0; level < writer.counts().size(); ++level) {
+        notes.lines.push_back(fmt::format("level {}: {} splats", level, writer.counts()[level]));
+    }
 }
 
 }  // namespace
@@ -81,14 +84,15 @@ void runConvert(const ConvertOptions& options) {
     Scene scene = loadWithProgress(options.scene, options.load, notes);
     if (options.crop) { cropScene(options, scene, notes); }
     if (options.keep) { thinOutScene(options, target, scene, notes); }
+    const std::string what =
+        fmt::format("{} splats ({}), SH degree {}", scene.size(), scene.isGaussian3d() ? "3D Gaussians" : "discs", scene.sh_degree);
+    const std::string loses = target.describeLoss(scene);
     if (is_streamed) {
-        writeLevels(options, scene, notes);
+        writeLevels(options, std::move(scene), notes);
     } else {
         target.write(scene, out, ProgressLine("writing " + out).progress());
     }
-    fmt::print("{}: {} splats ({}), SH degree {}, {} bytes\n", out, scene.size(), scene.isGaussian3d() ? "3D Gaussians" : "discs",
-               scene.sh_degree, bytesWritten(options));
-    fmt::print("  loses: {}\n", target.describeLoss(scene));
+    fmt::print("{}: {}, {} bytes\n  loses: {}\n", out, what, bytesWritten(options), loses);
     for (const std::string& line : notes.lines) { fmt::print("  note: {}\n", line); }
 }
 

@@ -50,10 +50,13 @@ std::uint64_t countThatFits(const Scene& scene, const ThinOut& thin_out, double 
 
 }  // namespace
 
+std::vector<Eye> judgingEyes(const ConvertOptions& options, const Scene& scene) {
+    return options.cameras_file.empty() ? standingEyes(scene) : eyesOfCameras(options.cameras_file, scene);
+}
+
 JudgedScene::JudgedScene(const ConvertOptions& options, const Scene& scene) : scene_(scene), context_({.device = options.device}) {
-    std::vector<Eye> eyes = options.cameras_file.empty() ? standingEyes(scene) : eyesOfCameras(options.cameras_file, scene);
-    thin_out_ =
-        std::make_unique<ThinOut>(context_, scene, std::move(eyes), usualNear(scene), ProgressLine("judging " + options.scene).progress());
+    thin_out_ = std::make_unique<ThinOut>(context_, scene, judgingEyes(options, scene), usualNear(scene),
+                                          ProgressLine("judging " + options.scene).progress());
 }
 
 std::uint64_t JudgedScene::countOf(const Keep& keep, const SceneTarget& target) const {

@@ -13,6 +13,9 @@
 namespace binosplat {
 
 // The device, and a scene on it, judged from the options' cameras or from where a person could stand. With progress on the terminal.
+// The options' cameras, some of them, or where a person could stand.
+std::vector<Eye> judgingEyes(const ConvertOptions& options, const Scene& scene);
+
 class JudgedScene {
 public:
     JudgedScene(const ConvertOptions& options, const Scene& scene);

@@ -59,7 +59,20 @@ std::uint64_t readSplats(const JsonNode& node) {
     return splats;
 }
 
-void readLeaf(const JsonNode& lods, LodLeaf leaf, LodMeta& meta) {
+// By level; those of levels that the leaf does not have mean nothing.
+void readErrors(const JsonNode& errors, LodLeaf& leaf) {
+    const std::size_t size = errors.arraySize();
+    for (const LodRange& range : leaf.levels) {
+        check(range.level < size, "{}: has {} values, expected one for each level up to {}", errors.place(), size,
+              leaf.levels.back().level);
+        const JsonNode error = errors.at(range.level);
+        leaf.errors.push_back(error.number());
+        check(leaf.errors.back() >= 0.0f, "{}: is {}, expected 0 or more", error.place(), leaf.errors.back());
+    }
+}
+
+void readLeaf(const JsonNode& node, LodLeaf leaf, LodMeta& meta) {
+    const JsonNode lods = node.at("lods");
     lods.requireObject();
     std::vector<bool> present(meta.levels.size(), false);
     for (const auto& [key, value] : lods.value.items()) {
@@ -82,6 +95,7 @@ void readLeaf(const JsonNode& lods, LodLeaf leaf, LodMeta& meta) {
     const bool is_box = glm::all(glm::lessThanEqual(leaf.low, leaf.high));
     check(is_box, "{}: lies in no box, expected a bound whose min is at most its max", lods.place());
     std::ranges::sort(leaf.levels, {}, &LodRange::level);
+    if (meta.has_errors) { readErrors(node.at("errors"), leaf); }
     // Where a leaf has a coarser level, but not this one, the next coarser one stands in.
     for (std::uint32_t level = 0; level < leaf.levels.back().level; ++level) {
         if (present[level]) { continue; }
@@ -107,7 +121,7 @@ void readTree(const JsonNode& node, LodMeta& meta) {
     const bool is_leaf = node.has("lods");
     check(is_leaf != node.has("children"), "{}: has {}, expected one of them", node.place(),
           is_leaf ? "both children and lods" : "neither children nor lods");
-    if (is_leaf) { return readLeaf(node.at("lods"), box, meta); }
+    if (is_leaf) { return readLeaf(node, box, meta); }
     const JsonNode children = node.at("children");
     check(children.arraySize() > 0, "{}: is empty, expected nodes", children.place());
     for (std::size_t i = 0; i < children.arraySize(); ++i) { readTree(children.at(i), meta); }
@@ -144,6 +158,7 @@ LodMeta parseLodMeta(std::span<const std::byte> text, const std::string& place) 
     check(levels.count() >= 1 && levels.count() <= kMaxLevels, "{}: is {}, expected 1 to {}", levels.place(), levels.count(), kMaxLevels);
 
     LodMeta meta;
+    meta.has_errors = root.has("lodErrors") && root.at("lodErrors").flag();
     meta.levels.resize(levels.count());
     meta.leaves_without.resize(levels.count());
     meta.leaves_coarser.resize(levels.count());

@@ -24,6 +24,7 @@ struct LodMeta {
     std::vector<std::string> files;  // the meta.json or .sog bundle of each chunk, relative to the folder of lod-meta.json and within it
     std::string environment;         // the same, of splats that belong to every level; empty: none
     std::vector<LodLevel> levels;    // at least one
+    bool has_errors = false;         // each leaf has LodLeaf::errors
     std::vector<LodLeaf> tree;       // its leaves that have splats
     std::uint64_t leaves = 0;        // all of them
     std::vector<std::uint64_t> leaves_without;  // for each level: leaves with splats at other levels, but not at this one

@@ -20,6 +20,9 @@ struct LodRange {
 struct LodLeaf {
     glm::vec3 low{0.0f}, high{0.0f};  // the corners of its box, scene units; finite, and low <= high
     std::vector<LodRange> levels;     // at least one, the finest first; a leaf need not have every level of the scene
+    // Of each of `levels`, how far what it shows is from what the finest does, in any unit that all leaves share and in which errors add
+    // up; finite, not negative. Empty: nobody has measured it.
+    std::vector<float> errors = {};
 };
 
 }  // namespace binosplat

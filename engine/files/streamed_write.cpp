@@ -25,6 +25,8 @@ namespace fs = std::filesystem;
 constexpr int kMostDepth = 48;  // readers bound it, too
 constexpr float kReach = 2.0f;  // in standard deviations: a leaf's box holds what is seen of its splats
 constexpr float kBeyond = std::numeric_limits<float>::max();
+constexpr double kLeastSeen = 1.0;  // in pixels: what is seen less is taken for as the others are
+constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
 // Along a Morton curve of their own.
 void sortAlongCurve(const Scene& scene, std::span<std::uint32_t> splats) {
@@ -34,6 +36,8 @@ void sortAlongCurve(const Scene& scene, std::span<std::uint32_t> splats) {
     for (std::uint32_t& splat : order) { splat = splats[splat]; }
     std::ranges::copy(order, splats.begin());
 }
+
+void addError(SplatError& sum, const SplatError& error) { sum.weight += error.weight, sum.square += error.square; }
 
 fs::path findFreeName(const fs::path& folder) {
     for (int attempt = 0;; ++attempt) {
@@ -62,18 +66,25 @@ StreamedWriter::~StreamedWriter() {
     if (!part_.empty()) { removeFolder(part_); }
 }
 
-std::uint32_t StreamedWriter::cut(const Scene& scene, std::span<std::uint32_t> splats, int depth) {
+void StreamedWriter::cutLeaves(std::span<const glm::vec3> centres) {
+    check(!centres.empty(), "{}: would have no splats, expected some to stream", folder_.string());
+    std::vector<std::uint32_t> splats(centres.size());
+    std::iota(splats.begin(), splats.end(), 0u);
+    cut(centres, splats, 0);
+}
+
+std::uint32_t StreamedWriter::cut(std::span<const glm::vec3> centres, std::span<std::uint32_t> splats, int depth) {
     const auto index = static_cast<std::uint32_t>(nodes_.size());
-    nodes_.push_back({.low = glm::vec3(kBeyond), .high = glm::vec3(-kBeyond), .levels = {}});
+    nodes_.push_back({.low = glm::vec3(kBeyond), .high = glm::vec3(-kBeyond), .splats = splats.size(), .parts = {}});
     glm::vec3 low(kBeyond), high(-kBeyond);
     for (const std::uint32_t splat : splats) {
-        low = glm::min(low, scene.positions[splat]);
-        high = glm::max(high, scene.positions[splat]);
+        low = glm::min(low, centres[splat]);
+        high = glm::max(high, centres[splat]);
     }
     const glm::vec3 sides = high - low;
     const int axis = sides.x >= sides.y && sides.x >= sides.z ? 0 : sides.y >= sides.z ? 1 : 2;
     if (splats.size() <= settings_.leaf_splats || depth == kMostDepth || !(sides[axis] > 0.0f)) { return index; }
-    const auto along = [&](std::uint32_t splat) { return scene.positions[splat][axis]; };
+    const auto along = [&](std::uint32_t splat) { return centres[splat][axis]; };
     const auto half = splats.begin() + static_cast<std::ptrdiff_t>(splats.size() / 2);
     std::ranges::nth_element(splats, half, {}, along);
     // Where many lie at the middle one's place, the cut moves up to the next.
@@ -85,10 +96,33 @@ std::uint32_t StreamedWriter::cut(const Scene& scene, std::span<std::uint32_t> s
     const auto middle = std::partition(splats.begin(), splats.end(), [&](std::uint32_t splat) { return along(splat) < at; });
     nodes_[index].axis = axis;
     nodes_[index].cut = at;
-    const std::uint32_t first = cut(scene, {splats.begin(), middle}, depth + 1), second = cut(scene, {middle, splats.end()}, depth + 1);
+    const std::uint32_t first = cut(centres, {splats.begin(), middle}, depth + 1), second = cut(centres, {middle, splats.end()}, depth + 1);
     nodes_[index].first = first;
     nodes_[index].second = second;
     return index;
+}
+
+// Leaves get the number of the block that begins with them or before.
+void StreamedWriter::collectBlocks(std::uint32_t node, std::uint64_t most, std::uint32_t block,
+                                   std::vector<std::uint32_t>& block_of) const {
+    const Node& at = nodes_[node];
+    const bool begins = block == kNone && (at.splats <= most || at.axis < 0);
+    if (begins) { block = node; }
+    if (at.axis < 0) {
+        block_of[node] = block;
+        return;
+    }
+    collectBlocks(at.first, most, block, block_of);
+    collectBlocks(at.second, most, block, block_of);
+}
+
+std::vector<std::vector<std::uint32_t>> StreamedWriter::blocksOf(std::span<const glm::vec3> centres, std::uint64_t most) const {
+    std::vector<std::uint32_t> block_of(nodes_.size(), kNone);
+    collectBlocks(0, most, kNone, block_of);
+    std::vector<std::vector<std::uint32_t>> by_node(nodes_.size());
+    for (std::uint32_t splat = 0; splat < centres.size(); ++splat) { by_node[block_of[leafOf(centres[splat])]].push_back(splat); }
+    std::erase_if(by_node, [](const std::vector<std::uint32_t>& block) { return block.empty(); });
+    return by_node;
 }
 
 std::uint32_t StreamedWriter::leafOf(const glm::vec3& position) const {
@@ -104,14 +138,11 @@ void StreamedWriter::bound(std::uint32_t leaf, const Scene& scene, std::uint32_t
     nodes_[leaf].high = glm::max(nodes_[leaf].high, scene.positions[splat] + reach);
 }
 
-void StreamedWriter::addLevel(const Scene& scene, const Progress& progress) {
-    const std::size_t level = counts_.size();
-    std::vector<std::uint32_t> splats(scene.size());
-    std::iota(splats.begin(), splats.end(), 0u);
-    if (level == 0) {
-        check(scene.size() > 0, "{}: has no splats, expected some to stream", scene.name);
-        cut(scene, splats, 0);
-    }
+void StreamedWriter::add(std::size_t level, const Scene& scene, std::span<const SplatError> errors, std::size_t against,
+                         const Progress& progress) {
+    const std::size_t levels = std::max(counts_.size(), level + 1);
+    counts_.resize(levels), chunks_.resize(levels), all_errors_.resize(levels);
+    has_errors_ = has_errors_ && (level == 0 || !errors.empty());
     std::vector<std::vector<std::uint32_t>> leaves(nodes_.size());
     for (std::uint32_t splat = 0; splat < scene.size(); ++splat) {
         const std::uint32_t leaf = leafOf(scene.positions[splat]);
@@ -119,10 +150,10 @@ void StreamedWriter::addLevel(const Scene& scene, const Progress& progress) {
         bound(leaf, scene, splat);
     }
     std::vector<std::uint32_t> chunk;
-    std::size_t chunks = 0, written = 0;
+    std::size_t written = 0;
     const auto write = [&] {
         if (chunk.empty()) { return; }
-        const std::string name = fmt::format("{}_{}", level, chunks++);
+        const std::string name = fmt::format("{}_{}", level, chunks_[level]++);
         const auto part = [&](double share) {
             progress((static_cast<double>(written) + share * static_cast<double>(chunk.size())) / static_cast<double>(scene.size()));
         };
@@ -136,13 +167,30 @@ void StreamedWriter::addLevel(const Scene& scene, const Progress& progress) {
         if (own.empty()) { continue; }
         if (!chunk.empty() && chunk.size() + own.size() > settings_.chunk_splats) { write(); }
         sortAlongCurve(scene, own);
-        nodes_[leaf].levels.push_back(
-            fmt::format(R"("{}":{{"file":{},"offset":{},"count":{}}})", level, files_.size(), chunk.size(), own.size()));
+        Part part{level, files_.size(), chunk.size(), own.size(), against, {}};
+        for (const std::uint32_t splat : own) { addError(part.error, errors.empty() ? SplatError{} : errors[splat]); }
+        addError(all_errors_[level], part.error);
+        nodes_[leaf].parts.push_back(part);
         chunk.insert(chunk.end(), own.begin(), own.end());
         own = {};
     }
     write();
-    counts_.push_back(scene.size());
+    counts_[level] += scene.size();
+}
+
+// By level: the mean square where its splats show, or that of the whole level where none was seen. What a level is off by from one that is
+// off itself adds up, and no coarser level counts as better than a finer one.
+std::vector<double> StreamedWriter::errorsOf(const Node& leaf) const {
+    std::vector<double> errors(counts_.size());
+    for (std::size_t level = 1; level < errors.size(); ++level) {
+        errors[level] = errors[level - 1];
+        const auto part = std::ranges::find(leaf.parts, level, &Part::level);
+        if (part == leaf.parts.end()) { continue; }
+        const SplatError& error = part->error.weight >= kLeastSeen ? part->error : all_errors_[level];
+        const double mean = error.weight > 0.0 ? error.square / error.weight : 0.0;
+        errors[level] = std::max(errors[level], mean + errors[part->against]);
+    }
+    return errors;
 }
 
 // Boxes of what is below; returns the node's corners.
@@ -159,16 +207,23 @@ std::string StreamedWriter::jsonOf(std::uint32_t index) const {
     const Node& node = nodes_[index];
     const std::string bound = fmt::format(R"("bound":{{"min":[{},{},{}],"max":[{},{},{}]}})", node.low.x, node.low.y, node.low.z,
                                           node.high.x, node.high.y, node.high.z);
-    if (node.axis < 0) { return fmt::format(R"({{{},"lods":{{{}}}}})", bound, fmt::join(node.levels, ",")); }
+    if (node.axis < 0) {
+        std::vector<std::string> lods;
+        for (const Part& part : node.parts) {
+            lods.push_back(fmt::format(R"("{}":{{"file":{},"offset":{},"count":{}}})", part.level, part.file, part.offset, part.count));
+        }
+        const std::string errors = has_errors_ ? fmt::format(R"(,"errors":[{:.7g}])", fmt::join(errorsOf(node), ",")) : "";
+        return fmt::format(R"({{{},"lods":{{{}}}{}}})", bound, fmt::join(lods, ","), errors);
+    }
     return fmt::format(R"({{{},"children":[{},{}]}})", bound, jsonOf(node.first), jsonOf(node.second));
 }
 
 void StreamedWriter::finish() {
     boundParents(0);
     const std::string text = fmt::format(
-        R"({{"version":1,"asset":{{"generator":"binosplat"}},"count":{},"counts":[{}],"lodLevels":{},"filenames":[{}],"tree":{}}})",
-        std::accumulate(counts_.begin(), counts_.end(), std::uint64_t{0}), fmt::join(counts_, ","), counts_.size(), fmt::join(files_, ","),
-        jsonOf(0));
+        R"({{"version":1,"asset":{{"generator":"binosplat"}},"count":{},"counts":[{}],"lodLevels":{},"lodErrors":{},"filenames":[{}],"tree":{}}})",
+        std::accumulate(counts_.begin(), counts_.end(), std::uint64_t{0}), fmt::join(counts_, ","), counts_.size(), has_errors_,
+        fmt::join(files_, ","), jsonOf(0));
     PartFile file((part_ / "lod-meta.json").string());
     file.write(text.data(), text.size());
     file.commit();

@@ -17,6 +17,12 @@ struct StreamedWriteSettings {
     std::uint64_t leaf_splats = 16 * 1024;    // of the finest level, at most
 };
 
+// What pictures of a level are off by where one of its splats shows: sums over their pixels of its blending weight, and of the weight
+// times the mean square over channels of what is wrong there.
+struct SplatError {
+    double weight = 0.0, square = 0.0;
+};
+
 class StreamedWriter {
 public:
     // `path` ends in /lod-meta.json. Its folder appears whole, with finish(), or not at all: until then all lies in one beside it. Throws
@@ -26,24 +32,42 @@ public:
     StreamedWriter& operator=(const StreamedWriter&) = delete;
     ~StreamedWriter();
 
-    // The next level; the first is the finest, and is cut into leaves. The splats of each level go to the leaves in which their centres
-    // lie, in Morton order.
-    void addLevel(const Scene& scene, const Progress& progress = {});
+    // First: the leaves, of about as many of the finest level's splats each, whose centres these are. Throws Error for none.
+    void cutLeaves(std::span<const glm::vec3> centres);
+    // The same centres by blocks of whole leaves, of `most` splats each at most unless a leaf has more: their places, ascending.
+    [[nodiscard]] std::vector<std::vector<std::uint32_t>> blocksOf(std::span<const glm::vec3> centres, std::uint64_t most) const;
+    // Splats of a level: all, or those of some leaves to which none were added before. They go to the leaves in which their centres lie,
+    // in Morton order. `errors`: of each splat, against level `against`, an earlier one; empty, of any level but 0: not known.
+    void add(std::size_t level, const Scene& scene, std::span<const SplatError> errors = {}, std::size_t against = 0,
+             const Progress& progress = {});
+    // How many splats each level has so far.
+    [[nodiscard]] const std::vector<std::uint64_t>& counts() const { return counts_; }
+    // A place on the disk that goes with the writer: a folder that is not there yet.
+    [[nodiscard]] std::filesystem::path scratchFolder() const { return part_ / "scratch"; }
+    // No scratch folder may be left.
     void finish();
 
 private:
+    // Where a leaf's splats of a level are, and what they are off by.
+    struct Part {
+        std::size_t level = 0, file = 0, offset = 0, count = 0, against = 0;
+        SplatError error;
+    };
     struct Node {
         glm::vec3 low{0.0f}, high{0.0f};  // of what its splats reach, at all levels
         int axis = -1;                    // of a leaf -1; else splats at `cut` or beyond it go to the second child
         float cut = 0.0f;
         std::uint32_t first = 0, second = 0;  // children
-        std::vector<std::string> levels;      // JSON: where its splats are, of a leaf
+        std::uint64_t splats = 0;             // of the finest level
+        std::vector<Part> parts;              // of a leaf
     };
 
-    std::uint32_t cut(const Scene& scene, std::span<std::uint32_t> splats, int depth);
+    std::uint32_t cut(std::span<const glm::vec3> centres, std::span<std::uint32_t> splats, int depth);
     std::uint32_t leafOf(const glm::vec3& position) const;
     void bound(std::uint32_t leaf, const Scene& scene, std::uint32_t splat);
     glm::mat2x3 boundParents(std::uint32_t node);
+    void collectBlocks(std::uint32_t node, std::uint64_t most, std::uint32_t block, std::vector<std::uint32_t>& block_of) const;
+    [[nodiscard]] std::vector<double> errorsOf(const Node& leaf) const;
     [[nodiscard]] std::string jsonOf(std::uint32_t node) const;
 
     std::filesystem::path folder_, part_;
@@ -51,6 +75,9 @@ private:
     std::vector<Node> nodes_;         // the root first
     std::vector<std::string> files_;  // JSON strings
     std::vector<std::uint64_t> counts_;
+    std::vector<std::size_t> chunks_;     // of each level
+    std::vector<SplatError> all_errors_;  // of each level, of all leaves
+    bool has_errors_ = true;
 };
 
 }  // namespace binosplat

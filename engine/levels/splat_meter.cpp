@@ -37,14 +37,12 @@ void SplatMeter::show(const GpuScene& scene, bool fits) {
     commands_.submitAndWait();
 }
 
-void SplatMeter::render(const Eye& eye, double near, Picture& picture) { run(eye, near, picture, false, nullptr); }
-
 void SplatMeter::measure(const Eye& eye, double near, Picture& picture, const Picture* wanted) {
-    assert(fits_ == (wanted != nullptr));
-    run(eye, near, picture, true, wanted);
+    render(eye, near, picture);
+    add(picture, wanted);
 }
 
-void SplatMeter::run(const Eye& eye, double near, Picture& picture, bool measures, const Picture* wanted) {
+void SplatMeter::render(const Eye& eye, double near, Picture& picture) {
     const std::uint64_t pixels = std::uint64_t{eye.size_px.x} * eye.size_px.y;
     const glm::uvec2 tiles = tilesOf(eye.size_px);
     const std::uint64_t range_bytes = std::uint64_t{tiles.x} * tiles.y * sizeof(gpu::uvec2);
@@ -54,26 +52,32 @@ void SplatMeter::run(const Eye& eye, double near, Picture& picture, bool measure
         picture.colours = Buffer(context_, "colours", pixels * sizeof(gpu::vec4));
     }
     if (buffers_.tile_ranges.bytes() != range_bytes) { buffers_.tile_ranges = Buffer(context_, "tile ranges", range_bytes); }
-    // Lists without room are empty, and so is what such a frame adds.
-    do { record(eye, near, picture, measures, wanted); } while (!hadRoom());
+    do { record(eye, near, picture); } while (!hadRoom());
 }
 
-void SplatMeter::record(const Eye& eye, double near, const Picture& picture, bool measures, const Picture* wanted) {
+void SplatMeter::add(const Picture& picture, const Picture* wanted) {
+    assert(fits_ == (wanted != nullptr));
+    commands_.begin();
+    recordContributions(kernels_, commands_, *scene_, buffers_, targets_, picture, wanted, sums_);
+    commands_.endPass();
+    commands_.submitAndWait();
+}
+
+void SplatMeter::record(const Eye& eye, double near, const Picture& picture) {
     FrameState state{};
     state.views[0] = viewOf(eye, near);
     EyesOfList eyes;
     if (scene_->usualOrder() == Order::kDistance) { eyes.middle = placeOf(eye.world_from_camera.position); }
-    Targets targets;
-    targets.size_tiles = tilesOf(eye.size_px);
-    targets.all_tiles = targets.size_tiles.x * targets.size_tiles.y;
-    targets.pairs = buffers_.pairs.arrays();
+    targets_ = {};
+    targets_.size_tiles = tilesOf(eye.size_px);
+    targets_.all_tiles = targets_.size_tiles.x * targets_.size_tiles.y;
+    targets_.pairs = buffers_.pairs.arrays();
     state.targets[0].colours = picture.colours.address<gpu::vec4>();
     commands_.begin();
     commands_.update(buffers_.state, &state, sizeof(state));
     recordCull(kernels_, commands_, *scene_, buffers_, eyes, Role::kNone);
     recordOrder(kernels_, commands_, *scene_, buffers_, eyes, Role::kNone);
-    recordPictures(kernels_, commands_, *scene_, buffers_, targets, Role::kNone);
-    if (measures) { recordContributions(kernels_, commands_, *scene_, buffers_, targets, picture, wanted, sums_); }
+    recordPictures(kernels_, commands_, *scene_, buffers_, targets_, Role::kNone);
     commands_.endPass();
     commands_.copy(buffers_.state, readback_, sizeof(FrameState));
     commands_.submitAndWait();
@@ -101,5 +105,17 @@ std::vector<T> SplatMeter::read(const Buffer& buffer) {
 std::vector<std::int64_t> SplatMeter::sums() { return read<std::int64_t>(sums_); }
 
 std::vector<float> SplatMeter::pixels(const Picture& picture) { return read<float>(picture.colours); }
+
+Picture SplatMeter::pictureOf(std::span<const float> pixels, glm::uvec2 size_px) {
+    Picture picture;
+    picture.size_px = size_px;
+    picture.colours = Buffer(context_, "colours", pixels.size_bytes());
+    commands_.begin();
+    const Buffer& staging = commands_.staging(pixels.size_bytes());
+    std::ranges::copy(pixels, staging.mapped<float>().begin());
+    commands_.copy(staging, picture.colours, pixels.size_bytes());
+    commands_.submitAndWait();
+    return picture;
+}
 
 }  // namespace binosplat

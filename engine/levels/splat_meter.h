@@ -5,6 +5,7 @@
 #include "engine/levels/contribute.h"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace binosplat {
@@ -22,13 +23,16 @@ public:
     void measure(const Eye& eye, double near, Picture& picture, const Picture* wanted = nullptr);
     // The same without sums.
     void render(const Eye& eye, double near, Picture& picture);
+    // Adds to the sums for the eye that was rendered last, as measure does.
+    void add(const Picture& picture, const Picture* wanted);
     // The sums so far, in gpu::kContributionSteps: of each splat its weight alone or kContributionSums.
     [[nodiscard]] std::vector<std::int64_t> sums();
     [[nodiscard]] std::vector<float> pixels(const Picture& picture);
+    // A picture of these pixels, four floats each.
+    [[nodiscard]] Picture pictureOf(std::span<const float> pixels, glm::uvec2 size_px);
 
 private:
-    void run(const Eye& eye, double near, Picture& picture, bool measures, const Picture* wanted);
-    void record(const Eye& eye, double near, const Picture& picture, bool measures, const Picture* wanted);
+    void record(const Eye& eye, double near, const Picture& picture);
     // False: the lists had no room, now they have.
     bool hadRoom();
     template <typename T>
@@ -38,6 +42,7 @@ private:
     PassKernels kernels_;
     const GpuScene* scene_ = nullptr;
     FrameBuffers buffers_;
+    Targets targets_;
     Buffer sums_, readback_;
     bool fits_ = false;
     Commands commands_;  // last: it waits before what it uses is freed

@@ -18,13 +18,13 @@ namespace {
 constexpr double kWidening = -0.125;
 // A step of the fit looks from every fourth eye: all eyes in four steps, each of which goes nearly as far as one from all of them.
 constexpr std::size_t kParts = 4;
-constexpr int kSteps = 16;
 // Of the way to where a splat alone would mend what is missing under it. Colours go all of it: where splats overlap, weights add up to 1 at
 // most. Opacities and sizes share what is missing with these and with each other.
 constexpr double kOpacityRate = 0.6, kSizeRate = 0.4;
 constexpr double kMostGrowth = 0.25;   // of a logarithm in a step
 constexpr double kLeastWeight = 0.01;  // in pixels: of what is seen less, little is known
 constexpr double kLeastHold = 1e-3;
+constexpr float kErrorScale = 64.0f;  // of squares: steps of 2^-26, up to 1/16
 constexpr float kFaintest = 1.25f / 255.0f, kDensest = 0.999f;
 
 // The sums of one splat, in pixels.
@@ -76,6 +76,15 @@ double factorFor(std::span<const std::int64_t> weights, std::uint64_t count) {
     return high;
 }
 
+std::vector<Eye> eyesOf(const std::vector<View>& views, gpu::uint side_px) {
+    std::vector<Eye> eyes;
+    for (const View& view : views) {
+        const glm::uvec2 size_px(side_px);
+        eyes.push_back({lookAt(view.eye, view.look, view.up), intrinsicsFromFovX(glm::radians(view.fov_x_deg), size_px), size_px});
+    }
+    return eyes;
+}
+
 std::vector<std::uint32_t> wholeOf(std::size_t splats) {
     std::vector<std::uint32_t> all(splats);
     std::iota(all.begin(), all.end(), 0u);
@@ -85,16 +94,25 @@ std::vector<std::uint32_t> wholeOf(std::size_t splats) {
 }  // namespace
 
 std::vector<Eye> standingEyes(const Scene& scene, std::size_t count, std::size_t first, gpu::uint side_px) {
-    std::vector<Eye> eyes;
-    for (const View& view : standingViews(scene, count, first)) {
-        const glm::uvec2 size_px(side_px);
-        eyes.push_back({lookAt(view.eye, view.look, view.up), intrinsicsFromFovX(glm::radians(view.fov_x_deg), size_px), size_px});
-    }
-    return eyes;
+    return eyesOf(standingViews(scene, count, first), side_px);
 }
 
-ThinOut::ThinOut(const Context& context, const Scene& scene, std::vector<Eye> eyes, double near, const Progress& progress)
-    : context_(context), scene_(scene), eyes_(std::move(eyes)), near_(near), meter_(context), wanted_(eyes_.size()) {
+std::vector<Eye> eyesOnto(const Scene& part, std::span<const Eye> from, std::size_t count, gpu::uint side_px) {
+    std::vector<View> views;
+    for (const Eye& eye : from) {
+        const Pose& pose = eye.world_from_camera;
+        views.push_back({pose.position, transform(pose, {0.0, 0.0, 1.0}), pose.orientation * glm::dvec3(0.0, -1.0, 0.0), 0.0});
+    }
+    glm::dvec3 low(part.positions.at(0)), high = low;
+    for (const glm::vec3& position : part.positions) {
+        low = glm::min(low, glm::dvec3(position));
+        high = glm::max(high, glm::dvec3(position));
+    }
+    return eyesOf(viewsOnto(low, high, views, count), side_px);
+}
+
+ThinOut::ThinOut(const Context& context, const Scene& scene, std::vector<Eye> eyes, double near, const Progress& progress, int steps)
+    : context_(context), scene_(scene), eyes_(std::move(eyes)), near_(near), steps_(steps), meter_(context), wanted_(eyes_.size()) {
     const GpuScene whole(context, scene);
     meter_.show(whole, false);
     for (std::size_t i = 0; i < eyes_.size(); ++i) {
@@ -135,12 +153,12 @@ Scene ThinOut::keep(std::uint64_t count, const Progress& progress) {
 
 void ThinOut::fit(Scene& scene, const Progress& progress) {
     Picture picture;
-    for (int step = 0; step < kSteps; ++step) {
+    for (int step = 0; step < steps_; ++step) {
         const GpuScene shown(context_, scene);
         meter_.show(shown, true);
         for (std::size_t i = static_cast<std::size_t>(step) % kParts; i < eyes_.size(); i += kParts) {
             meter_.measure(eyes_[i], near_, picture, &wanted_[i]);
-            if (progress) { progress((step + static_cast<double>(i) / static_cast<double>(eyes_.size())) / kSteps); }
+            if (progress) { progress((step + static_cast<double>(i) / static_cast<double>(eyes_.size())) / steps_); }
         }
         takeStep(scene, meter_.sums());
     }
@@ -162,6 +180,33 @@ double ThinOut::errorOf(const Scene& scene) {
         }
     }
     return values > 0 ? sum / static_cast<double>(values) : 0.0;
+}
+
+// contribute, with the squares of what is wrong in a pixel for what it lacks.
+std::vector<SplatError> ThinOut::splatErrorsOf(const Scene& scene, const Progress& progress) {
+    const GpuScene shown(context_, scene);
+    meter_.show(shown, true);
+    Picture picture;
+    for (std::size_t i = 0; i < eyes_.size(); ++i) {
+        meter_.render(eyes_[i], near_, picture);
+        const std::vector<float> is = meter_.pixels(picture), should = meter_.pixels(wanted_[i]);
+        std::vector<float> squares = is;
+        for (std::size_t pixel = 0; pixel < is.size(); pixel += 4) {
+            float square = 0.0f;
+            for (std::size_t at = pixel; at < pixel + 3; ++at) { square += (is[at] - should[at]) * (is[at] - should[at]) / 3.0f; }
+            squares[pixel] += kErrorScale * square;
+        }
+        const Picture lacking = meter_.pictureOf(squares, picture.size_px);
+        meter_.add(picture, &lacking);
+        if (progress) { progress(static_cast<double>(i + 1) / static_cast<double>(eyes_.size())); }
+    }
+    std::vector<SplatError> errors(scene.size());
+    const std::vector<std::int64_t> sums = meter_.sums();
+    for (std::size_t i = 0; i < errors.size(); ++i) {
+        const SplatSums of{std::span(sums).subspan(i * gpu::kContributionSums, gpu::kContributionSums)};
+        errors[i] = {of[gpu::kSumWeight], of[gpu::kSumMissing] / static_cast<double>(kErrorScale)};
+    }
+    return errors;
 }
 
 }  // namespace binosplat

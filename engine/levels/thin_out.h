@@ -1,6 +1,7 @@
 // A scene with fewer splats: those that show most stay, and take over what the others showed.
 #pragma once
 
+#include "engine/files/streamed_write.h"
 #include "engine/levels/splat_meter.h"
 #include "engine/scene/scene.h"
 
@@ -12,15 +13,21 @@ namespace binosplat {
 
 inline constexpr std::size_t kJudgingViews = 48;
 inline constexpr gpu::uint kJudgingSidePx = 256;
+inline constexpr int kFitSteps = 16;
 
 // Where a person could stand (standingViews): `count` eyes, after the `first` of them.
 std::vector<Eye> standingEyes(const Scene& scene, std::size_t count = kJudgingViews, std::size_t first = 0,
                               gpu::uint side_px = kJudgingSidePx);
 
+// A part of a scene as it is seen from `count` of the places where these eyes stand (viewsOnto).
+std::vector<Eye> eyesOnto(const Scene& part, std::span<const Eye> from, std::size_t count, gpu::uint side_px);
+
 class ThinOut {
 public:
-    // Renders `scene`, which outlives this, from all eyes, which `progress` is told of. `near` is in scene units.
-    ThinOut(const Context& context, const Scene& scene, std::vector<Eye> eyes, double near, const Progress& progress = {});
+    // Renders `scene`, which outlives this, from all eyes, which `progress` is told of. `near` is in scene units. `steps`: of a fit, each
+    // from every fourth eye.
+    ThinOut(const Context& context, const Scene& scene, std::vector<Eye> eyes, double near, const Progress& progress = {},
+            int steps = kFitSteps);
 
     // The indices of `count` splats, more of those whose blending weights over all pixels of all eyes have greater sums; ascending.
     [[nodiscard]] std::vector<std::uint32_t> choose(std::uint64_t count) const;
@@ -29,6 +36,8 @@ public:
     [[nodiscard]] Scene keep(std::uint64_t count, const Progress& progress = {});
     // How far what the eyes see of another scene is from what they see of this one: the mean square over pixels and channels.
     [[nodiscard]] double errorOf(const Scene& scene);
+    // The same for each splat of the other scene, which has some, where it shows.
+    [[nodiscard]] std::vector<SplatError> splatErrorsOf(const Scene& scene, const Progress& progress = {});
 
 private:
     void fit(Scene& scene, const Progress& progress);
@@ -37,6 +46,7 @@ private:
     const Scene& scene_;
     std::vector<Eye> eyes_;
     double near_;
+    int steps_;
     SplatMeter meter_;
     std::vector<Picture> wanted_;
     std::vector<std::int64_t> weights_;

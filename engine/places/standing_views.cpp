@@ -14,7 +14,8 @@ namespace binosplat {
 namespace {
 
 constexpr std::size_t kMostJudged = 8192;
-constexpr double kFovXDegrees = 60.0, kFaceDegrees = 92.0;  // faces of a cube that overlap
+constexpr double kFovXDegrees = 60.0, kFaceDegrees = 92.0;         // faces of a cube that overlap
+constexpr double kNarrowestDegrees = 1.0, kWidestDegrees = 100.0;  // of what shows a part
 constexpr double kGoldenAngle = 2.399963229728653;
 constexpr std::array kHeights{1.0, 0.75, 1.1};   // of the eyes, in that of a standing person
 constexpr std::array kDistances{1.0, 0.6, 0.8};  // of shells, in that from which all is seen
@@ -91,6 +92,30 @@ std::vector<View> standingViews(const Scene& scene, std::size_t count, std::size
         const std::size_t place = i / kFaces;
         if (i == first || i % kFaces == 0) { eye = findPlace(lie, axes, samples, eye_height, place); }
         views.push_back(viewOfFace(axes, eye, kGoldenAngle * static_cast<double>(place), i % kFaces));
+    }
+    return views;
+}
+
+std::vector<View> viewsOnto(const glm::dvec3& low, const glm::dvec3& high, std::span<const View> from, std::size_t count) {
+    std::vector<View> places;
+    for (const View& view : from) {
+        if (std::ranges::find(places, view.eye, &View::eye) == places.end()) { places.push_back(view); }
+    }
+    const glm::dvec3 middle = 0.5 * (low + high);
+    const double radius = std::max(0.5 * glm::length(high - low), 1e-6);
+    std::vector<View> views;
+    count = std::min(count, places.size());
+    for (std::size_t i = 0; i < count; ++i) {
+        View view = places[i * places.size() / count];
+        const double distance = glm::distance(view.eye, middle);
+        // From within a part one looks ahead.
+        if (distance > 0.1 * radius) { view.look = middle; }
+        const double half = distance > radius ? glm::degrees(std::asin(radius / distance)) : kWidestDegrees;
+        view.fov_x_deg = std::clamp(2.0 * half, kNarrowestDegrees, kWidestDegrees);
+        const glm::dvec3 ahead = glm::normalize(view.look - view.eye);
+        const glm::dvec3 side = std::abs(ahead.x) < 0.7 ? glm::dvec3(1.0, 0.0, 0.0) : glm::dvec3(0.0, 0.0, 1.0);
+        if (std::abs(glm::dot(ahead, glm::normalize(view.up))) > 0.99) { view.up = side; }
+        views.push_back(view);
     }
     return views;
 }

@@ -29,4 +29,14 @@ Scene pickSplats(const Scene& scene, std::span<const std::uint32_t> splats) {
     return picked;
 }
 
+void appendSplats(Scene& scene, const Scene& more) {
+    const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
+    append(scene.positions, more.positions);
+    append(scene.rotations, more.rotations);
+    append(scene.scales, more.scales);
+    append(scene.thicknesses, more.thicknesses);
+    append(scene.opacities, more.opacities);
+    append(scene.sh, more.sh);
+}
+
 }  // namespace binosplat

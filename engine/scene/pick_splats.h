@@ -1,4 +1,4 @@
-// A part of a scene.
+// Parts of scenes.
 #pragma once
 
 #include "engine/scene/scene.h"
@@ -10,5 +10,8 @@ namespace binosplat {
 
 // Some splats of a scene, in that order, with all that the scene says of itself.
 Scene pickSplats(const Scene& scene, std::span<const std::uint32_t> splats);
+
+// Behind the splats of a scene those of another of the same kind and SH degree, which count from the same place.
+void appendSplats(Scene& scene, const Scene& more);
 
 }  // namespace binosplat

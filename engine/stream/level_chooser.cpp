@@ -55,6 +55,7 @@ std::uint64_t pagesOf(std::uint64_t splats, std::uint32_t page_splats) { return 
 
 void LevelChooser::addSteps(std::uint32_t leaf, double area_px, double weight, const ChoiceSettings& settings, const LevelsThere& there) {
     const std::vector<LodRange>& levels = leaves_[leaf].levels;
+    const std::vector<float>& errors = leaves_[leaf].errors;
     const std::uint32_t before = choices_.levels[leaf];
     // From the finest on, the levels that have fewer splats than all finer ones; the others help nobody. Then the other way round.
     const std::size_t first = steps_.size();
@@ -65,19 +66,27 @@ void LevelChooser::addSteps(std::uint32_t leaf, double area_px, double weight, c
     }
     std::reverse(steps_.begin() + static_cast<std::ptrdiff_t>(first), steps_.end());
     std::uint64_t splats_before = 0, pages_before = 0;
+    std::uint32_t level_before = 0;
+    double rate = std::numeric_limits<double>::max();
     std::size_t kept = first;
     for (std::size_t i = first; i < steps_.size(); ++i) {
         Step step = steps_[i];
         const std::uint64_t splats = step.splats, pages = step.pages;
         step.order = static_cast<std::uint32_t>(i - first);
         const double between = std::sqrt(static_cast<double>(splats) * static_cast<double>(step.order == 0 ? splats : splats_before));
-        step.worth = weight * area_px / between;
-        if (!is_first_) { step.worth *= before != LevelChoices::kNone && before <= step.level ? kKept : 1.0 / kKept; }
+        double seen = weight * area_px;
+        if (!is_first_) { seen *= before != LevelChoices::kNone && before <= step.level ? kKept : 1.0 / kKept; }
+        step.worth = seen / between;
         if (step.order > 0 && step.worth < settings.finest_px * settings.finest_px) { break; }
+        if (step.order > 0 && !errors.empty()) {
+            const double less = std::max(0.0, static_cast<double>(errors[level_before]) - static_cast<double>(errors[step.level]));
+            step.worth = seen * (rate = std::min(rate, less / static_cast<double>(splats - splats_before)));
+        }
         step.splats -= splats_before;
         step.pages -= pages_before;
         splats_before = splats;
         pages_before = pages;
+        level_before = step.level;
         steps_[kept++] = step;
     }
     steps_.resize(kept);

@@ -2,8 +2,10 @@
 //
 // n splats across a leaf that takes a square of s x s pixels lie s / sqrt(n) pixels apart. A step from a level of m splats to the next
 // finer one, of n, is worth s^2 / sqrt(m n): the mean square of that distance in pixels, which is also what its splats gain each if the
-// error of a leaf is its area times the square of the distance. Steps are taken from the greatest worth down while the budget lasts, and
-// not at all where splats lie closer than pixels; so splats end up as dense on the screen everywhere as the budget allows.
+// error of a leaf is its area times the square of the distance. Where the errors of levels were measured, a step is worth what the error
+// falls by, times the area, for each splat that it adds, and no more than the step before it. Steps are taken from the greatest worth down
+// while the budget lasts, and not at all where splats lie closer than pixels; so splats end up as dense on the screen everywhere as the
+// budget allows, or denser where they are missed more.
 #pragma once
 
 #include "engine/files/lod_tree.h"

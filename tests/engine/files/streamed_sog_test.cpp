@@ -77,12 +77,19 @@ TEST_CASE("the tree says where each leaf lies and which splats show it, the fine
                 leaves += fmt::format("; {}: {} from {} of {}", level, splats.count, splats.first, file);
             }
             leaves += ")";
+            CHECK(leaf.errors == (meta.has_errors ? std::vector<float>(leaf.levels.size() == 2 ? std::initializer_list<float>{0.0f, 0.5f}
+                                                                                               : std::initializer_list<float>{0.0f})
+                                                  : std::vector<float>()));
         }
         return leaves;
     };
     const std::string two =
         "3: (-1,-2,0 to 1,0.5,2; 0: 3 from 5 of 0; 1: 6 from 0 of 2) (-1,-2,0 to 1,0.5,2; 0: 5 from 0 of 0; 1: 2 from 6 of 2)";
     CHECK(told(makeLodMeta()) == two + " (-1,-2,0 to 1,0.5,2; 0: 8 from 0 of 1)");
+    // Whoever has not measured what levels are off by says so, or nothing of it.
+    for (const char* without : {"", R"("lodErrors":false,)"}) {
+        CHECK(told(replaced(makeLodMeta(), R"("lodErrors":true,)", without)).starts_with(two));
+    }
     // A leaf without splats has no place, and counts as a leaf.
     CHECK(told(replaced(makeLodMeta(), R"({"0":{"file":1,"offset":0,"count":8}})", "{}")) == two);
 }
@@ -262,7 +269,12 @@ TEST_CASE_FIXTURE(InFolder, "a lod-meta.json that does not fit is named with its
         {R"("file":0)", R"("file":-1)", "lods.0.file: is -1, expected a whole number from 0 on"},
         {R"("file":0,)", "", "lods.0: has no file"},
         {R"("offset":5)", R"("offset":18446744073709551615)", "expected at most 1099511627776"},
-        {R"("count":3)", R"("count":9223372036854775808)", "lods.0.count: is 9223372036854775808"}};
+        {R"("count":3)", R"("count":9223372036854775808)", "lods.0.count: is 9223372036854775808"},
+        // What levels are off by.
+        {R"("lodErrors":true)", R"("lodErrors":1)", "lodErrors: is number, expected true or false"},
+        {R"("errors":[0,0.5])", R"("errors":[0])", "errors: has 1 values, expected one for each level up to 1"},
+        {R"("errors":[0,0.5])", R"("errors":[0,-0.5])", "errors[1]: is -0.5, expected 0 or more"},
+        {R"("errors":[0,0.5])", R"("error":[0,0.5])", "has no errors"}};
     for (const char* path : {"../a/meta.json", "x/../../a/meta.json", "./x/../a//meta.json", "/etc/meta.json", "..\\\\a\\\\meta.json",
                              "c:meta.json", "a/meta.json\\u0000", "../b.sog", "/b.sog", "\\\\b.sog"}) {
         faults.push_back({"b/meta.json", path, within});

@@ -131,6 +131,34 @@ TEST_CASE("what lies behind is the first to go and the last to come") {
     CHECK(2 * turned[0] < ahead[0]);
 }
 
+TEST_CASE("where it was measured what levels are off by, splats go to where they mend most, whatever lies before it") {
+    const Eye eye = eyeAt({0.5, 0.5, 2.0});
+    const auto budget = within(8 * 16384);
+    std::vector<LodLeaf> leaves = makeField(4);
+    // As if each level were off by twice what the next finer one is; leaves on the right are ten times as wrong.
+    for (LodLeaf& leaf : leaves) {
+        const float wrong = leaf.low.x < 0.0f ? 0.001f : 0.01f;
+        leaf.errors = {0.0f, wrong, 2.0f * wrong, 4.0f * wrong};
+    }
+    Chooser field(leaves);
+    const LevelChoices& choices = field.choose(eye, budget);
+    std::array<std::uint64_t, 2> splats{};
+    for (std::size_t l = 0; l < leaves.size(); ++l) {
+        splats[leaves[l].low.x < 0.0f ? 0 : 1] += leaves[l].levels[choices.levels[l]].splats.count;
+    }
+    CHECK(choices.splats <= budget.splats);
+    CHECK(splats[1] > 2 * splats[0]);
+    // The same everywhere, they change nothing about what is nearer.
+    for (LodLeaf& leaf : leaves) { leaf.errors = {0.0f, 0.001f, 0.002f, 0.004f}; }
+    Chooser even(leaves);
+    const LevelChoices& by_place = even.choose(eyeAt({0.5, 0.5, -1.0}), budget);
+    for (std::size_t l = 4; l < leaves.size(); ++l) { CHECK(by_place.levels[l] >= by_place.levels[l - 4]); }
+    // A level that mends nothing comes after all that do, and keeps none of them from coming.
+    for (LodLeaf& leaf : leaves) { leaf.errors = {0.0f, 0.001f, 0.001f, 0.001f}; }
+    Chooser flat(leaves);
+    CHECK(std::ranges::all_of(flat.choose(eye, within(1 << 24)).levels, [](std::uint32_t level) { return level == 0; }));
+}
+
 TEST_CASE("a head that trembles changes nothing") {
     std::mt19937 random(3);
     std::uniform_real_distribution<double> tremor(-0.01, 0.01);
