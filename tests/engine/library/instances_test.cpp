@@ -1,6 +1,6 @@
 // Facts about several scenes in a frame, each where it is placed, and about scenes that stream or move, through the library.
-#include "engine/files/ply.h"
 #include "engine/builtin/procedural.h"
+#include "engine/files/ply.h"
 #include "engine/scene/sh_turn.h"
 #include "engine/similarity.h"
 #include "tests/run_program.h"
