@@ -32,6 +32,23 @@ std::string nameOf(const KernelVariant& variant) {
     return text;
 }
 
+// By the driver's own names.
+Json statisticsOf(const Context& context, const Kernel& kernel) {
+    Json statistics = Json::object();
+    const auto executables = context.device().getPipelineExecutablePropertiesKHR(vk::PipelineInfoKHR(kernel.pipeline()));
+    for (std::uint32_t i = 0; i < executables.size(); ++i) {
+        for (const auto& one : context.device().getPipelineExecutableStatisticsKHR(vk::PipelineExecutableInfoKHR(kernel.pipeline(), i))) {
+            Json& value = statistics[one.name.data()];
+            using Format = vk::PipelineExecutableStatisticFormatKHR;
+            if (one.format == Format::eBool32) { value = one.value.b32 == VK_TRUE; }
+            if (one.format == Format::eInt64) { value = one.value.i64; }
+            if (one.format == Format::eUint64) { value = one.value.u64; }
+            if (one.format == Format::eFloat64) { value = one.value.f64; }
+        }
+    }
+    return statistics;
+}
+
 KernelTable chosenKernels(const Context& context, const std::string& filter) {
     KernelTable table = allKernels(context);
     try {
@@ -57,11 +74,9 @@ void runKernels(const KernelsOptions& options) {
     for (const KernelVariant& variant : chosenKernels(context, options.filter)) {
         stopIfInterrupted();
         Kernel kernel(context, variant, has_statistics ? Kernel::Keep::kStatistics : Kernel::Keep::kNothing);
-        Json constants = Json::object(), statistics = Json::object();
+        Json constants = Json::object();
         for (const auto& [name, value] : variant.constants) { constants[name] = value; }
-        for (const auto& [name, value] : has_statistics ? kernel.statistics(context) : KernelStatistics{}) {
-            std::visit([&, &key = name](const auto& number) { statistics[key] = number; }, value);
-        }
+        const Json statistics = has_statistics ? statisticsOf(context, kernel) : Json::object();
         fmt::print("{}\n", nameOf(variant));
         for (const auto& [name, value] : statistics.items()) { fmt::print("    {:<40} {}\n", name, value.dump()); }
         std::fflush(stdout);

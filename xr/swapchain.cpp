@@ -1,7 +1,7 @@
 // Making, lending and giving back swapchain images.
 #include "xr/swapchain.h"
 
-#include "engine/gpu/commands.h"
+#include "xr/images.h"
 #include "xr/platform.h"
 
 #include <algorithm>
@@ -47,7 +47,7 @@ Swapchain::Swapchain(const Session& session, const std::string& name, glm::uvec2
     info.width = size_px.x;
     info.height = size_px.y;
     XrSwapchain made = XR_NULL_HANDLE;
-    if (use == ImageUse::kFar && Commands::canMakeMips(session.context(), format)) {
+    if (use == ImageUse::kFar && canMakeMips(session.context(), format)) {
         info.mipCount = levels_ = static_cast<std::uint32_t>(std::bit_width(std::max(size_px.x, size_px.y)));
         // Not every runtime has images with mips.
         if (XR_FAILED(xrCreateSwapchain(session.handle(), &info, &made))) { info.mipCount = levels_ = 1; }

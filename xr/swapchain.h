@@ -13,7 +13,7 @@ namespace binosplat::xr {
 enum class ImageUse {
     kCopy,   // pictures and depths, copied in
     kDraw,   // the overlay, drawn and copied in
-    kFar,    // like kDraw, also seen from afar: with mips by Commands::makeMips, if device and runtime have them
+    kFar,    // like kDraw, also seen from afar: with mips by makeMips, if device and runtime have them
     kDepth,  // like kCopy, of a depth format
 };
 

@@ -38,9 +38,7 @@ public:
     };
 
     [[nodiscard]] static Asked askedBy(std::span<const Eye> eyes, const FrameSettings& settings);
-    [[nodiscard]] bool mayMove(const FrameSettings& settings, const Asked& asked) const {
-        return choiceOf(settings.mode) != TileChoice::kPredicted || asked != asked_ || pays_;
-    }
+    [[nodiscard]] bool mayMove(const Asked& asked) const { return asked != asked_ || pays_; }
     // The next frame is asked for like this.
     void ask(const Asked& asked, bool may_move) {
         asked_ = asked;
@@ -48,8 +46,8 @@ public:
     }
     [[nodiscard]] const Asked& asked() const { return asked_; }
     // The result of a frame that was asked for `asked`.
-    void learn(const FrameSettings& settings, const Asked& asked, bool pays) {
-        if (asked == asked_) { pays_ = choiceOf(settings.mode) != TileChoice::kPredicted || pays; }
+    void learn(const Asked& asked, bool pays) {
+        if (asked == asked_) { pays_ = asked.stereo.choice != TileChoice::kPredicted || pays; }
     }
     void forget() { *this = {}; }
 

@@ -47,21 +47,17 @@ bool hasCoarseTiles(const FrameSettings& settings, std::size_t eyes) {
 // The chosen tiles of both eyes, the first in this order first, from one list.
 void renderChosen(FramePlan& plan, const std::array<int, 2>& order, ListPlan list) {
     list.of_chosen = true;
-    const auto makeList = [&](const ListPlan& made) {
-        plan.steps.push_back({Step::Kind::kList, static_cast<int>(plan.lists.size())});
-        plan.lists.push_back(made);
-    };
     // A patch is too little work for a GPU: stage by stage it gets that of both eyes, if they have the same order and tiles.
     if (plan.shares_order && plan.targets[0].eye.size_px == plan.targets[1].eye.size_px) {
         list.eyes.shares = 2;
-        makeList(list);
+        plan.makeList(list);
         plan.steps.push_back({Step::Kind::kRenderAll, order[0]});
         return;
     }
-    makeList(list);
+    plan.makeList(list);
     plan.steps.push_back({Step::Kind::kRender, order[0]});
     if (!plan.shares_order) {
-        makeList(
+        plan.makeList(
             {.eyes = {.order_eye = order[1], .list = 0}, .role = plan.targets[static_cast<std::size_t>(order[1])].role, .culls = false});
     }
     plan.steps.push_back({Step::Kind::kRender, order[1]});
@@ -97,8 +93,7 @@ void planAlternate(FramePlan& plan, const Pasts& pasts, const ListPlan& list) {
     warped.picture = pasts.spare;
     warped.choice = TileChoice::kNone;
     warped.kept.past = false;
-    plan.steps.push_back({Step::Kind::kList, 0});
-    plan.lists.push_back(list);
+    plan.makeList(list);
     plan.steps.push_back({Step::Kind::kRender, full});
     plan.steps.push_back({Step::Kind::kPast, other});
 }
@@ -191,12 +186,8 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
     if (keeps_past && !has_past) { plan.spare_picture = static_cast<int>(eyes.size()); }
     std::optional<gpu::Place> middle;
     if (settings.order == Order::kDistance) { middle = placeOf(middleOf(eyes)); }
-    const auto makeList = [&](const ListPlan& list) {
-        plan.steps.push_back({Step::Kind::kList, static_cast<int>(plan.lists.size())});
-        plan.lists.push_back(list);
-    };
     const auto listOf = [&](int e) {
-        makeList({.eyes = {.first = e, .count = 1, .order_eye = e, .list = e, .middle = middle}, .role = plan.targets[e].role});
+        plan.makeList({.eyes = {.first = e, .count = 1, .order_eye = e, .list = e, .middle = middle}, .role = plan.targets[e].role});
     };
     const auto render = [&](int e) { plan.steps.push_back({Step::Kind::kRender, e}); };
     const ListPlan both{.eyes = {.first = 0, .count = 2, .order_eye = first, .list = 0, .middle = middle}, .role = Role::kBoth};
@@ -221,7 +212,7 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
     if (apart) {
         listOf(first);
     } else {
-        makeList(both);
+        plan.makeList(both);
     }
     render(first);
     if (one_eye) { return plan; }
@@ -240,7 +231,7 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
         plan.steps.push_back({Step::Kind::kWarp, second});
     }
     if (target.choice == TileChoice::kNone) { return plan; }
-    if (!apart && !plan.shares_order) { makeList({.eyes = {.order_eye = second, .list = 0}, .role = target.role, .culls = false}); }
+    if (!apart && !plan.shares_order) { plan.makeList({.eyes = {.order_eye = second, .list = 0}, .role = target.role, .culls = false}); }
     render(second);
     return plan;
 }

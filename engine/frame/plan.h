@@ -90,6 +90,11 @@ struct FramePlan {
     std::optional<int> spare_picture = {};              // the room's picture for the frame after this one
     int shares_ahead = 1;                               // how many pictures that frame renders at the same time
 
+    // The step that makes it is the next one.
+    void makeList(const ListPlan& list) {
+        steps.push_back({Step::Kind::kList, static_cast<int>(lists.size())});
+        lists.push_back(list);
+    }
     // The target that others are made from, or the one that is rendered in full.
     [[nodiscard]] int firstTarget() const;
     // How many pictures are rendered at the same time.

@@ -32,20 +32,8 @@ void FrameRecorder::begin(Commands& commands, bool times_passes) const {
 void FrameRecorder::describeFrame(Commands& commands, const FramePlan& plan) const {
     FrameState state{};
     for (std::size_t t = 0; t < plan.targets.size(); ++t) {
-        const TargetPlan& target = plan.targets[t];
-        state.views[t] = viewOf(target.eye, plan.near);
+        state.views[t] = viewOf(plan.targets[t].eye, plan.near);
         describe(plan, static_cast<int>(t), state.targets[t]);
-        if (target.past) {
-            state.targets[t].past = pastViewOf(target.eye, target.past->eye, plan.near, glm::vec3(plan.background));
-            state.targets[t].past_blocks = {.per_group = {.x = 0, .y = 1, .z = 1}, .count = 0};
-            state.targets[t].warp = warpViewOf({}, target.eye.size_px, 0,
-                                               {.choice = target.choice, .budget = plan.budget, .error_bound_db = plan.error_bound_db});
-        }
-        if (!target.warp) { continue; }
-        const StereoSettings& settings = target.warp->settings;
-        state.targets[t].warp =
-            warpViewOf(target.warp->relation, target.eye.size_px, wordsOf(plan, static_cast<int>(t)).row_words, settings);
-        state.targets[t].warp_counters = firstCountersOf(settings, target.eye.size_px);
     }
     commands.update(room.lists().state, &state, sizeof(state));
 }
@@ -53,9 +41,18 @@ void FrameRecorder::describeFrame(Commands& commands, const FramePlan& plan) con
 void FrameRecorder::describe(const FramePlan& plan, int index, TargetState& state) const {
     const TargetPlan& target = plan.targets[static_cast<std::size_t>(index)];
     const Picture& picture = room.picture(target.picture);
-    const bool chooses = target.choice != TileChoice::kAll;
+    if (target.past) {
+        state.past = pastViewOf(target.eye, target.past->eye, plan.near, glm::vec3(plan.background));
+        state.past_blocks = {.per_group = {.x = 0, .y = 1, .z = 1}, .count = 0};
+        state.warp =
+            warpViewOf({}, target.eye.size_px, 0, {.choice = target.choice, .budget = plan.budget, .error_bound_db = plan.error_bound_db});
+    }
+    if (target.warp) {
+        state.warp = warpViewOf(target.warp->relation, target.eye.size_px, wordsOf(plan, index).row_words, target.warp->settings);
+        state.warp_counters = firstCountersOf(target.warp->settings, target.eye.size_px);
+    }
     room.warp(index).tell(state);
-    if (!chooses) {
+    if (target.choice == TileChoice::kAll) {
         state.tile_mask = room.shown(index).mask();
         state.tile_list = {};
         state.full_tiles = room.lists().tile_ranges.address<gpu::uint>(tileCountOf(target) * sizeof(gpu::uvec2));
@@ -116,7 +113,7 @@ void FrameRecorder::record(Commands& commands, const FramePlan& plan, bool times
                 recordWarp(commands, plan, step.index);
                 break;
             case Step::Kind::kPast:
-                recordPast(commands, plan, step.index);
+                recordFromPast(kernels, commands, pastOf(plan, step.index));
                 break;
             case Step::Kind::kChoose:
                 recordChoice(commands, plan);
@@ -172,10 +169,6 @@ PastInputs FrameRecorder::pastOf(const FramePlan& plan, int index) const {
             .shown = room.shown(index).mask(),
             .source_shown = room.shown(index).maskBefore(),
             .gaze = target.gaze.has_value()};
-}
-
-void FrameRecorder::recordPast(Commands& commands, const FramePlan& plan, int index) const {
-    recordFromPast(kernels, commands, pastOf(plan, index));
 }
 
 void FrameRecorder::recordChoice(Commands& commands, const FramePlan& plan) const {

@@ -31,7 +31,6 @@ private:
     // Tells the device of a target where it lies, and what becomes of it.
     void describe(const FramePlan& plan, int index, TargetState& state) const;
     void recordWarp(Commands& commands, const FramePlan& plan, int index) const;
-    void recordPast(Commands& commands, const FramePlan& plan, int index) const;
     void recordChoice(Commands& commands, const FramePlan& plan) const;
     void recordChanged(Commands& commands, const FramePlan& plan, std::span<const PastInputs> pictures) const;
     [[nodiscard]] MovingWords wordsOf(const FramePlan& plan, int warped) const;

@@ -173,7 +173,7 @@ std::optional<FrameResult> StereoFrame::land(Flight& flight) {
 FrameResult StereoFrame::take(const Flight& flight) {
     if (const std::optional<int> warped = flight.plan.warpedTarget()) {
         const gpu::WarpCounters& counters = state_.targets[static_cast<std::size_t>(*warped)].warp_counters;
-        moving_pays_.learn(flight.settings, flight.asked, counters.pays != 0);
+        moving_pays_.learn(flight.asked, counters.pays != 0);
     }
     return reportFrame({context_, *scene_, room_, flight.plan, state_, flight.commands}, flight.settings.mark);
 }
@@ -278,7 +278,7 @@ bool StereoFrame::isUnlikeLast(std::span<const Eye> eyes, const FrameSettings& s
 
 void StereoFrame::prepare(std::span<const Eye> eyes, const FrameSettings& settings) {
     const MovingPays::Asked asked = MovingPays::askedBy(eyes, settings);
-    const bool may_move = moving_pays_.mayMove(settings, asked);
+    const bool may_move = moving_pays_.mayMove(asked);
     const double changed = changedShare(eyes, settings);
     plan_ = planFrame(settings, eyes, may_move, changed > kMostChanged ? Pasts() : pastsFor(eyes, settings));
     if (changed <= kMostChanged) {

@@ -73,7 +73,7 @@ public:
     // one scene need not be made again for the next. If the other goes on, it makes what it lacks anew.
     void takeKernels(StereoFrame& from);
     // The number of its kernels.
-    [[nodiscard]] std::size_t kernelCount() const { return kernels_.count(); }
+    [[nodiscard]] std::size_t kernelCount() const { return kernels_.size(); }
     // Makes the kernels of such frames, so that none of these waits for a driver's compiler: records them, but draws nothing.
     void makeKernels(std::span<const Eye> eyes, const FrameSettings& settings);
 

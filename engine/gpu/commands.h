@@ -90,16 +90,6 @@ public:
 
     // A whole image from tightly packed rows, or in one colour. Its contents before do not matter; it is left as an attachment.
     void copyToImage(const Buffer& from, vk::Image image, glm::uvec2 size_px, vk::ImageAspectFlagBits aspect);
-    // From an image that a copy may read (eTransferSrcOptimal).
-    void copyImage(vk::Image from, vk::Image to, glm::uvec2 size_px);
-    // The same for display-encoded pixels (sRGB), as light. On the way they lie in `encoded`, an image of the sRGB format with their bytes.
-    void decodeImage(vk::Image from, vk::Image encoded, vk::Image to, glm::uvec2 size_px);
-    // Fills the other `levels` with smaller copies of level 0, each from the one before. All are attachments before and after.
-    void makeMips(vk::Image image, glm::uvec2 size_px, std::uint32_t levels);
-    // True if the device can do that with images of this format.
-    [[nodiscard]] static bool canMakeMips(const Context& context, vk::Format format);
-    void clearImage(vk::Image image, const glm::vec4& colour);
-
     // Instead of submit: nothing of what was recorded is executed. Also after lend, if nobody submits that.
     void drop();
 

@@ -163,31 +163,20 @@ void Context::choosePhysicalDevice(const std::string& wanted) {
     vk::raii::PhysicalDevices devices(instance_);
     const auto refuse = [](const std::string& message) { throw Error(ExitCode::kNoDevice, message); };
     if (devices.empty()) { refuse(fmt::format("no Vulkan device found; {}", kVulkanHint)); }
+    const bool is_index = wanted.find_first_not_of("0123456789") == std::string::npos;
     std::string seen;
-    for (std::size_t i = 0; i < devices.size(); ++i) {
-        const std::string name = devices[i].getProperties().deviceName;
-        const std::string missing = missingFeatures(devices[i]);
-        seen += fmt::format("{}{}: {}{}", seen.empty() ? "" : ", ", i, name, missing.empty() ? "" : " (lacks " + missing + ")");
-    }
     std::optional<std::size_t> chosen;
-    if (!wanted.empty()) {
-        const bool is_index = wanted.find_first_not_of("0123456789") == std::string::npos;
-        for (std::size_t i = 0; i < devices.size() && !chosen; ++i) {
-            const std::string name = devices[i].getProperties().deviceName;
-            if (is_index ? std::to_string(i) == wanted : name.find(wanted) != std::string::npos) { chosen = i; }
-        }
-        if (!chosen) { refuse(fmt::format("--device {}: no such Vulkan device; there is {}", wanted, seen)); }
-        if (!missingFeatures(devices[*chosen]).empty()) { refuse(fmt::format("--device {}: not usable; there is {}", wanted, seen)); }
-    } else {
-        for (std::size_t i = 0; i < devices.size(); ++i) {
-            if (!missingFeatures(devices[i]).empty()) { continue; }
-            if (!chosen ||
-                preferenceOf(devices[i].getProperties().deviceType) < preferenceOf(devices[*chosen].getProperties().deviceType)) {
-                chosen = i;
-            }
-        }
-        if (!chosen) { refuse(fmt::format("no usable Vulkan device; there is {}; {}", seen, kVulkanHint)); }
+    for (std::size_t i = 0; i < devices.size(); ++i) {
+        const std::string name = devices[i].getProperties().deviceName, missing = missingFeatures(devices[i]);
+        const auto preference = [&](std::size_t device) { return preferenceOf(devices[device].getProperties().deviceType); };
+        seen += fmt::format("{}{}: {}{}", i == 0 ? "" : ", ", i, name, missing.empty() ? "" : " (lacks " + missing + ")");
+        const bool is_wanted = is_index ? std::to_string(i) == wanted : name.find(wanted) != std::string::npos;
+        const bool will_do = wanted.empty() ? missing.empty() && (!chosen || preference(i) < preference(*chosen)) : is_wanted && !chosen;
+        if (will_do) { chosen = i; }
     }
+    if (!chosen && wanted.empty()) { refuse(fmt::format("no usable Vulkan device; there is {}; {}", seen, kVulkanHint)); }
+    if (!chosen) { refuse(fmt::format("--device {}: no such Vulkan device; there is {}", wanted, seen)); }
+    if (!missingFeatures(devices[*chosen]).empty()) { refuse(fmt::format("--device {}: not usable; there is {}", wanted, seen)); }
     physical_device_ = std::move(devices[*chosen]);
 }
 

@@ -124,31 +124,6 @@ Kernel::Kernel(const Context& context, const std::string& shader, std::uint32_t 
     context.name(pipeline_, shader);
 }
 
-KernelStatistics Kernel::statistics(const Context& context) const {
-    KernelStatistics statistics;
-    const auto executables = context.device().getPipelineExecutablePropertiesKHR(vk::PipelineInfoKHR(*pipeline_));
-    for (std::uint32_t i = 0; i < executables.size(); ++i) {
-        for (const auto& one : context.device().getPipelineExecutableStatisticsKHR(vk::PipelineExecutableInfoKHR(*pipeline_, i))) {
-            const std::string name(one.name.data());
-            switch (one.format) {
-                case vk::PipelineExecutableStatisticFormatKHR::eBool32:
-                    statistics.emplace_back(name, one.value.b32 == VK_TRUE);
-                    break;
-                case vk::PipelineExecutableStatisticFormatKHR::eInt64:
-                    statistics.emplace_back(name, std::int64_t{one.value.i64});
-                    break;
-                case vk::PipelineExecutableStatisticFormatKHR::eUint64:
-                    statistics.emplace_back(name, std::uint64_t{one.value.u64});
-                    break;
-                case vk::PipelineExecutableStatisticFormatKHR::eFloat64:
-                    statistics.emplace_back(name, one.value.f64);
-                    break;
-            }
-        }
-    }
-    return statistics;
-}
-
 const Kernel& KernelCache::find(const std::string& shader, std::uint32_t push_bytes, const std::vector<std::uint32_t>& constants) {
     auto key = std::make_pair(shader, constants);
     auto found = kernels_.find(key);

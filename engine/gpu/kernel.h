@@ -8,17 +8,13 @@
 #include <map>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
 namespace binosplat {
 
-// A driver's statistics of a kernel, by its own names; see VK_KHR_pipeline_executable_properties.
-using KernelStatistics = std::vector<std::pair<std::string, std::variant<bool, std::int64_t, std::uint64_t, double>>>;
-
 class Kernel {
 public:
-    enum class Keep { kNothing, kStatistics };  // kStatistics only where Context::hasKernelStatistics
+    enum class Keep { kNothing, kStatistics };  // of VK_KHR_pipeline_executable_properties, only where Context::hasKernelStatistics
 
     Kernel() = default;
     // Throws Error (ExitCode::kNoDevice) if the driver rejects it.
@@ -33,8 +29,6 @@ public:
     [[nodiscard]] std::uint32_t pushBytes() const { return push_bytes_; }
     // What it asks of its subgroups, see Context::fullSubgroups.
     [[nodiscard]] vk::PipelineShaderStageCreateFlags subgroups() const { return subgroups_; }
-    // Of a kernel that keeps them.
-    [[nodiscard]] KernelStatistics statistics(const Context& context) const;
 
 private:
     vk::raii::PipelineLayout layout_{nullptr};

@@ -111,4 +111,11 @@ KernelTable everyVariant(const std::function<bool(const K&)>& is_used = [](const
     return table;
 }
 
+template <typename... K>
+KernelTable everyVariantOf() {
+    KernelTable table;
+    (append(table, everyVariant<K>()), ...);
+    return table;
+}
+
 }  // namespace binosplat

@@ -18,14 +18,13 @@ std::uint32_t cellThreads(const Context& context, std::uint32_t wanted) {
     return std::clamp(wanted != 0 ? wanted : context.subgroupSize(), 8u, most);
 }
 
+bool loadsByAddress(const Context& context) { return context.isSoftware(); }
+
 // Of cull to rasterize, without sorting.
 KernelTable frameKernels(std::uint32_t threads) {
-    KernelTable table = everyVariant<CullPagesKernel>();
+    KernelTable table = everyVariantOf<CullPagesKernel, ProjectKernel, BinKernel, BinLargeKernel>();
     append(table, everyVariant<CullKernel>([](const CullKernel& k) { return k.placed <= k.in_pages; }));
     append(table, everyVariant<CompactKernel>([](const CompactKernel& k) { return k.placed <= k.in_pages; }));
-    append(table, everyVariant<ProjectKernel>());
-    append(table, everyVariant<BinKernel>());
-    append(table, everyVariant<BinLargeKernel>());
     append(table, everyVariant<TileRangesKernel>([](const TileRangesKernel& k) { return k.masked == 1 || k.half_colours == 0; }));
     for (std::uint32_t choices = 0; choices < 8; ++choices) {
         const Kept plain{.depth = (choices & 1) != 0, .half_floats = (choices & 2) != 0};
@@ -47,10 +46,8 @@ KernelTable frameKernels(std::uint32_t threads) {
 
 // Of one eye from the other.
 KernelTable warpKernels(const Context& context) {
-    KernelTable table = everyVariant<WeighKernel>();
-    append(table, everyVariant<DepthBoundsKernel>());
-    append(table, everyVariant<EdgeRoisKernel>());
-    append(table, everyVariant<ReprojectKernel>());
+    KernelTable table =
+        everyVariantOf<WeighKernel, DepthBoundsKernel, EdgeRoisKernel, ReprojectKernel, NewcomersKernel, ComponentsKernel>();
     append(table, everyVariant<ResampleKernel>([most_steps = mostRowSteps(context)](const ResampleKernel& k) {
                // Rows are moved if they can be, and odd rows of predicted are warped like even ones.
                if (k.row_source == gpu::kPlacesGiven) {
@@ -59,8 +56,6 @@ KernelTable warpKernels(const Context& context) {
                return k.row_steps <= most_steps && (k.row_source != gpu::kArrivalsGiven) == (k.rectified && k.row_steps > 0) &&
                       (k.row_source != gpu::kWholeRowMoved || k.way == gpu::kPredicts);
            }));
-    append(table, everyVariant<NewcomersKernel>());
-    append(table, everyVariant<ComponentsKernel>());
     append(table, everyVariant<PriceKernel>([](const PriceKernel& k) { return k.past == 0; }));
     append(table, everyVariant<SelectKernel>([](const SelectKernel& k) { return k.past == 0; }));
     return table;
@@ -76,27 +71,25 @@ KernelTable pastKernels(bool by_address) {
     return table;
 }
 
-KernelTable allKernels(const Context& context, const Sort& sort, std::uint32_t threads_per_cell, bool by_address) {
+KernelTable allKernels(const Context& context, const Sort& sort, std::uint32_t threads_per_cell) {
     KernelTable table = frameKernels(threads_per_cell);
     append(table, sort.kernels());
     append(table, warpKernels(context));
-    append(table, pastKernels(by_address));
+    append(table, pastKernels(loadsByAddress(context)));
     append(table, everyVariant<ContributeKernel>());
     return table;
 }
 
 }  // namespace
 
-PassKernels::PassKernels(const Context& context, std::uint32_t threads_per_cell)
-    : threads_per_cell_(cellThreads(context, threads_per_cell)),
-      by_address_(context.isSoftware()),
-      sort_(context),
-      cache_(context, allKernels(context, sort_, threads_per_cell_, by_address_)) {}
+PassKernels::PassKernels(const Context& context, const Sort& sort, std::uint32_t threads_per_cell)
+    : KernelCache(context, allKernels(context, sort, threads_per_cell)),
+      threads_per_cell_(threads_per_cell),
+      by_address_(loadsByAddress(context)),
+      sort_(sort) {}
 
-void PassKernels::take(PassKernels& from) {
-    assert(threads_per_cell_ == from.threads_per_cell_);
-    cache_.take(from.cache_);
-}
+PassKernels::PassKernels(const Context& context, std::uint32_t threads_per_cell)
+    : PassKernels(context, Sort(context), cellThreads(context, threads_per_cell)) {}
 
 // With coarse tiles there is one kernel for all that a picture may keep.
 RasterizeKernel rasterizeKernel(std::uint32_t threads_per_cell, const Kept& kept, std::uint32_t splat_shape, bool masked, bool coarse) {

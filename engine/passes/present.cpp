@@ -7,11 +7,7 @@
 
 namespace binosplat {
 
-KernelTable presentKernels() {
-    KernelTable table = everyVariant<PresentKernel>();
-    append(table, everyVariant<TurnKernel>());
-    return table;
-}
+KernelTable presentKernels() { return everyVariantOf<PresentKernel, TurnKernel>(); }
 
 bool Presenter::takes(vk::Format format) {
     using Format = vk::Format;

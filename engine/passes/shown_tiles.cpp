@@ -10,9 +10,8 @@ void ShownTiles::set(std::span<const std::uint8_t> hidden, glm::uvec2 size_tiles
     if (std::ranges::equal(hidden, hidden_) && size_tiles == size_tiles_) { return; }
     hidden_.assign(hidden.begin(), hidden.end());
     size_tiles_ = size_tiles;
-    hidden_count_ = static_cast<std::uint32_t>(std::ranges::count_if(hidden_, [](std::uint8_t tile) { return tile != 0; }));
     words_.clear();
-    if (!hideAny()) { return; }
+    if (std::ranges::count(hidden_, std::uint8_t{0}) == std::ssize(hidden_)) { return; }
     const std::size_t row_words = (size_tiles.x + 31) / 32;
     words_.resize(row_words * size_tiles.y, 0);
     for (std::size_t y = 0, tile = 0; y < size_tiles.y; ++y) {

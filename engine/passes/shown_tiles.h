@@ -20,8 +20,7 @@ public:
     // Before the passes of a frame: brings the mask, and keeps that of the frame before.
     void record(Commands& commands);
 
-    [[nodiscard]] bool hideAny() const { return hidden_count_ > 0; }
-    [[nodiscard]] std::uint32_t hiddenCount() const { return hidden_count_; }
+    [[nodiscard]] bool hideAny() const { return !words_.empty(); }
     // The shown tiles, as in shaders/lib/tile_mask.glsl. Null if none is hidden.
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> mask() const { return masks_[turn_].address<gpu::uint>(); }
     // Those of the frame before.
@@ -32,7 +31,6 @@ public:
 private:
     const Context& context_;
     std::vector<std::uint8_t> hidden_;
-    std::uint32_t hidden_count_ = 0;
     glm::uvec2 size_tiles_{0, 0};
     std::vector<gpu::uint> words_;  // of the mask
     std::array<Buffer, 2> masks_;   // of the last two frames; empty if all tiles are shown

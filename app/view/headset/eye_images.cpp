@@ -2,6 +2,7 @@
 #include "app/view/headset/eye_images.h"
 
 #include "engine/error.h"
+#include "xr/images.h"
 
 namespace binosplat {
 
@@ -47,7 +48,7 @@ void EyeImages::present(Commands& commands, int eye, const Picture& image, const
 }
 
 void EyeImages::clear(Commands& commands, int eye, const glm::vec4& colour) {
-    commands.clearImage(colour_now_[static_cast<std::size_t>(eye)], colour);
+    clearImage(commands.buffer(), colour_now_[static_cast<std::size_t>(eye)], colour);
 }
 
 void EyeImages::release() {

@@ -5,6 +5,7 @@
 #include "app/view/panel/panel_style.h"
 #include "app/view/room/sprites.h"
 #include "engine/error.h"
+#include "xr/images.h"
 
 #include <imgui.h>
 
@@ -232,9 +233,9 @@ Canvas::DrawList Canvas::drawList() {
 
 void Canvas::copyTo(Commands& commands, vk::Image target) const {
     if (encoded_) {
-        commands.decodeImage(image(), *encoded_->image, target, size_px_);
+        decodeImage(commands.buffer(), image(), *encoded_->image, target, size_px_);
     } else {
-        commands.copyImage(image(), target, size_px_);
+        copyImage(commands.buffer(), image(), target, size_px_);
     }
 }
 

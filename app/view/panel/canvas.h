@@ -76,7 +76,7 @@ private:
     bool is_new_ = true, is_recorded_ = false;  // of the last end()
     std::unique_ptr<PanelFont> font_;           // needs an ImGui context
     std::optional<OwnImage> picture_;
-    std::optional<OwnImage> encoded_;  // see Commands::decodeImage; none if copies are raw
+    std::optional<OwnImage> encoded_;  // see decodeImage; none if copies are raw
     vk::raii::ImageView view_{nullptr};
     vk::raii::RenderPass render_pass_{nullptr};
     vk::raii::Framebuffer framebuffer_{nullptr};

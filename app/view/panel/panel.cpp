@@ -2,6 +2,7 @@
 #include "app/view/panel/panel.h"
 
 #include "app/view/panel/panel_style.h"
+#include "xr/images.h"
 
 #include <utility>
 
@@ -27,7 +28,7 @@ void Panel::record(Commands& commands, ConnectedHeadset* headset, bool copied) {
     PanelPicture::record(commands);
     if (image_) {
         canvas().copyTo(commands, image_);
-        commands.makeMips(image_, kPanelPx, headset->panel_images.levels());
+        makeMips(commands.buffer(), image_, kPanelPx, headset->panel_images.levels());
     }
 }
 

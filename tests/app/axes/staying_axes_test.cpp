@@ -2,6 +2,7 @@
 #include "app/axes/staying_axes.h"
 #include "engine/picture/turned.h"
 #include "tests/engine/frame/frame_runs.h"
+#include "tests/engine/passes/stereo_cases.h"
 
 SUITE(staying_axes) {
 

@@ -229,30 +229,4 @@ TEST_CASE_FIXTURE(Gpu, "a window shows what a view with other axes sees of it, a
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "smaller copies of a picture are the mean of its pixels, down to a single one, in the light that they stand for") {
-    constexpr glm::uvec2 kSize(8, 4);
-    constexpr std::uint32_t kLevels = 4;
-    REQUIRE(Commands::canMakeMips(context(), DeviceImage::kFormat));
-    const DeviceImage image(context(), kSize, DeviceImage::kFormat, kLevels);
-    // Black and white in turn on the left, white on the right.
-    Bytes texels;
-    for (std::uint32_t i = 0; i < kSize.x * kSize.y; ++i) {
-        const std::uint32_t x = i % kSize.x, y = i / kSize.x;
-        texels.push_back(x < 4 && (x + y) % 2 == 0 ? 0xff000000u : 0xffffffffu);
-    }
-    const Buffer in = upload("picture", texels), out = allocate<std::uint32_t>("smallest", 1 + 2);
-    run([&](Commands& commands) {
-        commands.copyToImage(in, *image.image, kSize, vk::ImageAspectFlagBits::eColor);
-        commands.makeMips(*image.image, kSize, kLevels);
-        image.copyLevel(commands, 2, {2, 1}, out, 0);
-        image.copyLevel(commands, 3, {1, 1}, out, 2 * sizeof(std::uint32_t));
-    });
-    const Bytes small = readBack<std::uint32_t>(out, 3);
-    const auto isNear = [](std::uint32_t texel, int grey) { return std::abs(static_cast<int>(texel & 255) - grey) <= 2; };
-    // Half and three quarters of white's light, as sRGB writes them.
-    CHECK(isNear(small[0], 188));
-    CHECK(small[1] == 0xffffffffu);
-    CHECK(isNear(small[2], 225));
-}
-
 }  // SUITE(present)
