@@ -1,89 +1,22 @@
-// The steps of a plan as passes.
+// The steps of a plan as passes. A frame of `temporal` has these, if one order of the splats serves both eyes (planTemporal in plan.cpp):
+//
+//   kPast       for each eye: what its last picture shows of the new one, and the error to expect of each tile (recordFromPast)
+//   kChoose     the tiles of both that are rendered again (recordChoice)
+//   kList       the splats that touch these, front to back (recordCull, recordOrder)
+//   kRenderAll  the chosen tiles, and what the next frame is told of them (recordPictures)
+//
+// Before them the device is told where everything lies (describe.cpp), and after them it reports what it did (report.cpp).
 #include "engine/frame/record.h"
 
 #include "engine/frame/changes.h"
-#include "engine/passes/eye_view.h"
 
 #include <algorithm>
 
 namespace binosplat {
 
-namespace {
-
-// Where the target's eye looks; if nobody knows, it sees everything.
-gpu::EyeGaze gazeOf(const TargetPlan& target) {
-    const std::optional<Gaze>& gaze = target.warp ? target.warp->gaze : target.gaze;
-    if (gaze) { return eyeGazeOf(*gaze, target.eye.intrinsics); }
-    return {.direction = {0, 0, 1}, .clear_rad = 4.0f, .pixel_cycle = 1.0f, .focal_px = {1, 1}, .principal_px = {0, 0}};
-}
-
-gpu::uint tileCountOf(const TargetPlan& target) {
-    const glm::uvec2 tiles = tilesOf(target.eye.size_px);
-    return tiles.x * tiles.y;
-}
-
-}  // namespace
-
 void FrameRecorder::begin(Commands& commands, bool times_passes) const {
     commands.begin(times_passes);
     if (changes_known && brings_changes) { scene.recordChanges(commands); }
-}
-
-void FrameRecorder::describeFrame(Commands& commands, const FramePlan& plan) const {
-    FrameState state{};
-    for (std::size_t t = 0; t < plan.targets.size(); ++t) {
-        state.views[t] = viewOf(plan.targets[t].eye, plan.near);
-        describe(plan, static_cast<int>(t), state.targets[t]);
-    }
-    commands.update(room.lists().state, &state, sizeof(state));
-}
-
-void FrameRecorder::describe(const FramePlan& plan, int index, TargetState& state) const {
-    const TargetPlan& target = plan.targets[static_cast<std::size_t>(index)];
-    const Picture& picture = room.picture(target.picture);
-    if (target.past) {
-        state.past = pastViewOf(target.eye, target.past->eye, plan.near, glm::vec3(plan.background));
-        state.past_blocks = {.per_group = {.x = 0, .y = 1, .z = 1}, .count = 0};
-        state.warp =
-            warpViewOf({}, target.eye.size_px, 0, {.choice = target.choice, .budget = plan.budget, .error_bound_db = plan.error_bound_db});
-    }
-    if (target.warp) {
-        state.warp = warpViewOf(target.warp->relation, target.eye.size_px, wordsOf(plan, index).row_words, target.warp->settings);
-        state.warp_counters = firstCountersOf(target.warp->settings, target.eye.size_px);
-    }
-    room.warp(index).tell(state);
-    if (target.choice == TileChoice::kAll) {
-        state.tile_mask = room.shown(index).mask();
-        state.tile_list = {};
-        state.full_tiles = room.lists().tile_ranges.address<gpu::uint>(tileCountOf(target) * sizeof(gpu::uvec2));
-    }
-    state.colours = picture.colours.address<gpu::vec4>();
-    if (target.kept.depth) { state.depths = picture.depths.address<float>(); }
-    if (target.mesh_depths) {
-        state.mesh_depths = target.mesh_depths->depths;
-        state.depth_scale = target.mesh_depths->depth_scale;
-        state.depth_offset = target.mesh_depths->depth_offset;
-    }
-    if (target.kept.moments) { state.moments = room.moments().address<gpu::vec2>(); }
-    if (target.kept.past) {
-        state.past_tiles = picture.tiles.address<gpu::PastTile>();
-        state.moving = picture.words.address<gpu::uint>();
-        state.row_words = target.eye.size_px.x;
-    }
-    const std::optional<int> warped = plan.warpedTarget();
-    if (target.kept.moving && warped && plan.targets[static_cast<std::size_t>(*warped)].warp->source == index) {
-        const MovingWords words = wordsOf(plan, *warped);
-        state.moving = words.moving;
-        const EyeRelation& relation = plan.targets[static_cast<std::size_t>(*warped)].warp->relation;
-        if (!movesRows(relation.rectified, room.warp(*warped))) { state.arrivals = words.arrivals; }
-        state.row_words = words.row_words;
-    }
-    if (plan.shares() > 1 && index > 0) { state.first_tile = tileCountOf(plan.targets[0]); }
-    state.measured = plan.measured_part;
-    state.is_made = target.past ? 1 : 0;
-    state.area = static_cast<float>(target.past ? 1.0 / (target.eye.own_pixel_px * target.eye.own_pixel_px) : 1.0);
-    state.counters.may_be_coarse = target.coarse ? 1 : 0;
-    state.counters.gaze = gazeOf(target);
 }
 
 void FrameRecorder::recordCulling(Commands& commands, const FramePlan& plan) const {
@@ -151,13 +84,6 @@ void FrameRecorder::recordWarp(Commands& commands, const FramePlan& plan, int in
                            .target_gaze = warp.gaze.has_value()});
 }
 
-MovingWords FrameRecorder::wordsOf(const FramePlan& plan, int warped) const {
-    const TargetPlan& target = plan.targets[static_cast<std::size_t>(warped)];
-    const WarpBuffers& warp = room.warp(warped);
-    const Picture& picture = room.picture(target.picture);
-    return {warp.moving(picture), warp.arrivals(picture), warp.rowWords()};
-}
-
 PastInputs FrameRecorder::pastOf(const FramePlan& plan, int index) const {
     const TargetPlan& target = plan.targets[static_cast<std::size_t>(index)];
     return {.buffers = room.lists(),
@@ -222,9 +148,9 @@ void FrameRecorder::recordPictures(Commands& commands, const FramePlan& plan, in
                     .masked = planned.choice != TileChoice::kAll || room.shown(first).hideAny(),
                     .chosen = planned.choice != TileChoice::kAll};
     for (int t = first; t < first + count; ++t) {
-        const TargetPlan& target = plan.targets[static_cast<std::size_t>(t)];
-        targets.size_tiles = glm::max(targets.size_tiles, tilesOf(target.eye.size_px));
-        targets.all_tiles += tileCountOf(target);
+        const glm::uvec2 tiles = tilesOf(plan.targets[static_cast<std::size_t>(t)].eye.size_px);
+        targets.size_tiles = glm::max(targets.size_tiles, tiles);
+        targets.all_tiles += tiles.x * tiles.y;
     }
     const PairBuffers& pairs = room.lists().pairs;
     targets.pairs = plan.isSortedInPicture(planned) ? pairs.arraysBeside(room.picture(planned.picture).colours, tileBits(targets.all_tiles))
