@@ -98,6 +98,8 @@ tryPackages() {
     rm -rf "$tree/tmp/packages"
     mkdir "$tree/tmp/packages"
     cp build/packages/*.{deb,tar.gz} "$tree/tmp/packages/"
+    rm -rf "$tree/tmp/examples"
+    cp -r tests/packages/engine "$tree/tmp/examples"
     enter "$tree" <<'END'
 # Those of an earlier run may be newer, or of the same version.
 dpkg --remove python3-binosplat libbinosplat-dev libbinosplat0 binosplat binosplat-simulated-runtime
@@ -105,6 +107,26 @@ apt-get update -q
 step apt-get install -y -q --no-install-recommends /tmp/packages/*.deb mesa-vulkan-drivers
 step tryProgram
 python3 -c 'import binosplat; scene = binosplat.Scene.from_file("builtin:fence"); assert scene.render(scene.start_view(64, 64))[0].max() > 0'
+
+# Somebody's program against what libbinosplat-dev brings, as pkg-config and as CMake have it.
+tryLibrary() {
+    local work
+    work=$(mktemp -d)
+    (
+        cd "$work"
+        c++ -std=c++17 /tmp/examples/stereo.cpp $(pkg-config --cflags --libs binosplat) -o stereo
+        ./stereo builtin:fence
+        test -s left.png
+        rm left.png
+        cmake -S /tmp/examples -B build
+        cmake --build build
+        build/stereo builtin:fence
+        test -s left.png
+    )
+    rm -r "$work"
+}
+apt-get install -y -q --no-install-recommends g++ pkg-config cmake make
+step tryLibrary
 
 # The tarball, from a folder of its own; what it is linked with stays from the packages.
 dpkg --remove binosplat binosplat-simulated-runtime

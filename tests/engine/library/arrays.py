@@ -55,6 +55,24 @@ turned = view.world_from_camera @ np.diag([-1, -1, 1, 1])
 upside_down = of_file.render(binosplat.View(turned, view.angles, 64, 48), background=(0.5, 0, 0))[0]
 assert np.abs(upside_down[0, ::-1, ::-1] - seen[0]).max() < 1e-3
 
+# A scene far beside another changes nothing; the same scene in the same place is there twice; a turned one is seen by a camera turned as much.
+far, here, back = np.eye(4), np.eye(4), np.diag([-2.0, 2.0, -2.0, 1.0])
+far[0, 3] = 1e4
+assert np.array_equal(of_file.render(view, background=(0.5, 0, 0), beside=[(of_arrays, far)])[0], seen)
+assert of_file.render(view, background=(0.5, 0, 0), beside=[(of_arrays, here)])[0][..., 3].sum() > seen[..., 3].sum()
+behind = binosplat.View(np.diag([-1.0, 1.0, -1.0, 1.0]) @ view.world_from_camera, view.angles, 64, 48)
+behind.world_from_camera[:3, 3] *= 2
+hidden = binosplat.Scene.from_arrays(**{name: array[:1] if name != "opacities" else array[:1] - 1e3 for name, array in arrays.items()}, device=device)
+turned_scene = hidden.render(behind, background=(0.5, 0, 0), near=0.2, beside=[(of_file, back)])[0]
+assert np.abs(turned_scene - of_file.render(view, background=(0.5, 0, 0), near=0.1)[0]).mean() < 1e-3
+for beside in ([(view, far)], [(of_arrays, far[:3])], [(of_arrays, np.diag([1.0, 2.0, 1.0, 1.0]))]):
+    try:
+        of_file.render(view, beside=beside)
+    except ValueError as error:
+        assert "\n" not in str(error)
+    else:
+        raise AssertionError(f"nothing was refused: {beside}")
+
 refused("positions has the shape (4,), must be (any, 3)", positions=np.zeros(4, np.float32))
 refused("rotations has the shape (2, 4), must be", rotations=np.zeros((2, 4), np.float32))
 refused("must be (%d, 2 or 3)" % len(rows), scales=np.zeros((len(rows), 5), np.float32))

@@ -7,6 +7,9 @@ namespace {
 VKAPI_ATTR VkBool32 VKAPI_CALL onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
                                          const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
     auto& program = *static_cast<ForeignProgram*>(user);
+    // What a layer that is told by a file says of that file.
+    const std::string_view name = data->pMessageIdName != nullptr ? data->pMessageIdName : "";
+    if (name.starts_with("WARNING-Setting") || name == "VALIDATION-SETTINGS") { return VK_FALSE; }
     const std::lock_guard lock(program.messages_mutex);
     program.messages.emplace_back(data->pMessage);
     return VK_FALSE;
@@ -38,8 +41,13 @@ ForeignProgram::ForeignProgram(bool has_features) {
     const vk::ValidationFeatureEnableEXT synchronization = vk::ValidationFeatureEnableEXT::eSynchronizationValidation;
     const vk::ValidationFeaturesEXT checks(synchronization);
     const char* const layer = "VK_LAYER_KHRONOS_validation";
-    const std::array extensions{VK_EXT_DEBUG_UTILS_EXTENSION_NAME, VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME};
-    instance = vk::raii::Instance(loader, vk::InstanceCreateInfo({}, &application, layer, extensions, &checks));
+    std::vector<const char*> extensions{VK_EXT_DEBUG_UTILS_EXTENSION_NAME};
+    // A layer that is told by a file what to check has none.
+    const bool has_checks = std::ranges::any_of(loader.enumerateInstanceExtensionProperties(std::string(layer)), [](const auto& extension) {
+        return std::string_view(extension.extensionName.data()) == VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME;
+    });
+    if (has_checks) { extensions.push_back(VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME); }
+    instance = vk::raii::Instance(loader, vk::InstanceCreateInfo({}, &application, layer, extensions, has_checks ? &checks : nullptr));
     using Severity = vk::DebugUtilsMessageSeverityFlagBitsEXT;
     messenger = {instance, vk::DebugUtilsMessengerCreateInfoEXT({}, Severity::eWarning | Severity::eError,
                                                                 vk::DebugUtilsMessageTypeFlagBitsEXT::eValidation, onMessage, this)};
