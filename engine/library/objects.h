@@ -40,8 +40,6 @@ struct AskedFrame {
     glm::dvec3 origin{0.0};            // that eyes count from
     double time_s = 0.0;
     bool is_cut = false, settles = false;
-
-    [[nodiscard]] bool isLive() const;
 };
 
 // Brings what changes in a scene to the device by submissions of its own: frames that the program holds may then be dropped.
@@ -99,7 +97,7 @@ struct bsp_scene_t {
 
     bsp_device_t& device;
     const std::string source;
-    const bsp_scene_info asked;  // without its pointers
+    const bsp_scene_info asked;  // its pointers have gone
     std::atomic<bool> cancelled{false};
     // The rest is there once loading has ended well.
     std::unique_ptr<binosplat::GpuScene> gpu;

@@ -28,11 +28,24 @@ PlacedScene placedOf(const bsp_instance& instance) {
             .is_shown = instance.hidden == 0};
 }
 
-}  // namespace
-
-bool AskedFrame::isLive() const {
-    return !placed.empty() || std::ranges::any_of(scenes, [](const bsp_scene_t* scene) { return scene->live != nullptr; });
+// All views as they see a scene, from each place in which it is shown.
+std::vector<Eye> eyesIn(const AskedFrame& asked, const bsp_scene_t* scene) {
+    if (asked.placed.empty()) { return asked.eyes; }
+    std::vector<Eye> eyes;
+    for (std::size_t i = 0; i < asked.scenes.size(); ++i) {
+        if (asked.scenes[i] != scene || !asked.placed[i].is_shown) { continue; }
+        const Similarity scene_from_world = inverse(asked.placed[i].world_from_scene);
+        for (Eye eye : asked.eyes) {
+            eye.world_from_camera.position += asked.origin;
+            eye.world_from_camera = transform(scene_from_world, eye.world_from_camera);
+            eye.world_from_camera.position -= scene->origin;
+            eyes.push_back(eye);
+        }
+    }
+    return eyes;
 }
+
+}  // namespace
 
 void ChangeUploads::bring(const GpuScene& scene) {
     auto idle = std::ranges::find_if(commands_, [](const auto& commands) { return !commands->isUnderWay() || commands->isDone(); });
@@ -135,23 +148,10 @@ void bsp_renderer_t::begin(AskedFrame& asked) {
     show(asked);
     views_read_ = 0;
     for (std::size_t s = 0; s < asked.scenes.size(); ++s) {
-        bsp_scene_t* scene = asked.scenes[s];
-        if (!scene->live || std::find(asked.scenes.begin(), asked.scenes.begin() + static_cast<std::ptrdiff_t>(s), scene) !=
-                                asked.scenes.begin() + static_cast<std::ptrdiff_t>(s)) {
-            continue;
-        }
-        std::vector<Eye> eyes;
-        for (std::size_t i = s; i < asked.scenes.size(); ++i) {
-            if (asked.scenes[i] != scene || (!asked.placed.empty() && !asked.placed[i].is_shown)) { continue; }
-            for (Eye eye : asked.eyes) {
-                if (!asked.placed.empty()) {
-                    eye.world_from_camera.position += asked.origin;
-                    eye.world_from_camera = transform(inverse(asked.placed[i].world_from_scene), eye.world_from_camera);
-                    eye.world_from_camera.position -= scene->origin;
-                }
-                eyes.push_back(eye);
-            }
-        }
+        bsp_scene_t* const scene = asked.scenes[s];
+        const auto is_first = std::ranges::find(asked.scenes, scene) == asked.scenes.begin() + static_cast<std::ptrdiff_t>(s);
+        if (!scene->live || !is_first) { continue; }
+        const std::vector<Eye> eyes = eyesIn(asked, scene);
         if (!eyes.empty()) { scene->advance(eyes, asked.time_s, asked.settles); }
     }
     if (group_) {
