@@ -241,6 +241,7 @@ typedef struct bsp_frame_result {
     double work_rendered;        // the share of the second eye's work (predicted) or of both eyes' (temporal) that was rendered
     uint64_t frames_cut_short;   // so far: lists had no room, and something showed background
     uint64_t peak_device_bytes;  // the most that was ever in use
+    double share_there;          // of what the views ask for of live scenes, of the one that lacks most; 1: all of it
 } bsp_frame_result;
 
 // Renders and waits. `result` may be null. For BSP_MODE_TEMPORAL call it frame after frame, with views that move little.

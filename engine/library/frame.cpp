@@ -101,7 +101,7 @@ bsp_frame_info binosplat::readFrame(const bsp_frame_info* frame) {
     return readStructure(frame, BSP_TYPE_FRAME_INFO, offsetof(bsp_frame_info, mode), "bsp_frame_info");
 }
 
-bsp_frame_result binosplat::resultOf(const FrameResult& result) {
+bsp_frame_result binosplat::resultOf(const FrameResult& result, double share_there) {
     bsp_frame_result told{};
     told.gpu_ms = result.gpu_total_ms;
     for (const TargetCounters& target : result.counters.targets) {
@@ -111,6 +111,7 @@ bsp_frame_result binosplat::resultOf(const FrameResult& result) {
     told.work_rendered = result.work_rendered;
     if (result.counters.ahead) { told.frames_cut_short = result.counters.ahead->frames_cut_short; }
     told.peak_device_bytes = result.peak_gpu_bytes;
+    told.share_there = share_there;
     return told;
 }
 
@@ -179,7 +180,7 @@ void bsp_renderer_t::render(AskedFrame& asked, bsp_frame_result* result) {
     begin(asked);
     for (std::size_t p = 0; 2 * p < asked.eyes.size(); ++p) {
         const FrameResult done = part(p).render(eyesOf(asked, p), settingsOf(asked, p));
-        if (p == 0 && result != nullptr) { writeStructure(result, resultOf(done)); }
+        if (p == 0 && result != nullptr) { writeStructure(result, resultOf(done, share_there_)); }
     }
     views_read_ = asked.eyes.size();
     has_depth_ = asked.settings.keep_depth;

@@ -55,7 +55,7 @@ private:
 };
 
 bsp_frame_info readFrame(const bsp_frame_info* frame);
-bsp_frame_result resultOf(const FrameResult& result);
+bsp_frame_result resultOf(const FrameResult& result, double share_there);
 
 // A command buffer of the library's own around what was lent.
 struct Submission {
@@ -146,6 +146,7 @@ private:
     // A frame that was recorded: for each part its number there.
     struct Lent {
         std::vector<std::uint64_t> numbers;
+        double share_there = 1.0;
         std::unique_ptr<binosplat::Submission> submission;  // null: the program submits it
     };
 
@@ -179,5 +180,6 @@ private:
     std::map<std::uint64_t, Lent> lent_;
     std::unique_ptr<binosplat::Submission> idle_submission_;
     std::size_t views_read_ = 0;
+    double share_there_ = 1.0;
     bool has_depth_ = false;
 };

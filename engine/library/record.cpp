@@ -45,6 +45,7 @@ std::vector<vk::CommandBuffer> bsp_renderer_t::lend(AskedFrame& asked, Lent& len
     check(lent_.size() < kMostUncollected, "{} frames are recorded and not collected, must be less than {}", lent_.size(),
           kMostUncollected);
     begin(asked);
+    lent.share_there = share_there_;
     std::vector<vk::CommandBuffer> commands;
     try {
         for (std::size_t p = 0; 2 * p < asked.eyes.size(); ++p) {
@@ -132,7 +133,7 @@ bool bsp_renderer_t::collect(std::uint64_t number, bsp_frame_result* result) {
     lent_.erase(found);
     for (std::size_t p = 0; p < lent.numbers.size(); ++p) {
         const FrameResult done = parts_[p]->takeBack(lent.numbers[p]);
-        if (p == 0 && result != nullptr) { writeStructure(result, resultOf(done)); }
+        if (p == 0 && result != nullptr) { writeStructure(result, resultOf(done, lent.share_there)); }
     }
     if (lent.submission) { idle_submission_ = std::move(lent.submission); }
     return true;

@@ -147,12 +147,15 @@ void bsp_renderer_t::forget() noexcept {
 void bsp_renderer_t::begin(AskedFrame& asked) {
     show(asked);
     views_read_ = 0;
+    share_there_ = 1.0;
     for (std::size_t s = 0; s < asked.scenes.size(); ++s) {
         bsp_scene_t* const scene = asked.scenes[s];
         const auto is_first = std::ranges::find(asked.scenes, scene) == asked.scenes.begin() + static_cast<std::ptrdiff_t>(s);
         if (!scene->live || !is_first) { continue; }
         const std::vector<Eye> eyes = eyesIn(asked, scene);
-        if (!eyes.empty()) { scene->advance(eyes, asked.time_s, asked.settles); }
+        if (eyes.empty()) { continue; }
+        scene->advance(eyes, asked.time_s, asked.settles);
+        share_there_ = std::min(share_there_, scene->live->share());
     }
     if (group_) {
         group_->place(asked.placed);

@@ -282,7 +282,10 @@ TEST_CASE_FIXTURE(Opened, "a streamed scene brings what the views ask for, frame
     bsp_frame_info frame = frameOf(BSP_MODE_SHARED, stream.get());
     const std::vector<float> full = draw(*renderer, frameOf(BSP_MODE_SHARED, whole.get()), views, {});
     const double at_first = rootMeanSquare(draw(*renderer, frame, views, {}), full);
+    frame.views = views.data();
+    frame.view_count = 2;
     frame.flags = BSP_FRAME_SETTLED;
+    CHECK(renderer->render(frame).share_there == 1.0);
     const double settled = rootMeanSquare(draw(*renderer, frame, views, {}), full);
     frame.scene = nullptr;
     const double placed = rootMeanSquare(draw(*renderer, frame, views, {instanceOf(stream)}), full);
