@@ -117,7 +117,8 @@ std::span<const OptionRow<RunOptions>> runRows() {
           "share of work for patching the warped picture: of an eye's (predicted), of both eyes' (temporal)"},
          field::share<kStereo, kWarp, &StereoSettings::budget>()},
         {{"error-bound", "stereo", kTried, "DB",
-          "temporal mode: tiles expected to be under this PSNR are rendered again first, with --budget as the most work of a frame; 0: "
+          "temporal mode: tiles expected to be under this PSNR, or up to 4.4 dB above it where contrast is low, are rendered again first, "
+          "with --budget as the most work of a frame; 0: "
           "off"},
          field::number<kStereo, kWarp, &StereoSettings::error_bound_db>(0.0, 60.0)},
         {{"move-cost", "stereo", kTried, "PAIRS", "predicted mode: tiles that meet at most this many splats are rendered, not warped"},

@@ -23,6 +23,7 @@ struct PastTile {
     std::array<double, 4> grown = {};     // squared errors that this frame's warp is expected to add to a quarter, summed over its pixels
     double lost = 0.0;                    // of a coarse tile: the amplitude of what it lacks
     std::array<unsigned, 4> unseen = {};  // by quarters: pixels that the past did not see
+    double squared_gradient = 0.0;        // of its picture, summed over pixels and channels
 };
 
 // A picture of an eye, and what later ones need to know of it.
@@ -80,7 +81,8 @@ PastTile withLoss(const PastTile& tile, double share);
 // error that grows by the frame that is the area under its growth, which rendering it saves (Whittle's index).
 double worthOf(const PastTile& tile);
 // price, under a bound of errors: of the tile's price, so that one of which the past did not see a quarter of the pixels comes first, then
-// those a quarter of which is off by more than `error_bound`, an amplitude.
+// those a quarter of which is off by more than `error_bound`, an amplitude. Contrast masks errors: a tile whose gradient is less than 1/20
+// on average (root of the mean square) may be off by as much less, down to 0.6 of the bound.
 inline constexpr std::uint32_t kOverPrice = 512, kNewPrice = 1023;
 std::uint32_t priceUnderBound(std::uint32_t price, const PastTile& tile, double error_bound);
 // Also price: the cost of a tile: besides its pairs, a workgroup and the writing of its pixels.

@@ -60,7 +60,9 @@ std::uint32_t priceUnderBound(std::uint32_t price, const PastTile& tile, double 
     unsigned unseen = 0;
     for (const unsigned pixels : tile.unseen) { unseen += pixels; }
     if (unseen >= 0.25 * kTilePixels) { return kNewPrice; }
-    const bool is_over = std::ranges::any_of(tile.errors, [&](double error) { return error > error_bound; });
+    const double gradient = std::sqrt(tile.squared_gradient / (kChannels * kTilePixels));
+    const double bound = error_bound * std::clamp(gradient / 0.05, 0.6, 1.0);
+    const bool is_over = std::ranges::any_of(tile.errors, [&](double error) { return error > bound; });
     return std::min((is_over ? kOverPrice : 0) + price / 2, kNewPrice - 1);
 }
 

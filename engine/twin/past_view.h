@@ -85,15 +85,18 @@ private:
 
 // With six taps each way.
 glm::dvec4 sampleSmoothly(const PastView& view, const glm::dvec2& place_px);
-// The squared error expected of that, `t` after the pixel `wanted`, if the place may be off by `off_px`.
-double lossAt(const PastView& view, const glm::ivec2& wanted, const glm::dvec2& t, const glm::dvec2& off_px);
+// The squared error expected of that, `t` after the pixel `wanted`, if the place may be off by `off_px`, and the picture's gradient there.
+struct Loss {
+    double error, squared_gradient;
+};
+Loss lossAt(const PastView& view, const glm::ivec2& wanted, const glm::dvec2& t, const glm::dvec2& off_px);
 
 // warp_pixels: a pixel by itself. `near` and `far`: inverse depths around it.
 struct PixelFromPast {
     glm::dvec4 colour;
     MovingPixel pixel;
     bool seen;
-    double error;  // squared, as expected
+    Loss loss;  // as expected
 };
 PixelFromPast makePixel(const PastView& view, const glm::dvec2& wanted_px, double near, double far);
 

@@ -99,12 +99,14 @@ double leastLossOf(const BlockFromPast& block) {
 }
 
 // For a block that comes whole: of all its pixels, estimated from two of them. Those between may be worse.
-double lossOf(const PastView& view, const BlockFromPast& block, const glm::ivec2& first) {
+Loss lossOf(const PastView& view, const BlockFromPast& block, const glm::ivec2& first) {
     const double spread = kOwnSpread * spreadOf(block.spread) * block.nearest + 0.5 * (block.nearest - block.farthest);
     const glm::dvec2 off_px = view.uncertainMove(glm::dvec2(first), spread), t = block.mean_move_px - glm::floor(block.mean_move_px);
     const glm::ivec2 corner = glm::ivec2(glm::floor(block.source_px)) - kPastBlock / 2;
-    const double mean = 0.5 * (lossAt(view, corner + glm::ivec2(1, 2), t, off_px) + lossAt(view, corner + glm::ivec2(2, 5), t, off_px));
-    return std::max(kPastBlock.x * kPastBlock.y * mean, leastLossOf(block));
+    const Loss one = lossAt(view, corner + glm::ivec2(1, 2), t, off_px), other = lossAt(view, corner + glm::ivec2(2, 5), t, off_px);
+    const double pixels_each = 0.5 * kPastBlock.x * kPastBlock.y;
+    return {std::max(pixels_each * (one.error + other.error), leastLossOf(block)),
+            pixels_each * (one.squared_gradient + other.squared_gradient)};
 }
 
 class Warper {
@@ -163,7 +165,9 @@ private:
             tile.growth[quarter] += share * std::min(before.growth[from], 1.0);
         }
         warped_.one_by_one.push_back(block.whole ? 0 : 1);
-        tile.grown[quarter] += block.whole ? lossOf(view_, block, first) : leastLossOf(block);  // and that of its pixels
+        const Loss loss = block.whole ? lossOf(view_, block, first) : Loss{leastLossOf(block), 0.0};  // and that of its pixels
+        tile.grown[quarter] += loss.error;
+        tile.squared_gradient += loss.squared_gradient;
         const glm::ivec2 size(warped_.picture.eye.size_px);
         for (int i = 0; i < kPastBlock.x * kPastBlock.y; ++i) {
             const glm::ivec2 pixel = first + glm::ivec2(i % kPastBlock.x, i / kPastBlock.x);
@@ -175,7 +179,8 @@ private:
                 continue;
             }
             const PixelFromPast made = makePixel(view_, middle_px, block.nearest, block.farthest);
-            tile.grown[quarter] += made.error;
+            tile.grown[quarter] += made.loss.error;
+            tile.squared_gradient += made.loss.squared_gradient;
             tile.unseen[quarter] += made.seen ? 0 : 1;
             warped_.unseen[indexOf(pixel)] = made.seen ? 0 : 1;
             put(pixel, made.pixel, made.colour);
@@ -215,7 +220,7 @@ glm::dvec4 sampleSmoothly(const PastView& view, const glm::dvec2& place_px) {
 
 // The squared error expected of a pixel of a block: what alternates in sign from pixel to pixel with an amplitude d has fifth differences
 // of 32 d, all of which is lost halfway between two pixels; and how the picture changes over what its place may be off by.
-double lossAt(const PastView& view, const glm::ivec2& wanted, const glm::dvec2& t, const glm::dvec2& off_px) {
+Loss lossAt(const PastView& view, const glm::ivec2& wanted, const glm::dvec2& t, const glm::dvec2& off_px) {
     constexpr std::array<double, 6> kFifthDifference{-1, 5, -10, 10, -5, 1};
     const glm::ivec2 at = glm::clamp(wanted, glm::ivec2(0), view.last);
     glm::dvec3 across(0.0), down(0.0);
@@ -227,8 +232,9 @@ double lossAt(const PastView& view, const glm::ivec2& wanted, const glm::dvec2& 
     down *= 4.0 * t.y * (1.0 - t.y) / 32.0;
     const glm::dvec3 slope_across = 0.5 * glm::dvec3(view.colour(at.x + 1, at.y) - view.colour(at.x - 1, at.y));
     const glm::dvec3 slope_down = 0.5 * glm::dvec3(view.colour(at.x, at.y + 1) - view.colour(at.x, at.y - 1));
-    return squareOf(std::sqrt(glm::dot(across, across) + glm::dot(down, down)) +
-                    glm::length(off_px.x * slope_across + off_px.y * slope_down));
+    return {
+        squareOf(std::sqrt(glm::dot(across, across) + glm::dot(down, down)) + glm::length(off_px.x * slope_across + off_px.y * slope_down)),
+        glm::dot(slope_across, slope_across) + glm::dot(slope_down, slope_down)};
 }
 
 std::array<double, 6> lagrangeWeights(double t) {

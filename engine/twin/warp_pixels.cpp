@@ -112,14 +112,16 @@ PixelFromPast makePixel(const PastView& view, const glm::dvec2& wanted_px, doubl
     const double unseen = found.agrees ? 0.0 : nothing ? kUnseenError : kUncoveredError;
     if (is_flat) {
         const glm::dvec2 at = glm::clamp(found.place_px, glm::dvec2(0.5), glm::dvec2(view.last) + 0.5) - 0.5, base = glm::floor(at);
-        return {sampleSmoothly(view, at + 0.5),
-                {found.seen.inverse_depth, code},
-                found.agrees,
-                lossAt(view, glm::ivec2(base), at - base, off_px) + unseen};
+        const Loss loss = lossAt(view, glm::ivec2(base), at - base, off_px);
+        return {
+            sampleSmoothly(view, at + 0.5), {found.seen.inverse_depth, code}, found.agrees, {loss.error + unseen, loss.squared_gradient}};
     }
     const Sample sample = sampleAround(view, found.place_px);
     const double amplitude = std::sqrt(sample.lost) + glm::length(off_px.x * sample.across + off_px.y * sample.down);
-    return {sample.colour, {found.seen.inverse_depth, code}, found.agrees, squareOf(amplitude) + unseen};
+    return {sample.colour,
+            {found.seen.inverse_depth, code},
+            found.agrees,
+            {squareOf(amplitude) + unseen, glm::dot(sample.across, sample.across) + glm::dot(sample.down, sample.down)}};
 }
 
 }  // namespace binosplat::reference

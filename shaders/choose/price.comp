@@ -17,6 +17,9 @@ layout(constant_id = 1) const bool kPast = false;  // errors are those that the 
 #include "lib/target.glsl"
 
 const uint kBinsPerThread = kPriceBins / kWarpGroup;
+// Contrast masks errors. A tile whose colours change by this much from pixel to pixel (root of the mean square) may be off by the bound; one
+// that has less contrast by as much less, down to this part of it (4.4 dB): there an edge that is off in one eye alone is seen.
+const float kMaskingGradient = 0.05, kUnmaskedBound = 0.6;
 
 // 16 bins per octave, the greatest quotients last: exponent and four bits of the mantissa.
 uint binOf(float error_per_pair) { return min(max(floatBitsToUint(error_per_pair) >> 19, 104u << 4) - (104u << 4), kNewBin - 1); }
@@ -47,12 +50,18 @@ PastTile withLoss(PastTile tile, uvec2 at) {
     return tile;
 }
 
+// The amplitude that a tile may be off by. Contrast masks errors: with less of it a tile may be off by less.
+float boundOf(PastTile tile) {
+    const float gradient = sqrt(float(tile.squared_gradient) / (kErrorSteps * 3 * kTileSize * kTileSize));
+    return FIRST.warp.error_bound * clamp(gradient / kMaskingGradient, kUnmaskedBound, 1);
+}
+
 // The bin of a tile under a bound: by two bins in one, those above it before the others and those that nobody saw before before all.
 uint binUnderBound(uint bin, PastTile tile, float share) {
     uint unseen = 0;
     [[unroll]] for (uint q = 0; q < 4; ++q) { unseen += unseenIn(tile.unseen, q); }
     if (float(unseen) >= kNewShare * kTileSize * kTileSize) { return kNewBin; }
-    const bool is_over = any(greaterThan(sqrt(share) * tile.errors, vec4(FIRST.warp.error_bound)));
+    const bool is_over = any(greaterThan(sqrt(share) * tile.errors, vec4(boundOf(tile))));
     return min((is_over ? kOverBin : 0) + bin / 2, kNewBin - 1);
 }
 

@@ -11,6 +11,7 @@ struct Sample {
     vec4 colour;
     vec3 gradient;
     float lost;
+    float squared_gradient;  // of the picture, summed over channels
 };
 
 // What alternates in sign from pixel to pixel is lost halfway between them, and in part on the way there.
@@ -26,7 +27,7 @@ Sample sampleInRow(float place_px, uint row, int width) {
     [[unroll]] for (int x = 0; x < 4; ++x) { taps[x] = sourceAt(row + uint(clamp(base + x - 1, 0, width - 1))); }
     const vec4 colour = weights.x * taps[0] + weights.y * taps[1] + weights.z * taps[2] + weights.w * taps[3];
     const vec3 lost = lostBetween(t, taps[3].rgb - taps[0].rgb + 3 * (taps[1].rgb - taps[2].rgb));
-    return Sample(max(colour, vec4(0)), 0.5 * (t < 0.5 ? taps[2].rgb - taps[0].rgb : taps[3].rgb - taps[1].rgb), dot(lost, lost));
+    return Sample(max(colour, vec4(0)), 0.5 * (t < 0.5 ? taps[2].rgb - taps[0].rgb : taps[3].rgb - taps[1].rgb), dot(lost, lost), 0);
 }
 
 Sample sampleAround(vec2 place_px, ivec2 size, vec2 direction) {
@@ -52,5 +53,6 @@ Sample sampleAround(vec2 place_px, ivec2 size, vec2 direction) {
         third_down += (y == 0 ? -1.0 : y == 1 ? 3.0 : y == 2 ? -3.0 : 1.0) * middle;
     }
     const vec3 lost_down = lostBetween(t.y, third_down);
-    return Sample(max(sum, vec4(0)), direction.x * across + direction.y * down, dot(lost_across, lost_across) + dot(lost_down, lost_down));
+    return Sample(max(sum, vec4(0)), direction.x * across + direction.y * down, dot(lost_across, lost_across) + dot(lost_down, lost_down),
+                  dot(across, across) + dot(down, down));
 }

@@ -32,7 +32,7 @@ void leaveTile(uint tile, uint cost, vec4 sums, float lost) {
         atomicAdd(TARGET.warp_counters.expected_squares, inSquareSteps(3 * float(kCellSize * kCellSize) * dot(counts, off * off)));
         atomicAdd(TARGET.warp_counters.found_squares, inSquareSteps(dot(counts, sums) / kErrorSteps));
     }
-    past_tiles.at[tile] = PastTile(cost, 0, growth, vec4(0), uvec4(0), lost, 0);
+    past_tiles.at[tile] = PastTile(cost, 0, growth, vec4(0), uvec4(0), lost, 0, 0);
 }
 
 // True if it is going to be measured what pixels twice as wide would lose of the tile, once it is rendered.

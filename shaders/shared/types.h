@@ -174,6 +174,7 @@ struct PastTile {
     uvec4 grown;  // until tiles are chosen: squared errors that the quarters are expected to take on in this frame, summed, in kErrorSteps
     float lost;   // of a coarse tile: the amplitude of what it lacks, which its eye did not see then
     uint unseen;  // by quarters, eight bits each: pixels that the past did not see
+    uint squared_gradient;  // until tiles are chosen: summed over pixels and channels, in kErrorSteps
 };
 BINOSPLAT_ARRAY_OF(PastTile, PastTiles);
 

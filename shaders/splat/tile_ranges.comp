@@ -100,7 +100,7 @@ void main() [[subgroup_uniform_control_flow]] {
     if (listed) {
         full = findPairs(tile);
         if (!full) { empty_tiles[atomicAdd(empty_count, 1)] = tile; }
-        if (leavesPast() && !full) { PastTiles(TARGET.past_tiles).at[tile] = PastTile(0, 0, vec4(0), vec4(0), uvec4(0), 0, 0); }
+        if (leavesPast() && !full) { PastTiles(TARGET.past_tiles).at[tile] = PastTile(0, 0, vec4(0), vec4(0), uvec4(0), 0, 0, 0); }
     }
     listFull(full, full && TARGET.counters.may_be_coarse != 0 && mayBeCoarse(tile), tile);
     barrier();

@@ -29,6 +29,7 @@ const int kColumns = int(kPastColumns), kRows = int(kPastRows);
 shared uint listed_count, listed_first;  // this workgroup's part of the list of blocks
 shared uint cell_grown[kRegionCells.x * kRegionCells.y];    // squared errors expected of this step, summed, in kErrorSteps
 // Of where the blocks of a cell come from, summed in kCarriedSteps: the squares of the past's errors, and how fast they grow.
+shared uint tile_squared_gradient[kPastTiles];
 shared uint cell_carried[kRegionCells.x * kRegionCells.y], cell_growth[kRegionCells.x * kRegionCells.y];
 
 // The offsets from a block's pixels to their places in the past: at its middle, by column and by row.
@@ -67,21 +68,24 @@ void putPixels(PastView view, uvec2 first, vec4 colours[kPastColumns]) {
 }
 
 // The squared error that one pixel of a block is expected to take on in this step.
-float lossAt(ivec2 at, ivec2 last, vec2 shares, vec2 uncertain_px) {
+float lossAt(ivec2 at, ivec2 last, vec2 shares, vec2 uncertain_px, out float squared_gradient) {
     vec3 downs[kTaps];
     [[unroll]] for (int k = 0; k < int(kTaps); ++k) { downs[k] = sourceAt(uint(clamp(at.y + k - 2, 0, last.y) * (last.x + 1) + at.x)).rgb; }
-    vec3 lost_across = vec3(0), lost_down = vec3(0), change = vec3(0);
+    vec3 lost_across = vec3(0), lost_down = vec3(0), slope_across = vec3(0), slope_down = vec3(0);
     [[unroll]] for (int k = 0; k < int(kTaps); ++k) {
         const vec3 across = k == 2 ? downs[k] : sourceAt(uint(at.y * (last.x + 1) + clamp(at.x + k - 2, 0, last.x))).rgb;
         const vec3 down = downs[k];
         lost_across += kFifthDifference[k] * across;
         lost_down += kFifthDifference[k] * down;
-        if (k == 1) { change -= 0.5 * (uncertain_px.x * across + uncertain_px.y * down); }
-        if (k == 3) { change += 0.5 * (uncertain_px.x * across + uncertain_px.y * down); }
+        if (k == 1 || k == 3) {
+            slope_across += (k == 1 ? -0.5 : 0.5) * across;
+            slope_down += (k == 1 ? -0.5 : 0.5) * down;
+        }
     }
+    squared_gradient = dot(slope_across, slope_across) + dot(slope_down, slope_down);
     lost_across *= shares.x;
     lost_down *= shares.y;
-    const float amplitude = sqrt(dot(lost_across, lost_across) + dot(lost_down, lost_down)) + length(change);
+    const float amplitude = sqrt(dot(lost_across, lost_across) + dot(lost_down, lost_down)) + length(uncertain_px.x * slope_across + uncertain_px.y * slope_down);
     return min(amplitude * amplitude, kMaxPixelError);
 }
 
@@ -240,6 +244,7 @@ void main() {
     uint in_list = 0;
     vec2 depths;
     if (thread == 0) { listed_count = 0; }
+    if (thread < kPastTiles) { tile_squared_gradient[thread] = 0; }
     if (thread < kRegionCells.x * kRegionCells.y) { cell_grown[thread] = cell_carried[thread] = cell_growth[thread] = 0; }
     barrier();
     if (all(lessThan(first, view.size_px)) && isHidden(view, first)) {
@@ -264,12 +269,16 @@ void main() {
             const vec2 uncertain_px = uncertainMove(disparity(view, vec2(first)), spread);
             const vec2 shares = vec2(lostShare(fract(moves.mean.x)), lostShare(fract(moves.mean.y)));
             const ivec2 corner = ivec2(floor(source_px)) - ivec2(kBlock) / 2;
-            float grown = 0;
+            float grown = 0, squared_gradients = 0;
             [[unroll]] for (int i = 0; i < 2; ++i) {
-                grown += lossAt(clamp(corner + ivec2(1 + i, 2 + 3 * i), ivec2(0), last), last, shares, uncertain_px);
+                float its;
+                grown += lossAt(clamp(corner + ivec2(1 + i, 2 + 3 * i), ivec2(0), last), last, shares, uncertain_px, its);
+                squared_gradients += its;
             }
+            const float pixels_each = 0.5 * float(kColumns * kRows);
             // Pixels between the two may be worse, unless nothing moves.
-            atomicAdd(cell_grown[cell], uint(float(kColumns * kRows) * max(0.5 * grown, least) * kErrorSteps));
+            atomicAdd(cell_grown[cell], uint(max(pixels_each * grown, 2 * pixels_each * least) * kErrorSteps));
+            atomicAdd(tile_squared_gradient[block.x / kTileBlocks], uint(pixels_each * squared_gradients * kErrorSteps));
             resampleBlock(view, first, moves, last);
         } else {
             atomicAdd(cell_grown[cell], uint(float(kColumns * kRows) * least * kErrorSteps));
@@ -294,7 +303,7 @@ void main() {
     const float guess = look(view, movePixelAnywhere(view.past_from_now, middle_px, 0).xy, middle_px).inverse_depth;
     const uvec2 from = pixelAt(view.past_size_px, movePixelAnywhere(view.past_from_now, middle_px, guess).xy) / kTileSize;
     const PastTile before = pass.source_tiles.at[from.y * view.past_size_tiles.x + from.x];
-    PastTile now = PastTile(before.cost, before.age + 1, vec4(0), vec4(0), uvec4(0), before.lost, 0);
+    PastTile now = PastTile(before.cost, before.age + 1, vec4(0), vec4(0), uvec4(0), before.lost, 0, tile_squared_gradient[thread]);
     [[unroll]] for (uint q = 0; q < 4; ++q) {
         const uint its_cell = (q >> 1) * kRegionCells.x + thread * (kTileSize / kCellSize) + (q & 1);
         // A quarter has two blocks, side by side, if the picture does not end between them.

@@ -79,7 +79,7 @@ Sample sampleSmoothly(vec2 place_px, ivec2 size, vec2 direction) {
     lagrangeWeights(from_first.x - float(base.x), weights_x);
     lagrangeWeights(from_first.y - float(base.y), weights_y);
     vec4 sum = vec4(0);
-    vec3 change = vec3(0), lost_across = vec3(0), lost_down = vec3(0);
+    vec3 across = vec3(0), down = vec3(0), lost_across = vec3(0), lost_down = vec3(0);
     [[unroll]] for (int y = 0; y < int(kTaps); ++y) {
         const int row = clamp(base.y + y - 2, 0, size.y - 1) * size.x;
         vec4 in_row = vec4(0);
@@ -89,21 +89,20 @@ Sample sampleSmoothly(vec2 place_px, ivec2 size, vec2 direction) {
             in_row += weights_x[x] * tap;
             if (x == 2) { middle = tap.rgb; }
             if (y == 2) { lost_across += kFifthDifference[x] * tap.rgb; }
-            if (y == 2 && x == 1) { change -= 0.5 * direction.x * tap.rgb; }
-            if (y == 2 && x == 3) { change += 0.5 * direction.x * tap.rgb; }
+            if (y == 2 && (x == 1 || x == 3)) { across += (x == 1 ? -0.5 : 0.5) * tap.rgb; }
         }
         sum += weights_y[y] * in_row;
         lost_down += kFifthDifference[y] * middle;
-        if (y == 1) { change -= 0.5 * direction.y * middle; }
-        if (y == 3) { change += 0.5 * direction.y * middle; }
+        if (y == 1 || y == 3) { down += (y == 1 ? -0.5 : 0.5) * middle; }
     }
     lost_across *= lostShare(from_first.x - float(base.x));
     lost_down *= lostShare(from_first.y - float(base.y));
-    return Sample(max(sum, vec4(0)), change, dot(lost_across, lost_across) + dot(lost_down, lost_down));
+    return Sample(max(sum, vec4(0)), direction.x * across + direction.y * down, dot(lost_across, lost_across) + dot(lost_down, lost_down),
+                  dot(across, across) + dot(down, down));
 }
 
 // Makes one pixel; returns its expected squared error, of which `unseen` is for that the past did not see it.
-float makePixel(PastView view, uvec2 pixel, vec2 depths, out float unseen) {
+float makePixel(PastView view, uvec2 pixel, vec2 depths, out float unseen, out float squared_gradient) {
     const vec2 wanted_px = vec2(pixel) + 0.5;
     Seen from_near, from_far;
     vec2 near_px, far_px;
@@ -140,6 +139,7 @@ float makePixel(PastView view, uvec2 pixel, vec2 depths, out float unseen) {
     }
     putWord(view, pixel, movingPixel(seen.inverse_depth, kLanded, seen.word & kSpreadBits));
     putPixel(view, pixel, one.colour);
+    squared_gradient = one.squared_gradient;
     const float amplitude = sqrt(one.lost) + length(one.gradient);
     return min(amplitude * amplitude + unseen, kMaxPixelError);
 }
@@ -154,11 +154,12 @@ void main() {
         const uint in_block = i % kBlockPixels;
         const uvec2 pixel = uvec2(block.place & 0xffffu, block.place >> 16) * kBlock + uvec2(in_block % kBlock.x, in_block / kBlock.x);
         if (all(lessThan(pixel, view.size_px))) {
-            float unseen;
-            const float grown = makePixel(view, pixel, block.inverse_depths, unseen);
+            float unseen, squared_gradient;
+            const float grown = makePixel(view, pixel, block.inverse_depths, unseen, squared_gradient);
             const uvec2 place = pixel / kTileSize, in_tile = pixel % kTileSize / kCellSize;
             const uint tile = place.y * view.size_tiles.x + place.x, quarter = 2 * in_tile.y + in_tile.x;
             atomicAdd(pass.tiles.at[tile].grown[quarter], uint(grown * kErrorSteps));
+            atomicAdd(pass.tiles.at[tile].squared_gradient, uint(squared_gradient * kErrorSteps));
             if (unseen > 0) { atomicAdd(pass.tiles.at[tile].unseen, 1u << (8 * quarter)); }
         }
         i += gl_NumWorkGroups.x * kGroupSize;

@@ -40,7 +40,7 @@ std::vector<Layout> hostLayouts() {
         LAYOUT(WarpView, target_from_source, source_from_target, size_px, size_tiles, row_words, rows_apart, gap_px, margin_px,
                edge_samples, tight_edges, move_cost, budget, hole_error, newcomer_error, error_bound),
         LAYOUT(PastView, past_from_now, now_from_past, size_px, size_tiles, past_size_px, past_size_tiles, nearest, background),
-        LAYOUT(PastTile, cost, age, growth, errors, grown, lost, unseen),
+        LAYOUT(PastTile, cost, age, growth, errors, grown, lost, unseen, squared_gradient),
         LAYOUT(ChangedRect, begin_px, end_px, error),
         LAYOUT(PastBlock, place, inverse_depths),
         LAYOUT(PastBlockList, per_group, count),

@@ -92,6 +92,7 @@ void checkWarped(Gpu& gpu, const Way& way) {
     CHECK(test::share(all.other_depths, all.pixels) <= 0.001);
     CHECK(test::share(all.other_spreads, all.pixels) <= 0.001);
     CHECK(test::share(all.other_tiles, all.tiles) <= 0.005);
+    CHECK(test::share(all.other_gradients, all.tiles) <= 0.005);
     CHECK(test::share(all.other_grown, all.quarters) <= 0.005);
     CHECK(test::share(all.other_errors, all.quarters) <= 0.005);
     CHECK(test::share(all.other_growth, all.quarters) <= 0.005);

@@ -17,6 +17,7 @@ inline reference::PastTile tileOf(const gpu::PastTile& tile) {
         twin.grown[static_cast<std::size_t>(q)] = tile.grown[q] / kErrorSteps;
         twin.unseen[static_cast<std::size_t>(q)] = tile.unseen >> (8 * q) & 0xff;
     }
+    twin.squared_gradient = tile.squared_gradient / kErrorSteps;
     return twin;
 }
 
@@ -111,7 +112,7 @@ private:
 // How far what the device warped is from what the twin did.
 struct WarpDifferences {
     std::size_t pixels = 0, other_depths = 0, other_spreads = 0, tiles = 0, other_tiles = 0;
-    std::size_t quarters = 0, other_grown = 0, other_errors = 0, other_growth = 0;
+    std::size_t quarters = 0, other_grown = 0, other_errors = 0, other_growth = 0, other_gradients = 0;
     double grown = 0.0, twin_grown = 0.0, squares = 0.0;
 };
 
@@ -136,6 +137,7 @@ inline void compareWarped(WarpDifferences& differences, const EyeOnDevice& made,
             differences.grown += a.grown[q];
             differences.twin_grown += b.grown[q];
         }
+        differences.other_gradients += isNear(a.squared_gradient, b.squared_gradient, 0.02, 264.0 / kErrorSteps) ? 0 : 1;
         differences.other_tiles += a.cost == b.cost && a.age == b.age && a.unseen == b.unseen ? 0 : 1;
     }
     reference::growErrors(twin.tiles);

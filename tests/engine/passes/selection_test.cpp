@@ -39,6 +39,7 @@ Tiles drawPast(glm::uvec2 size, std::mt19937& random) {
             tile.grown[q] = is_still || random() % 4 == 0 ? 0 : static_cast<gpu::uint>(random()) >> (4 + random() % 28);
             tile.unseen |= random() % 4 == 0 ? static_cast<gpu::uint>(random() % 65) << (8 * q) : 0;
         }
+        tile.squared_gradient = static_cast<gpu::uint>(random() % 4'000'000);  // up to 1.4 times what masks errors
         drawn.past.push_back(tile);
         kind = random() % 12 == 0 ? gpu::kTileHidden : 0;
     }
@@ -318,6 +319,7 @@ TEST_CASE_FIXTURE(Gpu, "of equal tiles with a past the first eye's are first, an
     plain.cost = 84;  // 100 with what a tile costs
     plain.age = 1;
     plain.errors = gpu::vec4(0.1f);
+    plain.squared_gradient = 3 * 256 << 14;  // an eighth in each channel of each pixel, which masks errors
     std::vector<Tiles> equal(2, Tiles({20, 10}));
     for (Tiles& tiles : equal) { tiles.past.assign(200, plain); }
     for (const double budget : {0.0, 0.01, 0.4975, 0.51, 0.75, 1.0}) { checkChoice(*this, equal, {.budget = budget}); }
@@ -343,6 +345,12 @@ TEST_CASE_FIXTURE(Gpu, "of equal tiles with a past the first eye's are first, an
     const auto has = [](const Chosen& chosen, gpu::uint tile) { return std::ranges::count(chosen.list, tile) == 1; };
     CHECK((has(over[0], 20) && has(over[1], 30) && has(over[1], 40)));
     CHECK(over[0].list.size() + over[1].list.size() == 3 + 20);
+    // An error that contrast masks shows where there is none.
+    std::vector<Tiles> smooth = bounded;
+    smooth[0].past[50].squared_gradient = 0;
+    checkChoice(*this, smooth, how);
+    CHECK_FALSE(has(over[0], 50));
+    CHECK(has(chooseOnDevice(*this, smooth, how)[0], 50));
     how.budget = 0.0;
     checkChoice(*this, bounded, how);
     const auto unpaid = chooseOnDevice(*this, bounded, how);

@@ -119,6 +119,28 @@ TEST_CASE("what is lost between pixels is what alternates there, in whole blocks
     CHECK(warpPast(makePast(eye, grey, bands), half).picture.tiles[7].grown[0] == doctest::Approx(64 * kLeastGrowth));
 }
 
+TEST_CASE("a tile's gradient is its picture's, in whole blocks and pixel by pixel, and where it is low less error is within a bound") {
+    const Eye eye = test::makeEye({96, 64});
+    const auto ramp = [](double x, double y) { return glm::dvec3(0.004 * x, 0.003 * y, 0.5); };
+    const auto wall = [](double, double) { return 0.5; };
+    const auto bands = [](double, double y) { return std::fmod(y, 4.0) < 2.0 ? 0.5 : 0.05; };
+    const double expected = 256 * (0.004 * 0.004 + 0.003 * 0.003);
+    const Eye there = moved(eye, {0.01, 0.0, 0.0});
+    CHECK(warpPast(makePast(eye, ramp, wall), there).picture.tiles[7].squared_gradient == doctest::Approx(expected));
+    CHECK(warpPast(makePast(eye, ramp, bands), there).picture.tiles[7].squared_gradient == doctest::Approx(expected));
+
+    PastTile tile;
+    tile.errors[2] = 0.03;
+    const auto isOver = [&](double gradient) {
+        tile.squared_gradient = 3 * 256 * gradient * gradient;
+        return priceUnderBound(100, tile, 0.04) >= kOverPrice;
+    };
+    CHECK((isOver(0.0) && isOver(0.037)));  // 3/4 of 0.05 would be the same
+    CHECK_FALSE((isOver(0.038) || isOver(0.2)));
+    tile.errors[2] = 0.0239;  // less than 0.6 of the bound
+    CHECK_FALSE(isOver(0.0));
+}
+
 TEST_CASE("what was hidden behind a nearer wall is not taken for seen, and the nearer of two is it") {
     const Eye eye = test::makeEye({160, 48});
     // The left half near, at inverse depth 1; a step of 0.02 to the right moves it 2 px to the left, and what is behind, at 0.1, by 0.2.
