@@ -1,6 +1,8 @@
 // Changes of a whole scene: fewer bands, another origin, a part of it, discs of Gaussians.
 #include "engine/scene/scene.h"
 
+#include "engine/scene/pick_splats.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -31,25 +33,11 @@ void countFrom(Scene& scene, const glm::dvec3& origin) {
 std::string describeOrigin(const Scene& scene) { return fmt::format("{},{},{}", scene.origin.x, scene.origin.y, scene.origin.z); }
 
 void keepWithin(Scene& scene, const glm::dvec3& centre, double radius) {
-    const std::size_t numbers = scene.size() == 0 ? 0 : scene.sh.size() / scene.size();
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < scene.size(); ++i) {
-        if (!(glm::distance(glm::dvec3(scene.positions[i]), centre) <= radius)) { continue; }
-        scene.positions[kept] = scene.positions[i];
-        scene.rotations[kept] = scene.rotations[i];
-        scene.scales[kept] = scene.scales[i];
-        if (scene.isGaussian3d()) { scene.thicknesses[kept] = scene.thicknesses[i]; }
-        scene.opacities[kept] = scene.opacities[i];
-        std::copy_n(scene.sh.begin() + static_cast<std::ptrdiff_t>(i * numbers), numbers,
-                    scene.sh.begin() + static_cast<std::ptrdiff_t>(kept * numbers));
-        ++kept;
+    std::vector<std::uint32_t> kept;
+    for (std::uint32_t i = 0; i < scene.size(); ++i) {
+        if (glm::distance(glm::dvec3(scene.positions[i]), centre) <= radius) { kept.push_back(i); }
     }
-    if (scene.isGaussian3d()) { scene.thicknesses.resize(kept); }
-    scene.positions.resize(kept);
-    scene.rotations.resize(kept);
-    scene.scales.resize(kept);
-    scene.opacities.resize(kept);
-    scene.sh.resize(kept * numbers);
+    if (kept.size() < scene.size()) { scene = pickSplats(scene, kept); }
 }
 
 void flatten(Scene& scene, LoadNotes& notes) {
