@@ -46,12 +46,14 @@ struct AskedFrame {
 class ChangeUploads {
 public:
     explicit ChangeUploads(const Context& context) : context_(context) {}
-    // Waits for nothing.
+    // Waits for nothing. If it throws, the device may lack what the scene counts as brought: hasLost().
     void bring(const GpuScene& scene);
+    [[nodiscard]] bool hasLost() const { return has_lost_; }
 
 private:
     const Context& context_;
     std::vector<std::unique_ptr<Commands>> commands_;
+    bool has_lost_ = false;
 };
 
 bsp_frame_info readFrame(const bsp_frame_info* frame);

@@ -61,9 +61,11 @@ void ChangeUploads::bring(const GpuScene& scene) {
     }
     if (commands.count() == 0) {
         commands.drop();
-    } else {
-        commands.submit();
+        return;
     }
+    has_lost_ = true;
+    commands.submit();
+    has_lost_ = false;
 }
 
 void bsp_scene_t::advance(std::span<const Eye> eyes, double time_s, bool settles) {
@@ -77,7 +79,15 @@ void bsp_scene_t::advance(std::span<const Eye> eyes, double time_s, bool settles
     } else {
         live->update(eyes, std::min(step, kLongestStep));
     }
-    uploads_.bring(live->scene());
+    try {
+        uploads_.bring(live->scene());
+    } catch (...) {
+        if (uploads_.hasLost()) {
+            const std::lock_guard lock(mutex_);
+            failure_ = failureNow();
+        }
+        throw;
+    }
     for (const std::string& line : settles ? live->takeLines() : live->tryTakeLines()) { device.log(line); }
 }
 
@@ -159,7 +169,12 @@ void bsp_renderer_t::begin(AskedFrame& asked) {
     }
     if (group_) {
         group_->place(asked.placed);
-        uploads_.bring(group_->scene());
+        try {
+            uploads_.bring(group_->scene());
+        } catch (...) {
+            forget();  // the next frame begins anew
+            throw;
+        }
     }
     asked.settings.order = on_device_->usualOrder();
     if (!asked.is_cut) { return; }
