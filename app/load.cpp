@@ -22,13 +22,6 @@ namespace {
 // A picture needs what it shows, and hardly anything beside it.
 constexpr double kPictureLookAhead = 0.1;
 
-// Limits the SH degree, flattens 3D Gaussians to discs, or dims them, if the options say so; a file may itself ask for dimming.
-void drawAs(const LoadOptions& options, Scene& scene, LoadNotes& notes) {
-    if (options.sh_degree) { limitShDegree(scene, static_cast<int>(*options.sh_degree), notes); }
-    if (options.flatten) { flatten(scene, notes); }
-    if (options.antialiased) { scene.antialiased = scene.isGaussian3d(); }
-}
-
 // The most device memory for the finest level; frames need the rest.
 std::uint64_t memoryForScene(const Context& context, std::uint64_t memory_limit_mib) {
     const std::uint64_t bytes = context.deviceMemoryBytes() / 4 * 3;
@@ -86,6 +79,12 @@ LevelChoice levelChoice(const LoadOptions& options, std::uint64_t memory_limit_m
                 const int kept = std::min(sh_degree, static_cast<int>(options.sh_degree.value_or(kMaxShDegree)));
                 return splats <= limit_bytes / deviceBytesPerSplat(kept, !options.flatten);
             }};
+}
+
+void drawAs(const LoadOptions& options, Scene& scene, LoadNotes& notes) {
+    if (options.sh_degree) { limitShDegree(scene, static_cast<int>(*options.sh_degree), notes); }
+    if (options.flatten) { flatten(scene, notes); }
+    if (options.antialiased) { scene.antialiased = scene.isGaussian3d(); }
 }
 
 Scene loadAsAsked(const std::string& source, const LoadOptions& options, std::uint64_t memory_limit_mib, LoadNotes& notes,

@@ -17,6 +17,9 @@ namespace binosplat {
 // A frame's other memory depends on the view and is not known yet: only the level's splats are compared with the limit.
 LevelChoice levelChoice(const LoadOptions& options, std::uint64_t memory_limit_mib);
 
+// Limits the SH degree, flattens 3D Gaussians to discs, or dims them, if the options say so; a file may itself ask for dimming.
+void drawAs(const LoadOptions& options, Scene& scene, LoadNotes& notes);
+
 // SCENE of any command: a file, a folder, a built-in scene (then `builtin_splats` sets the size, 0 for its default), or an address.
 // `memory_limit_mib` limits device memory, 0: no limit.
 Scene loadAsAsked(const std::string& source, const LoadOptions& options, std::uint64_t memory_limit_mib, LoadNotes& notes,

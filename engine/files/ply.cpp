@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <map>
 #include <set>
 
@@ -177,46 +178,60 @@ struct OpenedPly {
     glm::dvec3 origin{0.0};
 };
 
-}  // namespace
-
-bool isPly(InputFile& file) {
-    const std::string_view start = withoutByteOrderMark(file.peek(8));
-    return start.starts_with("ply\n") || start.starts_with("ply\r\n");
+// What is noted of parts, as of one scene.
+void addNotes(LoadNotes& notes, LoadNotes part) {
+    part.skipped_not_finite += notes.skipped_not_finite;
+    part.skipped_zero_rotation += notes.skipped_zero_rotation;
+    part.lines.insert(part.lines.begin(), notes.lines.begin(), notes.lines.end());
+    notes = std::move(part);
 }
 
-glm::dvec3 originOfPly(InputFile& file) { return OpenedPly(file).origin; }
-
-Scene readPly(InputFile& file, LoadNotes& notes, const Progress& progress) {
+void readParts(InputFile& file, std::uint64_t part_splats, LoadNotes& notes, const Progress& progress,
+               const std::function<void(Scene)>& take) {
     OpenedPly ply(file);
     const ply::Element& vertex = ply.vertex;
     const Layout& layout = ply.layout;
     ply::Moment& moment = ply.moment;
 
-    SceneBuilder builder(file.name(), vertex.count, layout.sh_degree, layout.three_scales);
     constexpr std::uint64_t kBlocksPerReport = 128;
     if (progress) { progress(0.0); }
     moment.choose(ply.some);
     if (moment.isDynamic()) { moment.apply(ply.some); }
-    builder.expect(ply.some);
+    std::uint64_t done = 0, count = 0, in_part = 0;
+    const auto begin = [&] {
+        in_part = 0;
+        SceneBuilder builder(file.name(), std::min(part_splats, vertex.count - done), layout.sh_degree, layout.three_scales);
+        builder.expect(ply.some);
+        return builder;
+    };
+    SceneBuilder builder = begin();
+    notes = {};
+    const auto end = [&] {
+        LoadNotes of_part;
+        Scene scene = builder.finish(of_part);
+        scene.antialiased = ply.header.antialiased && layout.three_scales;
+        scene.vertical_axis = ply.header.vertical_axis;
+        setOrigin(scene, ply.origin, of_part);
+        addNotes(notes, std::move(of_part));
+        take(std::move(scene));
+    };
     ReadAhead blocks(vertex.count, [&](ReadAhead::Block& block) {
         ply.rows->read(block.stored);
         if (moment.isDynamic()) { moment.apply(block.stored); }
-        builder.activate(block.stored, block.active);
+        activate(block.stored, layout.sh_degree, layout.three_scales, block.active);
     });
-    std::uint64_t done = 0, count = 0;
     bool activated = vertex.count > 0;
     while (const ReadAhead::Block* block = blocks.next()) {
+        if (in_part >= part_splats) { end(), builder = begin(); }
         activated = activated && looksActivated(block->stored, layout.three_scales);
         builder.append(block->stored, block->active);
-        done += block->stored.rows;
+        done += block->stored.rows, in_part += block->stored.rows;
         if (progress && ++count % kBlocksPerReport == 0) { progress(static_cast<double>(done) / static_cast<double>(vertex.count)); }
     }
     if (progress) { progress(1.0); }
-    Scene scene = builder.finish(notes);
-    scene.antialiased = ply.header.antialiased && layout.three_scales;
-    scene.vertical_axis = ply.header.vertical_axis;
-    if (scene.vertical_axis >= 0) { notes.axes = fmt::format("{} is vertical (named by the file)", "xyz"[scene.vertical_axis]); }
-    setOrigin(scene, ply.origin, notes);
+    end();
+    notes.splats_in_file = vertex.count;
+    if (ply.header.vertical_axis >= 0) { notes.axes = fmt::format("{} is vertical (named by the file)", "xyz"[ply.header.vertical_axis]); }
     if (layout.sh_degree_in_file > layout.sh_degree) {
         notes.lines.push_back(
             fmt::format("{}: SH of degree {} were left out, degree {} is kept", file.name(), layout.sh_degree_in_file, layout.sh_degree));
@@ -228,7 +243,27 @@ Scene readPly(InputFile& file, LoadNotes& notes, const Progress& progress) {
             "applied; it was read as trainings write it, as logarithms and logits",
             file.name()));
     }
+}
+
+}  // namespace
+
+bool isPly(InputFile& file) {
+    const std::string_view start = withoutByteOrderMark(file.peek(8));
+    return start.starts_with("ply\n") || start.starts_with("ply\r\n");
+}
+
+glm::dvec3 originOfPly(InputFile& file) { return OpenedPly(file).origin; }
+
+std::uint64_t countPly(InputFile& file) { return OpenedPly(file).vertex.count; }
+
+Scene readPly(InputFile& file, LoadNotes& notes, const Progress& progress) {
+    Scene scene;
+    readParts(file, std::numeric_limits<std::uint64_t>::max(), notes, progress, [&](Scene part) { scene = std::move(part); });
     return scene;
+}
+
+void readPlyParts(InputFile& file, std::uint64_t part_splats, LoadNotes& notes, const std::function<void(Scene)>& take) {
+    readParts(file, part_splats, notes, {}, take);
 }
 
 }  // namespace binosplat

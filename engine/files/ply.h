@@ -4,6 +4,8 @@
 #include "engine/files/input_file.h"
 #include "engine/scene/scene.h"
 
+#include <cstdint>
+#include <functional>
 #include <string>
 
 namespace binosplat {
@@ -16,6 +18,13 @@ bool isPly(InputFile& file);
 // binary. Of splats that move the still of one moment is read. Anything else in the file is ignored, except a comment that asks for
 // antialiasing. Throws Error that says so for a point cloud, a mesh or anchors.
 Scene readPly(InputFile& file, LoadNotes& notes, const Progress& progress);
+
+// The same in parts of about as many splats, one after the other, for a scene larger than the memory. A part has only the bands that its
+// own splats use. The notes are of all parts.
+void readPlyParts(InputFile& file, std::uint64_t part_splats, LoadNotes& notes, const std::function<void(Scene)>& take);
+
+// How many splats it says that it has.
+std::uint64_t countPly(InputFile& file);
 
 // The Scene::origin that the reader of that file will choose.
 glm::dvec3 originOfPly(InputFile& file);

@@ -1,14 +1,13 @@
-// Arrays as they lie in memory, each behind its size.
+// Of each part the arrays as they lie in memory, each behind its size.
 #include "engine/files/scene_spill.h"
 
 #include "engine/error.h"
-#include "engine/files/input_file.h"
-#include "engine/part_file.h"
 #include "engine/scene/pick_splats.h"
 #include "engine/temporary_folder.h"
 
 #include <fmt/format.h>
 
+#include <fstream>
 #include <system_error>
 
 namespace binosplat {
@@ -35,33 +34,46 @@ SceneSpill::SceneSpill(std::filesystem::path folder) : folder_(std::move(folder)
 
 SceneSpill::~SceneSpill() { removeFolder(folder_); }
 
-std::string SceneSpill::fileOf(std::size_t index) const { return (folder_ / fmt::format("{}", index)).string(); }
+std::string SceneSpill::fileOf(std::size_t scene) const { return (folder_ / fmt::format("{}", scene)).string(); }
 
-void SceneSpill::add(const Scene& scene) {
-    PartFile file(fileOf(parts_.size()));
-    forEachArray(scene, [&](const auto& values) {
+void SceneSpill::add(std::size_t scene, const Scene& part) {
+    std::ofstream file(fileOf(scene), std::ios::binary | std::ios::app);
+    const auto write = [&](const void* data, std::size_t bytes) {
+        file.write(static_cast<const char*>(data), static_cast<std::streamsize>(bytes));
+    };
+    forEachArray(part, [&](const auto& values) {
         const std::uint64_t size = values.size();
-        file.write(&size, sizeof(size));
-        file.write(values.data(), size * sizeof(values[0]));
+        write(&size, sizeof(size));
+        write(values.data(), size * sizeof(values[0]));
     });
-    file.commit();
-    parts_.push_back(pickSplats(scene, {}));
+    file.close();
+    check(file.good(), "{}: cannot be written: is the disk full?", fileOf(scene));
+    if (parts_.size() <= scene) { parts_.resize(scene + 1); }
+    parts_[scene].push_back(pickSplats(part, {}));
 }
 
-Scene SceneSpill::read(std::size_t index) const {
-    Scene scene = parts_.at(index);
-    InputFile file(fileOf(index));
+Scene SceneSpill::read(std::size_t scene) const {
+    std::ifstream file(fileOf(scene), std::ios::binary);
     const auto fill = [&](void* to, std::size_t bytes) {
-        const std::size_t got = file.read({static_cast<std::byte*>(to), bytes});
-        check(got == bytes, "{}: ends early, expected {} bytes more", file.name(), bytes - got);
+        file.read(static_cast<char*>(to), static_cast<std::streamsize>(bytes));
+        check(file.good(), "{}: ends early, expected {} bytes more", fileOf(scene), bytes);
     };
-    forEachArray(scene, [&](auto& values) {
-        std::uint64_t size = 0;
-        fill(&size, sizeof(size));
-        values.resize(size);
-        fill(values.data(), size * sizeof(values[0]));
-    });
-    return scene;
+    Scene whole;
+    for (const Scene& stored : parts_.at(scene)) {
+        Scene part = stored;
+        forEachArray(part, [&](auto& values) {
+            std::uint64_t size = 0;
+            fill(&size, sizeof(size));
+            values.resize(size);
+            fill(values.data(), size * sizeof(values[0]));
+        });
+        if (&stored == parts_[scene].data()) {
+            whole = std::move(part);
+        } else {
+            appendSplats(whole, part);
+        }
+    }
+    return whole;
 }
 
 }  // namespace binosplat

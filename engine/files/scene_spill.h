@@ -17,17 +17,15 @@ public:
     SceneSpill& operator=(const SceneSpill&) = delete;
     ~SceneSpill();
 
-    // Throws Error where there is no room.
-    void add(const Scene& scene);
-    [[nodiscard]] std::size_t size() const { return parts_.size(); }
-    // The scene that was added as the `index`th.
-    [[nodiscard]] Scene read(std::size_t index) const;
+    // Behind what was added as this scene before, which may have other bands. Throws Error where there is no room.
+    void add(std::size_t scene, const Scene& part);
+    [[nodiscard]] Scene read(std::size_t scene) const;
 
 private:
-    [[nodiscard]] std::string fileOf(std::size_t index) const;
+    [[nodiscard]] std::string fileOf(std::size_t scene) const;
 
     std::filesystem::path folder_;
-    std::vector<Scene> parts_;  // without their splats
+    std::vector<std::vector<Scene>> parts_;  // of each scene, without their splats
 };
 
 }  // namespace binosplat

@@ -26,7 +26,6 @@ constexpr int kMostDepth = 48;  // readers bound it, too
 constexpr float kReach = 2.0f;  // in standard deviations: a leaf's box holds what is seen of its splats
 constexpr float kBeyond = std::numeric_limits<float>::max();
 constexpr double kLeastSeen = 1.0;  // in pixels: what is seen less is taken for as the others are
-constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
 // Along a Morton curve of their own.
 void sortAlongCurve(const Scene& scene, std::span<std::uint32_t> splats) {
@@ -102,27 +101,31 @@ std::uint32_t StreamedWriter::cut(std::span<const glm::vec3> centres, std::span<
     return index;
 }
 
-// Leaves get the number of the block that begins with them or before.
-void StreamedWriter::collectBlocks(std::uint32_t node, std::uint64_t most, std::uint32_t block,
-                                   std::vector<std::uint32_t>& block_of) const {
+// `within` the block that was begun last.
+void StreamedWriter::collectBlocks(std::uint32_t node, std::uint64_t most, bool within, Blocks& blocks) const {
     const Node& at = nodes_[node];
-    const bool begins = block == kNone && (at.splats <= most || at.axis < 0);
-    if (begins) { block = node; }
+    if (!within && (at.splats <= most || at.axis < 0)) {
+        ++blocks.count;
+        within = true;
+    }
     if (at.axis < 0) {
-        block_of[node] = block;
+        blocks.of_node[node] = blocks.count - 1;
         return;
     }
-    collectBlocks(at.first, most, block, block_of);
-    collectBlocks(at.second, most, block, block_of);
+    collectBlocks(at.first, most, within, blocks);
+    collectBlocks(at.second, most, within, blocks);
 }
 
-std::vector<std::vector<std::uint32_t>> StreamedWriter::blocksOf(std::span<const glm::vec3> centres, std::uint64_t most) const {
-    std::vector<std::uint32_t> block_of(nodes_.size(), kNone);
-    collectBlocks(0, most, kNone, block_of);
-    std::vector<std::vector<std::uint32_t>> by_node(nodes_.size());
-    for (std::uint32_t splat = 0; splat < centres.size(); ++splat) { by_node[block_of[leafOf(centres[splat])]].push_back(splat); }
-    std::erase_if(by_node, [](const std::vector<std::uint32_t>& block) { return block.empty(); });
-    return by_node;
+StreamedWriter::Blocks StreamedWriter::cutBlocks(std::uint64_t most) const {
+    Blocks blocks{std::vector<std::uint32_t>(nodes_.size(), 0u)};
+    collectBlocks(0, most, false, blocks);
+    return blocks;
+}
+
+std::vector<std::vector<std::uint32_t>> StreamedWriter::sortInto(const Blocks& blocks, std::span<const glm::vec3> centres) const {
+    std::vector<std::vector<std::uint32_t>> sorted(blocks.count);
+    for (std::uint32_t splat = 0; splat < centres.size(); ++splat) { sorted[blocks.of_node[leafOf(centres[splat])]].push_back(splat); }
+    return sorted;
 }
 
 std::uint32_t StreamedWriter::leafOf(const glm::vec3& position) const {

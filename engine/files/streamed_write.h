@@ -34,8 +34,14 @@ public:
 
     // First: the leaves, of about as many of the finest level's splats each, whose centres these are. Throws Error for none.
     void cutLeaves(std::span<const glm::vec3> centres);
-    // The same centres by blocks of whole leaves, of `most` splats each at most unless a leaf has more: their places, ascending.
-    [[nodiscard]] std::vector<std::vector<std::uint32_t>> blocksOf(std::span<const glm::vec3> centres, std::uint64_t most) const;
+    // Blocks of whole leaves, of `most` of these splats each at most unless a leaf has more: of each leaf, by its node, its block's number.
+    struct Blocks {
+        std::vector<std::uint32_t> of_node;
+        std::uint32_t count = 0;
+    };
+    [[nodiscard]] Blocks cutBlocks(std::uint64_t most) const;
+    // The places of some centres, by block, ascending.
+    [[nodiscard]] std::vector<std::vector<std::uint32_t>> sortInto(const Blocks& blocks, std::span<const glm::vec3> centres) const;
     // Splats of a level: all, or those of some leaves to which none were added before. They go to the leaves in which their centres lie,
     // in Morton order. `errors`: of each splat, against level `against`, an earlier one; empty, of any level but 0: not known.
     void add(std::size_t level, const Scene& scene, std::span<const SplatError> errors = {}, std::size_t against = 0,
@@ -66,7 +72,7 @@ private:
     std::uint32_t leafOf(const glm::vec3& position) const;
     void bound(std::uint32_t leaf, const Scene& scene, std::uint32_t splat);
     glm::mat2x3 boundParents(std::uint32_t node);
-    void collectBlocks(std::uint32_t node, std::uint64_t most, std::uint32_t block, std::vector<std::uint32_t>& block_of) const;
+    void collectBlocks(std::uint32_t node, std::uint64_t most, bool within, Blocks& blocks) const;
     [[nodiscard]] std::vector<double> errorsOf(const Node& leaf) const;
     [[nodiscard]] std::string jsonOf(std::uint32_t node) const;
 

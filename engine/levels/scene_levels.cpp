@@ -40,38 +40,59 @@ private:
     StreamedWriter& writer_;
 };
 
+// How many splats there are.
+std::uint64_t spillBlocks(const SceneParts& parts, const StreamedWriter::Blocks& blocks, const StreamedWriter& writer, SceneSpill& spill,
+                          const Progress& progress) {
+    std::uint64_t splats = 0;
+    parts([&](Scene part) {
+        if (progress) { progress(0.0); }
+        splats += part.size();
+        const auto sorted = writer.sortInto(blocks, part.positions);
+        for (std::size_t block = 0; block < sorted.size(); ++block) {
+            if (!sorted[block].empty()) { spill.add(block, pickSplats(part, sorted[block])); }
+        }
+    });
+    return splats;
+}
+
 }  // namespace
 
-void writeSceneLevels(const Context& context, Scene scene, const LevelSettings& settings, StreamedWriter& writer,
+void writeOneLevel(const SceneParts& parts, const LevelSettings& settings, StreamedWriter& writer, const Progress& progress) {
+    SceneSpill spill(writer.scratchFolder());
+    const StreamedWriter::Blocks blocks = writer.cutBlocks(settings.block_splats);
+    (void)spillBlocks(parts, blocks, writer, spill, progress);
+    for (std::size_t i = 0; i < blocks.count; ++i) { writer.add(0, spill.read(i), {}, 0, progress); }
+}
+
+void writeSceneLevels(const Context& context, const SceneParts& parts, const LevelSettings& settings, StreamedWriter& writer,
                       const Progress& progress) {
     LevelMaker maker(context, settings, writer);
     const std::size_t last = settings.levels - 1;
-    writer.cutLeaves(scene.positions);
-    if (scene.size() <= settings.block_splats) {
-        (void)maker.make(scene, 0, last, settings.eyes, kFitSteps, progress);
+    const StreamedWriter::Blocks blocks = writer.cutBlocks(settings.block_splats);
+    SceneSpill spill(writer.scratchFolder());
+    const std::uint64_t splats = spillBlocks(parts, blocks, writer, spill, progress);
+    Scene scene;
+    if (blocks.count == 1) {
+        (void)maker.make(spill.read(0), 0, last, settings.eyes, kFitSteps, progress);
         return;
     }
     std::size_t of_blocks = 0;  // the last level that is
-    while (of_blocks < last && scene.size() >> of_blocks > settings.block_splats) { ++of_blocks; }
-    SceneSpill spill(writer.scratchFolder());
-    for (const std::vector<std::uint32_t>& block : writer.blocksOf(scene.positions, settings.block_splats)) {
-        spill.add(pickSplats(scene, block));
-        if (progress) { progress(0.0); }
-    }
-    scene = pickSplats(scene, {});
+    while (of_blocks < last && splats >> of_blocks > settings.block_splats) { ++of_blocks; }
     constexpr double kShareOfBlocks = 0.95;
-    for (std::size_t i = 0; i < spill.size(); ++i) {
-        const auto part = [&](double share) {
-            if (progress) { progress(kShareOfBlocks * (static_cast<double>(i) + share) / static_cast<double>(spill.size())); }
+    for (std::size_t i = 0; i < blocks.count; ++i) {
+        const auto done = [&](double share) {
+            if (progress) { progress(kShareOfBlocks * (static_cast<double>(i) + share) / static_cast<double>(blocks.count)); }
         };
         const Scene block = spill.read(i);
-        appendSplats(scene, maker.make(block, 0, of_blocks, eyesOnto(block, settings.eyes, settings.block_eyes, settings.block_side_px),
-                                       settings.block_steps, part));
+        const Scene thin = maker.make(block, 0, of_blocks, eyesOnto(block, settings.eyes, settings.block_eyes, settings.block_side_px),
+                                      settings.block_steps, done);
+        if (i == 0) { scene = pickSplats(thin, {}); }
+        appendSplats(scene, thin);
     }
-    const auto part = [&](double share) {
+    const auto done = [&](double share) {
         if (progress) { progress(kShareOfBlocks + (1.0 - kShareOfBlocks) * share); }
     };
-    (void)maker.make(scene, of_blocks, last, settings.eyes, kFitSteps, part);
+    (void)maker.make(scene, of_blocks, last, settings.eyes, kFitSteps, done);
 }
 
 }  // namespace binosplat

@@ -3,6 +3,8 @@
 
 #include "engine/levels/thin_out.h"
 
+#include <functional>
+
 namespace binosplat {
 
 struct LevelSettings {
@@ -13,13 +15,18 @@ struct LevelSettings {
     // eyes' places. The levels with fewer splats are then thinned out from the first that is a block itself.
     std::uint64_t block_splats = 1024 * 1024;
     std::size_t block_eyes = 8;
-    gpu::uint block_side_px = 512;
-    int block_steps = 8;
+    gpu::uint block_side_px = kJudgingSidePx;
+    int block_steps = 4;
 };
 
-// Writes them all. The scene is given up as soon as its blocks lie on the disk: from then on one of them is in memory. The same on every
-// run on one device. Throws what `progress` throws.
-void writeSceneLevels(const Context& context, Scene scene, const LevelSettings& settings, StreamedWriter& writer,
+// Calls what it is given with parts of a scene that together are all of it, always the same ones.
+using SceneParts = std::function<void(const std::function<void(Scene)>& take)>;
+
+// The finest alone, by the same blocks, which takes no device.
+void writeOneLevel(const SceneParts& parts, const LevelSettings& settings, StreamedWriter& writer, const Progress& progress = {});
+// Writes them all into a writer that has cut the leaves. The parts are taken once; then one block of them is in memory at a time, or all of
+// a scene of one block. The same on every run on one device. Throws what `progress` throws.
+void writeSceneLevels(const Context& context, const SceneParts& parts, const LevelSettings& settings, StreamedWriter& writer,
                       const Progress& progress = {});
 
 }  // namespace binosplat

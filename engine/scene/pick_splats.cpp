@@ -1,7 +1,22 @@
 // Every array of a scene, by the same indices.
 #include "engine/scene/pick_splats.h"
 
+#include <algorithm>
+
 namespace binosplat {
+
+namespace {
+
+// Its harmonics with bands of zeros up to that degree.
+std::vector<float> widened(const Scene& scene, int degree) {
+    const auto from = static_cast<std::size_t>(3 * shCoefficientCount(scene.sh_degree)),
+               to = static_cast<std::size_t>(3 * shCoefficientCount(degree));
+    std::vector<float> sh(scene.size() * to);
+    for (std::size_t i = 0; i < scene.size(); ++i) { std::copy_n(scene.sh.data() + i * from, from, sh.data() + i * to); }
+    return sh;
+}
+
+}  // namespace
 
 Scene pickSplats(const Scene& scene, std::span<const std::uint32_t> splats) {
     Scene picked;
@@ -31,12 +46,17 @@ Scene pickSplats(const Scene& scene, std::span<const std::uint32_t> splats) {
 
 void appendSplats(Scene& scene, const Scene& more) {
     const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
+    const int degree = std::max(scene.sh_degree, more.sh_degree);
+    if (degree > scene.sh_degree) {
+        scene.sh = widened(scene, degree);
+        scene.sh_degree = degree;
+    }
     append(scene.positions, more.positions);
     append(scene.rotations, more.rotations);
     append(scene.scales, more.scales);
     append(scene.thicknesses, more.thicknesses);
     append(scene.opacities, more.opacities);
-    append(scene.sh, more.sh);
+    append(scene.sh, degree > more.sh_degree ? widened(more, degree) : more.sh);
 }
 
 }  // namespace binosplat

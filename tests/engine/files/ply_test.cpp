@@ -1,6 +1,8 @@
 // What a PLY file means: values, encodings, orders, types; what is written reads back; and what is said of a broken one.
 #include "engine/builtin/procedural.h"
+#include "engine/files/ply.h"
 #include "engine/scene/describe.h"
+#include "engine/scene/pick_splats.h"
 #include "tests/engine/scene/scene_measures.h"
 
 SUITE(ply) {
@@ -326,6 +328,29 @@ TEST_CASE_FIXTURE(InFolder, "ascii values that are no numbers are named, with th
     CHECK(contains(loadError(folder, replaced(good, "\n2 0.25", "\n2 0.25 1")), "splat 1 of 3: more than the expected 16 values"));
     CHECK(loadError(folder, replaced(good, "\n2 0.25", "\n\n+2 \t 2.5e-1")).empty());
     CHECK(contains(loadError(folder, binary.substr(0, binary.size() - 1)), "ends in splat 2 of 3"));
+}
+
+TEST_CASE_FIXTURE(InFolder, "read in parts, a file is what it is as a whole, and is noted so") {
+    Scene scene = makeBuiltin("builtin:atelier", 1500);
+    scene.positions[3].x = std::numeric_limits<float>::quiet_NaN();
+    scene.positions[900].x = std::numeric_limits<float>::quiet_NaN();
+    writePly(scene, folder.file("a.ply"));
+    LoadNotes whole_notes, notes;
+    const Scene whole = loadScene(folder.file("a.ply"), 0, &whole_notes);
+    InputFile file(folder.file("a.ply"));
+    CHECK(countPly(file) == 1500);
+    InputFile again(folder.file("a.ply"));
+    Scene all;
+    std::vector<std::size_t> sizes;
+    readPlyParts(again, 500, notes, [&](Scene part) {
+        sizes.push_back(part.size());
+        if (sizes.size() == 1) { all = pickSplats(part, {}); }
+        appendSplats(all, part);
+    });
+    CHECK(sizes == std::vector<std::size_t>{511, 511, 476});
+    CHECK(these(all.positions, all.rotations, all.scales, all.thicknesses, all.opacities, all.sh, all.sh_degree, all.name) ==
+          these(whole.positions, whole.rotations, whole.scales, whole.thicknesses, whole.opacities, whole.sh, whole.sh_degree, whole.name));
+    CHECK(these(notes.splats_in_file, notes.skipped_not_finite) == these(whole_notes.splats_in_file, whole_notes.skipped_not_finite));
 }
 
 }  // SUITE(ply)

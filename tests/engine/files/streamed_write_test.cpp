@@ -86,9 +86,8 @@ TEST_CASE("blocks are whole leaves with each splat in one, no larger than asked 
     const Scene scene = makeBuiltin("builtin:slanted-wall");
     StreamedWriter writer(folder.file("a") + "/lod-meta.json", {.leaf_splats = 100});
     writer.cutLeaves(scene.positions);
-    const auto blocks = writer.blocksOf(scene.positions, 500);
     std::vector<std::uint32_t> all;
-    for (const std::vector<std::uint32_t>& block : blocks) {
+    for (const std::vector<std::uint32_t>& block : writer.sortInto(writer.cutBlocks(500), scene.positions)) {
         CHECK(these(block.size() <= 500, block.size() > 200) == these(true, true));
         all.insert(all.end(), block.begin(), block.end());
         for (const std::size_t level : {0u, 1u}) { writer.add(level, pickSplats(scene, block)); }
@@ -110,9 +109,12 @@ TEST_CASE("a scene that waits on the disk comes back as it was, and leaves nothi
     solids.thicknesses = {0.5f, 0.25f};
     {
         SceneSpill spill(folder.file("spill"));
-        spill.add(discs);
-        spill.add(solids);
-        REQUIRE(spill.size() == 2);
+        const std::size_t middle = discs.size() / 2;
+        std::vector<std::uint32_t> all(discs.size());
+        std::iota(all.begin(), all.end(), 0u);
+        spill.add(0, pickSplats(discs, std::span(all).first(middle)));
+        spill.add(1, solids);
+        spill.add(0, pickSplats(discs, std::span(all).subspan(middle)));
         for (std::size_t i = 0; i < 2; ++i) {
             const Scene &was = i == 0 ? discs : solids, is = spill.read(i);
             CHECK(these(is.positions, is.rotations, is.scales, is.thicknesses, is.opacities, is.sh, is.name) ==

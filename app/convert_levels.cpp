@@ -1,0 +1,135 @@
+// First where splats are and what some of them look like, then all of them.
+#include "app/convert_levels.h"
+
+#include "app/keep.h"
+#include "app/load.h"
+#include "app/terminal/progress.h"
+#include "engine/address.h"
+#include "engine/files/compressed_ply.h"
+#include "engine/files/ply.h"
+#include "engine/levels/scene_levels.h"
+#include "engine/scene/pick_splats.h"
+#include "engine/scene/procedural.h"
+#include "engine/scene/standpoint.h"
+
+#include <filesystem>
+#include <numeric>
+#include <set>
+
+namespace binosplat {
+
+namespace {
+
+constexpr std::uint64_t kFewSplats = 50000;  // that no level halves
+constexpr std::uint32_t kMostLevels = 10;
+constexpr std::uint64_t kPartSplats = LevelSettings{}.block_splats;
+constexpr std::uint64_t kSampleSplats = 600'000;  // tell where one could stand as well as all do, and fill a chunk of the usual size
+
+std::uint32_t levelsFor(std::uint64_t splats) {
+    std::uint32_t levels = 1;
+    while (levels < kMostLevels && splats >> levels >= kFewSplats / 2) { ++levels; }
+    return levels;
+}
+
+// Of a PLY file that is to be read in parts; else 0.
+std::uint64_t countInParts(const ConvertOptions& options) {
+    std::error_code unreadable;
+    if (options.keep || options.load.lod || isBuiltin(options.scene) || isAddress(options.scene) ||
+        !std::filesystem::is_regular_file(options.scene, unreadable)) {
+        return 0;
+    }
+    InputFile file(options.scene);
+    if (isCompressedPly(file) || !isPly(file)) { return 0; }
+    const std::uint64_t count = countPly(file);
+    return count > kPartSplats ? count : 0;
+}
+
+// Every so manyeth splat.
+Scene pickEvery(const Scene& scene, std::uint64_t step) {
+    std::vector<std::uint32_t> some;
+    for (std::uint64_t i = 0; i < scene.size(); i += step) { some.push_back(static_cast<std::uint32_t>(i)); }
+    return pickSplats(scene, some);
+}
+
+// What is said of several parts is said once.
+void keepFirst(std::vector<std::string>& lines) {
+    std::set<std::string> said;
+    std::erase_if(lines, [&](const std::string& line) { return !said.insert(line).second; });
+}
+
+struct Survey {
+    std::vector<glm::vec3> centres;
+    Scene sample;
+};
+
+Survey surveyParts(const SceneParts& parts, std::uint64_t count, const Progress& progress) {
+    Survey survey;
+    survey.centres.reserve(count);
+    bool is_first = true;
+    parts([&](Scene part) {
+        survey.centres.insert(survey.centres.end(), part.positions.begin(), part.positions.end());
+        Scene some = pickEvery(part, count / kSampleSplats + 1);
+        if (is_first) {
+            survey.sample = std::move(some);
+        } else {
+            appendSplats(survey.sample, some);
+        }
+        is_first = false;
+        progress(static_cast<double>(survey.centres.size()) / static_cast<double>(count));
+    });
+    return survey;
+}
+
+}  // namespace
+
+WrittenLevels writeLevels(const ConvertOptions& options, const std::function<Scene()>& load, LoadNotes& notes) {
+    StreamedWriteSettings files;
+    if (options.chunk_splats != 0) { files.chunk_splats = options.chunk_splats; }
+    StreamedWriter writer(options.out, files);
+    SceneParts parts;
+    Survey survey;
+    if (const std::uint64_t count = countInParts(options)) {
+        parts = [&](const std::function<void(Scene)>& take) {
+            InputFile file(options.scene);
+            readPlyParts(file, kPartSplats, notes, [&](Scene part) {
+                drawAs(options.load, part, notes);
+                if (options.crop) { keepWithin(part, glm::dvec3(*options.crop) - part.origin, options.crop->w); }
+                take(std::move(part));
+            });
+            file.requireUnchanged();
+        };
+        survey = surveyParts(parts, count, ProgressLine("looking at " + options.scene).progress());
+    } else {
+        survey.sample = load();
+        survey.centres = survey.sample.positions;
+        parts = [&](const std::function<void(Scene)>& take) { take(survey.sample); };
+    }
+    writer.cutLeaves(survey.centres);
+    LevelSettings settings;
+    settings.levels = options.levels != 0 ? options.levels : levelsFor(survey.centres.size());
+    settings.near = usualNear(survey.sample);
+    WrittenLevels written{survey.centres.size(), {}};
+    survey.centres = {};
+    ProgressLine line("writing " + options.out.string());
+    if (settings.levels > 1) {
+        settings.eyes = judgingEyes(options, survey.sample);
+        const Context context({.device = options.device});
+        writeSceneLevels(context, parts, settings, writer, line.progress());
+    } else {
+        writeOneLevel(parts, settings, writer, line.progress());
+    }
+    writer.finish();
+    keepFirst(notes.lines);
+    for (std::size_t level = 0; level < writer.counts().size(); ++level) {
+        notes.lines.push_back(fmt::format("level {}: {} splats", level, writer.counts()[level]));
+    }
+    if (survey.sample.size() > files.chunk_splats) {
+        std::vector<std::uint32_t> some(files.chunk_splats);
+        std::iota(some.begin(), some.end(), 0u);
+        survey.sample = pickSplats(survey.sample, some);
+    }
+    written.sample = std::move(survey.sample);
+    return written;
+}
+
+}  // namespace binosplat
