@@ -5,12 +5,12 @@
 #include "app/load.h"
 #include "app/terminal/progress.h"
 #include "engine/address.h"
+#include "engine/builtin/procedural.h"
 #include "engine/files/compressed_ply.h"
 #include "engine/files/ply.h"
 #include "engine/levels/scene_levels.h"
+#include "engine/places/standpoint.h"
 #include "engine/scene/pick_splats.h"
-#include "engine/scene/procedural.h"
-#include "engine/scene/standpoint.h"
 
 #include <filesystem>
 #include <numeric>
