@@ -5,6 +5,7 @@ xr/bindings.cpp, and OUT/overlap.svg. `docs/draw.py docs` renews those of this f
 import pathlib
 import re
 import sys
+import textwrap
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 
@@ -22,12 +23,21 @@ WORDS = {
     "input/b/click": "B",
     "input/x/click": "X",
     "input/a/click": "A",
+    "input/primary/click": "primary button",
+    "input/secondary/click": "secondary button",
+    "input/back/click": "back",
+    "input/view/click": "view",
+    "input/dpad_down/click": "D-pad down",
+    "input/shoulder/click": "shoulder",
+    "input/cluster_front_logitech/click": "front button",
+    "input/cluster_middle_logitech/force": "middle button",
+    "input/cluster_back_logitech/click": "back button",
     "input/select/value": "pinch",
     "input/aim_activate_ext/value": "pinch",
     "input/grasp_ext/value": "fist",
 }
 
-WIDTH, HEIGHT, HAND_X, TEXT_X = 1180, 300, (470, 710), (380, 800)
+WIDTH, HEIGHT, HAND_X, TEXT_X = 1400, 310, (580, 820), (490, 910)
 SHAPE = 'stroke="#444" stroke-width="2"'
 
 
@@ -111,9 +121,11 @@ def draw_controls(out):
         svg += draw_side(profiles[0], 0) + draw_side(profiles[0], 1)
         if profiles[0][2]:
             svg += f'  <text x="{WIDTH // 2}" y="246" text-anchor="middle">both: the scene follows the hands, turns and grows</text>\n'
-        names = ", ".join(profile[0] for profile in profiles)
-        svg += f'  <text x="{WIDTH // 2}" y="282" text-anchor="middle" font-size="12" fill="#666">{names}</text>\n</svg>\n'
-        (out / (profiles[0][0].split("/")[1] + ".svg")).write_text(svg)
+        for line, names in enumerate(textwrap.wrap(", ".join(profile[0] for profile in profiles), 150, break_on_hyphens=False)):
+            svg += f'  <text x="{WIDTH // 2}" y="{280 + 18 * line}" text-anchor="middle" font-size="12" fill="#666">{names}</text>\n'
+        svg += "</svg>\n"
+        vendor, name = profiles[0][0].split("/")
+        (out / f"{name if name != 'controller' else vendor + '_' + name}.svg").write_text(svg)
 
 
 PROGRAM, DEVICE, LEAD = 0.4, 0.7, 2.0  # periods: what a frame takes of either, and how long before its display xrWaitFrame returns

@@ -5,26 +5,22 @@ namespace binosplat::xr {
 namespace {
 
 constexpr const char *kTrigger = "input/trigger/value", *kSqueeze = "input/squeeze/value", *kGrip = "input/squeeze/click",
-                     *kStick = "input/thumbstick", *kPress = "input/thumbstick/click", *kHaptic = "output/haptic";
+                     *kStick = "input/thumbstick", *kPad = "input/trackpad", *kPadPress = "input/trackpad/click",
+                     *kPress = "input/thumbstick/click", *kHaptic = "output/haptic";
 constexpr std::array<const char*, 2> kUpperButtons{"input/y/click", "input/b/click"}, kLowerButtons{"input/x/click", "input/a/click"},
-    kMenus{"input/menu/click", "input/menu/click"}, kNone{nullptr, nullptr};
+    kMenus{"input/menu/click", "input/menu/click"}, kNone{nullptr, nullptr}, kB{"input/b/click", "input/b/click"},
+    kA{"input/a/click", "input/a/click"}, kSecondary{"input/secondary/click", "input/secondary/click"},
+    kPrimary{"input/primary/click", "input/primary/click"}, kBack{"input/back/click", "input/back/click"},
+    kPenFront{"input/cluster_front_logitech/click", "input/cluster_front_logitech/click"},
+    kFrameMenus{"input/view/click", "input/menu/click"}, kFrameLower{"input/dpad_down/click", "input/a/click"};
 
 constexpr ProfileBindings kProfiles[] = {
     {"khr/simple_controller", nullptr, "input/select/click", nullptr, nullptr, nullptr, nullptr, kMenus, kNone, kHaptic},
     {"oculus/touch_controller", nullptr, kTrigger, kSqueeze, kStick, nullptr, kPress, kUpperButtons, kLowerButtons, kHaptic},
     // Its squeeze value is 1 as soon as the fingers close; a grab is pressure, so its force counts.
-    {"valve/index_controller",
-     nullptr,
-     kTrigger,
-     "input/squeeze/force",
-     kStick,
-     nullptr,
-     kPress,
-     {"input/b/click", "input/b/click"},
-     {"input/a/click", "input/a/click"},
-     kHaptic},
+    {"valve/index_controller", nullptr, kTrigger, "input/squeeze/force", kStick, nullptr, kPress, kB, kA, kHaptic},
     {"microsoft/motion_controller", nullptr, kTrigger, kGrip, kStick, nullptr, kPress, kMenus, kNone, kHaptic},
-    {"htc/vive_controller", nullptr, kTrigger, kGrip, "input/trackpad", "input/trackpad/click", nullptr, kMenus, kNone, kHaptic},
+    {"htc/vive_controller", nullptr, kTrigger, kGrip, kPad, kPadPress, nullptr, kMenus, kNone, kHaptic},
     {"hp/mixed_reality_controller", "XR_EXT_hp_mixed_reality_controller", kTrigger, kSqueeze, kStick, nullptr, kPress, kUpperButtons,
      kLowerButtons, kHaptic},
     {"samsung/odyssey_controller", "XR_EXT_samsung_odyssey_controller", kTrigger, kGrip, kStick, nullptr, kPress, kMenus, kNone, kHaptic},
@@ -40,6 +36,25 @@ constexpr ProfileBindings kProfiles[] = {
      kLowerButtons, kHaptic},
     {"meta/touch_controller_plus", "XR_META_touch_controller_plus", kTrigger, kSqueeze, kStick, nullptr, kPress, kUpperButtons,
      kLowerButtons, kHaptic},
+    {"bytedance/pico_ultra_controller_bd", "XR_BD_ultra_controller_interaction", kTrigger, kSqueeze, kStick, nullptr, kPress, kUpperButtons,
+     kLowerButtons, kHaptic},
+    {"bytedance/pico_g3_controller", "XR_BD_controller_interaction", kTrigger, nullptr, kStick, nullptr, kPress, kMenus, kNone, nullptr},
+    {"varjo/xr-4_controller", "XR_VARJO_xr4_controller_interaction", kTrigger, kGrip, kStick, nullptr, kPress, kB, kA, kHaptic},
+    {"ml/ml2_controller", "XR_ML_ml2_controller_interaction", kTrigger, "input/shoulder/click", kPad, kPadPress, nullptr, kMenus, kNone,
+     kHaptic},
+    {"yvr/touch_controller_yvr", "XR_YVR_controller_interaction", kTrigger, kGrip, kStick, nullptr, kPress, kUpperButtons, kLowerButtons,
+     kHaptic},
+    {"oppo/mr_controller_oppo", "XR_OPPO_controller_interaction", kTrigger, kSqueeze, kStick, nullptr, kPress, kUpperButtons, kLowerButtons,
+     kHaptic},
+    {"huawei/controller", "XR_HUAWEI_controller_interaction", kTrigger, nullptr, kPad, kPadPress, nullptr, kBack, kNone, kHaptic},
+    // Which buttons a person finds there is the runtime's business.
+    {"khr/generic_controller", "XR_KHR_generic_controller", kTrigger, kSqueeze, kStick, nullptr, kPress, kSecondary, kPrimary, kHaptic},
+    // The registry does not have it yet: by the table of Valve's OpenXR utilities for Unity.
+    {"valve/frame_controller_valve", "XR_VALVE_frame_controller_interaction", kTrigger, kSqueeze, kStick, nullptr, kPress, kFrameMenus,
+     kFrameLower, kHaptic},
+    // A pen, held like one: its middle button is pressed more or less, its tip is for surfaces.
+    {"logitech/mx_ink_stylus_logitech", "XR_LOGITECH_mx_ink_stylus_interaction", "input/cluster_middle_logitech/force",
+     "input/cluster_back_logitech/click", nullptr, nullptr, nullptr, kPenFront, kNone, kHaptic},
     // Bare hands: pinching while pointing clicks, a fist grabs.
     {"ext/hand_interaction_ext", "XR_EXT_hand_interaction", "input/aim_activate_ext/value", "input/grasp_ext/value", nullptr, nullptr,
      nullptr, kNone, kNone, nullptr},

@@ -1,6 +1,8 @@
 // The functions of the controllers' buttons.
 #pragma once
 
+#include "xr/hand.h"
+
 #include <openxr/openxr.h>
 
 #include <array>
@@ -23,5 +25,25 @@ struct ProfileBindings {
 };
 
 std::span<const ProfileBindings> allProfileBindings();
+
+// An input of a gamepad, below /user/gamepad, and what it does.
+struct GamepadBinding {
+    const char* path;
+    const char* name;         // of the action
+    const char* description;  // for people
+    int side;                 // of the hand that does the same
+    bool is_stick = false;
+    bool Hand::*button = nullptr;  // of others
+};
+inline constexpr const char* kGamepadProfile = "microsoft/xbox_controller";
+inline constexpr std::array<GamepadBinding, 7> kGamepadBindings{{
+    {"input/thumbstick_left", "gamepad_walk", "Walk, with a gamepad", kLeft, true},
+    {"input/thumbstick_right", "gamepad_turn", "Turn, with a gamepad", kRight, true},
+    {"input/menu/click", "gamepad_menu", "Show or hide the panel, with a gamepad", kRight, false, &Hand::menu},
+    {"input/b/click", "gamepad_b", "Show or hide the panel, with a gamepad's B", kRight, false, &Hand::menu},
+    {"input/a/click", "gamepad_play", "Play a scene that moves, or have it rest, with a gamepad", kRight, false, &Hand::play},
+    {"input/shoulder_left/click", "gamepad_back", "Previous viewpoint, with a gamepad", kLeft, false, &Hand::stick_presses},
+    {"input/shoulder_right/click", "gamepad_on", "Next viewpoint, with a gamepad", kRight, false, &Hand::stick_presses},
+}};
 
 }  // namespace binosplat::xr

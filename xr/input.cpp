@@ -29,8 +29,10 @@ Input::Input(const Session& session)
       menu_(actions_.make("menu", "Show or hide the panel", XR_ACTION_TYPE_BOOLEAN_INPUT, hands_)),
       play_(actions_.make("play", "Play a scene that moves, or have it rest", XR_ACTION_TYPE_BOOLEAN_INPUT, hands_)),
       haptic_(actions_.make("pulse", "Feel the panel", XR_ACTION_TYPE_VIBRATION_OUTPUT, hands_)),
+      gamepad_(actions_),
       gaze_(session, actions_) {
     suggestBindings();
+    gamepad_.bind(session.instance());
     gaze_.bind();
     actions_.attach();
     for (std::size_t h = 0; h < 2; ++h) {
@@ -77,10 +79,12 @@ std::array<Hand, 2> Input::read() {
         for (auto* holds : {&clicks_, &grabs_, &menus_, &presses_, &plays_}) {
             for (Hold& hold : *holds) { hold.forget(); }
         }
+        gamepad_.forget();
     }
     // Even if the focus went and came back between two frames, hands rest for one frame, so that no press seems to be released in place.
     if (!is_focused || (is_new && !was_at_rest)) { return hands; }
     for (std::size_t h = 0; h < 2; ++h) { readHand(h, hands[h]); }
+    gamepad_.addTo(hands);
     return hands;
 }
 

@@ -27,4 +27,14 @@ TEST_CASE("every input and output that is bound is one of its controller") {
     }
 }
 
+TEST_CASE("a gamepad has every input that is bound, and the core has the gamepad") {
+    const simulated::Profile* const profile = simulated::findProfile(std::string("/interaction_profiles/") + kGamepadProfile);
+    REQUIRE(profile != nullptr);
+    CHECK(simulated::Enabled().meets(profile->depends));
+    for (const GamepadBinding& input : kGamepadBindings) {
+        CHECK_MESSAGE(simulated::allowsBinding(*profile, fmt::format("/user/gamepad/{}", input.path), {}), input.path);
+        CHECK(input.is_stick == (input.button == nullptr));
+    }
+}
+
 }  // SUITE(bindings)

@@ -27,6 +27,7 @@ inline constexpr Extension kExtensions[] = {
     {"XR_FB_display_refresh_rate", 1},
     {"XR_MND_headless", 2},
     {"XR_VARJO_quad_views", 1},
+    {"XR_VARJO_foveated_rendering", 3},
     // Part of 1.1; for instances of 1.0.
     {"XR_KHR_locate_spaces", 1},
     {"XR_KHR_maintenance1", 1},
@@ -43,6 +44,14 @@ inline constexpr Extension kExtensions[] = {
     {"XR_META_touch_controller_plus", 1},
     {"XR_EXT_hand_interaction", 1},
     {"XR_MSFT_hand_interaction", 1},
+    {"XR_KHR_generic_controller", 1},
+    {"XR_BD_ultra_controller_interaction", 1},
+    {"XR_VARJO_xr4_controller_interaction", 2},
+    {"XR_YVR_controller_interaction", 1},
+    {"XR_OPPO_controller_interaction", 1},
+    {"XR_HUAWEI_controller_interaction", 1},
+    {"XR_LOGITECH_mx_ink_stylus_interaction", 1},
+    {"XR_VALVE_frame_controller_interaction", 1},
 };
 
 }  // namespace simulated

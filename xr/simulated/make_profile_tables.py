@@ -6,6 +6,7 @@
 xr.xml stands in specification/registry/ of Debian's source package openxr-sdk-source (apt-get source openxr-sdk-source/sid); take the newest.
 What counts are the profiles and the <extend> blocks that <feature> and <extension> require, each with its `depends`. Extensions that
 extensions.h does not list are not offered, so what needs them is left out. A new profile of an offered extension wants a line in PLAYED.
+unregistered.xml has what runtimes have and the registry does not, yet.
 """
 import itertools
 import pathlib
@@ -36,6 +37,14 @@ PLAYED = {
     "hp/mixed_reality_controller": "HP controller",
     "samsung/odyssey_controller": "Odyssey controller",
     "ml/ml2_controller": "Magic Leap 2 controller",
+    "bytedance/pico_ultra_controller_bd": "PICO Ultra controller",
+    "varjo/xr-4_controller": "XR-4 controller",
+    "yvr/touch_controller_yvr": "YVR controller",
+    "oppo/mr_controller_oppo": "OPPO controller",
+    "huawei/controller": "Huawei controller",
+    "valve/frame_controller_valve": "Frame controller",
+    "khr/generic_controller": "Generic controller",
+    "logitech/mx_ink_stylus_logitech": "MX Ink",
     "facebook/touch_controller_pro": "Touch Pro controller",
     "meta/touch_controller_plus": "Touch Plus controller",
     "ext/hand_interaction_ext": "Hand",
@@ -160,6 +169,8 @@ def main():
     root = ElementTree.parse(sys.argv[1]).getroot()
     version = next(re.search(r"\((\d+), *(\d+), *(\d+)\)", "".join(one.itertext())) for one in root.iter("type")
                    if one.findtext("name") == "XR_CURRENT_API_VERSION")
+    for added in ElementTree.parse(pathlib.Path(__file__).parent / "unregistered.xml").getroot():
+        root.find(added.tag).extend(added)
     listed = (pathlib.Path(__file__).parent / "extensions.h").read_text()
     profiles = read(root, set(re.findall(r"\{\"(XR_\w+)\", \d+\}", listed)))
     new = [one.name for one in profiles if one.name not in PLAYED]

@@ -1,0 +1,30 @@
+// A gamepad, beside the hands or in their place: it has no ray, so the panel is for hands.
+#pragma once
+
+#include "xr/actions.h"
+#include "xr/bindings.h"
+#include "xr/hand.h"
+
+#include <array>
+
+namespace binosplat::xr {
+
+class Gamepad {
+public:
+    // Makes its actions. bind() comes before they are attached: a runtime that knows no gamepad leaves it at rest.
+    explicit Gamepad(const Actions& actions);
+    void bind(const Instance& instance) const;
+
+    // Adds what its sticks and buttons do to what the hands do: each stick to the hand of its side, the shoulders as sticks that are
+    // pressed in, the buttons for the panel and for moving scenes to the right hand's.
+    void addTo(std::array<Hand, 2>& hands);
+    // Buttons that are pressed count once they have been released.
+    void forget();
+
+private:
+    const Actions& actions_;
+    std::array<XrAction, kGamepadBindings.size()> inputs_;
+    std::array<Hold, kGamepadBindings.size()> holds_;
+};
+
+}  // namespace binosplat::xr
