@@ -4,6 +4,7 @@
 #include "engine/platform.h"
 #include "xr/bindings.h"
 #include "xr/extensions/eye_gaze.h"
+#include "xr/extensions/foveated_inset.h"
 #include "xr/extensions/hand_tracking.h"
 #include "xr/extensions/local_floor.h"
 #include "xr/extensions/user_presence.h"
@@ -35,13 +36,18 @@ std::vector<XrExtensionProperties> listExtensions() {
 
 // Used if the runtime has them.
 std::vector<const char*> wantedExtensions(const InstanceOptions& options) {
-    std::vector<const char*> wanted{XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME, kLocalFloorExtension,
-                                    XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME, XR_EXT_HAND_TRACKING_EXTENSION_NAME, kUserPresenceExtension};
+    std::vector<const char*> wanted{kLocalFloorExtension, XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME, XR_EXT_HAND_TRACKING_EXTENSION_NAME,
+                                    kUserPresenceExtension};
+    if (options.depth) { wanted.push_back(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME); }
     if (options.eye_tracking) { wanted.push_back(XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME); }
     for (const ProfileBindings& profile : allProfileBindings()) {
         if (profile.extension != nullptr) { wanted.push_back(profile.extension); }
     }
-    if (options.foveated_inset) { wanted.push_back(XR_VARJO_QUAD_VIEWS_EXTENSION_NAME); }
+    if (options.foveated_inset) {
+        wanted.push_back(XR_VARJO_QUAD_VIEWS_EXTENSION_NAME);
+        // Where it lies tells where the eyes look.
+        if (options.eye_tracking) { wanted.push_back(XR_VARJO_FOVEATED_RENDERING_EXTENSION_NAME); }
+    }
     if (options.visibility_mask) { wanted.push_back(XR_KHR_VISIBILITY_MASK_EXTENSION_NAME); }
     return wanted;
 }
@@ -124,6 +130,7 @@ void Instance::readSystem() {
     BINOSPLAT_XR(xrGetSystemProperties(handle(), system_, &properties));
     tracks_hands_ = findsHands(*this);
     tracks_eyes_ = findsGaze(*this);
+    moves_insets_ = findsMovingInset(*this);
     description_ = fmt::format("{}: {}", runtime_name_, properties.systemName);
 }
 

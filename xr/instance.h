@@ -24,6 +24,7 @@ public:
 };
 
 struct InstanceOptions {
+    bool depth = true;            // the program has depth for the runtime
     bool visibility_mask = true;  // some runtimes offer the function but crash in it
     bool eye_tracking = false;    // the wearer allows this program to see the gaze
     bool foveated_inset = false;  // the program can draw insets, see extensions/foveated_inset.h
@@ -56,6 +57,8 @@ public:
     [[nodiscard]] bool tracksHands() const { return tracks_hands_; }
     // The extension is enabled, and this headset tracks the gaze.
     [[nodiscard]] bool tracksEyes() const { return tracks_eyes_; }
+    // See findsMovingInset().
+    [[nodiscard]] bool movesInsets() const { return moves_insets_; }
     // The recommended pixels of an eye, the larger of both, since the methods need eyes of one size; and the maximum.
     [[nodiscard]] glm::uvec2 recommendedSizePx() const { return recommended_size_px_; }
     [[nodiscard]] glm::uvec2 maxSizePx() const { return max_size_px_; }
@@ -91,7 +94,7 @@ private:
     XrSystemId system_ = XR_NULL_SYSTEM_ID;
     std::string runtime_name_, description_;
     std::set<std::string, std::less<>> extensions_;
-    bool tracks_hands_ = false, tracks_eyes_ = false;
+    bool tracks_hands_ = false, tracks_eyes_ = false, moves_insets_ = false;
     glm::uvec2 recommended_size_px_{0, 0}, max_size_px_{0, 0};
     XrEnvironmentBlendMode blend_mode_ = XR_ENVIRONMENT_BLEND_MODE_OPAQUE;
     std::optional<XrEnvironmentBlendMode> see_through_;

@@ -2,6 +2,7 @@
 #include "xr/session.h"
 
 #include "engine/platform.h"
+#include "xr/extensions/foveated_inset.h"
 #include "xr/extensions/user_presence.h"
 #include "xr/extensions/vulkan_enable2.h"
 
@@ -40,7 +41,7 @@ Session::Session(const Instance& instance, const Context& context, XrViewConfigu
       context_(context),
       views_(views),
       session_(create(instance, context)),
-      spaces_(handle(), views),
+      spaces_(handle(), views, views == kStereoWithInset && instance.movesInsets()),
       floor_(instance, handle()),
       hidden_meshes_(instance, handle(), views),
       refresh_rate_(instance, handle()),
@@ -138,6 +139,14 @@ void Session::pollEvents() {
             case XR_TYPE_EVENT_DATA_DISPLAY_REFRESH_RATE_CHANGED_FB:
                 told_for_ = 0;
                 break;
+            case XR_TYPE_EVENT_DATA_EVENTS_LOST: {
+                // Asks for all that they may have told of and that can be asked for.
+                for (const std::uint32_t eye : {0u, 1u}) { hidden_meshes_.read(eye); }
+                told_for_ = 0;
+                const std::uint32_t count = reinterpret_cast<const XrEventDataEventsLost&>(event).lostEventCount;
+                instance_.troubles().add(fmt::format("the OpenXR runtime lost {} event{}", count, count == 1 ? "" : "s"));
+                break;
+            }
             default:  // a changed controller shows in its actions
                 break;
         }

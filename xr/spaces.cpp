@@ -36,15 +36,19 @@ OwnedSpace makeSpace(XrSession session, XrReferenceSpaceType type, const XrPosef
     return OwnedSpace(space);
 }
 
-Spaces::Spaces(XrSession session, XrViewConfigurationType views)
+Spaces::Spaces(XrSession session, XrViewConfigurationType views, bool moves_insets)
     : session_(session),
       views_(views),
+      moves_insets_(moves_insets),
       local_(makeSpace(session, XR_REFERENCE_SPACE_TYPE_LOCAL)),
       room_(makeSpace(session, XR_REFERENCE_SPACE_TYPE_LOCAL)),
       head_(makeSpace(session, XR_REFERENCE_SPACE_TYPE_VIEW)) {}
 
 Spaces::Located Spaces::locate(XrSpace space, XrTime time) const {
     auto info = structure<XrViewLocateInfo>(XR_TYPE_VIEW_LOCATE_INFO);
+    auto moving = structure<XrViewLocateFoveatedRenderingVARJO>(XR_TYPE_VIEW_LOCATE_FOVEATED_RENDERING_VARJO);
+    moving.foveatedRenderingActive = XR_TRUE;
+    if (moves_insets_) { info.next = &moving; }
     info.viewConfigurationType = views_;
     info.displayTime = time;
     info.space = space;

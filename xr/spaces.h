@@ -23,7 +23,8 @@ inline constexpr XrPosef kHere{{0.0f, 0.0f, 0.0f, 1.0f}, {0.0f, 0.0f, 0.0f}};
 // The room's origin is at the head, upright and facing its direction: the origins of the runtime's own spaces are arbitrary.
 class Spaces {
 public:
-    Spaces(XrSession session, XrViewConfigurationType views);
+    // `moves_insets`: those of such a session follow the gaze.
+    Spaces(XrSession session, XrViewConfigurationType views, bool moves_insets);
 
     // Places the room for `time` and after, the first time that the head's pose is known, again when the runtime recentred its space, and
     // when `demanded`. Returns true if it did.
@@ -56,6 +57,7 @@ private:
 
     XrSession session_;
     XrViewConfigurationType views_;
+    bool moves_insets_;
     OwnedSpace local_, room_, head_;
     bool turn_settled_ = false, place_settled_ = false;
     std::optional<XrTime> recentred_from_;

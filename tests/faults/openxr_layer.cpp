@@ -3,6 +3,7 @@
 // made, once AFTER others were. In the place of RESULT, "missing": the runtime does not have the function; "crash": it ends the program.
 // xrCreateInstance:hang never returns.
 // BINOSPLAT_XR_EARLY=METRES: what a frame asks first about its eyes is a worse prediction, so much too high; what it asks then is right.
+// BINOSPLAT_XR_LOSE=TYPE: events of this XrStructureType are lost, and the runtime says that one was.
 // For BINOSPLAT_FAULT_WAITS (waits.h) it tells when a frame ends and what the runtime does itself.
 #include <vulkan/vulkan.h>
 #define XR_USE_GRAPHICS_API_VULKAN
@@ -106,6 +107,23 @@ XRAPI_ATTR XrResult XRAPI_CALL beginFrame(XrSession session, const XrFrameBeginI
     return g_begin_frame(session, info);
 }
 
+PFN_xrPollEvent g_poll_event = nullptr;
+
+XRAPI_ATTR XrResult XRAPI_CALL pollEvent(XrInstance instance, XrEventDataBuffer* event) {
+    const XrResult result = g_poll_event(instance, event);
+    if (result != XR_SUCCESS || event->type != std::atoi(std::getenv("BINOSPLAT_XR_LOSE"))) { return result; }
+    XrEventDataEventsLost lost{XR_TYPE_EVENT_DATA_EVENTS_LOST, nullptr, 1};
+    std::memcpy(event, &lost, sizeof lost);
+    return result;
+}
+
+// Whether BINOSPLAT_XR_LOSE takes the function.
+bool takesEvents(const char* name, PFN_xrVoidFunction* function) {
+    if (std::getenv("BINOSPLAT_XR_LOSE") == nullptr || std::strcmp(name, "xrPollEvent") != 0) { return false; }
+    g_poll_event = reinterpret_cast<PFN_xrPollEvent>(std::exchange(*function, reinterpret_cast<PFN_xrVoidFunction>(pollEvent)));
+    return true;
+}
+
 // Whether BINOSPLAT_XR_EARLY takes the function.
 bool takesEarly(const char* name, PFN_xrVoidFunction* function) {
     if (std::getenv("BINOSPLAT_XR_EARLY") == nullptr) { return false; }
@@ -126,7 +144,8 @@ XRAPI_ATTR XrResult XRAPI_CALL getInstanceProcAddr(XrInstance instance, const ch
         return XR_ERROR_FUNCTION_UNSUPPORTED;
     }
     const XrResult result = g_next(instance, name, function);
-    if (XR_FAILED(result) || takesEarly(name, function) || (found == faults().end() && binosplat::faults::waitsFile() == nullptr)) {
+    if (XR_FAILED(result) || takesEarly(name, function) || takesEvents(name, function) ||
+        (found == faults().end() && binosplat::faults::waitsFile() == nullptr)) {
         return result;
     }
 #define BINOSPLAT_WRAP(wrapped)                                          \

@@ -17,6 +17,9 @@ struct InsetSizes {
     glm::uvec2 context_px{0, 0}, inset_px{0, 0};
 };
 
+// True if insets may follow the gaze (XR_VARJO_foveated_rendering): each call that locates them says so.
+[[nodiscard]] bool findsMovingInset(const Instance& instance);
+
 // For the current headset; empty if it has no inset, or InstanceOptions did not ask for one.
 [[nodiscard]] std::optional<InsetSizes> findInset(const Instance& instance);
 

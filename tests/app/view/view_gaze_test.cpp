@@ -121,4 +121,19 @@ TEST_CASE("with foveation a headset that takes insets has one for each eye, with
     CHECK(viewsOf(runInset("without", "extension XR_VARJO_quad_views off\n" + rest, 20.0, true), 9) == 2);
 }
 
+TEST_CASE("the runtime moves an inset with the gaze where the wearer lets the eyes be followed, and only there") {
+    const Workplace work;
+    const std::string script = "rate 50\nsize 64 64\ninset 20\nframes none\ngaze 0 15 0\nat 0.3 exit\n";
+    for (const bool follows : {false, true}) {
+        CAPTURE(follows);
+        const std::string keys = fmt::format("[stereo]\nfoveation = 20\n[view]\neye-tracking = {}\n", follows);
+        const ViewRun run =
+            runClean(work, "moving", script, "builtin:one-splat --load-first --hide-panel --hide-hands" + withConfig(work, keys));
+        const std::size_t frame = run.frames.size() - 4;
+        REQUIRE(viewsOf(run, frame) == 4);
+        const double left_rad = run.view(frame, 2).at("fov").at("left").get<double>();
+        CHECK(left_rad == doctest::Approx(glm::radians(follows ? -35.0 : -20.0)).epsilon(1e-3));
+    }
+}
+
 }  // SUITE(view_gaze)

@@ -38,6 +38,8 @@ struct Session : Object {
     XrSessionState state = XR_SESSION_STATE_UNKNOWN;
     bool is_running = false;
     bool wants_exit = false;
+    // As the last xrLocateViews asked (XR_VARJO_foveated_rendering).
+    bool moves_insets = false;
     // As xrBeginSession was told.
     XrViewConfigurationType view_configuration = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
     FrameLoop frames;

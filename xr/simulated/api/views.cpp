@@ -23,6 +23,13 @@ bool hasInset(const Instance& instance) {
     return knowsInset(instance) && instance.simulation->script.allowsExtension(XR_VARJO_QUAD_VIEWS_EXTENSION_NAME);
 }
 
+// True if the program asks for insets that follow the gaze.
+bool movesInsets(const Instance& instance, const void* next) {
+    const auto* const asked = findInChain<XrViewLocateFoveatedRenderingVARJO>(next, XR_TYPE_VIEW_LOCATE_FOVEATED_RENDERING_VARJO);
+    return asked != nullptr && instance.extensions.contains(XR_VARJO_FOVEATED_RENDERING_EXTENSION_NAME) &&
+           asked->foveatedRenderingActive == XR_TRUE;
+}
+
 glm::uvec2 sizePxOf(const Script& script, XrViewConfigurationType type, std::size_t view) {
     if (type != kInset) { return script.size_px; }
     return isInset(view) ? script.insetSizePx() : script.contextSizePx();
@@ -84,7 +91,7 @@ XrResult xrEnumerateViewConfigurationViews(XrInstance instance, XrSystemId syste
 
 XrResult xrLocateViews(XrSession session, const XrViewLocateInfo* viewLocateInfo, XrViewState* viewState, uint32_t viewCapacityInput,
                        uint32_t* viewCountOutput, XrView* views) {
-    return answerFor<Session>(__func__, session, [&](const Session& owner) {
+    return answerFor<Session>(__func__, session, [&](Session& owner) {
         const XrViewLocateInfo& info = checkStruct(viewLocateInfo, XR_TYPE_VIEW_LOCATE_INFO);
         XrViewState& output = checkStruct(viewState, XR_TYPE_VIEW_STATE);
         checkViewConfiguration(owner.instance, info.viewConfigurationType);
@@ -94,6 +101,7 @@ XrResult xrLocateViews(XrSession session, const XrViewLocateInfo* viewLocateInfo
         const std::size_t count = countViews(info.viewConfigurationType);
         if (!wantsArray(viewCapacityInput, viewCountOutput, views, count)) { return; }
         for (std::size_t i = 0; i < count; ++i) { checkType(views[i], XR_TYPE_VIEW); }
+        owner.moves_insets = movesInsets(owner.instance, info.next);
         const State state = owner.at(info.displayTime);
         const std::optional<Pose> stage_from_space = stageFromSpace(space, state);
         for (std::size_t i = 0; i < count; ++i) {
@@ -105,7 +113,8 @@ XrResult xrLocateViews(XrSession session, const XrViewLocateInfo* viewLocateInfo
                 if (!state.head_turn_known) { pose.orientation = glm::dquat(1.0, 0.0, 0.0, 0.0); }
             }
             views[i].pose = toXr(pose);
-            views[i].fov = toXr(isInset(i) ? owner.instance.simulation->script.findInset(state, sideOf(i)) : seen.fov);
+            const Script& script = owner.instance.simulation->script;
+            views[i].fov = toXr(isInset(i) ? script.findInset(state, sideOf(i), owner.moves_insets) : seen.fov);
         }
         const bool is_in_head = space.reference == XR_REFERENCE_SPACE_TYPE_VIEW;
         if (stage_from_space && (state.head_turn_known || is_in_head)) { output.viewStateFlags = kTurnsKnown; }

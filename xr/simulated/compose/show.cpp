@@ -25,7 +25,7 @@ FrameRecord recordOf(Session& session, const XrFrameEndInfo& info, const State& 
     for (const Side side : kSides) {
         const EyeState& eye = state.eyes[side];
         record.eyes[side] = {eye.stage_from_eye, eye.fov, {}};
-        if (has_insets) { record.eyes[side].inset = simulation.script.findInset(state, side); }
+        if (has_insets) { record.eyes[side].inset = simulation.script.findInset(state, side, session.moves_insets); }
     }
     record.layers = loggedLayers(session, info, state);
     record.events = std::exchange(session.log_events, {});

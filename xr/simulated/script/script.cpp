@@ -130,11 +130,11 @@ Pose Script::stageFromLocalFloor(double time_s) const {
     return floor;
 }
 
-Fov Script::findInset(const State& state, Side side) const {
+Fov Script::findInset(const State& state, Side side, bool follows_gaze) const {
     const EyeState& eye = state.eyes[side];
     const ControllerState& gazing = state.device(kGaze);
     glm::dvec2 middle_rad = lens_centres_rad[side];
-    if (gazing.tracked && state.gaze_is_good) {
+    if (follows_gaze && gazing.tracked && state.gaze_is_good) {
         const glm::dvec3 ahead = gazing.stage_from_aim.orientation * glm::dvec3(0.0, 0.0, -1.0);
         const glm::dvec3 direction = glm::conjugate(eye.stage_from_eye.orientation) * ahead;
         middle_rad = {std::atan2(direction.x, -direction.z), std::atan2(direction.y, -direction.z)};

@@ -140,8 +140,8 @@ struct Script {
     [[nodiscard]] Pose stageFromLocal(double time_s = 0.0) const;
     // LOCAL's, brought down to the floor.
     [[nodiscard]] Pose stageFromLocalFloor(double time_s = 0.0) const;
-    // The angles of an eye's inset: about the gaze, or about the lens's middle while the gaze is not known reliably.
-    [[nodiscard]] Fov findInset(const State& state, Side side) const;
+    // The angles of an eye's inset: about the gaze, or about the lens's middle if it does not follow that or it is not known reliably.
+    [[nodiscard]] Fov findInset(const State& state, Side side, bool follows_gaze) const;
     [[nodiscard]] glm::uvec2 contextSizePx() const;
     [[nodiscard]] glm::uvec2 insetSizePx() const;
 

@@ -6,7 +6,7 @@
 SUITE(simulated_inset) {
 
 constexpr auto kInset = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO_WITH_FOVEATED_INSET;
-const Extensions kQuad{XR_VARJO_QUAD_VIEWS_EXTENSION_NAME};
+const Extensions kQuad{XR_VARJO_QUAD_VIEWS_EXTENSION_NAME, XR_VARJO_FOVEATED_RENDERING_EXTENSION_NAME};
 const double kDegree = std::acos(-1.0) / 180.0;
 
 using Views = std::vector<XrView>;
@@ -35,8 +35,9 @@ void checkAngles(const XrView& view, const std::array<double, 4>& degrees) {
 struct QuadFixture : SessionFixture {
     explicit QuadFixture(const std::string& script) : SessionFixture("size 64 64\n" + script, kQuad) { begin(kInset); }
 
-    Views locateViews(XrTime time) const {
-        const XrViewLocateInfo info{XR_TYPE_VIEW_LOCATE_INFO, nullptr, kInset, time, local};
+    Views locateViews(XrTime time, bool moves = true) const {
+        const XrViewLocateFoveatedRenderingVARJO follow{XR_TYPE_VIEW_LOCATE_FOVEATED_RENDERING_VARJO, nullptr, XrBool32{moves}};
+        const XrViewLocateInfo info{XR_TYPE_VIEW_LOCATE_INFO, &follow, kInset, time, local};
         XrViewState state{XR_TYPE_VIEW_STATE};
         const auto list = [&](auto... step) { return xrLocateViews(session, &info, &state, step...); };
         const Views views = checkList<XrView>(list, {XR_TYPE_VIEW});
@@ -142,6 +143,22 @@ TEST_CASE("insets lie about the gaze, with the poses of their eyes, and stay in 
     const QuadFixture lost("frames none\nrate 100\ngaze 0 15 0\nat 0.01 gaze degraded\n");
     checkAngles(lost.locateNext()[2], {-35, 5, 20, -20});
     checkAngles(lost.locateNext()[2], {-20, 20, 20, -20});
+}
+
+TEST_CASE("insets follow the gaze only where a program asks for that, with the extension, and the headset says whether they can") {
+    {
+        const QuadFixture made("frames none\ngaze 0 15 0\n");
+        const XrTime time = made.frame().predictedDisplayTime;
+        checkAngles(made.locateViews(time, false)[2], {-20, 20, 20, -20});
+        checkAngles(made.locateViews(time, true)[2], {-35, 5, 20, -20});
+    }
+    for (const auto& [lines, expected] : {std::pair("", XR_TRUE), std::pair("eye-tracking off\n", XR_FALSE)}) {
+        const InstanceFixture told(std::string(kQuietScript) + lines, kQuad);
+        XrSystemFoveatedRenderingPropertiesVARJO insets{XR_TYPE_SYSTEM_FOVEATED_RENDERING_PROPERTIES_VARJO, nullptr, 7};
+        XrSystemProperties properties{XR_TYPE_SYSTEM_PROPERTIES, &insets};
+        REQUIRE(xrGetSystemProperties(told.instance, told.system, &properties) == XR_SUCCESS);
+        CHECK(insets.supportsFoveatedRendering == expected);
+    }
 }
 
 TEST_CASE("a session draws as many views as it began with; the log says where the insets were") {

@@ -234,7 +234,7 @@ TEST_CASE("headset files give size, distance, canting, angles and insets, and ev
 TEST_CASE("insets lie where a headset's lenses have their middles, while there is no gaze") {
     Script script = parse("eye-tracking off");
     script.lens_centres_rad = {glm::dvec2(0.1, -0.2), glm::dvec2(-0.1, -0.2)};
-    const Fov left = script.findInset(script.at(0.0), kLeft), right = script.findInset(script.at(0.0), kRight);
+    const Fov left = script.findInset(script.at(0.0), kLeft, true), right = script.findInset(script.at(0.0), kRight, true);
     CHECK(0.5 * (left.left_rad + left.right_rad) == doctest::Approx(0.1));
     CHECK(0.5 * (left.up_rad + left.down_rad) == doctest::Approx(-0.2));
     CHECK(0.5 * (right.left_rad + right.right_rad) == doctest::Approx(-0.1));
