@@ -21,10 +21,15 @@ void Layers::addViews(std::span<const LayerEye> views, bool see_through) {
 }
 
 void Layers::addPanel(const Pose& room_from_panel, const glm::dvec2& size_m, const Swapchain& swapchain) {
-    addQuad({room_from_panel, size_m, &swapchain, {0, 0}, swapchain.sizePx()});
+    hang({room_from_panel, size_m, &swapchain, {0, 0}, swapchain.sizePx()});
 }
 
 void Layers::addQuad(const LayerQuad& quad) {
+    quad_names_.push_back(quad.name);
+    if (quad_names_.size() <= most_quads_) { hang(quad); }
+}
+
+void Layers::hang(const LayerQuad& quad) {
     XrSwapchainSubImage part = quad.swapchain->subImage(quad.size_px);
     part.imageRect.offset = {static_cast<std::int32_t>(quad.from_px.x), static_cast<std::int32_t>(quad.from_px.y)};
     XrCompositionLayerQuad& panel = panels_.emplace_back();

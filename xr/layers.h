@@ -5,6 +5,7 @@
 #include "xr/swapchain.h"
 
 #include <array>
+#include <cstdint>
 #include <deque>
 #include <span>
 #include <vector>
@@ -27,11 +28,13 @@ struct LayerQuad {
     const Swapchain* swapchain = nullptr;
     glm::uvec2 from_px{0, 0}, size_px{0, 0};  // of its image
     bool follows_head = false;
+    const char* name = "a picture";  // for messages
 };
 
 class Layers {
 public:
-    explicit Layers(const Session& session) : session_(session) {}
+    // Of the quads only the first `most_quads` are taken: a frame can do without.
+    explicit Layers(const Session& session, std::size_t most_quads = SIZE_MAX) : session_(session), most_quads_(most_quads) {}
     Layers(const Layers&) = delete;
     Layers& operator=(const Layers&) = delete;
 
@@ -43,14 +46,19 @@ public:
     // colours are premultiplied by alpha.
     void addPanel(const Pose& room_from_panel, const glm::dvec2& size_m, const Swapchain& swapchain);
     void addQuad(const LayerQuad& quad);
+    // All quads that were to be added, panels apart.
+    [[nodiscard]] const std::vector<const char*>& quadNames() const { return quad_names_; }
 
     // For Session::endFrame; valid as long as this and the swapchains.
     [[nodiscard]] std::span<const XrCompositionLayerBaseHeader* const> list() const { return list_; }
 
 private:
     void addViews(std::span<const LayerEye> views, bool see_through);
+    void hang(const LayerQuad& quad);
 
     const Session& session_;
+    std::size_t most_quads_;
+    std::vector<const char*> quad_names_;
     std::array<XrCompositionLayerProjectionView, 4> views_{};
     std::array<XrCompositionLayerDepthInfoKHR, 4> depths_{};
     XrCompositionLayerProjection scene_{};

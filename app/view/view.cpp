@@ -122,6 +122,7 @@ void viewInHeadset(ViewOptions options, bool& has_headset) {
     readCameraFiles(options.run.camera);  // reports their errors before waiting for a headset
     const ViewSettings settings = startSettings(options);
     xr::InstanceOptions instance_options;
+    instance_options.depth = settings.submit_depth;
     instance_options.visibility_mask = settings.visibility_mask;
     instance_options.eye_tracking = settings.eye_tracking;
     instance_options.foveated_inset = settings.wantsInset();

@@ -29,6 +29,7 @@ Viewer::Viewer(const ViewOptions& options, const ViewSettings& settings, xr::Ins
       renderer_(instance, context, options_.run, log_, connection_.format()),
       panel_(context, connection_.format()),
       commands_(context_),
+      probe_(context_),
       notes_(files_, [this](const std::string& message) { say(message); }),
       scenes_(context_, options_, log_,
               FramesAhead{settings.stereo, renderer_.sizePx(settings), instance.takesDepth(), settings.tint, {}}) {

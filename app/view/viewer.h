@@ -51,6 +51,9 @@ private:
     void recordPanel(Commands& commands);
     // With the wearer's settings or, if memory is short, the previous ones; false: the scene is not shown in this frame.
     bool prepareScene(FrameViews& views);
+    // Asks where the rays and the arc meet the scene.
+    void probeScene();
+    void recordProbe(Commands& commands);
     // Chooses hands, rays and other things in the room for this frame.
     void chooseThings(const WearerNow& wearer, const FrameViews& views);
     // Reports errors of a scene that loads while it is shown, and once that all of it is there.
@@ -108,6 +111,8 @@ private:
     bool is_new_view_ = false;      // another scene or another origin of the room, in this frame
     GazeFollower gaze_;
     Commands commands_;
+    SceneProbe probe_;
+    std::array<PathSeen, 2> paths_seen_{};  // where hands point, by hand
     PictureWriter pictures_;
     bool picture_asked_ = false;  // for the next frame
     std::uint64_t frames_of_scene_ = 0;

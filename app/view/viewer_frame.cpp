@@ -56,8 +56,9 @@ void Viewer::drawFrame() {
     FrameViews& views = *located;
     room_from_head_ = views.room_from_head;
     const double step_seconds = headset().session.stepSeconds();
-    const WearerNow wearer{headset().input.read(), room_from_head_, headset().session.floorBelowMetres(), step_seconds};
+    const WearerNow wearer{headset().input.read(), room_from_head_, headset().session.floorBelowMetres(), step_seconds, paths_seen_};
     controls_.update(wearer, panel_.inRoom(), state_);
+    probeScene();
     if (const double clear_deg = state_.settings().stereo.foveation_deg; clear_deg > 0.0 && !views.insets) {
         views.gazes = gaze_.update(headset().input.gaze(), views.room_from_eyes, glm::radians(clear_deg), step_seconds);
     } else {
@@ -82,7 +83,10 @@ void Viewer::drawFrame() {
     headset().things.darken(fade_.darkness(), coverMetres(views.eyes));
     onWindow(&MirrorWindow::acquire);
     if (LoadedScene* scene = scenes_.get(); scene != nullptr && fits) {
-        renderer_.render(headset(), scenes_, drawn_, window_.get(), [this](Commands& commands) { recordPanel(commands); });
+        renderer_.render(headset(), scenes_, drawn_, window_.get(), [this](Commands& commands) {
+            recordPanel(commands);
+            recordProbe(commands);
+        });
         ++frames_of_scene_;
         if (scene->live) { sayLive(*scene); }
         if (picture_asked_) { takePicture(); }
@@ -142,14 +146,37 @@ void Viewer::chooseThings(const WearerNow& wearer, const FrameViews& views) {
         if (panel_.inRoom().pulses(h)) { headset().input.pulse(h); }
     }
     vignette_.update(state_.settings().vignette && controls_.isMoving(), wearer.step_seconds);
+    std::array<std::optional<double>, 2> meets_m;
+    for (std::size_t h = 0; h < 2 && !controls_.aimingHand(); ++h) {
+        if (paths_seen_[h].meets) { meets_m[h] = probeMetres(*paths_seen_[h].meets); }
+    }
     RoomSight sight;
     sight.eye = wearer.room_from_head.position;
     if (state_.settings().hands) { sight.hands = wearer.hands; }
-    sight.things = panel_.inRoom().rays(sight.eye, controls_.aimingHand());
+    sight.things = panel_.inRoom().rays(sight.eye, controls_.aimingHand(), meets_m);
     std::ranges::copy(controls_.things(sight.eye), std::back_inserter(sight.things));
     sight.vignette_m = vignette_.widthMetres(views.eyes);
     showMessage(sight, wearer.step_seconds);
     headset().things.choose(sight);
+}
+
+void Viewer::probeScene() {
+    std::array<std::optional<ProbePath>, 2> paths;
+    for (const int h : {kLeft, kRight}) {
+        if (const std::optional<Pose> aim = panel_.inRoom().missesWith(h)) { paths[static_cast<std::size_t>(h)] = probeRay(*aim); }
+    }
+    if (const std::span<const glm::dvec3> arc = controls_.arc(); controls_.aimingHand() && arc.size() > 1) {
+        ProbePath& path = paths[static_cast<std::size_t>(*controls_.aimingHand())].emplace();
+        for (std::size_t i = 0; i < path.size(); ++i) {
+            path[i] = pointAlong(arc, static_cast<double>(i) / static_cast<double>(path.size() - 1));
+        }
+    }
+    paths_seen_ = probe_.ask(paths);
+}
+
+void Viewer::recordProbe(Commands& commands) {
+    const std::size_t eye = drawn_.showsOneEye() ? 0 : static_cast<std::size_t>(drawn_.stereo.dominant);
+    probe_.record(commands, scenes_.frame().picture(static_cast<int>(eye)), renderer_.pictures().at(eye), state_.sceneFromRoom());
 }
 
 void Viewer::showMessage(RoomSight& sight, double step_seconds) {
@@ -190,31 +217,36 @@ void Viewer::showFrame(const FrameViews& views) {
 }
 
 void Viewer::submitFrame(const FrameViews& views) {
-    const auto submit = [&](bool with_things) {
-        xr::Layers layers(headset().session);
+    std::vector<const char*> things;
+    const auto submit = [&](std::size_t most_things) {
+        xr::Layers layers(headset().session, most_things);
         addEyes(layers, views);
-        if (with_things) { headset().things.addBehindPanel(layers); }
+        headset().things.addBehindPanel(layers);
         if (panel_hangs_) { layers.addPanel(panel_.inRoom().roomFromPanel(), panel_.inRoom().sizeMetres(), headset().panel_images); }
-        if (with_things) { headset().things.addBeforePanel(layers); }
+        headset().things.addBeforePanel(layers);
+        things = layers.quadNames();
         headset().session.endFrame(layers.list());
     };
     std::string refusal;
-    const auto isTaken = [&](bool with_things) {
+    const auto isTaken = [&](std::size_t most_things) {
         try {
-            submit(with_things);
+            submit(most_things);
             return true;
         } catch (const Error& error) { refusal = error.what(); }
         return false;
     };
-    if (isTaken(true)) { return; }
-    // Drops optional layers, the least important first.
-    if (headset().things.areShown() && isTaken(false)) {
-        instance_.troubles().add(refusal + "; on without hands, rays and the vignette");
+    if (isTaken(SIZE_MAX)) { return; }
+    // Which layer it refuses, the runtime does not say: the things are left out one after the other until it takes the rest.
+    for (std::size_t most = things.size(); most-- > 0;) {
+        if (!isTaken(most)) { continue; }
+        instance_.troubles().add(fmt::format("{}; on without hands, rays and the vignette: it refuses {}", refusal, things[most]));
         headset().things.giveUp();
         return;
     }
     if (renderer_.dropDepth(headset())) { log_.say("the runtime refuses depth; on without depth"); }
-    submit(true);
+    if (!isTaken(SIZE_MAX)) {
+        throw Error(ExitCode::kNoDevice, fmt::format("{}: it refuses the eyes' pictures{}", refusal, panel_hangs_ ? ", or the panel" : ""));
+    }
 }
 
 void Viewer::addEyes(xr::Layers& layers, const FrameViews& views) const {

@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kScrolls = 0.5;  // of the stick
 constexpr double kRayWidthMetres = 0.006, kFadingRayMetres = 0.4;
+constexpr double kRingShare = 0.025;  // of its distance: a degree and a half
 // In front of the eyes: 27 degrees to the left, a little below, within arm's reach.
 const glm::dvec3 kPlaceMetres(-0.45, 0.1, 0.9);
 const glm::dvec3 kUp(0.0, -1.0, 0.0);
@@ -90,7 +91,8 @@ void PanelInRoom::update(const std::array<xr::Hand, 2>& hands, bool shown) {
     pointer_ = {of(pointer).hit->place_px, of(pointer).clicks_here, std::abs(scroll) > kScrolls ? 0.2 * scroll : 0.0};
 }
 
-std::vector<Thing> PanelInRoom::rays(const glm::dvec3& eye, std::optional<int> without) const {
+std::vector<Thing> PanelInRoom::rays(const glm::dvec3& eye, std::optional<int> without,
+                                     const std::array<std::optional<double>, 2>& meets_m) const {
     std::vector<Thing> rays;
     for (const int h : {kLeft, kRight}) {
         const HandNow& hand = of(h);
@@ -100,6 +102,11 @@ std::vector<Thing> PanelInRoom::rays(const glm::dvec3& eye, std::optional<int> w
         if (const auto strip = stripBetween(hand.aim->position, end, kRayWidthMetres, eye)) {
             rays.push_back({hand.hit ? Sprite::kRay : Sprite::kFadingRay, *strip});
         }
+        const std::optional<double>& met_m = meets_m[static_cast<std::size_t>(h)];
+        if (hand.hit || !met_m) { continue; }
+        // As large to the eye wherever it is.
+        const glm::dvec3 place = transform(*hand.aim, glm::dvec3(0.0, 0.0, *met_m));
+        rays.push_back({Sprite::kRing, facing(place, glm::dvec2(kRingShare * glm::distance(place, eye)), eye)});
     }
     return rays;
 }

@@ -37,8 +37,11 @@ public:
     [[nodiscard]] bool isCarriedBy(int hand) const { return carrier_ == hand; }
 
     // The rays of all pointing hands but `without`, while the panel is shown or the trigger is pulled: up to the panel or, if they miss it,
-    // a short way, fading.
-    [[nodiscard]] std::vector<Thing> rays(const glm::dvec3& eye, std::optional<int> without) const;
+    // a short way, fading; a ring shows where they meet the scene, so many metres away.
+    [[nodiscard]] std::vector<Thing> rays(const glm::dvec3& eye, std::optional<int> without,
+                                          const std::array<std::optional<double>, 2>& meets_m = {}) const;
+    // Where this hand points, if it has a ray that misses the panel.
+    [[nodiscard]] std::optional<Pose> missesWith(int hand) const { return of(hand).hit ? std::nullopt : of(hand).aim; }
 
 private:
     // Where on the canvas and how far along the ray; empty if it misses.

@@ -53,7 +53,7 @@ void RoomThings::giveUp() {
 
 xr::LayerQuad RoomThings::quadOf(const Thing& thing) const {
     const SpritePlace place = placeOf(thing.sprite);
-    return {thing.strip.room_from_strip, thing.strip.size_m, &sheet_, place.from_px, place.size_px};
+    return {thing.strip.room_from_strip, thing.strip.size_m, &sheet_, place.from_px, place.size_px, false, nameOf(thing.sprite)};
 }
 
 void RoomThings::add(const Thing& thing) {
@@ -64,7 +64,7 @@ void RoomThings::darken(double darkness, double width_m) {
     if (darkness <= 0.0 || sheet_.handle() == XR_NULL_HANDLE) { return; }
     const SpritePlace place = placeOfShade(darkness);
     const Pose ahead{glm::dquat(1.0, 0.0, 0.0, 0.0), {0.0, 0.0, kVignetteMetres}};
-    vignette_ = xr::LayerQuad{ahead, glm::dvec2(width_m), &sheet_, place.from_px, place.size_px, /*follows_head*/ true};
+    vignette_ = xr::LayerQuad{ahead, glm::dvec2(width_m), &sheet_, place.from_px, place.size_px, /*follows_head*/ true, "the dark"};
 }
 
 void RoomThings::choose(const RoomSight& sight) {
@@ -100,7 +100,8 @@ void RoomThings::chooseMessage(const std::optional<TexelPicture>& picture) {
                       &message_.images,
                       {0, 0},
                       message_.picture.size_px,
-                      /*follows_head*/ true});
+                      /*follows_head*/ true,
+                      "a message"});
 }
 
 void RoomThings::chooseHand(const xr::Hand& hand, HandImage& image, const glm::dvec3& eye) {
@@ -108,7 +109,7 @@ void RoomThings::chooseHand(const xr::Hand& hand, HandImage& image, const glm::d
     if (has_picture && troubles_.tryFor("pictures of hands", [&] { image.now = image.images.acquire(); })) {
         const Strip place = handPicturePlace(*hand.joints, eye);
         image.picture = drawHand(*hand.joints, place, eye, layout_);
-        quads_.push_back({place.room_from_strip, place.size_m, &image.images, {0, 0}, kHandPicturePx});
+        quads_.push_back({place.room_from_strip, place.size_m, &image.images, {0, 0}, kHandPicturePx, false, "a hand"});
         return;
     }
     if (has_picture) { image = {}; }  // no image was available

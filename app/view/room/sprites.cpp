@@ -16,7 +16,8 @@ using Format = vk::Format;
 constexpr glm::uvec2 kSheetPx(512, 256);
 // Filters read a texel beyond the edge. Pictures are more than two rims apart.
 constexpr glm::uvec2 kRimPx(2, 2);
-constexpr glm::dvec3 kRayLight(1.0, 0.7, 0.1), kTargetLight(0.2, 0.8, 1.0), kHandleLight(0.16, 0.17, 0.2), kKnobLight(0.35, 0.38, 0.42);
+constexpr glm::dvec3 kRayLight(1.0, 0.7, 0.1), kTargetLight(0.2, 0.8, 1.0), kBlockedLight(1.0, 0.05, 0.02), kHandleLight(0.16, 0.17, 0.2),
+    kKnobLight(0.35, 0.38, 0.42);
 constexpr double kVignetteAlpha = 0.92;
 constexpr unsigned kShadePx = 8;
 
@@ -52,9 +53,13 @@ Texel draw(Sprite sprite, const glm::dvec2& at) {
         }
         case Sprite::kKnob:
             return roundThing(kKnobLight, radius);
-        case Sprite::kTarget: {
+        case Sprite::kRing:
+            return {kRayLight, rise(0.5, 0.62, radius) * (1.0 - rise(0.84, 0.98, radius))};
+        case Sprite::kTarget:
+        case Sprite::kBlocked: {
             const double ring = rise(0.72, 0.78, radius) * (1.0 - rise(0.92, 1.0, radius)), dot = 1.0 - rise(0.12, 0.2, radius);
-            return {kTargetLight, std::max({ring, dot, 0.25 * (1.0 - rise(0.72, 0.78, radius))})};
+            return {sprite == Sprite::kTarget ? kTargetLight : kBlockedLight,
+                    std::max({ring, dot, 0.25 * (1.0 - rise(0.72, 0.78, radius))})};
         }
         case Sprite::kShade:
             return {glm::dvec3(0.0), std::clamp(std::ceil(0.5 * (at.x + 1.0) * kShades), 1.0, double{kShades}) / kShades};
@@ -71,15 +76,38 @@ std::uint32_t byteOf(double value) { return static_cast<std::uint32_t>(std::clam
 }  // namespace
 
 SpritePlace placeOf(Sprite sprite) {
-    static constexpr std::array<SpritePlace, 7> kBySprite{{{{440, 0}, {16, 64}},
+    static constexpr std::array<SpritePlace, 9> kBySprite{{{{440, 0}, {16, 64}},
                                                            {{464, 0}, {16, 64}},
                                                            {{400, 0}, {32, 128}},
                                                            {{264, 136}, {64, 64}},
                                                            {{264, 0}, {128, 128}},
+                                                           {{344, 156}, {96, 96}},
+                                                           {{448, 156}, {48, 48}},
                                                            {{0, 0}, {256, 256}},
                                                            {{344, 140}, {kShades * kShadePx, kShadePx}}}};
     static_assert(kBySprite.size() == static_cast<std::size_t>(Sprite::kShade) + 1);
     return kBySprite[static_cast<std::size_t>(sprite)];
+}
+
+const char* nameOf(Sprite sprite) {
+    switch (sprite) {
+        case Sprite::kRay:
+        case Sprite::kFadingRay:
+            return "a ray or an arc";
+        case Sprite::kHandle:
+        case Sprite::kKnob:
+            return "a controller";
+        case Sprite::kRing:
+            return "a ring where a ray ends";
+        case Sprite::kTarget:
+        case Sprite::kBlocked:
+            return "the place to teleport to";
+        case Sprite::kVignette:
+            return "the vignette";
+        case Sprite::kShade:
+            break;
+    }
+    return "the dark";
 }
 
 SpritePlace placeOfShade(double darkness) {
@@ -105,8 +133,8 @@ std::uint32_t texelOf(const glm::dvec3& light, double alpha, const TexelLayout& 
 
 TexelPicture drawSprites(const TexelLayout& layout) {
     TexelPicture sheet{kSheetPx, std::vector<std::uint32_t>(std::size_t{kSheetPx.x} * kSheetPx.y, 0)};
-    for (const Sprite sprite :
-         {Sprite::kRay, Sprite::kFadingRay, Sprite::kHandle, Sprite::kKnob, Sprite::kTarget, Sprite::kVignette, Sprite::kShade}) {
+    for (const Sprite sprite : {Sprite::kRay, Sprite::kFadingRay, Sprite::kHandle, Sprite::kKnob, Sprite::kTarget, Sprite::kBlocked,
+                                Sprite::kRing, Sprite::kVignette, Sprite::kShade}) {
         const SpritePlace place = placeOf(sprite);
         // The picture is continued into a rim around it.
         const glm::uvec2 low = place.from_px - glm::min(kRimPx, place.from_px), high = place.from_px + place.size_px + kRimPx;

@@ -16,6 +16,8 @@ enum class Sprite {
     kHandle,     // of a controller; its top is the lower end
     kKnob,       // at a controller's front
     kTarget,     // on the floor
+    kBlocked,    // the same where one cannot stand
+    kRing,       // where a ray meets the scene
     kVignette,   // clear in the middle
     kShade,      // black, and transparent: the first of kShades, from the faintest to the darkest
 };
@@ -32,6 +34,8 @@ struct SpritePlace {
     glm::uvec2 from_px, size_px;
 };
 SpritePlace placeOf(Sprite sprite);
+// For messages: "a ray".
+const char* nameOf(Sprite sprite);
 // That of a shade of so much darkness, above 0 up to 1.
 SpritePlace placeOfShade(double darkness);
 

@@ -65,6 +65,8 @@ std::span<const OptionRow<ViewSettings>> viewSettingsRows() {
         row("resolution-scale", "FACTOR", "pixels each way, of what the headset recommends", field::number<&S::resolution_scale>(0.1, 2.0)),
         row("tint", "", "show what made the tiles that were not rendered with the rest of a picture", field::flag<&S::tint>()),
         row("panel", "", "show the panel at the start", field::flag<&S::panel>()),
+        row("submit-depth", "", "give the runtime the pictures' depth, by which it may shift them for a late head",
+            field::flag<&S::submit_depth>()),
         row("visibility-mask", "", "ask the runtime what the lenses hide", field::flag<&S::visibility_mask>()),
         row("eye-tracking", "", "with foveation: follow the eyes, where the headset sees where they look", field::flag<&S::eye_tracking>()),
         row("foveated-inset", "", "with foveation: where the runtime takes a sharp inset over a coarse picture, give it both",

@@ -16,6 +16,14 @@ constexpr double kArcWidthMetres = 0.012, kTargetMetres = 0.5, kAboveFloorMetres
 // If the runtime knows no floor: its distance below the head of a wearer who stands at the start.
 constexpr double kUsualFloorMetres = 1.6;
 
+// The scene's own floor may lie a little above the room's.
+constexpr double kStepMetres = 0.35;
+
+bool isBlocked(const PathSeen& path, const std::vector<glm::dvec3>& arc) {
+    if (path.is_hidden || !path.meets || arc.empty()) { return path.is_hidden; }
+    return arc.back().y - pointAlong(arc, *path.meets / static_cast<double>(kProbePoints - 1)).y > kStepMetres;
+}
+
 }  // namespace
 
 TeleportAim aimTeleport(const Pose& room_from_aim, double floor_m) {
@@ -50,7 +58,7 @@ void Teleport::update(const WearerNow& now, const PanelInRoom& panel, ViewState&
     };
     if (aiming_ && !aims(*aiming_)) {
         // A hand that lost tracking did not let go.
-        if (now.hands[static_cast<std::size_t>(*aiming_)].aim && target) {
+        if (now.hands[static_cast<std::size_t>(*aiming_)].aim && target && !is_blocked_) {
             glm::dvec3 step_m = *target - now.room_from_head.position;
             step_m.y = 0.0;
             state.place(movedBy(state.sceneFromRoom(), step_m));
@@ -61,6 +69,7 @@ void Teleport::update(const WearerNow& now, const PanelInRoom& panel, ViewState&
         if (!aiming_ && aims(h)) { aiming_ = h; }
     }
     if (aiming_) { aim_ = aimTeleport(*now.hands[static_cast<std::size_t>(*aiming_)].aim, now.floor_m.value_or(kUsualFloorMetres)); }
+    is_blocked_ = aiming_ && isBlocked(now.paths[static_cast<std::size_t>(*aiming_)], aim_.arc);
 }
 
 std::vector<Thing> Teleport::things(const glm::dvec3& eye) const {
@@ -70,7 +79,8 @@ std::vector<Thing> Teleport::things(const glm::dvec3& eye) const {
             things.push_back({Sprite::kRay, *strip});
         }
     }
-    if (aim_.target) { things.push_back({Sprite::kTarget, lying(*aim_.target - glm::dvec3(0.0, kAboveFloorMetres, 0.0), kTargetMetres)}); }
+    const Sprite end = is_blocked_ ? Sprite::kBlocked : Sprite::kTarget;
+    if (aim_.target) { things.push_back({end, lying(*aim_.target - glm::dvec3(0.0, kAboveFloorMetres, 0.0), kTargetMetres)}); }
     return things;
 }
 

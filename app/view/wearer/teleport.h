@@ -15,12 +15,14 @@ constexpr std::size_t kTeleportStrips = 6;
 // `floor_m`.
 TeleportAim aimTeleport(const Pose& room_from_aim, double floor_m);
 
-// If chosen: pushing the left stick ahead, or a trigger pulled away from the panel, aims at the floor; letting go moves the wearer there.
+// If chosen: pushing the left stick ahead, or a trigger pulled away from the panel, aims at the floor; letting go moves the wearer there,
+// unless the scene is in the way.
 class Teleport : public WearerTool {
 public:
     void update(const WearerNow& now, const PanelInRoom& panel, ViewState& state) override;
     [[nodiscard]] std::optional<int> aimingHand() const override { return aiming_; }
-    // The arc and its end.
+    [[nodiscard]] std::span<const glm::dvec3> arc() const override { return aim_.arc; }
+    // The arc and its end, which is red where one cannot stand.
     [[nodiscard]] std::vector<Thing> things(const glm::dvec3& eye) const override;
     [[nodiscard]] std::vector<ToolChoice> choices() const override {
         return {{"Left stick", {"Walk", "Teleport"}, &ViewSettings::teleport}};
@@ -29,6 +31,7 @@ public:
 private:
     std::optional<int> aiming_;
     TeleportAim aim_;
+    bool is_blocked_ = false;  // something stands in the arc's way, or before its end
 };
 
 }  // namespace binosplat

@@ -79,6 +79,13 @@ std::optional<int> WearerControls::aimingHand() const {
     return {};
 }
 
+std::span<const glm::dvec3> WearerControls::arc() const {
+    for (const auto& tool : tools_) {
+        if (const std::span<const glm::dvec3> arc = tool->arc(); !arc.empty()) { return arc; }
+    }
+    return {};
+}
+
 std::vector<Thing> WearerControls::things(const glm::dvec3& eye) const {
     std::vector<Thing> things;
     for (const auto& tool : tools_) { std::ranges::copy(tool->things(eye), std::back_inserter(things)); }

@@ -2,11 +2,13 @@
 #pragma once
 
 #include "app/view/room/panel_in_room.h"
+#include "app/view/room/scene_probe.h"
 #include "app/view/settings/view_state.h"
 #include "xr/input.h"
 
 #include <array>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace binosplat {
@@ -17,6 +19,7 @@ struct WearerNow {
     Pose room_from_head;
     std::optional<double> floor_m;  // the floor's y in the room, if the runtime knows
     double step_seconds = 0.0;
+    std::array<PathSeen, 2> paths{};  // of the hands' arcs a moment ago, and how they met the scene
 };
 
 // A widget of a tool: a choice of two after `words`, or a check box if there are no names.
@@ -39,6 +42,8 @@ public:
     [[nodiscard]] virtual bool isMoving() const { return false; }
     // The hand for which it draws a ray of its own.
     [[nodiscard]] virtual std::optional<int> aimingHand() const { return {}; }
+    // The arc that it draws for that hand, in the room.
+    [[nodiscard]] virtual std::span<const glm::dvec3> arc() const { return {}; }
     // The tool's things in the room, as an eye at that place sees them.
     [[nodiscard]] virtual std::vector<Thing> things(const glm::dvec3&) const { return {}; }
     // The tool's choices on the panel.

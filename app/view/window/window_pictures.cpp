@@ -14,6 +14,9 @@ namespace {
 
 constexpr std::uint64_t kLongestWaitNs = 1'000'000'000;  // for a display that has gone away
 
+// Two frames are in flight, and a frame waits for the one before the last: by then what is before it was drawn and shown.
+constexpr int kCallsUntilUnused = 4;
+
 }  // namespace
 
 WindowPictures::WindowPictures(const Context& context, vk::raii::SurfaceKHR surface, std::function<glm::uvec2()> window_size_px, bool paced)
@@ -54,7 +57,9 @@ void WindowPictures::make() {
     info.compositeAlpha = windowAlpha(able.supportedCompositeAlpha);
     info.presentMode = mode;
     info.oldSwapchain = *swapchain_;
-    swapchain_ = vk::raii::SwapchainKHR(context_.device(), info);
+    vk::raii::SwapchainKHR made(context_.device(), info);
+    if (*swapchain_) { old_.push_back({std::move(swapchain_), std::move(drawn_), kCallsUntilUnused}); }
+    swapchain_ = std::move(made);
     images_.clear();
     drawn_.clear();
     for (const VkImage image : swapchain_.getImages()) {
@@ -66,6 +71,7 @@ void WindowPictures::make() {
 bool WindowPictures::isFree() const { return acquired_fence_.getStatus() == vk::Result::eSuccess; }
 
 void WindowPictures::acquire() {
+    std::erase_if(old_, [](Old& old) { return --old.calls < 0; });
     // A promised image must be free before the next one is acquired, but the headset does not wait for it.
     if (hold_ == Hold::kPromised && isFree()) { takePromised(); }
     if (hold_ == Hold::kPromised) { return; }
@@ -74,9 +80,6 @@ void WindowPictures::acquire() {
     if (is_stale_) {
         hold_ = Hold::kNone;
         is_remade_ = window_px_ == window_size_px_();
-        // Presented images must not be written to again.
-        const std::lock_guard lock(context_.queueMutex());
-        context_.queue().waitIdle();
         make();
     }
     if (is_stale_ || hold_ == Hold::kOurs) { return; }  // minimized; or still held from a dropped frame

@@ -20,7 +20,7 @@ public:
     WindowPictures& operator=(const WindowPictures&) = delete;
     ~WindowPictures();
 
-    // Before anything is recorded: a picture to draw on, if one is free; first that of a dropped frame, if there is one.
+    // Before anything is recorded, once a frame: a picture to draw on, if one is free; first that of a dropped frame, if there is one.
     void acquire();
     // That picture; null if none was free.
     [[nodiscard]] vk::Image current() const { return hold_ == Hold::kOurs ? images_[index_] : vk::Image(); }
@@ -43,7 +43,14 @@ private:
     vk::raii::SwapchainKHR swapchain_{nullptr};
     vk::raii::Fence acquired_fence_{nullptr};
     std::vector<vk::Image> images_;
-    std::vector<vk::raii::Semaphore> drawn_;      // by picture: free again when it is
+    std::vector<vk::raii::Semaphore> drawn_;  // by picture: free again when it is
+    // What was replaced, and for how many more calls of acquire() frames may use it.
+    struct Old {
+        vk::raii::SwapchainKHR swapchain;
+        std::vector<vk::raii::Semaphore> drawn;
+        int calls;
+    };
+    std::vector<Old> old_;
     glm::uvec2 size_px_{0, 0}, window_px_{0, 0};  // of the pictures, and of the window when they were made
     // Of the picture index_: none; promised, while the display may still read it; ours to draw on.
     enum class Hold { kNone, kPromised, kOurs } hold_ = Hold::kNone;

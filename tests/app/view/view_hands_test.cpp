@@ -200,6 +200,38 @@ TEST_CASE("rays end at the panel, else fade; hands are seen as their joints are;
     CHECK(glm::distance(panelOf(run, run.frameAt(moved)).middle, {0.1, 1.5, 0.45}) < 1e-4);
 }
 
+TEST_CASE("a ring shows where a ray meets the scene; an arc that something stands in is red at its end, and leads nowhere") {
+    const Workplace work;
+    const std::string arguments = kWithHands + withConfig(work, "[view]\nlocomotion = \"teleport\"\npanel-page = \"scenes\"\n") +
+                                  " --eye 0,0,0 --look 0,0,9 --up 0,-1,0";
+    Acts acts(kSmall);
+    const glm::dvec2 keep = placeOf("Keep this one", false, PanelPage::kScenes);
+    acts.click(keep).move("controller right", lookingAt({0.05, 1.2, -0.4}, {0.05, 1.2, -1.0})).wait(0.05);
+    const double points = acts.look();
+    acts.move("controller right", lookingAt({0.05, 1.2, -0.4}, {0.05, 1.2, 1.0})).wait(0.05);
+    const double away = acts.look();
+    acts.move("controller right", lookingAt({0.05, 1.2, -0.4}, {0.05, 1.6, -1.0}));
+    const double throws = acts.hold("right trigger", 0.3).wait(0.1).look();
+    const ViewRun run = runClean(work, "run", acts.wait(0.2).click(keep).wait(0.1).script(), arguments);
+    // 0.4 m below the eyes and 0.05 m to the right of them the wall is 4.05 m away.
+    const auto rings = [&](double seconds) {
+        return run.quadsWhere(run.frameAt(seconds), [](const nlohmann::json& quad) {
+            const double distance_m = glm::distance(stagePlace(quad), glm::dvec3(0.0, 1.6, 0.0));
+            return quad.at("space") != "VIEW" && std::abs(heightOf(quad) - 0.025 * distance_m) < 1e-4;
+        });
+    };
+    REQUIRE(rings(points).size() == 1);
+    CHECK(glm::distance(stagePlace(rings(points)[0]), glm::dvec3(0.05, 1.2, -4.05)) < 0.1);
+    CHECK(rings(away).empty());
+    CHECK(rings(throws).empty());
+    const auto ends = run.quadsAsWide(run.frameAt(throws), kTarget);
+    REQUIRE(ends.size() == 1);
+    CHECK(ends[0].at("views").at(0).at("rect").at(2) == 96);  // the red one
+    const auto kept = keptPlaces(work);
+    REQUIRE(kept.size() == 2);
+    CHECK(kept[0].eye == kept[1].eye);
+}
+
 TEST_CASE("controllers are drawn where grips are; the wearer teleports to where the arc ended, on the floor that the runtime says") {
     const Workplace work;
     const std::string config =
@@ -217,7 +249,7 @@ TEST_CASE("controllers are drawn where grips are; the wearer teleports to where 
     const double there = acts.wait(0.02).look(0.05);
     acts.move("controller left", kLeftDown).press("left y").click(keep);
     // The trigger of controllers that have no stick.
-    acts.at("profile khr/simple_controller").move("controller right", lookingAt({0.2, 0.9, -0.35}, {0.2, 0.9, -1.0})).wait(0.05);
+    acts.at("profile khr/simple_controller").move("controller right", lookingAt({0.2, 0.9, -0.35}, {0.2, 0.3, -0.75})).wait(0.05);
     const double by_trigger = acts.hold("right select", 0.2).wait(0.05).look();
     acts.wait(0.1).click(keep, "right select").wait(0.1);
     const ViewRun run = runClean(work, "run", acts.script(), kWithHands + " --hide-panel" + config);

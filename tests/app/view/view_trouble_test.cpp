@@ -160,7 +160,7 @@ TEST_CASE("what only decorates and fails is said once and done without, and a fi
                     "xrGetDisplayRefreshRateFB" + lacks + "the display's refresh rate",
                     "refresh-rate is 72, this headset refuses it (XR_ERROR_FUNCTION_UNSUPPORTED)",
                     "xrEnumerateReferenceSpaces" + failed + "the stage's floor", "xrCreateActionSpace" + failed + "eye tracking",
-                    "xrEndFrame" + failed + "hands, rays and the vignette"});
+                    "xrEndFrame" + failed + "hands, rays and the vignette: it refuses a ray or an arc"});
     // The panel is the first to get its images; what hangs beside it gets none. And of a program that crashes each line was written.
     const ViewRun crash = runFaulty("crash",
                                     "xrCreateSwapchain:-2:1:1,xrCreateHandTrackerEXT:missing,xrEnumerateDisplayRefreshRatesFB:missing,"
@@ -271,6 +271,33 @@ TEST_CASE_FIXTURE(AtWork, "what the lenses hide is not rendered, and nothing els
             if (look == 1 || side == kLeft) { CHECK(countPixels(a, b, isOther) == 0); }
         }
     }
+}
+
+TEST_CASE_FIXTURE(AtWork, "events that the runtime loses are made up for: what they told of is asked for again") {
+    Acts acts("rate 50\nsize 200 200\nframes none\nvisibility-mask on\n");
+    acts.wait(0.2).at("eye left angles -45 60 45 -45").wait(0.3);
+    const auto lines = [&](const std::string& name, const std::string& lost) {
+        const ViewRun run = runView(work, name, acts.script(), kWall + " --hide-panel --mode shared",
+                                    "DISPLAY= WAYLAND_DISPLAY= BINOSPLAT_VALIDATION=1 XR_ENABLE_API_LAYERS=XR_APILAYER_BINOSPLAT_faults "
+                                    "XR_API_LAYER_PATH='" BINOSPLAT_FAULT_LAYER "/openxr' " +
+                                        lost);
+        INFO(run.outcome.output << run.outcome.errors);
+        CHECK(run.outcome.exit_code == 0);
+        CHECK(run.lines("the OpenXR runtime lost ").size() == (lost.empty() ? 0 : 1));
+        return run.lines(": the lenses hide ");
+    };
+    // The mask of the new angles, of which an event tells (XrEventDataVisibilityMaskChangedKHR).
+    const std::vector<std::string> told = lines("told", "");
+    CHECK(told.size() == 3);  // that of the old angles, then of the new ones with the old mask, and with theirs
+    CHECK(lines("lost", fmt::format("BINOSPLAT_XR_LOSE={}", 1000031001)) == told);
+}
+
+TEST_CASE_FIXTURE(AtWork, "depth is not submitted where the config says so") {
+    const ViewRun run = runClean(work, "depth", kSmall + "at 0.1 exit\n", kOneEye + withConfig(work, "[view]\nsubmit-depth = false\n"));
+    const ViewRun with = runClean(work, "with", kSmall + "at 0.1 exit\n", kOneEye);
+    CHECK(countFramesWithLayers(run) > 5);
+    CHECK_FALSE(run.view(run.frames.size() - 4).contains("depth"));
+    CHECK(with.view(with.frames.size() - 4).contains("depth"));
 }
 
 TEST_CASE_FIXTURE(AtWork, "a runtime without the Vulkan extension is refused in one line") {

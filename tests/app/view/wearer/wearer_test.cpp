@@ -170,6 +170,48 @@ TEST_CASE_FIXTURE(Pointing, "a ray meets the panel where it points, from the fro
     }
 }
 
+TEST_CASE("a path meets what it goes into between two of its points, and passes behind what is far before it") {
+    using Depths = std::array<std::optional<double>, kProbePoints>;
+    Depths points, wall;
+    for (std::size_t i = 0; i < kProbePoints; ++i) {
+        points[i] = 0.5 * static_cast<double>(i);
+        wall[i] = 3.1;
+    }
+    const PathSeen met = followPath(points, wall);
+    REQUIRE(met.meets.has_value());
+    CHECK(*met.meets == doctest::Approx(6.2));
+    CHECK_FALSE(met.is_hidden);
+    CHECK_FALSE(followPath(points, {}).meets.has_value());
+    // A post that hides a part of it, then sight of what is farther away.
+    Depths post = wall;
+    for (std::optional<double>& depth : post) { depth = 20.0; }
+    post[7].reset();
+    post[8] = 1.0;
+    const PathSeen behind = followPath(points, post);
+    CHECK(behind.is_hidden);
+    CHECK_FALSE(behind.meets.has_value());
+    CHECK(probeMetres(0.0) == doctest::Approx(0.2));
+    CHECK(glm::distance(probeRay({{1, 0, 0, 0}, {0.0, 1.0, 0.0}})[kProbePoints - 1], glm::dvec3(0.0, 1.0, 30.0)) < 1e-9);
+}
+
+TEST_CASE_FIXTURE(Wearer, "one does not teleport to where the arc would lead through the scene") {
+    for (const bool is_blocked : {true, false}) {
+        CAPTURE(is_blocked);
+        state = ViewState(teleporting(false));
+        const glm::dvec3 before = place();
+        now.hands[kRight].aim = Pose{{1, 0, 0, 0}, {0.0, 0.5, 0.0}};
+        now.hands[kRight].clicks = true;
+        now.paths[kRight] = {is_blocked ? std::optional(9.0) : std::optional(22.5), false};
+        update();
+        const std::vector<Thing> things = controls.things(glm::dvec3(0.0));
+        REQUIRE(!things.empty());
+        CHECK(things.back().sprite == (is_blocked ? Sprite::kBlocked : Sprite::kTarget));
+        now.hands[kRight].clicks = false;
+        update();
+        CHECK((place() == before) == is_blocked);
+    }
+}
+
 TEST_CASE("a throw lands on the floor, where physics puts it") {
     // 7 m/s straight ahead from 1.2 m: it falls for sqrt(2 h / g).
     const TeleportAim level = aimTeleport({{1, 0, 0, 0}, {0.2, 0.4, 0.3}}, 1.6);

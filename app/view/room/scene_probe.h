@@ -1,0 +1,61 @@
+// Where paths in the room meet the scene, by the depth of its pictures: three frames late, so that nobody waits for it.
+#pragma once
+
+#include "engine/gpu/commands.h"
+#include "engine/passes/frame_buffers.h"
+#include "engine/similarity.h"
+
+#include <array>
+#include <optional>
+#include <span>
+
+namespace binosplat {
+
+inline constexpr std::size_t kProbePoints = 24;
+using ProbePath = std::array<glm::dvec3, kProbePoints>;  // in the room, from a hand on
+
+// Of a path, as an eye sees it.
+struct PathSeen {
+    // The point at which it first meets something, between points as a fraction; empty: none, or none that is seen.
+    std::optional<double> meets;
+    bool is_hidden = false;  // some of it lies far behind something
+};
+
+// Points along a ray, nearer ones closer together.
+ProbePath probeRay(const Pose& room_from_aim);
+// How far along that ray a point is, which may be a fraction.
+double probeMetres(double point);
+
+// The point at a share of the way, of points along it.
+glm::dvec3 pointAlong(std::span<const glm::dvec3> way, double share);
+
+// Of the points' own depths and of what is seen there, in metres; empty: nothing, or out of sight.
+PathSeen followPath(const std::array<std::optional<double>, kProbePoints>& points_m,
+                    const std::array<std::optional<double>, kProbePoints>& seen_m);
+
+class SceneProbe {
+public:
+    explicit SceneProbe(const Context& context);
+
+    // Once a frame, before it is recorded: the paths of both hands in it, and what is known of those of three frames ago.
+    std::array<PathSeen, 2> ask(const std::array<std::optional<ProbePath>, 2>& paths);
+    // Within the frame's commands, after its pictures; may be repeated. The scene is `scene_from_room`, the picture that of `eye`. Pictures
+    // without depth tell nothing.
+    void record(Commands& commands, const Picture& picture, const Eye& eye, const Similarity& scene_from_room);
+
+private:
+    struct Asked {
+        explicit Asked(const Context& context);
+        Buffer found;
+        std::array<std::optional<ProbePath>, 2> paths;
+        std::array<std::optional<double>, 2 * kProbePoints> depths_m;  // of the points themselves, where they are in the picture
+        double units_per_metre = 1.0;
+        bool is_recorded = false, half_floats = false, has_words = false;
+    };
+    [[nodiscard]] static std::optional<double> depthIn(const Asked& asked, std::size_t point);
+
+    std::array<Asked, 4> asked_;
+    std::size_t turn_ = 0;
+};
+
+}  // namespace binosplat
