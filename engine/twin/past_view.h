@@ -18,6 +18,8 @@ inline constexpr double kLeastGrowth = 1.9e-7;  // squared, of three channels, o
 inline constexpr double kSameDepthPx = 0.25;    // content whose depths move it apart by no more moves as one
 inline constexpr double kAgreesPx = 0.51;       // a pixel of the past this close to where it is wanted is what is seen there
 
+inline constexpr int kReach = 3;  // the taps of a place reach this far from its pixel
+
 inline double squareOf(double amplitude) { return std::min(amplitude * amplitude, kMostPixelError); }
 
 class PastView {
@@ -45,12 +47,23 @@ public:
         return static_cast<std::size_t>(held.y) * static_cast<std::size_t>(last.x + 1) + static_cast<std::size_t>(held.x);
     }
     [[nodiscard]] const glm::dvec4& colour(int x, int y) const { return past_.rgba[indexOf({x, y})]; }
-    [[nodiscard]] std::optional<MovingPixel> pixel(const glm::ivec2& at) const {
+    [[nodiscard]] bool isHidden(const glm::ivec2& at) const {
         const glm::uvec2 tile = glm::uvec2(glm::clamp(at, glm::ivec2(0), last)) / unsigned{kTileSize};
-        const bool is_hidden = !past_.hidden.empty() && past_.hidden[std::size_t{tile.y} * columns_ + tile.x] != 0;
-        return is_hidden ? std::nullopt : past_.pixels[indexOf(at)];
+        return !past_.hidden.empty() && past_.hidden[std::size_t{tile.y} * columns_ + tile.x] != 0;
+    }
+    [[nodiscard]] std::optional<MovingPixel> pixel(const glm::ivec2& at) const {
+        return isHidden(at) ? std::nullopt : past_.pixels[indexOf(at)];
     }
 
+    // True if taps about pixels of a box, at most a tile wide, are hidden ones: these show nothing, which would leak.
+    [[nodiscard]] bool reachesHidden(const glm::ivec2& first, const glm::ivec2& end) const {
+        for (int y = first.y - kReach; y <= end.y + kReach; ++y) {
+            for (int x = first.x - kReach; x <= end.x + kReach; ++x) {
+                if (isHidden({x, y})) { return true; }
+            }
+        }
+        return false;
+    }
     // Whether it was hidden or not.
     [[nodiscard]] std::optional<MovingPixel> own(const glm::ivec2& at) const { return past_.pixels[indexOf(at)]; }
 

@@ -41,7 +41,8 @@ BlockFromPast findBlock(const PastView& view, const glm::ivec2& first, double ne
     BlockFromPast block{source.in_front, source.place_px, {}, glm::dvec2(0.0), 0.0, HUGE_VAL};
     const glm::dvec2 in_reach = glm::clamp(source.place_px, glm::dvec2(-1e6), glm::dvec2(1e6));
     const glm::ivec2 corner = glm::ivec2(glm::floor(in_reach + 0.5)) - kPastBlock / 2, end = corner + kPastBlock - 1;
-    block.whole = block.whole && glm::all(glm::greaterThanEqual(corner, glm::ivec2(0))) && glm::all(glm::lessThanEqual(end, view.last));
+    block.whole = block.whole && glm::all(glm::greaterThanEqual(corner, glm::ivec2(0))) && glm::all(glm::lessThanEqual(end, view.last)) &&
+                  !view.reachesHidden(corner, end);
 
     const auto seenAt = [&](const glm::ivec2& at) {
         const std::optional<MovingPixel> pixel = view.pixel(glm::clamp(at, glm::ivec2(0), view.last));

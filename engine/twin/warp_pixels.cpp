@@ -34,7 +34,10 @@ Found search(const PastView& view, const glm::dvec2& wanted_px, double guess, co
         const glm::dvec2 off_px = glm::abs(found.seen.lands_px - wanted_px);
         found.agrees = found.seen.pixel && glm::all(glm::lessThanEqual(off_px, agrees_px));
     }
-    if (found.agrees) { found.place_px = view.place(wanted_px, found.seen.inverse_depth).place_px; }
+    if (found.agrees) {
+        const glm::dvec2 exact_px = view.place(wanted_px, found.seen.inverse_depth).place_px;
+        if (!view.isHidden(glm::ivec2(glm::floor(exact_px)))) { found.place_px = exact_px; }
+    }
     return found;
 }
 
@@ -107,9 +110,15 @@ PixelFromPast makePixel(const PastView& view, const glm::dvec2& wanted_px, doubl
     }
     const std::uint32_t code = found.seen.pixel ? found.seen.pixel->spread : 0;
     const double spread = kOwnSpread * spreadOf(code) * found.seen.inverse_depth + 0.5 * (near - far);
-    const glm::dvec2 off_px = view.uncertainMove(wanted_px, spread);
+    glm::dvec2 off_px = view.uncertainMove(wanted_px, spread);
     const bool nothing = !found.seen.pixel || !view.isInside(found.place_px);
     const double unseen = found.agrees ? 0.0 : nothing ? kUnseenError : kUncoveredError;
+    // Beside what was hidden a pixel is taken as it is.
+    const glm::dvec2 middle_px = glm::floor(found.place_px) + 0.5;
+    if (view.reachesHidden(glm::ivec2(middle_px), glm::ivec2(middle_px))) {
+        off_px = glm::abs(off_px) + glm::abs(found.place_px - middle_px);
+        found.place_px = middle_px;
+    }
     if (is_flat) {
         const glm::dvec2 at = glm::clamp(found.place_px, glm::dvec2(0.5), glm::dvec2(view.last) + 0.5) - 0.5, base = glm::floor(at);
         const Loss loss = lossAt(view, glm::ivec2(base), at - base, off_px);

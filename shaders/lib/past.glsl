@@ -36,6 +36,14 @@ struct Seen {
 bool isHiddenInPast(PastView view, uvec2 at) {
     return kHiddenTiles && isThere(uvec2(pass.past_shown)) && !isInMask(pass.past_shown, view.past_size_tiles, at / kTileSize);
 }
+// True if taps about pixels of a box, less than a tile wide, are hidden ones: these show nothing, which would leak.
+bool reachesHidden(PastView view, ivec2 first, ivec2 last) {
+    if (!kHiddenTiles) { return false; }
+    const ivec2 end = ivec2(view.past_size_px) - 1;
+    const uvec2 low = uvec2(clamp(first - kPastReach, ivec2(0), end)), high = uvec2(clamp(last + kPastReach, ivec2(0), end));
+    return isHiddenInPast(view, low) || isHiddenInPast(view, high) || isHiddenInPast(view, uvec2(low.x, high.y)) ||
+           isHiddenInPast(view, uvec2(high.x, low.y));
+}
 
 uint wordAt(PastView view, vec2 place_px) {
     const uvec2 at = pixelAt(view.past_size_px, place_px);

@@ -202,6 +202,8 @@ BINOSPLAT_CONSTANT float kPastSameDepth = 0.25f;
 // A pixel of the past that lands this close to where it is wanted is what is seen there (half a pixel, and rounding).
 BINOSPLAT_CONSTANT float kPastAgrees = 0.51f;
 BINOSPLAT_CONSTANT uint kPastSteps = 3;
+// The taps of a place reach this far from its pixel.
+BINOSPLAT_CONSTANT int kPastReach = 3;
 // A pixel whose inverse depth spreads by an eighth of it blends what stands in front with what lies behind: it moves with the nearest
 // content of the words this far around; from eye to eye, with that of itself and its two neighbours in the row.
 BINOSPLAT_CONSTANT uint kMixedCode = 21;

@@ -163,7 +163,7 @@ bool findBlock(PastView view, uvec2 first, ivec2 last, out BlockMoves moves, out
     const ivec2 corner = ivec2(floor(clamp(source_px, vec2(-1e6), vec2(1e6)) + 0.5)) - ivec2(kBlock) / 2, end = corner + ivec2(kBlock) - 1;
     const float depth_there = 1 + dot(view.now_from_past.excess_z, vec3(source_px, 1));
     bool valid = move.z > 0 && all(greaterThanEqual(corner, ivec2(0))) && all(lessThanEqual(end, last));
-    valid = valid && !isHiddenInPast(view, uvec2(clamp(corner, ivec2(0), last))) && !isHiddenInPast(view, uvec2(clamp(end, ivec2(0), last)));
+    valid = valid && !reachesHidden(view, corner, end);
     depths = vec2(3e38, 0);
     float in_columns[kColumns], sum = 0, lower = 0;
     uint spread_bits = 0;

@@ -52,7 +52,10 @@ bool search(PastView view, vec2 wanted_px, float guess, vec2 agrees, out Seen se
             }
         }
     }
-    if (found) { place_px = movePixelAnywhere(view.past_from_now, wanted_px, inverse_depth).xy; }
+    if (found) {
+        const vec2 exact_px = movePixelAnywhere(view.past_from_now, wanted_px, inverse_depth).xy;
+        if (!isHiddenInPast(view, pixelAt(view.past_size_px, exact_px))) { place_px = exact_px; }
+    }
     return found;
 }
 
@@ -129,7 +132,13 @@ float makePixel(PastView view, uvec2 pixel, vec2 depths, out float unseen, out f
         }
     }
     const float own = kSpreadWeight * sqrt(varianceShareOf(seen.word)) * seen.inverse_depth;
-    const vec2 uncertain_px = uncertainMove(disparity_px, own + 0.5 * (depths.y - depths.x));
+    vec2 uncertain_px = uncertainMove(disparity_px, own + 0.5 * (depths.y - depths.x));
+    // Beside what was hidden a pixel is taken as it is, off by up to half of its width.
+    const vec2 middle_px = floor(place_px) + 0.5;
+    if (reachesHidden(view, ivec2(middle_px), ivec2(middle_px))) {
+        uncertain_px = abs(uncertain_px) + abs(place_px - middle_px);
+        place_px = middle_px;
+    }
     const ivec2 size = ivec2(view.past_size_px);
     Sample one;
     if (is_flat) {

@@ -177,4 +177,19 @@ TEST_CASE("nothing comes from where the past was hidden, and what is hidden now 
     CHECK(warped.unseen[20 * 96 + 30] == 0);
 }
 
+TEST_CASE("the colour of what was hidden does not leak into the pixels beside it") {
+    const Eye eye = test::makeEye({96, 64});
+    const auto grey = [](double, double) { return glm::dvec3(0.5); };
+    Past past = makePast(eye, grey, [](double, double) { return 0.5; });
+    past.hidden.assign(24, 0);
+    past.hidden[8] = 1;
+    for (std::size_t y = 16; y < 32; ++y) {
+        for (std::size_t x = 32; x < 48; ++x) { past.rgba[y * 96 + x] = glm::dvec4(0.0); }
+    }
+    const WarpedPast warped = warpPast(past, moved(eye, {0.01, 0.01, 0.0}));  // by half a pixel each way
+    for (std::size_t i = 0; i < warped.unseen.size(); ++i) {
+        if (warped.unseen[i] == 0) { CHECK(warped.picture.rgba[i].r == doctest::Approx(0.5)); }
+    }
+}
+
 }  // SUITE(past_reference)
