@@ -111,7 +111,7 @@ TEST_CASE_FIXTURE(Gpu, "half of playbot's splats show it from elsewhere within 3
                      of_random = decibels(elsewhere.errorOf(widenSome(scene, kept)));
         MESSAGE("1 of " << part << ": " << of_thin << " dB, random and wider " << of_random << " dB");
         CHECK(of_thin >= least);
-        CHECK(of_thin >= of_random + 3.0);
+        CHECK(of_thin >= of_random + 5.0);
     }
 }
 
