@@ -43,7 +43,7 @@ ROOMS = {
     "app/bench": "engine engine/* app/axes app/load app/options app/plot app/report app/scores app/terminal app/view/governor",
     "app/view/files": "engine engine/frame engine/picture engine/setup",
     "app/view/placement": "engine engine/scene xr",
-    "app/view/room": "engine engine/gpu xr app/view/placement",
+    "app/view/room": "engine engine/gpu engine/passes xr app/view/placement",
     "app/view/settings": "engine engine/builtin engine/scene engine/setup app/options app/view/governor",
     "app/view/headset": "engine engine/gpu engine/passes xr app/terminal app/view/room",
     "app/view/scenes": "engine engine/* app/load app/options app/terminal app/view/files app/view/placement app/view/settings",
