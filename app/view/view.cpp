@@ -5,6 +5,7 @@
 #include "app/options/camera_options.h"
 #include "app/options/device_options.h"
 #include "app/terminal/interrupt.h"
+#include "app/view/panel/panel_style.h"
 #include "app/view/scenes/view_scenes.h"
 #include "app/view/settings/device_defaults.h"
 #include "app/view/simulate.h"
