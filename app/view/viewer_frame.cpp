@@ -163,6 +163,7 @@ void Viewer::chooseThings(const WearerNow& wearer, const FrameViews& views) {
 void Viewer::probeScene() {
     std::array<std::optional<ProbePath>, 2> paths;
     for (const int h : {kLeft, kRight}) {
+        if (!state_.settings().hands) { break; }  // hidden hands point at nothing
         if (const std::optional<Pose> aim = panel_.inRoom().missesWith(h)) { paths[static_cast<std::size_t>(h)] = probeRay(*aim); }
     }
     if (const std::span<const glm::dvec3> arc = controls_.arc(); controls_.aimingHand() && arc.size() > 1) {
