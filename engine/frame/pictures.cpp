@@ -100,11 +100,9 @@ std::vector<std::uint8_t> StereoFrame::readPixelClasses() {
     const glm::uvec2 size = warpBuffers().sizePx();
     const std::size_t row_words = tilesOf(size).x;
     std::vector<std::uint8_t> classes(std::size_t{size.x} * size.y);
-    for (std::size_t y = 0; y < size.y; ++y) {
-        for (std::size_t x = 0; x < size.x; ++x) {
-            classes[y * size.x + x] =
-                static_cast<std::uint8_t>((words[y * row_words + x / gpu::kTileSize] >> (2 * (x % gpu::kTileSize))) & 3);
-        }
+    for (std::size_t i = 0; i < classes.size(); ++i) {
+        const std::size_t x = i % size.x, word = i / size.x * row_words + x / gpu::kTileSize;
+        classes[i] = static_cast<std::uint8_t>((words[word] >> (2 * (x % gpu::kTileSize))) & 3);
     }
     return classes;
 }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <string_view>
 
 namespace binosplat {
@@ -105,10 +106,9 @@ bool seesNothing(const FrameCounters& counters) {
     return !counters.warped || !counters.warped->work || counters.warped->work->full <= gpu::kTilePairs * tiles;
 }
 
-void explainWarp(const FrameFacts& frame, std::size_t index, FrameResult& result) {
-    const auto leaveOut = [&](bool condition, std::string_view sentence) {
-        if (condition) { result.left_out.emplace_back(sentence); }
-    };
+using LeaveOut = std::function<void(bool condition, std::string_view sentence)>;
+
+void explainWarp(const FrameFacts& frame, std::size_t index, const LeaveOut& leaveOut) {
     const StereoSettings& settings = frame.plan.targets[index].warp->settings;
     const gpu::WarpCounters& warp = frame.state.targets[index].warp_counters;
     const bool paper = settings.choice == TileChoice::kPaper, predicts = settings.choice == TileChoice::kPredicted;
@@ -121,7 +121,7 @@ void explainWarp(const FrameFacts& frame, std::size_t index, FrameResult& result
 }
 
 void explainLeftOut(const FrameFacts& frame, FrameResult& result) {
-    const auto leaveOut = [&](bool condition, std::string_view sentence) {
+    const LeaveOut leaveOut = [&](bool condition, std::string_view sentence) {
         if (condition) { result.left_out.emplace_back(sentence); }
     };
     const FramePlan& plan = frame.plan;
@@ -148,7 +148,7 @@ void explainLeftOut(const FrameFacts& frame, FrameResult& result) {
     const bool two_full = two && plan.targets[0].coarse && !plan.targets[0].past && !plan.targets[1].past;
     leaveOut(two_full, "reprojection: both eyes are rendered, coarsely where they do not see sharply");
     for (std::size_t t = 0; t < plan.targets.size(); ++t) {
-        if (plan.targets[t].warp) { explainWarp(frame, t, result); }
+        if (plan.targets[t].warp) { explainWarp(frame, t, leaveOut); }
     }
 }
 

@@ -18,6 +18,8 @@ constexpr std::uint32_t kHoleBoxes = 4096;
 // Room that is made ahead of what was needed.
 constexpr double kRoomMade = 1.5;
 
+bool isEmptied(const gpu::ListState& list) { return list.needed != list.count; }
+
 WarpBufferNeeds needsOf(const TargetPlan& target) {
     if (target.past || target.from_past_later) {
         return {.size_px = target.eye.size_px, .classes = false, .half_floats = target.kept.half_floats, .past = true, .boxes = 0};
@@ -137,16 +139,13 @@ void FrameRoom::fitLists() {
 }
 
 bool FrameRoom::isCutShort(const FrameState& state) {
-    const auto isEmptied = [](const gpu::ListState& list) { return list.needed != list.count; };
     return std::ranges::any_of(state.visible, isEmptied) ||
-           std::ranges::any_of(state.targets, [&](const TargetState& target) { return isEmptied(target.pairs); });
+           std::ranges::any_of(state.targets, [](const TargetState& target) { return isEmptied(target.pairs); });
 }
 
 bool FrameRoom::isSourceVoid(const FramePlan& plan, const FrameState& state) {
     const auto source = static_cast<std::size_t>(plan.firstTarget());
-    const gpu::ListState &visible = state.visible[static_cast<std::size_t>(plan.targets[source].list)],
-                         &pairs = state.targets[source].pairs;
-    return visible.needed != visible.count || pairs.needed != pairs.count;
+    return isEmptied(state.visible[static_cast<std::size_t>(plan.targets[source].list)]) || isEmptied(state.targets[source].pairs);
 }
 
 double FrameRoom::spareFor(double ahead) const {

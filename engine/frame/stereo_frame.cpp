@@ -31,7 +31,7 @@ StereoFrame::StereoFrame(const Context& context, const GpuScene& scene, const Fr
       kernels_(others == nullptr ? *own_kernels_ : *others),
       room_(context, options.first_capacity,
             [this] {
-                for (const Flight& flight : flights_) { flight.commands.waitForDevice(); }
+                for (const Flight& flight : flights_) { static_cast<void>(flight.commands.isDone(UINT64_MAX)); }
             }),
       flights_{Flight(context), Flight(context)} {
     show(scene);

@@ -188,23 +188,16 @@ void Commands::submit(vk::Semaphore signals) {
     under_way_ = true;
 }
 
-void Commands::waitForDevice() const {
-    if (!under_way_ || level_ == Level::kSecondary) { return; }
+bool Commands::isDone(std::uint64_t most_ns) const {
+    if (!under_way_ || level_ == Level::kSecondary) { return true; }
     try {
-        const auto result = context_.device().waitForFences(*fence_, VK_TRUE, UINT64_MAX);
-        check(result == vk::Result::eSuccess, "{}: the frame did not finish: {}", context_.deviceName(), vk::to_string(result));
-    } catch (const vk::SystemError& error) { throw deviceError(context_.deviceName(), error); }
-}
-
-bool Commands::isDone() const {
-    try {
-        return fence_.getStatus() == vk::Result::eSuccess;
+        return context_.device().waitForFences(*fence_, VK_TRUE, most_ns) == vk::Result::eSuccess;
     } catch (const vk::SystemError& error) { throw deviceError(context_.deviceName(), error); }
 }
 
 void Commands::wait() {
     if (!under_way_) { return; }
-    waitForDevice();
+    check(isDone(UINT64_MAX), "{}: the frame did not finish", context_.deviceName());
     under_way_ = false;
     if (level_ == Level::kPrimary) { context_.device().resetFences(*fence_); }
 

@@ -101,15 +101,13 @@ public:
     void submit(vk::Semaphore signals = {});
     // Waits until the device is done, if anything is under way.
     void wait();
-    // The same for callers that only want to free memory: the measurements are there after wait().
-    void waitForDevice() const;
+    // True once the device is done, for which it waits that long. The measurements are there after wait().
+    [[nodiscard]] bool isDone(std::uint64_t most_ns = 0) const;
     void submitAndWait() {
         submit();
         wait();
     }
     [[nodiscard]] bool isUnderWay() const { return under_way_; }
-    // Of what was submitted: true once the device is done.
-    [[nodiscard]] bool isDone() const;
 
     // For anything that is not a pass: pictures that leave for a headset or a window. Between begin and submit.
     [[nodiscard]] const vk::raii::CommandBuffer& buffer() const { return command_buffer_; }

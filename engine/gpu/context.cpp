@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstring>
 #include <optional>
+#include <utility>
 
 namespace binosplat {
 namespace {
@@ -214,30 +215,20 @@ void Context::createDevice(const ContextOptions& options) {
         }
     }
     // What kernels ask for where it can be had, see lib/group.glsl.
+    const auto enable = [&]<typename Features>(const char* extension, Features& its) {
+        if (!hasDeviceExtension(extension)) { return; }
+        its = physical_device_.getFeatures2<vk::PhysicalDeviceFeatures2, Features>().template get<Features>();
+        its.pNext = std::exchange(features, &its);
+    };
     vk::PhysicalDeviceSubgroupSizeControlFeatures subgroups;
-    if (hasDeviceExtension(VK_EXT_SUBGROUP_SIZE_CONTROL_EXTENSION_NAME)) {
-        using Subgroups = vk::PhysicalDeviceSubgroupSizeControlFeatures;
-        subgroups = physical_device_.getFeatures2<vk::PhysicalDeviceFeatures2, Subgroups>().get<Subgroups>();
-        has_full_subgroups_ = subgroups.subgroupSizeControl && subgroups.computeFullSubgroups;
-        subgroups.pNext = features;
-        features = &subgroups;
-    }
+    enable(VK_EXT_SUBGROUP_SIZE_CONTROL_EXTENSION_NAME, subgroups);
+    has_full_subgroups_ = subgroups.subgroupSizeControl && subgroups.computeFullSubgroups;
     vk::PhysicalDeviceShaderSubgroupUniformControlFlowFeaturesKHR flow;
-    if (hasDeviceExtension(VK_KHR_SHADER_SUBGROUP_UNIFORM_CONTROL_FLOW_EXTENSION_NAME)) {
-        using Flow = vk::PhysicalDeviceShaderSubgroupUniformControlFlowFeaturesKHR;
-        flow = physical_device_.getFeatures2<vk::PhysicalDeviceFeatures2, Flow>().get<Flow>();
-        has_subgroup_uniform_flow_ = flow.shaderSubgroupUniformControlFlow == VK_TRUE;
-        flow.pNext = features;
-        features = &flow;
-    }
+    enable(VK_KHR_SHADER_SUBGROUP_UNIFORM_CONTROL_FLOW_EXTENSION_NAME, flow);
+    has_subgroup_uniform_flow_ = flow.shaderSubgroupUniformControlFlow == VK_TRUE;
     vk::PhysicalDevicePipelineExecutablePropertiesFeaturesKHR statistics;
-    if (hasDeviceExtension(VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME)) {
-        using Statistics = vk::PhysicalDevicePipelineExecutablePropertiesFeaturesKHR;
-        statistics = physical_device_.getFeatures2<vk::PhysicalDeviceFeatures2, Statistics>().get<Statistics>();
-        kernel_statistics_ = statistics.pipelineExecutableInfo == VK_TRUE;
-        statistics.pNext = features;
-        features = &statistics;
-    }
+    enable(VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME, statistics);
+    kernel_statistics_ = statistics.pipelineExecutableInfo == VK_TRUE;
     const vk::DeviceCreateInfo info({}, queue_info, {}, extensions, nullptr, features);
     const DeviceMaker& maker = options.maker;
     device_ = maker.create_device ? vk::raii::Device(physical_device_, maker.create_device(loader_->getDispatcher()->vkGetInstanceProcAddr,

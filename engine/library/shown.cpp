@@ -48,7 +48,7 @@ std::vector<Eye> eyesIn(const AskedFrame& asked, const bsp_scene_t* scene) {
 }  // namespace
 
 void ChangeUploads::bring(const GpuScene& scene) {
-    auto idle = std::ranges::find_if(commands_, [](const auto& commands) { return !commands->isUnderWay() || commands->isDone(); });
+    auto idle = std::ranges::find_if(commands_, [](const auto& commands) { return commands->isDone(); });
     if (idle == commands_.end()) { idle = commands_.insert(idle, std::make_unique<Commands>(context_)); }
     Commands& commands = **idle;
     commands.wait();
