@@ -24,7 +24,10 @@ public:
     Maker& wall(const glm::dvec3& corner, const glm::dvec3& a, const glm::dvec3& b, double per_square_metre = 250.0, double bumps = 0.0) {
         const glm::dvec3 normal = glm::normalize(glm::cross(a, b));
         const auto count = static_cast<int>(per_square_metre * glm::length(glm::cross(a, b)));
-        for (int i = 0; i < count; ++i) { add(corner + next() * a + next() * b + bumps * (next() - 0.5) * normal, normal); }
+        for (int i = 0; i < count; ++i) {
+            const double bump = bumps * (next() - 0.5), v = next(), u = next();
+            add(corner + u * a + v * b + bump * normal, normal);
+        }
         return *this;
     }
     // The sides, the top and, as the last one, the bottom of a box.
@@ -37,7 +40,8 @@ public:
     Maker& ball(const glm::dvec3& centre, double radius, int count) {
         std::normal_distribution<double> bell;
         for (int i = 0; i < count; ++i) {
-            const glm::dvec3 normal = glm::normalize(glm::dvec3(bell(random_), bell(random_), bell(random_)));
+            const double z = bell(random_), y = bell(random_), x = bell(random_);
+            const glm::dvec3 normal = glm::normalize(glm::dvec3(x, y, z));
             add(centre + radius * normal, normal);
         }
         return *this;
@@ -50,7 +54,7 @@ public:
     // One splat in fifty lies far away, or anywhere.
     Maker& floaters(double within) {
         for (std::size_t i = 0, count = scene_.size() / 49; i < count; ++i) {
-            add(within * (2.0 * glm::dvec3(next(), next(), next()) - 1.0), {0, 0, 1});
+            add(within * (2.0 * inUnitBox() - 1.0), {0, 0, 1});
             scene_.scales.back() = glm::vec2(0.2f);
         }
         return *this;
@@ -61,12 +65,17 @@ public:
     }
     // Splats anywhere in a box.
     Maker& fill(const glm::dvec3& low, const glm::dvec3& high, int count) {
-        for (int i = 0; i < count; ++i) { add(low + glm::dvec3(next(), next(), next()) * (high - low), {0, 1, 0}); }
+        for (int i = 0; i < count; ++i) { add(low + inUnitBox() * (high - low), {0, 1, 0}); }
         return *this;
     }
     [[nodiscard]] const Scene& scene() const { return scene_; }
 
 private:
+    // Numbers are drawn one by one: arguments are evaluated in an order that differs between processors.
+    glm::dvec3 inUnitBox() {
+        const double z = next(), y = next(), x = next();
+        return {x, y, z};
+    }
     double next() { return std::uniform_real_distribution<double>()(random_); }
     void add(const glm::dvec3& centre, const glm::dvec3& normal) {
         const glm::dvec3 across = glm::abs(normal.x) < 0.7 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
