@@ -38,7 +38,7 @@ try "info" saysTheSame info builtin:fence
 # With this machine's version of the C library: sines and powers of a newer one differ in last digits.
 system=build/arm64-root try "a scene's bytes" writesTheSame atelier.ply scene atelier --splats 20000 --out
 for kind in ply spz sog; do try "convert to $kind" writesTheSame "a.$kind" convert $tried/here/atelier.ply; done
-try "render" drawsAlike right.png render $tried/here/atelier.ply --size 64x64 --out %OUT/picture
+try "render" drawsAlike picture/right.png render $tried/here/atelier.ply --size 64x64 --out %OUT/picture
 printf 'size 256 256\nframes every 10\n' >$tried/ten.script
 try "view in the simulated headset" drawsAlike seen/frame_000010.png view builtin:fence --simulate $tried/ten.script --frames 10 --load-first --out %OUT/seen
 try "readers' suites" qemu-aarch64-static -L build/arm64-root build/arm64/bin/scene_tests
