@@ -226,6 +226,9 @@ typedef struct bsp_frame_info {
     uint32_t unused;
     double foveation_rad;  // within this angle of its gaze an eye sees all; farther out tiles may be coarse, as it would not see; 0: none
     double time_s;         // which scenes that move are shown at, in their loop
+    // temporal: tiles that are expected to be off by more than this PSNR in dB, such as 28, are rendered first, within
+    // the budget, and what is better than that is left as it is; up to 60; 0: no bound, the budget is spent
+    double error_bound_db;
 } bsp_frame_info;
 
 BSP_API bsp_result bsp_renderer_create(bsp_device device, bsp_renderer* renderer);

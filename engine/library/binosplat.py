@@ -82,7 +82,7 @@ class _FrameInfo(_Structure):
     _fields_ = _HEADER + [("scene", _PTR), ("views", ctypes.POINTER(_View)), ("view_count", _U32), ("mode", ctypes.c_int), ("flags", _U32),
                           ("budget", ctypes.c_double), ("near_depth", ctypes.c_double), ("background", _DOUBLES3),
                           ("instances", ctypes.POINTER(_Instance)), ("instance_count", _U32), ("unused", _U32), ("foveation_rad", ctypes.c_double),
-                          ("time_s", ctypes.c_double)]
+                          ("time_s", ctypes.c_double), ("error_bound_db", ctypes.c_double)]
 
 
 _MODES = {"predicted": 4, "two-pass": 1, "shared": 2, "paper": 3, "temporal": 5}
@@ -289,7 +289,7 @@ class Scene:
         start = self._properties
         return View.look_at(start.eye, start.look, start.up, fov_x, width, height)
 
-    def render(self, views, mode=None, background=(0, 0, 0), near=None, budget=0.2, cut=False, beside=(), time=0.0):
+    def render(self, views, mode=None, background=(0, 0, 0), near=None, budget=0.2, cut=False, beside=(), time=0.0, error_bound=0.0):
         """Draws views, all of one size.
 
         views: a View or a sequence of them. mode: None draws each by itself, in full. Otherwise views are one or two pairs of eyes, left and
@@ -298,6 +298,7 @@ class Scene:
         background: (3,) red, green, blue, as displayed. near: the nearest depth that is drawn; None: the scene's.
         beside: pairs of a Scene on the same device and a (4, 4) matrix of a rotation, a scale and a place, where it is drawn with this one.
         time: in seconds, of a live scene that moves.
+        error_bound: in dB, such as 28, for "temporal": tiles expected to be off by more are rendered first, within the budget. 0: no bound.
 
         Returns colour, (V, H, W, 4) float32: red, green, blue as displayed (not clamped) over the background, and alpha; and depth,
         (V, H, W) float32: along the camera's axis, the mean by what each splat adds to the pixel, 0 where there is nothing.
@@ -322,7 +323,7 @@ class Scene:
             frame = _FrameInfo(scene=None if placed else self._scene, views=array, view_count=step, mode=_MODES.get(mode, 0),
                                flags=_FLAG_DEPTH | _FLAG_SETTLED | (_FLAG_CUT if cut else 0), budget=budget if budget > 0 else -1.0,
                                near_depth=near or 0.0, background=background, instances=placed, instance_count=len(placed) if placed else 0,
-                               time_s=time)
+                               time_s=time, error_bound_db=error_bound)
             _check(_library.bsp_render(self._renderer, ctypes.byref(frame), None))
             for index in range(step):
                 _check(_library.bsp_read_colour(self._renderer, index, colour[first + index].ctypes.data, colour[0].size))

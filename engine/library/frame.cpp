@@ -59,6 +59,8 @@ FrameSettings settingsOf(const bsp_frame_info& frame, const AskedFrame& asked) {
     settings.half_floats = (frame.flags & BSP_FRAME_HALF_FLOATS) != 0;
     settings.stereo.budget = frame.budget == 0.0 ? kUsualBudget : std::max(frame.budget, 0.0);
     settings.stereo.move_cost = kDefaultMoveCost;
+    check(frame.error_bound_db >= 0.0 && frame.error_bound_db <= 60.0, "error_bound_db is {}, must be 0 to 60", frame.error_bound_db);
+    settings.stereo.error_bound_db = frame.error_bound_db;
     check(frame.foveation_rad >= 0.0 && frame.foveation_rad < std::numbers::pi, "foveation_rad is {}, must be 0 to pi",
           frame.foveation_rad);
     settings.half_periphery = frame.foveation_rad > 0.0;

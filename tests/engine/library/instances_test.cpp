@@ -226,6 +226,9 @@ TEST_CASE_FIXTURE(Opened, "scenes that cannot be drawn together, and placements 
     bsp_frame_info bad = frame;
     bad.foveation_rad = -1.0;
     refused(bad, {instanceOf(discs)}, "foveation_rad is -1");
+    bad = frame;
+    bad.error_bound_db = 61.0;
+    refused(bad, {instanceOf(discs)}, "error_bound_db is 61");
     // What was drawn before goes on.
     CHECK(rootMeanSquare(draw(*renderer, frame, viewsAt(), {instanceOf(discs)}),
                          draw(*renderer, frameOf(BSP_MODE_SHARED, discs.get()), viewsAt(), {})) == 0.0);
@@ -248,6 +251,29 @@ TEST_CASE_FIXTURE(Opened, "a frame with foveation is exact where the eye looks, 
     }
     CHECK(middle == 0.0);
     CHECK(all > 0.0);
+}
+
+TEST_CASE_FIXTURE(Opened, "an error bound leaves tiles that are good enough, and a higher one leaves fewer") {
+    const bsp::Scene room = load(makeBuiltin("builtin:atelier", 20000));
+    bsp_frame_info frame = frameOf(BSP_MODE_TEMPORAL, room.get());
+    frame.budget = 1.0;
+    std::vector<double> work;
+    for (const double bound : {15.0, 40.0, 0.0}) {
+        frame.error_bound_db = bound;
+        bsp::Renderer fresh(*device);
+        work.push_back(0.0);
+        for (int i = 0; i < 4; ++i) {
+            const bsp_scene_properties start = room.properties();
+            const double eye[]{start.eye[0] + 0.004 * i, start.eye[1], start.eye[2]};
+            const bsp::Views views = bsp::lookAt(eye, start.look, start.up, 0.063, 1.6, 256, 256);
+            frame.views = views.data();
+            frame.view_count = 2;
+            const double done = fresh.render(frame).work_rendered;
+            if (i > 0) { work.back() += done; }
+        }
+    }
+    CHECK(work[0] < 0.7 * work[1]);
+    CHECK(work[1] < 0.9 * work[2]);
 }
 
 TEST_CASE_FIXTURE(Opened, "a scene that moves shows the file of its time, alone and as an instance") {
