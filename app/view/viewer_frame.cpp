@@ -155,6 +155,7 @@ void Viewer::chooseThings(const WearerNow& wearer, const FrameViews& views) {
     if (state_.settings().hands) { sight.hands = wearer.hands; }
     sight.things = panel_.inRoom().rays(sight.eye, controls_.aimingHand(), meets_m);
     std::ranges::copy(controls_.things(sight.eye), std::back_inserter(sight.things));
+    sight.arc = controls_.arc();
     sight.vignette_m = vignette_.widthMetres(views.eyes);
     showMessage(sight, wearer.step_seconds);
     headset().things.choose(sight);
@@ -166,10 +167,10 @@ void Viewer::probeScene() {
         if (!state_.settings().hands) { break; }  // hidden hands point at nothing
         if (const std::optional<Pose> aim = panel_.inRoom().missesWith(h)) { paths[static_cast<std::size_t>(h)] = probeRay(*aim); }
     }
-    if (const std::span<const glm::dvec3> arc = controls_.arc(); controls_.aimingHand() && arc.size() > 1) {
+    if (const Arc* const arc = controls_.arc(); controls_.aimingHand() && arc != nullptr) {
         ProbePath& path = paths[static_cast<std::size_t>(*controls_.aimingHand())].emplace();
         for (std::size_t i = 0; i < path.size(); ++i) {
-            path[i] = pointAlong(arc, static_cast<double>(i) / static_cast<double>(path.size() - 1));
+            path[i] = pointAlong(arc->points, static_cast<double>(i) / static_cast<double>(path.size() - 1));
         }
     }
     paths_seen_ = probe_.ask(paths);

@@ -15,18 +15,22 @@ constexpr double kHandleWidthMetres = 0.035, kHandleBehindMetres = 0.07, kHandle
 const glm::dvec3 kMessagePlace(0.0, 0.28, 1.0);
 constexpr double kMessageMetres = 0.8;
 constexpr std::size_t kTexelsOfUpdate = 16384;  // that fit into one update of a command buffer
+// What goes on without, if the runtime fails.
+constexpr const char *kHands = "pictures of hands", *kArcs = "arcs", *kMessages = "messages before the eyes";
 
 }  // namespace
 
 RoomThings::RoomThings(const xr::Session& session, const Context& context, vk::Format format)
     : session_(session), context_(context), format_(format), troubles_(session.instance().troubles()), layout_(texelLayoutOf(format)) {
     if (!troubles_.tryFor("rays, controllers and the vignette", [&] { makeSheet(session, context, format); })) { sheet_ = {}; }
+    const auto make = [&](DrawnImage& image, const char* name, glm::uvec2 size_px) {
+        image.images = xr::Swapchain(session, name, size_px, format, xr::ImageUse::kDraw);
+        image.texels = Buffer(context, name, std::uint64_t{size_px.x} * size_px.y * sizeof(std::uint32_t));
+    };
+    troubles_.tryFor(kArcs, [&] { make(arc_, "an arc", kArcPx); });
     if (!session.instance().tracksHands()) { return; }
-    for (HandImage& hand : hands_) {
-        troubles_.tryFor("pictures of hands", [&] {
-            hand.images = xr::Swapchain(session, "a hand", kHandPicturePx, format, xr::ImageUse::kDraw);
-            hand.texels = Buffer(context, "a hand", std::uint64_t{kHandPicturePx.x} * kHandPicturePx.y * sizeof(std::uint32_t));
-        });
+    for (DrawnImage& hand : hands_) {
+        troubles_.tryFor(kHands, [&] { make(hand, "a hand", kHandPicturePx); });
     }
 }
 
@@ -47,6 +51,7 @@ void RoomThings::giveUp() {
     quads_.clear();
     vignette_.reset();
     hands_ = {};
+    arc_ = {};
     message_ = {};
     sheet_ = {};
 }
@@ -76,13 +81,14 @@ void RoomThings::choose(const RoomSight& sight) {
         vignette_->follows_head = true;
     }
     for (std::size_t h = 0; sight.hands && h < 2; ++h) { chooseHand((*sight.hands)[h], hands_[h], sight.eye); }
+    if (sight.arc != nullptr) { chooseArc(*sight.arc, sight.eye); }
     for (const Thing& thing : sight.things) { add(thing); }
     if (sight.has_message) { chooseMessage(sight.message); }
 }
 
 void RoomThings::chooseMessage(const std::optional<TexelPicture>& picture) {
     if (picture) {
-        const bool is_there = troubles_.tryFor("messages before the eyes", [&] {
+        const bool is_there = troubles_.tryFor(kMessages, [&] {
             if (message_.texels.bytes() == 0) {
                 message_.images = xr::Swapchain(session_, "a message", picture->size_px, format_, xr::ImageUse::kDraw);
                 message_.texels = Buffer(context_, "a message", picture->texels.size() * sizeof(std::uint32_t));
@@ -104,9 +110,24 @@ void RoomThings::chooseMessage(const std::optional<TexelPicture>& picture) {
                       "a message"});
 }
 
-void RoomThings::chooseHand(const xr::Hand& hand, HandImage& image, const glm::dvec3& eye) {
+void RoomThings::chooseArc(const Arc& arc, const glm::dvec3& eye) {
+    if (arc_.texels.bytes() == 0) { return; }
+    if (!troubles_.tryFor(kArcs, [&] { arc_.now = arc_.images.acquire(); })) {
+        arc_ = {};
+        return;
+    }
+    ArcPicture drawn = drawArc(arc, eye, layout_);
+    arc_.picture = std::move(drawn.picture);
+    for (std::size_t i = 0; i < kArcPieces; ++i) {
+        const auto& place = drawn.places[i];
+        const glm::uvec2 from_px(static_cast<std::uint32_t>(i) * kArcPiecePx.x, 0);
+        if (place) { quads_.push_back({place->room_from_strip, place->size_m, &arc_.images, from_px, kArcPiecePx, false, "an arc"}); }
+    }
+}
+
+void RoomThings::chooseHand(const xr::Hand& hand, DrawnImage& image, const glm::dvec3& eye) {
     const bool has_picture = hand.joints && image.texels.bytes() > 0;
-    if (has_picture && troubles_.tryFor("pictures of hands", [&] { image.now = image.images.acquire(); })) {
+    if (has_picture && troubles_.tryFor(kHands, [&] { image.now = image.images.acquire(); })) {
         const Strip place = handPicturePlace(*hand.joints, eye);
         image.picture = drawHand(*hand.joints, place, eye, layout_);
         quads_.push_back({place.room_from_strip, place.size_m, &image.images, {0, 0}, kHandPicturePx, false, "a hand"});
@@ -126,7 +147,7 @@ void RoomThings::chooseHand(const xr::Hand& hand, HandImage& image, const glm::d
 }
 
 void RoomThings::record(Commands& commands) {
-    for (HandImage* image : {&hands_[kLeft], &hands_[kRight], &message_}) {
+    for (DrawnImage* image : drawnImages()) {
         if (!image->now) { continue; }
         const std::vector<std::uint32_t>& texels = image->picture.texels;
         for (std::size_t from = 0; from < texels.size(); from += kTexelsOfUpdate) {
@@ -138,8 +159,8 @@ void RoomThings::record(Commands& commands) {
 }
 
 void RoomThings::release() {
-    for (HandImage* image : {&hands_[kLeft], &hands_[kRight], &message_}) {
-        const char* const what = image == &message_ ? "messages before the eyes" : "pictures of hands";
+    for (DrawnImage* image : drawnImages()) {
+        const char* const what = image == &message_ ? kMessages : image == &arc_ ? kArcs : kHands;
         if (!std::exchange(image->now, nullptr) || troubles_.tryFor(what, [&] { image->images.release(); })) { continue; }
         std::erase_if(quads_, [&](const xr::LayerQuad& quad) { return quad.swapchain == &image->images; });
         *image = {};

@@ -2,6 +2,7 @@
 // which the runtime blends over the scene, so that our frames take no longer for them.
 #pragma once
 
+#include "app/view/room/arc_picture.h"
 #include "app/view/room/hand_picture.h"
 #include "engine/gpu/commands.h"
 #include "xr/input.h"
@@ -14,14 +15,15 @@ struct RoomSight {
     glm::dvec3 eye{0.0};                           // the middle between the wearer's eyes
     std::optional<std::array<xr::Hand, 2>> hands;  // absent: not to be drawn
     std::vector<Thing> things;                     // rays and others
+    const Arc* arc = nullptr;                      // of a throw; null: none
     std::optional<double> vignette_m;              // its width
     // A line of text before the head: drawn anew if there is a picture, else as it was.
     bool has_message = false;
     std::optional<TexelPicture> message;
 };
 
-// All of them fit into the 16 layers that every runtime takes: the vignette, two parts of each controller, a ray, the arc and its end, a
-// message.
+// All of them fit into the 16 layers that every runtime takes: the vignette, two parts of each controller, a ray, the arc's pieces and
+// its end, a message.
 class RoomThings {
 public:
     // For the session's lifetime, with images of `format`. Things whose images the runtime cannot make are not drawn: see xr::Troubles.
@@ -46,15 +48,17 @@ public:
     void addBeforePanel(xr::Layers& layers) const;
 
 private:
-    struct HandImage {
+    struct DrawnImage {
         xr::Swapchain images;
         Buffer texels;
         vk::Image now;         // of this frame; null: not acquired
         TexelPicture picture;  // of this frame
     };
+    [[nodiscard]] std::array<DrawnImage*, 4> drawnImages() { return {&hands_[kLeft], &hands_[kRight], &arc_, &message_}; }
     void chooseMessage(const std::optional<TexelPicture>& picture);
     void makeSheet(const xr::Session& session, const Context& context, vk::Format format);
-    void chooseHand(const xr::Hand& hand, HandImage& image, const glm::dvec3& eye);
+    void chooseHand(const xr::Hand& hand, DrawnImage& image, const glm::dvec3& eye);
+    void chooseArc(const Arc& arc, const glm::dvec3& eye);
     [[nodiscard]] xr::LayerQuad quadOf(const Thing& thing) const;
     void add(const Thing& thing);
 
@@ -64,8 +68,9 @@ private:
     xr::Troubles& troubles_;
     TexelLayout layout_;
     xr::Swapchain sheet_;  // none: nothing is drawn from it
-    std::array<HandImage, 2> hands_;
-    HandImage message_;                 // once there was one
+    std::array<DrawnImage, 2> hands_;
+    DrawnImage arc_;
+    DrawnImage message_;                // once there was one
     std::vector<xr::LayerQuad> quads_;  // before the panel
     std::optional<xr::LayerQuad> vignette_;
 };

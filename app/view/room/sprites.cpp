@@ -16,8 +16,7 @@ using Format = vk::Format;
 constexpr glm::uvec2 kSheetPx(512, 256);
 // Filters read a texel beyond the edge. Pictures are more than two rims apart.
 constexpr glm::uvec2 kRimPx(2, 2);
-constexpr glm::dvec3 kRayLight(1.0, 0.7, 0.1), kTargetLight(0.2, 0.8, 1.0), kBlockedLight(1.0, 0.05, 0.02), kHandleLight(0.16, 0.17, 0.2),
-    kKnobLight(0.35, 0.38, 0.42);
+constexpr glm::dvec3 kTargetLight(0.2, 0.8, 1.0), kHandleLight(0.16, 0.17, 0.2), kKnobLight(0.35, 0.38, 0.42);
 constexpr double kVignetteAlpha = 0.92;
 constexpr unsigned kShadePx = 8;
 
@@ -93,7 +92,7 @@ const char* nameOf(Sprite sprite) {
     switch (sprite) {
         case Sprite::kRay:
         case Sprite::kFadingRay:
-            return "a ray or an arc";
+            return "a ray";
         case Sprite::kHandle:
         case Sprite::kKnob:
             return "a controller";

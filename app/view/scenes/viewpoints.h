@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/geometry.h"
+#include "engine/scene/scene.h"
 #include "engine/similarity.h"
 
 #include <cstddef>

@@ -12,7 +12,7 @@ namespace binosplat {
 namespace {
 
 constexpr double kThrowMetresPerSecond = 7.0, kFallMetresPerSecond2 = 9.8;
-constexpr double kArcWidthMetres = 0.012, kTargetMetres = 0.5, kAboveFloorMetres = 0.01;
+constexpr double kTargetMetres = 0.5, kAboveFloorMetres = 0.01;
 // If the runtime knows no floor: its distance below the head of a wearer who stands at the start.
 constexpr double kUsualFloorMetres = 1.6;
 
@@ -35,16 +35,17 @@ TeleportAim aimTeleport(const Pose& room_from_aim, double floor_m) {
     // height = start.y t + fall t^2 / 2
     const double seconds = (-start.y + std::sqrt(start.y * start.y + 2.0 * kFallMetresPerSecond2 * height_m)) / kFallMetresPerSecond2;
     TeleportAim aim;
-    for (std::size_t i = 0; i <= kTeleportStrips; ++i) {
-        const double t = seconds * static_cast<double>(i) / static_cast<double>(kTeleportStrips);
-        aim.arc.push_back(from + t * start + 0.5 * t * t * fall);
+    constexpr std::size_t kLast = kArcPieces * kPointsOfPiece;
+    for (std::size_t i = 0; i <= kLast; ++i) {
+        const double t = seconds * static_cast<double>(i) / static_cast<double>(kLast);
+        aim.arc.points.push_back(from + t * start + 0.5 * t * t * fall);
     }
-    aim.target = aim.arc.back();
+    aim.target = aim.arc.points.back();
     return aim;
 }
 
 void Teleport::update(const WearerNow& now, const PanelInRoom& panel, ViewState& state) {
-    const std::optional<glm::dvec3> target = std::exchange(aim_, {}).target;
+    const TeleportAim before = std::exchange(aim_, {});
     if (!state.settings().teleport) {
         aiming_.reset();
         return;
@@ -58,8 +59,8 @@ void Teleport::update(const WearerNow& now, const PanelInRoom& panel, ViewState&
     };
     if (aiming_ && !aims(*aiming_)) {
         // A hand that lost tracking did not let go.
-        if (now.hands[static_cast<std::size_t>(*aiming_)].aim && target && !is_blocked_) {
-            glm::dvec3 step_m = *target - now.room_from_head.position;
+        if (now.hands[static_cast<std::size_t>(*aiming_)].aim && before.target && !before.arc.is_blocked) {
+            glm::dvec3 step_m = *before.target - now.room_from_head.position;
             step_m.y = 0.0;
             state.place(movedBy(state.sceneFromRoom(), step_m));
         }
@@ -68,20 +69,16 @@ void Teleport::update(const WearerNow& now, const PanelInRoom& panel, ViewState&
     for (const int h : {kRight, kLeft}) {
         if (!aiming_ && aims(h)) { aiming_ = h; }
     }
-    if (aiming_) { aim_ = aimTeleport(*now.hands[static_cast<std::size_t>(*aiming_)].aim, now.floor_m.value_or(kUsualFloorMetres)); }
-    is_blocked_ = aiming_ && isBlocked(now.paths[static_cast<std::size_t>(*aiming_)], aim_.arc);
+    if (!aiming_) { return; }
+    const auto hand = static_cast<std::size_t>(*aiming_);
+    aim_ = aimTeleport(*now.hands[hand].aim, now.floor_m.value_or(kUsualFloorMetres));
+    aim_.arc.is_blocked = isBlocked(now.paths[hand], aim_.arc.points);
 }
 
-std::vector<Thing> Teleport::things(const glm::dvec3& eye) const {
-    std::vector<Thing> things;
-    for (std::size_t i = 0; i + 1 < aim_.arc.size(); ++i) {
-        if (const auto strip = stripBetween(aim_.arc[i], aim_.arc[i + 1], kArcWidthMetres, eye)) {
-            things.push_back({Sprite::kRay, *strip});
-        }
-    }
-    const Sprite end = is_blocked_ ? Sprite::kBlocked : Sprite::kTarget;
-    if (aim_.target) { things.push_back({end, lying(*aim_.target - glm::dvec3(0.0, kAboveFloorMetres, 0.0), kTargetMetres)}); }
-    return things;
+std::vector<Thing> Teleport::things(const glm::dvec3&) const {
+    if (!aim_.target) { return {}; }
+    const Strip end = lying(*aim_.target - glm::dvec3(0.0, kAboveFloorMetres, 0.0), kTargetMetres);
+    return {{aim_.arc.is_blocked ? Sprite::kBlocked : Sprite::kTarget, end}};
 }
 
 }  // namespace binosplat

@@ -6,10 +6,9 @@
 namespace binosplat {
 
 struct TeleportAim {
-    std::vector<glm::dvec3> arc;       // from the hand to the floor, kTeleportStrips + 1 points
+    Arc arc;                           // from the hand to the floor
     std::optional<glm::dvec3> target;  // on the floor; empty: the hand is below it, and there is no arc
 };
-constexpr std::size_t kTeleportStrips = 6;
 
 // The arc of something thrown from the hand along its aim: the higher it points, the farther, up to some six metres. The floor's y is
 // `floor_m`.
@@ -21,8 +20,8 @@ class Teleport : public WearerTool {
 public:
     void update(const WearerNow& now, const PanelInRoom& panel, ViewState& state) override;
     [[nodiscard]] std::optional<int> aimingHand() const override { return aiming_; }
-    [[nodiscard]] std::span<const glm::dvec3> arc() const override { return aim_.arc; }
-    // The arc and its end, which is red where one cannot stand.
+    [[nodiscard]] const Arc* arc() const override { return aim_.target ? &aim_.arc : nullptr; }
+    // The arc's end, which is red where one cannot stand.
     [[nodiscard]] std::vector<Thing> things(const glm::dvec3& eye) const override;
     [[nodiscard]] std::vector<ToolChoice> choices() const override {
         return {{"Left stick", {"Walk", "Teleport"}, &ViewSettings::teleport}};
@@ -31,7 +30,6 @@ public:
 private:
     std::optional<int> aiming_;
     TeleportAim aim_;
-    bool is_blocked_ = false;  // something stands in the arc's way, or before its end
 };
 
 }  // namespace binosplat

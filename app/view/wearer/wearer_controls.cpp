@@ -79,11 +79,11 @@ std::optional<int> WearerControls::aimingHand() const {
     return {};
 }
 
-std::span<const glm::dvec3> WearerControls::arc() const {
+const Arc* WearerControls::arc() const {
     for (const auto& tool : tools_) {
-        if (const std::span<const glm::dvec3> arc = tool->arc(); !arc.empty()) { return arc; }
+        if (const Arc* const arc = tool->arc(); arc != nullptr) { return arc; }
     }
-    return {};
+    return nullptr;
 }
 
 std::vector<Thing> WearerControls::things(const glm::dvec3& eye) const {

@@ -23,7 +23,7 @@ public:
     void letGo();
     [[nodiscard]] bool isMoving() const;
     [[nodiscard]] std::optional<int> aimingHand() const;
-    [[nodiscard]] std::span<const glm::dvec3> arc() const;
+    [[nodiscard]] const Arc* arc() const;
     [[nodiscard]] std::vector<Thing> things(const glm::dvec3& eye) const;
     [[nodiscard]] std::vector<ToolChoice> choices() const;
 

@@ -1,6 +1,7 @@
 // The wearer's tools: walking, teleporting, turning, holding the scene.
 #pragma once
 
+#include "app/view/room/arc_picture.h"
 #include "app/view/room/panel_in_room.h"
 #include "app/view/room/scene_probe.h"
 #include "app/view/settings/view_state.h"
@@ -42,8 +43,8 @@ public:
     [[nodiscard]] virtual bool isMoving() const { return false; }
     // The hand for which it draws a ray of its own.
     [[nodiscard]] virtual std::optional<int> aimingHand() const { return {}; }
-    // The arc that it draws for that hand, in the room.
-    [[nodiscard]] virtual std::span<const glm::dvec3> arc() const { return {}; }
+    // The arc that is drawn for that hand, in the room; null: none.
+    [[nodiscard]] virtual const Arc* arc() const { return nullptr; }
     // The tool's things in the room, as an eye at that place sees them.
     [[nodiscard]] virtual std::vector<Thing> things(const glm::dvec3&) const { return {}; }
     // The tool's choices on the panel.

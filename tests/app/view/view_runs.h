@@ -134,7 +134,7 @@ struct ViewRun {
     [[nodiscard]] std::vector<nlohmann::json> rays(std::size_t frame) const {
         return quadsWhere(frame, [](const nlohmann::json& quad) { return quad.at("size").at(0) < 0.01; });
     }
-    // Of this width in metres: hands as their joints are, parts of controllers, the strips of an arc, where one will stand.
+    // Of this width in metres: hands as their joints are, parts of controllers, where one will stand.
     [[nodiscard]] std::vector<nlohmann::json> quadsAsWide(std::size_t frame, double width_m) const {
         return quadsWhere(frame, [&](const nlohmann::json& quad) {
             return quad.at("space") != "VIEW" && std::abs(quad.at("size").at(0).get<double>() - width_m) < 1e-4;

@@ -160,7 +160,7 @@ TEST_CASE("what only decorates and fails is said once and done without, and a fi
                     "xrGetDisplayRefreshRateFB" + lacks + "the display's refresh rate",
                     "refresh-rate is 72, this headset refuses it (XR_ERROR_FUNCTION_UNSUPPORTED)",
                     "xrEnumerateReferenceSpaces" + failed + "the stage's floor", "xrCreateActionSpace" + failed + "eye tracking",
-                    "xrEndFrame" + failed + "hands, rays and the vignette: it refuses a ray or an arc"});
+                    "xrEndFrame" + failed + "hands, rays and the vignette: it refuses a ray"});
     // The panel is the first to get its images; what hangs beside it gets none. And of a program that crashes each line was written.
     const ViewRun crash = runFaulty("crash",
                                     "xrCreateSwapchain:-2:1:1,xrCreateHandTrackerEXT:missing,xrEnumerateDisplayRefreshRatesFB:missing,"

@@ -206,6 +206,8 @@ TEST_CASE_FIXTURE(Wearer, "one does not teleport to where the arc would lead thr
         const std::vector<Thing> things = controls.things(glm::dvec3(0.0));
         REQUIRE(!things.empty());
         CHECK(things.back().sprite == (is_blocked ? Sprite::kBlocked : Sprite::kTarget));
+        REQUIRE(controls.arc() != nullptr);
+        CHECK(controls.arc()->is_blocked == is_blocked);
         now.hands[kRight].clicks = false;
         update();
         CHECK((place() == before) == is_blocked);
@@ -216,9 +218,10 @@ TEST_CASE("a throw lands on the floor, where physics puts it") {
     // 7 m/s straight ahead from 1.2 m: it falls for sqrt(2 h / g).
     const TeleportAim level = aimTeleport({{1, 0, 0, 0}, {0.2, 0.4, 0.3}}, 1.6);
     REQUIRE(level.target.has_value());
-    CHECK(these(level.target->y, level.target->x, level.target->z, level.arc.size()) ==
-          these(doctest::Approx(1.6), doctest::Approx(0.2), doctest::Approx(0.3 + 7.0 * std::sqrt(2.0 * 1.2 / 9.8)), kTeleportStrips + 1));
-    CHECK(glm::distance(level.arc.front(), glm::dvec3(0.2, 0.4, 0.3)) < 1e-12);
+    CHECK(these(level.target->y, level.target->x, level.target->z, level.arc.points.size()) ==
+          these(doctest::Approx(1.6), doctest::Approx(0.2), doctest::Approx(0.3 + 7.0 * std::sqrt(2.0 * 1.2 / 9.8)),
+                kArcPieces * kPointsOfPiece + 1));
+    CHECK(glm::distance(level.arc.points.front(), glm::dvec3(0.2, 0.4, 0.3)) < 1e-12);
     // Upwards it flies farther, and down at one's feet not at all.
     const auto reach = [](double up_rad) {
         const TeleportAim aim = aimTeleport({glm::angleAxis(up_rad, glm::dvec3(1, 0, 0)), {0.0, 0.4, 0.0}}, 1.6);
