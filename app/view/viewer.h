@@ -51,8 +51,8 @@ private:
     void recordPanel(Commands& commands);
     // With the wearer's settings or, if memory is short, the previous ones; false: the scene is not shown in this frame.
     bool prepareScene(FrameViews& views);
-    // Asks where the rays and the arc meet the scene.
-    void probeScene();
+    // Asks where the rays and the arc meet the scene, and where the ground is.
+    void probeScene(double feet_m);
     void recordProbe(Commands& commands);
     // Chooses hands, rays and other things in the room for this frame.
     void chooseThings(const WearerNow& wearer, const FrameViews& views);
@@ -73,6 +73,7 @@ private:
     void openAndSave(const PanelRequests& requests);
     // The wearer's place in numbers, and changes to it.
     [[nodiscard]] ShownPlace shownPlace() const;
+    [[nodiscard]] std::optional<double> sceneFloorMetres() const;
     void movePlace(const PanelRequests& requests);
     void goToViewpoint(int step);
     void keepViewpointHere();
@@ -112,7 +113,7 @@ private:
     GazeFollower gaze_;
     Commands commands_;
     SceneProbe probe_;
-    std::array<PathSeen, 2> paths_seen_{};  // where hands point, by hand
+    ProbesSeen probes_seen_;  // where hands point, and the ground
     PictureWriter pictures_;
     bool picture_asked_ = false;  // for the next frame
     std::uint64_t frames_of_scene_ = 0;

@@ -13,6 +13,8 @@ void Viewer::takeScene() {
     if (!complaint.empty()) { say(complaint); }
     if (scenes_.get() == before) { return; }
     renderer_.forgetScene();
+    probe_.forget();
+    controls_.letGo();
     is_new_view_ = before != nullptr;
     if (before == nullptr) { fade_ = {}; }  // there was nothing to jump from
     viewpoint_.reset();

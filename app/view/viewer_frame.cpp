@@ -3,6 +3,7 @@
 
 #include "app/view/panel/message_picture.h"
 #include "app/view/placement/view_eyes.h"
+#include "app/view/wearer/follow_ground.h"
 #include "engine/error.h"
 
 #include <algorithm>
@@ -56,9 +57,11 @@ void Viewer::drawFrame() {
     FrameViews& views = *located;
     room_from_head_ = views.room_from_head;
     const double step_seconds = headset().session.stepSeconds();
-    const WearerNow wearer{headset().input.read(), room_from_head_, headset().session.floorBelowMetres(), step_seconds, paths_seen_};
+    WearerNow wearer{headset().input.read(), room_from_head_, headset().session.floorBelowMetres(), step_seconds, probes_seen_.hands};
+    wearer.ground_scene = std::move(probes_seen_.ground);
+    wearer.scene_floor_m = sceneFloorMetres();
     controls_.update(wearer, panel_.inRoom(), state_);
-    probeScene();
+    probeScene(wearer.floor_m.value_or(kUsualFloorMetres));
     if (const double clear_deg = state_.settings().stereo.foveation_deg; clear_deg > 0.0 && !views.insets) {
         views.gazes = gaze_.update(headset().input.gaze(), views.room_from_eyes, glm::radians(clear_deg), step_seconds);
     } else {
@@ -148,7 +151,7 @@ void Viewer::chooseThings(const WearerNow& wearer, const FrameViews& views) {
     vignette_.update(state_.settings().vignette && controls_.isMoving(), wearer.step_seconds);
     std::array<std::optional<double>, 2> meets_m;
     for (std::size_t h = 0; h < 2 && !controls_.aimingHand(); ++h) {
-        if (paths_seen_[h].meets) { meets_m[h] = probeMetres(*paths_seen_[h].meets); }
+        if (probes_seen_.hands[h].meets) { meets_m[h] = probeMetres(*probes_seen_.hands[h].meets); }
     }
     RoomSight sight;
     sight.eye = wearer.room_from_head.position;
@@ -161,8 +164,9 @@ void Viewer::chooseThings(const WearerNow& wearer, const FrameViews& views) {
     headset().things.choose(sight);
 }
 
-void Viewer::probeScene() {
-    std::array<std::optional<ProbePath>, 2> paths;
+void Viewer::probeScene(double feet_m) {
+    std::array<std::optional<ProbePath>, kProbePaths> paths;
+    if (state_.settings().follow_ground) { paths[kGroundPath] = groundAhead(room_from_head_, feet_m); }
     for (const int h : {kLeft, kRight}) {
         if (!state_.settings().hands) { break; }  // hidden hands point at nothing
         if (const std::optional<Pose> aim = panel_.inRoom().missesWith(h)) { paths[static_cast<std::size_t>(h)] = probeRay(*aim); }
@@ -173,7 +177,7 @@ void Viewer::probeScene() {
             path[i] = pointAlong(arc->points, static_cast<double>(i) / static_cast<double>(path.size() - 1));
         }
     }
-    paths_seen_ = probe_.ask(paths);
+    probes_seen_ = probe_.ask(paths);
 }
 
 void Viewer::recordProbe(Commands& commands) {

@@ -62,24 +62,31 @@ PathSeen followPath(const std::array<std::optional<double>, kProbePoints>& point
 }
 
 SceneProbe::Asked::Asked(const Context& context)
-    : found(context, "depth where hands point", 2 * kProbePoints * kPointBytes, MemoryKind::kReadback) {}
+    : found(context, "depth where hands point", kProbePaths * kProbePoints * kPointBytes, MemoryKind::kReadback) {}
 
 SceneProbe::SceneProbe(const Context& context) : asked_{Asked(context), Asked(context), Asked(context), Asked(context)} {}
 
-std::array<PathSeen, 2> SceneProbe::ask(const std::array<std::optional<ProbePath>, 2>& paths) {
+void SceneProbe::forget() {
+    for (Asked& asked : asked_) { asked.is_recorded = false; }
+}
+
+ProbesSeen SceneProbe::ask(const std::array<std::optional<ProbePath>, kProbePaths>& paths) {
     turn_ = (turn_ + 1) % asked_.size();
     asked_[turn_].paths = paths;
     asked_[turn_].is_recorded = false;
     // A frame waits for the one before the last.
     const Asked& done = asked_[(turn_ + 1) % asked_.size()];
-    std::array<PathSeen, 2> seen;
-    for (std::size_t h = 0; h < 2 && done.is_recorded; ++h) {
+    ProbesSeen seen;
+    for (std::size_t p = 0; p < kProbePaths && done.is_recorded; ++p) {
         std::array<std::optional<double>, kProbePoints> points_m, seen_m;
         for (std::size_t i = 0; i < kProbePoints; ++i) {
-            points_m[i] = done.depths_m[h * kProbePoints + i];
-            if (points_m[i]) { seen_m[i] = depthIn(done, h * kProbePoints + i); }
+            points_m[i] = done.depths_m[p * kProbePoints + i];
+            if (points_m[i]) { seen_m[i] = depthIn(done, p * kProbePoints + i); }
+            if (p != kGroundPath || !seen_m[i]) { continue; }
+            const glm::dvec3& eye = done.scene_from_eye.position;
+            seen.ground.push_back(eye + *seen_m[i] / *points_m[i] * (transform(done.scene_from_room, (*done.paths[p])[i]) - eye));
         }
-        seen[h] = followPath(points_m, seen_m);
+        if (p != kGroundPath) { seen.hands[p] = followPath(points_m, seen_m); }
     }
     return seen;
 }
@@ -88,7 +95,8 @@ void SceneProbe::record(Commands& commands, const Picture& picture, const Eye& e
     Asked& asked = asked_[turn_];
     asked.half_floats = picture.half_floats;
     asked.has_words = picture.words.bytes() > 0;
-    asked.units_per_metre = scene_from_room.scale;
+    asked.scene_from_eye = eye.world_from_camera;
+    asked.scene_from_room = scene_from_room;
     asked.depths_m = {};
     const Buffer& depths = asked.has_words ? picture.words : picture.depths;
     std::vector<vk::BufferCopy> colours_of, depths_of;
@@ -100,7 +108,7 @@ void SceneProbe::record(Commands& commands, const Picture& picture, const Eye& e
         if (!isInPicture(eye, at)) { continue; }
         const glm::uvec2 pixel(eye.intrinsics.fx * at.x / at.z + eye.intrinsics.cx, eye.intrinsics.fy * at.y / at.z + eye.intrinsics.cy);
         if (glm::any(glm::greaterThanEqual(pixel, picture.size_px))) { continue; }
-        asked.depths_m[p] = at.z / asked.units_per_metre;
+        asked.depths_m[p] = at.z / scene_from_room.scale;
         const std::uint64_t index = std::uint64_t{pixel.y} * picture.size_px.x + pixel.x;
         colours_of.emplace_back(index * colour_bytes, p * kPointBytes, colour_bytes);
         depths_of.emplace_back(index * sizeof(gpu::uint), p * kPointBytes + kDepthByte, sizeof(gpu::uint));
@@ -118,7 +126,7 @@ std::optional<double> SceneProbe::depthIn(const Asked& asked, std::size_t point)
     if (alpha < 0.5f || word == 0) { return std::nullopt; }
     const double units = asked.has_words ? 1.0 / static_cast<double>(std::bit_cast<float>(((word >> 6) - 1) << 5))  // lib/moving_pixel.glsl
                                          : static_cast<double>(std::bit_cast<float>(word)) / static_cast<double>(alpha);
-    return units / asked.units_per_metre;
+    return units / asked.scene_from_room.scale;
 }
 
 }  // namespace binosplat

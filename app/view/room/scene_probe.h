@@ -8,10 +8,13 @@
 #include <array>
 #include <optional>
 #include <span>
+#include <vector>
 
 namespace binosplat {
 
 inline constexpr std::size_t kProbePoints = 24;
+// Of both hands, by hand, and points where the ground may be.
+inline constexpr std::size_t kProbePaths = 3, kGroundPath = 2;
 using ProbePath = std::array<glm::dvec3, kProbePoints>;  // in the room, from a hand on
 
 // Of a path, as an eye sees it.
@@ -19,6 +22,11 @@ struct PathSeen {
     // The point at which it first meets something, between points as a fraction; empty: none, or none that is seen.
     std::optional<double> meets;
     bool is_hidden = false;  // some of it lies far behind something
+};
+
+struct ProbesSeen {
+    std::array<PathSeen, 2> hands;
+    std::vector<glm::dvec3> ground;  // what the eye sees in the direction of its points, in the scene
 };
 
 // Points along a ray, nearer ones closer together.
@@ -37,8 +45,10 @@ class SceneProbe {
 public:
     explicit SceneProbe(const Context& context);
 
-    // Once a frame, before it is recorded: the paths of both hands in it, and what is known of those of three frames ago.
-    std::array<PathSeen, 2> ask(const std::array<std::optional<ProbePath>, 2>& paths);
+    // Once a frame, before it is recorded: the paths in it, and what is known of those of three frames ago.
+    ProbesSeen ask(const std::array<std::optional<ProbePath>, kProbePaths>& paths);
+    // Another scene is shown: what was asked before is of no use.
+    void forget();
     // Within the frame's commands, after its pictures; may be repeated. The scene is `scene_from_room`, the picture that of `eye`. Pictures
     // without depth tell nothing.
     void record(Commands& commands, const Picture& picture, const Eye& eye, const Similarity& scene_from_room);
@@ -47,9 +57,10 @@ private:
     struct Asked {
         explicit Asked(const Context& context);
         Buffer found;
-        std::array<std::optional<ProbePath>, 2> paths;
-        std::array<std::optional<double>, 2 * kProbePoints> depths_m;  // of the points themselves, where they are in the picture
-        double units_per_metre = 1.0;
+        std::array<std::optional<ProbePath>, kProbePaths> paths;
+        Pose scene_from_eye;
+        Similarity scene_from_room;
+        std::array<std::optional<double>, kProbePaths * kProbePoints> depths_m;  // of the points themselves, where they are in the picture
         bool is_recorded = false, half_floats = false, has_words = false;
     };
     [[nodiscard]] static std::optional<double> depthIn(const Asked& asked, std::size_t point);

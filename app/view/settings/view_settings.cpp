@@ -77,6 +77,7 @@ std::span<const OptionRow<ViewSettings>> viewSettingsRows() {
         row("locomotion", "KIND", "what the left stick does", field::named<&S::teleport>({"walk", "teleport"})),
         row("turn", "KIND", "how the right stick turns: by 30 degrees at a time, or smoothly",
             field::named<&S::smooth_turn>({"snap", "smooth"})),
+        row("follow-ground", "", "stand on the scene's ground wherever one goes", field::flag<&S::follow_ground>()),
         row("backdrop", "COLOUR", "colour behind the scene; as-set: what --background says",
             field::named<&S::backdrop>({"as-set", "black", "grey", "white"})),
         row("panel-page", "PAGE", "what the panel opens with; time: of a scene that moves; help: in a headset",

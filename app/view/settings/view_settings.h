@@ -34,6 +34,7 @@ struct ViewSettings {
     bool hands = true;            // draw them, or the controllers they hold
     bool teleport = false;        // in place of walking
     bool smooth_turn = false;     // in place of turns by 30 degrees
+    bool follow_ground = false;   // the wearer stands on the scene's ground
     Backdrop backdrop = Backdrop::kAsSet;
     PanelPage page = PanelPage::kView;
     bool vignette = true;                  // while the wearer moves by stick

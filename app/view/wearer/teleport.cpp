@@ -13,14 +13,10 @@ namespace {
 
 constexpr double kThrowMetresPerSecond = 7.0, kFallMetresPerSecond2 = 9.8;
 constexpr double kTargetMetres = 0.5, kAboveFloorMetres = 0.01;
-// If the runtime knows no floor: its distance below the head of a wearer who stands at the start.
-constexpr double kUsualFloorMetres = 1.6;
-
-// The scene's own floor may lie a little above the room's.
-constexpr double kStepMetres = 0.35;
 
 bool isBlocked(const PathSeen& path, const std::vector<glm::dvec3>& arc) {
     if (path.is_hidden || !path.meets || arc.empty()) { return path.is_hidden; }
+    // The scene's own floor may lie a little above the room's.
     return arc.back().y - pointAlong(arc, *path.meets / static_cast<double>(kProbePoints - 1)).y > kStepMetres;
 }
 

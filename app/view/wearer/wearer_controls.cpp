@@ -1,6 +1,7 @@
 // The buttons, and then the tools in turn.
 #include "app/view/wearer/wearer_controls.h"
 
+#include "app/view/wearer/follow_ground.h"
 #include "app/view/wearer/grab.h"
 #include "app/view/wearer/sticks.h"
 #include "app/view/wearer/teleport.h"
@@ -32,6 +33,7 @@ WearerControls::WearerControls() {
     tools_.push_back(std::make_unique<Teleport>());
     tools_.push_back(std::make_unique<Turn>());
     tools_.push_back(std::make_unique<Grab>());
+    tools_.push_back(std::make_unique<FollowGround>());
 }
 
 void WearerControls::update(const WearerNow& seen, PanelInRoom& panel, ViewState& state) {

@@ -290,6 +290,31 @@ TEST_CASE("controllers are drawn where grips are; the wearer teleports to where 
     CHECK(glm::distance(kept[1].eye - kept[0].eye, {second.x, 0.0, -second.z}) < 1e-4);
 }
 
+TEST_CASE("who follows the ground walks down a slope as it falls, by the depth of what was seen ahead; who does not stays as high") {
+    // The wall as a slope that falls by 10 degrees the way one looks: its own axes, turned by that. The feet are on it.
+    const double tilt = glm::radians(10.0), half = std::sqrt(0.5);
+    const glm::dvec3 along(half, 0.0, half), out(half, 0.0, -half);
+    const glm::dvec3 up = std::cos(tilt) * out - std::sin(tilt) * along, ahead = std::cos(tilt) * along + std::sin(tilt) * out;
+    const glm::dvec3 eye = glm::dvec3(0.0, 0.0, 4.0) - 1.2 * along + 1.6 * up, look = eye + ahead;
+    const std::string place = fmt::format(" --eye {:.6f},{:.6f},{:.6f} --look {:.6f},{:.6f},{:.6f} --up {:.6f},{:.6f},{:.6f}", eye.x, eye.y,
+                                          eye.z, look.x, look.y, look.z, up.x, up.y, up.z);
+    for (const bool follows : {true, false}) {
+        CAPTURE(follows);
+        const Workplace work;
+        const glm::dvec2 keep = placeOf("Keep this one", false, PanelPage::kScenes);
+        Acts acts(kBlind);
+        acts.click(keep).move("controller right", kRightDown).push("left thumbstick", {0.0, 1.0}, 0.8).wait(1.1).click(keep).wait(0.1);
+        const std::string config = fmt::format("[view]\nfollow-ground = {}\npanel-page = \"scenes\"\n", follows);
+        const ViewRun run = runClean(work, "run", acts.script(), kScene + place + withConfig(work, config));
+        const auto kept = keptPlaces(work);
+        REQUIRE(kept.size() == 2);
+        const glm::dvec3 way = kept[1].eye - kept[0].eye;
+        const double level_m = glm::dot(way, ahead), fall_m = -glm::dot(way, up);
+        CHECK(level_m == doctest::Approx(1.2).epsilon(0.05));
+        CHECK(fall_m == (follows ? between(0.8 * level_m * std::tan(tilt), 1.2 * level_m * std::tan(tilt)) : between(-1e-4, 1e-4)));
+    }
+}
+
 TEST_CASE("the wearer is moved by sticks, pads, hands, viewpoints and buttons, as far as they say and by nothing else; places are kept") {
     const Workplace work;
     REQUIRE(work.run("scene one-splat --out a.ply").exit_code == 0);

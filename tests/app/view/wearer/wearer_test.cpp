@@ -232,6 +232,80 @@ TEST_CASE("a throw lands on the floor, where physics puts it") {
     CHECK_FALSE(aimTeleport({{1, 0, 0, 0}, {0.0, 1.7, 0.0}}, 1.6).target.has_value());
 }
 
+// A stair goes up at z = 1, and a table stands on it from z = 2 on.
+std::vector<glm::dvec3> stairAndTable() {
+    std::vector<glm::dvec3> ground;
+    for (int z = -5; z < 35; ++z) {
+        for (int x = -5; x < 6; ++x) { ground.emplace_back(0.1 * x, z < 10 ? 1.6 : z < 20 ? 1.43 : 0.7, 0.1 * z); }
+    }
+    return ground;
+}
+
+TEST_CASE_FIXTURE(Wearer, "who follows the ground goes up a stair and down again, smoothly, and onto no table; others stay as high") {
+    for (const bool follows : {true, false}) {
+        CAPTURE(follows);
+        ViewSettings settings;
+        settings.follow_ground = follows;
+        state = ViewState(settings);
+        now.floor_m = 1.6;
+        now.ground_scene = stairAndTable();
+        now.step_seconds = 0.02;
+        double fastest_m = 0.0;
+        const auto walk = [&](double stick, int steps) {
+            for (int i = 0; i < steps; ++i) {
+                const double before_m = place().y;
+                push(kLeft, {0.0, stick});
+                fastest_m = std::max(fastest_m, std::abs(place().y - before_m));
+            }
+        };
+        walk(1.0, 20);  // 0.6 m
+        CHECK(std::abs(place().y) < 1e-9);
+        walk(1.0, 30);
+        walk(0.0, 50);
+        CHECK(place().z == doctest::Approx(1.5));
+        CHECK(place().y == doctest::Approx(follows ? -0.17 : 0.0).epsilon(0.01));
+        walk(1.0, 30);
+        CHECK(place().y == doctest::Approx(follows ? -0.17 : 0.0).epsilon(0.01));
+        walk(-1.0, 60);
+        walk(0.0, 50);
+        CHECK(std::abs(place().y) < 0.01);
+        CHECK((fastest_m > 0.0) == follows);
+        CHECK(fastest_m <= 0.03);
+    }
+}
+
+TEST_CASE_FIXTURE(Wearer, "nobody gets under the floor, which holds where nothing else was seen; what was seen goes with its scene") {
+    ViewSettings settings;
+    settings.follow_ground = true;
+    state = ViewState(settings);
+    now.floor_m = 1.6;
+    const auto floorAt = [&](double scene_y) { now.scene_floor_m = scene_y - place().y; };
+    for (const double sinks : {-1.0, 0.0}) {
+        floorAt(1.6);
+        push(kRight, {0.0, sinks});
+    }
+    CHECK(std::abs(place().y) < 1e-9);
+    floorAt(1.2);
+    push(kRight, {0.0, 0.0});
+    CHECK(place().y == doctest::Approx(-0.4));
+    // A floor a little below draws down, one far below does not.
+    for (const auto& [floor_y, end_y] : {std::pair(1.5, -0.1), std::pair(2.6, -0.1)}) {
+        for (int i = 0; i < 30; ++i) {
+            floorAt(floor_y);
+            update();
+        }
+        CHECK(place().y == doctest::Approx(end_y).epsilon(0.01));
+    }
+    now.scene_floor_m.reset();
+    now.ground_scene = {{0.0, 1.4, 0.0}};
+    update();
+    now.ground_scene.clear();
+    controls.letGo();
+    const double before_y = place().y;
+    update();
+    CHECK(place().y == before_y);
+}
+
 TEST_CASE("a hand that is lost while it aims for a place moves nobody") {
     Wearer wearer(teleporting(false));
     wearer.now.hands[kLeft].aim = Pose{{1, 0, 0, 0}, {-0.2, 0.4, 0.3}};
