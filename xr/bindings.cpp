@@ -1,6 +1,10 @@
 // The supported controllers.
 #include "xr/bindings.h"
 
+#include <cctype>
+#include <string_view>
+#include <utility>
+
 namespace binosplat::xr {
 namespace {
 
@@ -65,5 +69,28 @@ constexpr ProfileBindings kProfiles[] = {
 }  // namespace
 
 std::span<const ProfileBindings> allProfileBindings() { return kProfiles; }
+
+const ProfileBindings& usualBindings() { return kProfiles[1]; }
+
+std::string inputName(const char* path) {
+    static constexpr std::pair<std::string_view, std::string_view> kOwnNames[] = {{"thumbstick", "stick"},
+                                                                                  {"trackpad", "pad"},
+                                                                                  {"aim_activate_ext", "pinch"},
+                                                                                  {"grasp_ext", "fist"},
+                                                                                  {"dpad_down", "D-pad down"},
+                                                                                  {"cluster_front_logitech", "front button"},
+                                                                                  {"primary", "primary button"},
+                                                                                  {"secondary", "secondary button"},
+                                                                                  {"cluster_middle_logitech", "middle button"},
+                                                                                  {"cluster_back_logitech", "back button"}};
+    std::string_view name(path);
+    name.remove_prefix(name.find('/') + 1);
+    name = name.substr(0, name.find('/'));
+    for (const auto& [part, own] : kOwnNames) {
+        if (name == part) { return std::string(own); }
+    }
+    if (name == "select" && std::string_view(path).ends_with("value")) { return "pinch"; }
+    return name.size() == 1 ? std::string(1, static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])))) : std::string(name);
+}
 
 }  // namespace binosplat::xr

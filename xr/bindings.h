@@ -7,6 +7,7 @@
 
 #include <array>
 #include <span>
+#include <string>
 
 namespace binosplat::xr {
 
@@ -25,6 +26,11 @@ struct ProfileBindings {
 };
 
 std::span<const ProfileBindings> allProfileBindings();
+// Of the controllers that most people have.
+const ProfileBindings& usualBindings();
+
+// What people call an input, by its binding path: "trigger" for "input/trigger/value".
+std::string inputName(const char* path);
 
 // An input of a gamepad, below /user/gamepad, and what it does.
 struct GamepadBinding {

@@ -1,8 +1,6 @@
 // Suggesting bindings, and reading the hands.
 #include "xr/input.h"
 
-#include "xr/bindings.h"
-
 #include <utility>
 
 namespace binosplat::xr {
@@ -104,6 +102,23 @@ void Input::readHand(std::size_t h, Hand& hand) {
     hand.menu = isHeld(menu_, menus_[h]);
     hand.play = isHeld(play_, plays_[h]);
     hand.stick_presses = isHeld(stick_press_, presses_[h]);
+}
+
+std::array<const ProfileBindings*, 2> Input::held() {
+    std::array<const ProfileBindings*, 2> held{};
+    const Instance& instance = session_.instance();
+    for (std::size_t h = 0; h < 2 && tells_held_; ++h) {
+        auto state = structure<XrInteractionProfileState>(XR_TYPE_INTERACTION_PROFILE_STATE);
+        tells_held_ = instance.troubles().tryFor("drawings of the controllers that are held", [&] {
+            BINOSPLAT_XR(xrGetCurrentInteractionProfile(session_.handle(), hands_[h], &state));
+        });
+        if (state.interactionProfile == XR_NULL_PATH) { continue; }
+        for (const ProfileBindings& profile : allProfileBindings()) {
+            const std::string path = fmt::format("/interaction_profiles/{}", profile.path);
+            if (instance.path(path.c_str()) == state.interactionProfile) { held[h] = &profile; }
+        }
+    }
+    return held;
 }
 
 void Input::pulse(int hand) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "xr/actions.h"
+#include "xr/bindings.h"
 #include "xr/extensions/eye_gaze.h"
 #include "xr/gamepad.h"
 
@@ -23,6 +24,8 @@ public:
     // The gaze as of the last read(): a direction in the room (our axes). Empty if the headset does not track it reliably, or this
     // program may not see it.
     [[nodiscard]] std::optional<glm::dvec3> gaze() { return gaze_.find(); }
+    // The bindings of what each hand holds, by hand; null: nothing that is known.
+    [[nodiscard]] std::array<const ProfileBindings*, 2> held();
     // A short buzz in a hand, if its controller can.
     void pulse(int hand);
 
@@ -40,6 +43,7 @@ private:
     std::array<OwnedSpace, 2> aim_spaces_, grip_spaces_;
     std::array<Hold, 2> clicks_, grabs_, menus_, presses_, plays_;
     bool pulses_ = true;       // until one fails
+    bool tells_held_ = true;   // the same
     int times_focused_ = 0;    // of the session, as of the last read()
     bool is_at_rest_ = false;  // as of the last read()
 };

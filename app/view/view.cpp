@@ -36,6 +36,7 @@ ViewSettings startSettings(const ViewOptions& options, const DeviceDefaults& dev
     settings.quality = device.quality;
     settings.resolution_scale = device.resolution_scale;
     settings.stereo = options.run.stereo;
+    if (options.simulate) { settings.first_steps = FirstStepsShown::kNever; }  // a script needs none
     settings = readViewSettings(options.tables, settings);
     if (options.browse) { settings.page = PanelPage::kScenes; }
     if (options.hide_panel) { settings.panel = false; }

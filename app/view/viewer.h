@@ -3,6 +3,7 @@
 
 #include "app/view/files/picture_writer.h"
 #include "app/view/headset/headset_connection.h"
+#include "app/view/panel/first_steps.h"
 #include "app/view/panel/panel.h"
 #include "app/view/room/fade.h"
 #include "app/view/room/vignette.h"
@@ -86,7 +87,7 @@ private:
     void sayPicture(const std::optional<std::string>& outcome);
     // In the log and on the panel.
     void say(const std::string& message);
-    // As a line before the eyes, for some seconds, while the panel is hidden.
+    // As a line before the eyes, for some seconds, while the panel is hidden; otherwise what one does first.
     void showMessage(RoomSight& sight, double step_seconds);
     void sayChange();
     void leave();
@@ -123,6 +124,7 @@ private:
     bool recentre_asked_ = false, leaving_ = false, waits_for_kernels_ = false;
     std::chrono::steady_clock::time_point last_alone_{};
     SceneNotes notes_;
+    FirstSteps first_steps_;
     FileWorker files_;   // its thread ends before the users of its results
     ShownScene scenes_;  // last: the loading thread ends first
 };

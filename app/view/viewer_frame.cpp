@@ -192,7 +192,10 @@ void Viewer::showMessage(RoomSight& sight, double step_seconds) {
         sight.message = drawMessage(message, headset().things.layout());
         message_seconds_ = kMessageSeconds;
     }
-    sight.has_message = message_seconds_ > 0.0;
+    if (const auto gesture = message_seconds_ > 0.0 ? std::nullopt : first_steps_.update(step_seconds)) {
+        sight.message = drawGesture(*gesture, headset().things.layout());
+    }
+    sight.has_message = message_seconds_ > 0.0 || first_steps_.areShown();
 }
 
 void Viewer::renderWaiting() {

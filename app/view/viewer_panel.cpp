@@ -82,7 +82,10 @@ void Viewer::layOutPanel(bool hung, double step_seconds) {
     status.has_scene = scenes_.get() != nullptr;
     status.can_pass_through = instance_.canSeeThrough();
     status.tools = controls_.choices();
-    if (connection_.headset() != nullptr) { status.refresh_rates = headset().refresh_rates; }
+    if (connection_.headset() != nullptr) {
+        status.refresh_rates = headset().refresh_rates;
+        if (state_.settings().page == PanelPage::kHelp) { status.held = headset().input.held(); }
+    }
     if (status.has_scene) {
         status.facts = describeFacts(scenes_.get()->facts, 1.0 / state_.sceneFromRoom().scale);
         status.place = shownPlace();

@@ -16,7 +16,7 @@ namespace binosplat {
 
 namespace {
 
-constexpr float kLineStepPx = 28.0f, kMarginPx = 16.0f;
+constexpr float kLineStepPx = 28.0f, kMarginPx = 16.0f, kDrawingPx = 92.0f;
 constexpr double kPlateAlpha = 0.75, kRoundPx = 14.0;
 
 // The coverage of pixels by letters, which lie between those of the texture.
@@ -92,28 +92,38 @@ double plateAt(const glm::dvec2& place, const glm::dvec2& half) {
 
 }  // namespace
 
-TexelPicture drawMessage(std::string_view message, const TexelLayout& layout) {
+TexelPicture drawMessage(std::string_view message, const TexelLayout& layout, const Drawing& drawing) {
     const auto width = static_cast<float>(kMessagePx.x), height = static_cast<float>(kMessagePx.y);
+    const float beside_px = drawing ? kDrawingPx + kMarginPx : 0.0f;
     const ImFont& font = *ImGui::GetIO().Fonts->Fonts[0];
-    const std::vector<std::string> lines = linesOf(asShown(message), width - 2.0f * kMarginPx);
+    const std::vector<std::string> lines = linesOf(asShown(message), width - 2.0f * kMarginPx - beside_px);
+    const auto longOf = [&](const std::string& line) {
+        return font.CalcTextSizeA(font.FontSize, width, 0.0f, line.data(), line.data() + line.size()).x;
+    };
+    float widest = 0.0f;
+    for (const std::string& line : lines) { widest = std::max(widest, longOf(line)); }
+    const float begin = std::round(0.5f * (width - widest - beside_px)), high = kLineStepPx * static_cast<float>(lines.size());
     std::vector<float> coverage(std::size_t{kMessagePx.x} * kMessagePx.y, 0.0f);
     const Letters letters;
-    float widest = 0.0f, y = 0.5f * (height - kLineStepPx * static_cast<float>(lines.size())) + 0.5f * (kLineStepPx - font.FontSize);
+    float y = 0.5f * (height - high) + 0.5f * (kLineStepPx - font.FontSize);
     for (const std::string& line : lines) {
-        const float long_px = font.CalcTextSizeA(font.FontSize, width, 0.0f, line.data(), line.data() + line.size()).x;
-        widest = std::max(widest, long_px);
-        letters.write(line.data(), line.data() + line.size(), {std::round(0.5f * (width - long_px)), std::round(y)}, coverage);
+        const float x = drawing ? begin + beside_px : std::round(0.5f * (width - longOf(line)));
+        letters.write(line.data(), line.data() + line.size(), {x, std::round(y)}, coverage);
         y += kLineStepPx;
     }
-    const glm::dvec2 half(
-        std::min(0.5 * static_cast<double>(widest + 2.0f * kMarginPx), 0.5 * static_cast<double>(width)),
-        std::min(0.5 * static_cast<double>(kLineStepPx * static_cast<float>(lines.size()) + kMarginPx), 0.5 * static_cast<double>(height)));
+    const float plate_width = std::min(widest + beside_px + 2.0f * kMarginPx, width);
+    const float plate_height = std::min(drawing ? height : high + kMarginPx, height);
+    const glm::dvec2 half = 0.5 * glm::dvec2(static_cast<double>(plate_width), static_cast<double>(plate_height));
     TexelPicture picture{kMessagePx, std::vector<std::uint32_t>(coverage.size())};
     for (std::size_t i = 0; i < coverage.size(); ++i) {
         const glm::dvec2 place(static_cast<double>(i % kMessagePx.x) + 0.5, static_cast<double>(i / kMessagePx.x) + 0.5);
-        const double plate = kPlateAlpha * plateAt(place - 0.5 * glm::dvec2(kMessagePx), half), ink = static_cast<double>(coverage[i]);
-        const double alpha = ink + (1.0 - ink) * plate;
-        picture.texels[i] = texelOf(glm::dvec3(alpha > 0.0 ? ink / alpha : 0.0), alpha, layout);
+        const double plate = kPlateAlpha * plateAt(place - 0.5 * glm::dvec2(kMessagePx), half);
+        const glm::dvec2 middle(static_cast<double>(begin + 0.5f * kDrawingPx), 0.5 * static_cast<double>(height));
+        const glm::dvec2 in_square = (place - middle) / (0.5 * static_cast<double>(kDrawingPx));
+        const bool is_drawn = drawing && std::max(std::abs(in_square.x), std::abs(in_square.y)) <= 1.0;
+        const DrawnPoint ink = is_drawn ? drawing(in_square) : DrawnPoint{glm::dvec3(1.0), static_cast<double>(coverage[i])};
+        const double alpha = ink.alpha + (1.0 - ink.alpha) * plate;
+        picture.texels[i] = texelOf(alpha > 0.0 ? ink.alpha / alpha * ink.light : glm::dvec3(0.0), alpha, layout);
     }
     return picture;
 }

@@ -3,13 +3,22 @@
 
 #include "app/view/room/sprites.h"
 
+#include <functional>
 #include <string_view>
 
 namespace binosplat {
 
-inline constexpr glm::uvec2 kMessagePx(768, 64);
+inline constexpr glm::uvec2 kMessagePx(768, 104);
 
-// In the current ImGui context's letters, white on a dark plate as wide as they need.
-TexelPicture drawMessage(std::string_view message, const TexelLayout& layout);
+// A point of a drawing: its light, not premultiplied by alpha.
+struct DrawnPoint {
+    glm::dvec3 light{0.0};
+    double alpha = 0.0;
+};
+// Of a square, from -1 to 1 each way, y down.
+using Drawing = std::function<DrawnPoint(const glm::dvec2&)>;
+
+// In the current ImGui context's letters, white on a dark plate as wide as they need; with a drawing beside them, if there is one.
+TexelPicture drawMessage(std::string_view message, const TexelLayout& layout, const Drawing& drawing = {});
 
 }  // namespace binosplat

@@ -7,9 +7,11 @@
 #include "app/view/settings/view_settings.h"
 #include "app/view/wearer/wearer_tool.h"
 #include "engine/frame/stereo_frame.h"
+#include "xr/bindings.h"
 
 #include <glm/glm.hpp>
 
+#include <array>
 #include <optional>
 #include <string>
 #include <utility>
@@ -64,6 +66,7 @@ struct PanelStatus {
     bool can_reload_shaders = false;                         // there is a button for it
     bool can_pass_through = false;                           // there is a box for it
     std::vector<ToolChoice> tools;                           // the tools' choices for the wearer
+    std::array<const xr::ProfileBindings*, 2> held{};        // what the hands hold; null: unknown
     std::vector<double> refresh_rates;                       // that the headset offers; if any, shown as a row
     std::vector<std::pair<std::string, std::string>> facts;  // of the scene, see describeFacts
     ShownPlace place;

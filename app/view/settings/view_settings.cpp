@@ -82,6 +82,8 @@ std::span<const OptionRow<ViewSettings>> viewSettingsRows() {
             field::named<&S::backdrop>({"as-set", "black", "grey", "white"})),
         row("panel-page", "PAGE", "what the panel opens with; time: of a scene that moves; help: in a headset",
             field::named<&S::page>({"view", "scenes", "method", "time", "help"})),
+        row("first-steps", "WHEN", "show three gestures at the start: once, the first time; with --simulate never, unless this says so",
+            field::named<&S::first_steps>({"once", "always", "never"})),
         row("vignette", "", "darken the edge of the view while a stick moves the wearer", field::flag<&S::vignette>()),
         row("passthrough", "", "the room behind the scene, where the headset shows it", field::flag<&S::passthrough>()),
         row("quality", "PRESET", "how the frame rate is held, see headset.md",

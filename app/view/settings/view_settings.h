@@ -17,6 +17,8 @@ enum class Backdrop { kAsSet, kBlack, kGrey, kWhite };
 inline glm::dvec3 colourOf(Backdrop backdrop) {
     return glm::dvec3(backdrop == Backdrop::kWhite ? 1.0 : backdrop == Backdrop::kGrey ? 0.5 : 0.0);
 }
+// Whether the first gestures are shown at the start.
+enum class FirstStepsShown { kOnce, kAlways, kNever };
 // What a window without a headset shows of the two eyes.
 enum class WindowStereo { kMono, kSideBySide, kCrossEyed, kTopBottom, kAnaglyph };
 
@@ -37,7 +39,8 @@ struct ViewSettings {
     bool follow_ground = false;   // the wearer stands on the scene's ground
     Backdrop backdrop = Backdrop::kAsSet;
     PanelPage page = PanelPage::kView;
-    bool vignette = true;                  // while the wearer moves by stick
+    bool vignette = true;  // while the wearer moves by stick
+    FirstStepsShown first_steps = FirstStepsShown::kOnce;
     bool passthrough = false;              // the room in place of the background, if the headset can
     Quality quality = Quality::kBalanced;  // how the frame rate is held
     double last_foveation_deg = 15.0;      // for the panel's box: as far as eyes usually turn before the head does

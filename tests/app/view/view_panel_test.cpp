@@ -1,4 +1,5 @@
 // Facts about the viewer's panel: a ray points, the trigger clicks, what was chosen is so and is seen, and what was saved comes back.
+#include "app/view/panel/message_picture.h"
 #include "tests/app/view/unchanged_shaders.h"
 #include "tests/app/view/view_acts.h"
 #include "xr/simulated/extensions.h"
@@ -242,6 +243,27 @@ TEST_CASE_FIXTURE(AtWork, "a runtime with no more than OpenXR 1.0 and Vulkan sho
     const auto targets = run.quadsAsWide(run.frameAt(aiming), 0.5);
     REQUIRE(targets.size() == 1);
     CHECK(poseOf(targets[0].at("pose")).position.y == doctest::Approx(-1.59));
+}
+
+TEST_CASE("the first start shows three gestures one after the other, and no other start shows them") {
+    const Workplace work;
+    const std::string script = "rate 20\nsize 64 64\nframes none\nat 23 exit\n";
+    const auto shownIn = [&](const ViewRun& run) {
+        std::size_t frames = 0;
+        for (std::size_t i = 0; i < run.frames.size(); ++i) {
+            frames += run.quadsWhere(i, [](const nlohmann::json& quad) { return quad.at("views").at(0).at("rect").at(3) == kMessagePx.y; })
+                          .size();
+        }
+        return frames;
+    };
+    const auto run = [&](const std::string& name, const std::string& when) {
+        return runClean(work, name, script, kOneSplat + " --mode mono" + withConfig(work, "[view]\nfirst-steps = \"" + when + "\"\n"));
+    };
+    // Three times seven seconds, but for the first frames, which wait for a file to be read.
+    CHECK(shownIn(run("first", "once")) == between(std::size_t{380}, std::size_t{423}));
+    CHECK(shownIn(run("second", "once")) == 0);
+    CHECK(shownIn(run("never", "never")) == 0);
+    CHECK(shownIn(run("always", "always")) == between(std::size_t{380}, std::size_t{423}));
 }
 
 }  // SUITE(view_panel)

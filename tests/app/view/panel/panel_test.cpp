@@ -1,5 +1,6 @@
 // Facts about the panel's pages: what can be pointed at, whatever stands on them.
 #include "app/options/option_table.h"
+#include "app/view/panel/first_steps.h"
 #include "app/view/panel/message_picture.h"
 #include "app/view/scenes/recent_scenes.h"
 #include "app/view/scenes/scene_clock.h"
@@ -112,6 +113,55 @@ TEST_CASE_FIXTURE(PanelSketch, "a message is white letters on a dark plate, in t
     CHECK(rowsWith(line).size() > 12);
     CHECK(rowsWith(line).size() < 30);
     CHECK(rowsWith(two).size() > rowsWith(line).size());
+}
+
+TEST_CASE_FIXTURE(PanelSketch, "each first gesture is a drawing of its own, at the left of white words") {
+    draw();
+    std::set<std::vector<std::uint32_t>> drawings;
+    for (std::size_t gesture = 0; gesture < kGestures; ++gesture) {
+        CAPTURE(gesture);
+        const TexelPicture picture = drawGesture(gesture, {false, true});
+        std::size_t first_yellow = kMessagePx.x, first_white = kMessagePx.x;
+        std::vector<std::uint32_t> yellow;
+        for (std::size_t i = 0; i < picture.texels.size(); ++i) {
+            const std::uint32_t red = picture.texels[i] & 0xff, blue = picture.texels[i] >> 16 & 0xff;
+            if (red > 240 && blue < 60) {
+                first_yellow = std::min(first_yellow, i % kMessagePx.x);
+                yellow.push_back(static_cast<std::uint32_t>(i));
+            }
+            if (red > 240 && blue > 240) { first_white = std::min(first_white, i % kMessagePx.x); }
+        }
+        CHECK(first_yellow + 20 < first_white);
+        CHECK(first_white < kMessagePx.x / 2);
+        CHECK(yellow.size() > 20);
+        drawings.insert(yellow);
+    }
+    CHECK(drawings.size() == kGestures);
+}
+
+TEST_CASE("inputs have the names that people call them") {
+    CHECK(xr::inputName("input/thumbstick") == "stick");
+    CHECK(xr::inputName("input/y/click") == "Y");
+    CHECK(xr::inputName("input/squeeze/force") == "squeeze");
+    CHECK(xr::inputName("input/select/click") == "select");
+    CHECK(xr::inputName("input/select/value") == "pinch");
+    CHECK(xr::inputName("input/cluster_back_logitech/click") == "back button");
+}
+
+TEST_CASE_FIXTURE(PanelSketch, "the help page draws what the hands hold: no stick for what has none") {
+    click("Help");
+    const auto verticesWith = [&](const char* path) {
+        for (const xr::ProfileBindings& profile : xr::allProfileBindings()) {
+            if (std::string_view(profile.path) == path) { status.held = {&profile, &profile}; }
+        }
+        draw();
+        return ImGui::GetDrawData()->TotalVtxCount;
+    };
+    const int simple = verticesWith("khr/simple_controller"), touch = verticesWith("oculus/touch_controller");
+    CHECK(simple < touch);
+    status.held = {};  // as most people have
+    draw();
+    CHECK(ImGui::GetDrawData()->TotalVtxCount == touch);
 }
 
 TEST_CASE_FIXTURE(PanelSketch, "a scene that moves has a page of its own, with what lets it rest, step, and go to a frame") {

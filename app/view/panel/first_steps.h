@@ -1,0 +1,41 @@
+// The gestures that one needs first, shown before the eyes when the viewer is first started.
+#pragma once
+
+#include "app/view/files/file_worker.h"
+#include "app/view/room/sprites.h"
+#include "app/view/settings/view_settings.h"
+
+#include <optional>
+
+namespace binosplat {
+
+// Walking and turning; teleporting; the panel.
+inline constexpr std::size_t kGestures = 3;
+// A gesture's words beside a small drawing of it, see drawMessage.
+TexelPicture drawGesture(std::size_t gesture, const TexelLayout& layout);
+
+// One after the other. That they were shown is kept in the user's folder.
+class FirstSteps {
+public:
+    static constexpr double kSecondsEach = 7.0;
+
+    // `files` looks whether they were shown before, and notes down that they were; it outlives this.
+    FirstSteps(FileWorker& files, FirstStepsShown shown) : files_(files), shown_(shown) {}
+    FirstSteps(const FirstSteps&) = delete;
+    FirstSteps& operator=(const FirstSteps&) = delete;
+
+    // Once a frame, while nothing else is shown there: the gesture that begins in it, if any.
+    std::optional<std::size_t> update(double step_seconds);
+    [[nodiscard]] bool areShown() const { return seconds_left_ > 0.0; }
+
+private:
+    void look();
+
+    FileWorker& files_;
+    FirstStepsShown shown_;
+    bool has_looked_ = false;
+    std::size_t next_ = kGestures;  // until they are known to be wanted
+    double seconds_left_ = 0.0;     // of the one that is shown
+};
+
+}  // namespace binosplat
