@@ -7,6 +7,7 @@
 #include "xr/extensions/foveated_inset.h"
 #include "xr/extensions/hand_tracking.h"
 #include "xr/extensions/local_floor.h"
+#include "xr/extensions/passthrough.h"
 #include "xr/extensions/user_presence.h"
 #include "xr/extensions/vulkan_enable2.h"
 #include "xr/runtime_place.h"
@@ -37,7 +38,7 @@ std::vector<XrExtensionProperties> listExtensions() {
 // Used if the runtime has them.
 std::vector<const char*> wantedExtensions(const InstanceOptions& options) {
     std::vector<const char*> wanted{kLocalFloorExtension, XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME, XR_EXT_HAND_TRACKING_EXTENSION_NAME,
-                                    kUserPresenceExtension};
+                                    kUserPresenceExtension, XR_FB_PASSTHROUGH_EXTENSION_NAME};
     if (options.depth) { wanted.push_back(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME); }
     if (options.eye_tracking) { wanted.push_back(XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME); }
     for (const ProfileBindings& profile : allProfileBindings()) {
@@ -131,6 +132,7 @@ void Instance::readSystem() {
     tracks_hands_ = findsHands(*this);
     tracks_eyes_ = findsGaze(*this);
     moves_insets_ = findsMovingInset(*this);
+    passes_through_ = findsPassthrough(*this);
     description_ = fmt::format("{}: {}", runtime_name_, properties.systemName);
 }
 

@@ -63,11 +63,14 @@ public:
     [[nodiscard]] glm::uvec2 recommendedSizePx() const { return recommended_size_px_; }
     [[nodiscard]] glm::uvec2 maxSizePx() const { return max_size_px_; }
     // How layers are blended with the world: opaque if the headset can, otherwise its preference; if `see_through`, with the room visible
-    // behind them, if it can.
+    // behind them, if it can. Where the room is a layer of its own, see Passthrough, they stay opaque.
     [[nodiscard]] XrEnvironmentBlendMode blendMode(bool see_through) const {
-        return see_through && see_through_ ? *see_through_ : blend_mode_;
+        return see_through && see_through_ && !hasPassthrough() ? *see_through_ : blend_mode_;
     }
-    [[nodiscard]] bool canSeeThrough() const { return see_through_.has_value(); }
+    [[nodiscard]] bool canSeeThrough() const { return see_through_.has_value() || passes_through_; }
+    // The room is shown by a layer: the extension is enabled, this headset has cameras, and its pictures do not cover the room by their
+    // alpha.
+    [[nodiscard]] bool hasPassthrough() const { return passes_through_ && see_through_ != XR_ENVIRONMENT_BLEND_MODE_ALPHA_BLEND; }
 
     [[nodiscard]] XrPath path(const char* text) const;
     // Fills an extension's XrSystem...Properties, whose type is set, for the current headset.
@@ -94,7 +97,7 @@ private:
     XrSystemId system_ = XR_NULL_SYSTEM_ID;
     std::string runtime_name_, description_;
     std::set<std::string, std::less<>> extensions_;
-    bool tracks_hands_ = false, tracks_eyes_ = false, moves_insets_ = false;
+    bool tracks_hands_ = false, tracks_eyes_ = false, moves_insets_ = false, passes_through_ = false;
     glm::uvec2 recommended_size_px_{0, 0}, max_size_px_{0, 0};
     XrEnvironmentBlendMode blend_mode_ = XR_ENVIRONMENT_BLEND_MODE_OPAQUE;
     std::optional<XrEnvironmentBlendMode> see_through_;

@@ -17,6 +17,7 @@ void Layers::addViews(std::span<const LayerEye> views, bool see_through) {
     const XrCompositionLayerFlags flags = see_through ? XR_COMPOSITION_LAYER_BLEND_TEXTURE_SOURCE_ALPHA_BIT : 0;
     const auto count = static_cast<std::uint32_t>(views.size());
     scene_ = {XR_TYPE_COMPOSITION_LAYER_PROJECTION, nullptr, flags, session_.space(), count, views_.data()};
+    if (const auto* const room = see_through ? session_.roomLayer() : nullptr) { list_.push_back(room); }
     list_.push_back(reinterpret_cast<const XrCompositionLayerBaseHeader*>(&scene_));
 }
 

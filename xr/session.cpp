@@ -45,6 +45,7 @@ Session::Session(const Instance& instance, const Context& context, XrViewConfigu
       floor_(instance, handle()),
       hidden_meshes_(instance, handle(), views),
       refresh_rate_(instance, handle()),
+      passthrough_(instance, handle()),
       blend_mode_(instance.blendMode(false)) {}
 
 FrameOutcome Session::beginFrame() {

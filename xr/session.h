@@ -3,6 +3,7 @@
 
 #include "engine/gpu/context.h"
 #include "xr/display_pace.h"
+#include "xr/extensions/passthrough.h"
 #include "xr/extensions/refresh_rate.h"
 #include "xr/extensions/visibility_mask.h"
 #include "xr/floor.h"
@@ -42,7 +43,12 @@ public:
     // the frame is still open.
     void endFrame(std::span<const XrCompositionLayerBaseHeader* const> layers);
     // Shows the room behind the layers, if the headset can; from the next endFrame() on.
-    void seeThrough(bool see_through) { blend_mode_ = instance_.blendMode(see_through); }
+    void seeThrough(bool see_through) {
+        blend_mode_ = instance_.blendMode(see_through);
+        passthrough_.show(see_through && instance_.hasPassthrough());
+    }
+    // What is to lie below all other layers of a frame; null: nothing.
+    [[nodiscard]] const XrCompositionLayerBaseHeader* roomLayer() const { return passthrough_.layer(); }
     // Asks the runtime to end; frames go on until beginFrame() returns kExit.
     void requestExit();
 
@@ -105,6 +111,7 @@ private:
     Floor floor_;
     HiddenMeshes hidden_meshes_;
     RefreshRate refresh_rate_;
+    Passthrough passthrough_;
     int times_focused_ = 0;
     XrFrameState frame_state_ = structure<XrFrameState>(XR_TYPE_FRAME_STATE);
     XrTime last_display_time_ = 0;

@@ -25,6 +25,7 @@ inline constexpr Extension kExtensions[] = {
     {"XR_EXT_hand_tracking", 4},
     {"XR_EXT_user_presence", 1},
     {"XR_FB_display_refresh_rate", 1},
+    {"XR_FB_passthrough", 1},
     {"XR_MND_headless", 2},
     {"XR_VARJO_quad_views", 1},
     {"XR_VARJO_foveated_rendering", 3},

@@ -59,7 +59,19 @@
     _(xrLocateHandJointsEXT, XR_EXT_HAND_TRACKING_EXTENSION_NAME)                                                                       \
     _(xrEnumerateDisplayRefreshRatesFB, XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME)                                                      \
     _(xrGetDisplayRefreshRateFB, XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME)                                                             \
-    _(xrRequestDisplayRefreshRateFB, XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME)
+    _(xrRequestDisplayRefreshRateFB, XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME)                                                          \
+    _(xrCreatePassthroughFB, XR_FB_PASSTHROUGH_EXTENSION_NAME)                                                                          \
+    _(xrDestroyPassthroughFB, XR_FB_PASSTHROUGH_EXTENSION_NAME)                                                                         \
+    _(xrPassthroughStartFB, XR_FB_PASSTHROUGH_EXTENSION_NAME)                                                                           \
+    _(xrPassthroughPauseFB, XR_FB_PASSTHROUGH_EXTENSION_NAME)                                                                           \
+    _(xrCreatePassthroughLayerFB, XR_FB_PASSTHROUGH_EXTENSION_NAME)                                                                     \
+    _(xrDestroyPassthroughLayerFB, XR_FB_PASSTHROUGH_EXTENSION_NAME)                                                                    \
+    _(xrPassthroughLayerPauseFB, XR_FB_PASSTHROUGH_EXTENSION_NAME)                                                                      \
+    _(xrPassthroughLayerResumeFB, XR_FB_PASSTHROUGH_EXTENSION_NAME)                                                                     \
+    _(xrPassthroughLayerSetStyleFB, XR_FB_PASSTHROUGH_EXTENSION_NAME)                                                                   \
+    _(xrCreateGeometryInstanceFB, XR_FB_PASSTHROUGH_EXTENSION_NAME)                                                                     \
+    _(xrDestroyGeometryInstanceFB, XR_FB_PASSTHROUGH_EXTENSION_NAME)                                                                    \
+    _(xrGeometryInstanceSetTransformFB, XR_FB_PASSTHROUGH_EXTENSION_NAME)
 // clang-format on
 
 namespace simulated {

@@ -58,6 +58,8 @@ constexpr const char* typeOf(XrSpace) { return "XrSpace"; }
 constexpr const char* typeOf(XrSwapchain) { return "XrSwapchain"; }
 constexpr const char* typeOf(XrActionSet) { return "XrActionSet"; }
 constexpr const char* typeOf(XrAction) { return "XrAction"; }
+constexpr const char* typeOf(XrPassthroughFB) { return "XrPassthroughFB"; }
+constexpr const char* typeOf(XrPassthroughLayerFB) { return "XrPassthroughLayerFB"; }
 constexpr const char* typeOf(XrHandTrackerEXT) { return "XrHandTrackerEXT"; }
 constexpr const char* typeOf(XrDebugUtilsMessengerEXT) { return "XrDebugUtilsMessengerEXT"; }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "xr/simulated/api/passthrough.h"
 #include "xr/simulated/api/poses.h"
 #include "xr/simulated/api/spaces.h"
 #include "xr/simulated/api/structures.h"
@@ -172,13 +173,14 @@ namespace {
 void checkLayer(const Session& session, const XrCompositionLayerBaseHeader* submitted) {
     require(submitted != nullptr, XR_ERROR_LAYER_INVALID, "it is null");
     const XrCompositionLayerBaseHeader& layer = *submitted;
-    const bool is_surrounding = isSurrounding(session, layer.type);
+    const bool is_surrounding = isSurrounding(session, layer.type), is_room = isPassthrough(session, layer.type);
     const bool is_known =
-        layer.type == XR_TYPE_COMPOSITION_LAYER_PROJECTION || layer.type == XR_TYPE_COMPOSITION_LAYER_QUAD || is_surrounding;
+        layer.type == XR_TYPE_COMPOSITION_LAYER_PROJECTION || layer.type == XR_TYPE_COMPOSITION_LAYER_QUAD || is_surrounding || is_room;
     require(is_known, XR_ERROR_LAYER_INVALID, layer.type,
             " is neither a projection nor a quad, nor a layer of an extension that is enabled");
     checkChain(layer.next);
     require((layer.layerFlags & ~kKnownLayerFlags) == 0, XR_ERROR_VALIDATION_FAILURE, "unknown layer flags: ", layer.layerFlags);
+    if (is_room) { return checkPassthrough(session, layer); }  // which is in no space
     getSpace(session, layer.space);
     if (is_surrounding) {
         checkSurrounding(session, layer);
@@ -206,6 +208,10 @@ std::vector<Layer> makeLayers(const Session& session, const XrFrameEndInfo& info
     std::vector<Layer> layers;
     for (std::uint32_t i = 0; i < info.layerCount; ++i) {
         const XrCompositionLayerBaseHeader& layer = *info.layers[i];
+        if (isPassthrough(session, layer.type)) {
+            if (const auto room = makePassthroughLayer(session, layer)) { layers.emplace_back(*room); }
+            continue;
+        }
         const std::optional<Pose> stage_from_space = stageFromSpace(getSpace(session, layer.space), state);
         if (!stage_from_space) { continue; }
         const Blending blending = blendingOf(layer.layerFlags);
@@ -240,9 +246,13 @@ std::vector<LoggedLayer> loggedLayers(const Session& session, const XrFrameEndIn
     std::vector<LoggedLayer> logged;
     for (std::uint32_t i = 0; i < info.layerCount; ++i) {
         const XrCompositionLayerBaseHeader& layer = *info.layers[i];
-        const Space& space = getSpace(session, layer.space);
         LoggedLayer& entry = logged.emplace_back();
         entry.flags = loggedFlags(layer.layerFlags);
+        if (isPassthrough(session, layer.type)) {
+            entry.type = "passthrough";
+            continue;
+        }
+        const Space& space = getSpace(session, layer.space);
         entry.space = nameOf(space);
         entry.stage_from_space = stageFromSpace(space, state).value_or(Pose{});
         if (isSurrounding(session, layer.type)) {

@@ -56,6 +56,8 @@ XrResult xrGetSystemProperties(XrInstance instance, XrSystemId systemId, XrSyste
         tell(owner, output.next, XR_TYPE_SYSTEM_FOVEATED_RENDERING_PROPERTIES_VARJO, XR_VARJO_FOVEATED_RENDERING_EXTENSION_NAME,
              &XrSystemFoveatedRenderingPropertiesVARJO::supportsFoveatedRendering,
              owner.simulation->script.gaze.tracker != EyeTracking::kOff);
+        tell(owner, output.next, XR_TYPE_SYSTEM_PASSTHROUGH_PROPERTIES_FB, XR_FB_PASSTHROUGH_EXTENSION_NAME,
+             &XrSystemPassthroughPropertiesFB::supportsPassthrough, owner.simulation->script.passthrough);
         tell(owner, output.next, XR_TYPE_SYSTEM_HAND_TRACKING_PROPERTIES_EXT, XR_EXT_HAND_TRACKING_EXTENSION_NAME,
              &XrSystemHandTrackingPropertiesEXT::supportsHandTracking, true);
         tell(owner, output.next, XR_TYPE_SYSTEM_USER_PRESENCE_PROPERTIES_EXT, XR_EXT_USER_PRESENCE_EXTENSION_NAME,

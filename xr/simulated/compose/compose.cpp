@@ -118,8 +118,17 @@ private:
     glm::dvec2 size_m_;
 };
 
+class SeenRoom {
+public:
+    explicit SeenRoom(const RoomLayer& layer) : texel_(layer.opacity * layer.light, layer.opacity) {}
+    [[nodiscard]] std::optional<glm::dvec4> at(std::uint32_t, std::uint32_t, const glm::dvec3&) const { return texel_; }
+
+private:
+    glm::dvec4 texel_;
+};
+
 struct SeenLayer {
-    std::variant<SeenProjection, SeenQuad, SeenCylinder, SeenSphere, SeenCube> shape;
+    std::variant<SeenProjection, SeenQuad, SeenCylinder, SeenSphere, SeenCube, SeenRoom> shape;
     Blending blending;
 };
 
@@ -142,6 +151,8 @@ std::vector<SeenLayer> listSeen(const EyeView& eye, Side side, std::span<const L
             if (isShownTo(side, sphere->visibility) && !isEmpty(sphere->rect)) {
                 seen.push_back({SeenSphere(eye, *sphere), sphere->blending});
             }
+        } else if (const auto* room = std::get_if<RoomLayer>(&layer)) {
+            seen.push_back({SeenRoom(*room), room->blending});
         } else if (const auto& cube = std::get<CubeLayer>(layer); isShownTo(side, cube.visibility)) {
             seen.push_back({SeenCube(eye, cube), cube.blending});
         }

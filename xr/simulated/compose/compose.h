@@ -99,7 +99,14 @@ struct CubeLayer {
     Blending blending;
 };
 
-using Layer = std::variant<ProjectionLayer, QuadLayer, CylinderLayer, SphereLayer, CubeLayer>;
+// The room, in every direction.
+struct RoomLayer {
+    glm::dvec3 light{0.0};  // linear
+    double opacity = 1.0;
+    Blending blending;
+};
+
+using Layer = std::variant<ProjectionLayer, QuadLayer, CylinderLayer, SphereLayer, CubeLayer, RoomLayer>;
 
 // 8-bit sRGB, three bytes per pixel, rows from the top.
 struct RgbPicture {

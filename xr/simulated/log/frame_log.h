@@ -34,7 +34,7 @@ struct LoggedView {
 };
 
 struct LoggedLayer {
-    std::string type;                                          // "projection", "quad", "cylinder", "equirect2", "cube"
+    std::string type;                                          // "projection", "quad", "cylinder", "equirect2", "cube", "passthrough"
     std::vector<std::string> flags;                            // "blend_texture_source_alpha" ...
     std::string space;                                         // "LOCAL", "STAGE", "VIEW", "action"
     Pose stage_from_space;                                     // at the display time

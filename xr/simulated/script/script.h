@@ -173,6 +173,7 @@ struct Script {
     enum class BlendMode { kOpaque, kAdditive, kAlphaBlend };  // in the order of OpenXR's numbers, which begin with 1
     std::vector<BlendMode> blend_modes{BlendMode::kOpaque};    // in order of preference
     glm::dvec3 room_colour{0.5};                               // shows where pictures do not cover it; sRGB-encoded
+    bool passthrough = false;                                  // whether XR_FB_passthrough shows the room
     bool plugged = true;                                       // else there is a runtime, but no headset
     bool writes_pictures = true;
     FrameChoice frames;

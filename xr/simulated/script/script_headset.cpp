@@ -89,6 +89,10 @@ void Parser::parseBlendModes(Words& words) {
     } while (!words.isAtEnd());
 }
 
+void Parser::parsePassthrough(Words& words) {
+    script_.passthrough = words.takeChoice("whether the room is passed through", {"on", "off"}) == 0;
+}
+
 void Parser::parseRoomColour(Words& words) {
     for (int c = 0; c < 3; ++c) { script_.room_colour[c] = words.takeNumber("the room's colour", 0.0, 1.0); }
 }

@@ -52,6 +52,7 @@ void Parser::parseLine(Words& words) {
                                                                        {"profile", {&Parser::parseProfile, kOnce}},
                                                                        {"rate", {&Parser::parseRate, kOnce}},
                                                                        {"refuse-depth", {&Parser::parseRefusedDepth, kOnce}},
+                                                                       {"passthrough", {&Parser::parsePassthrough, kOnce}},
                                                                        {"room-colour", {&Parser::parseRoomColour, kOnce}},
                                                                        {"size", {&Parser::parseSize, kOnce}},
                                                                        {"stage", {&Parser::parseStage, kOnce}},

@@ -47,6 +47,7 @@ private:
     void parseHeadsetLine(Words& words);
     void parseInset(Words& words);
     void parseBlendModes(Words& words);
+    void parsePassthrough(Words& words);
     void parseRoomColour(Words& words);
     void parseMask(Words& words);
     void parseLocal(Words& words);

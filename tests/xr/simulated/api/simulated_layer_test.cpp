@@ -47,7 +47,8 @@ struct SurroundFixture : SessionFixture {
     XrCompositionLayerEquirect2KHR sphere{XR_TYPE_COMPOSITION_LAYER_EQUIRECT2_KHR};
     XrCompositionLayerCubeKHR cube{XR_TYPE_COMPOSITION_LAYER_CUBE_KHR};
 
-    explicit SurroundFixture(const Extensions& extensions = kExtensions) : SessionFixture("size 16 16\nframes from 3 to 99\n", extensions) {
+    explicit SurroundFixture(const Extensions& extensions = kExtensions, const std::string& more = {})
+        : SessionFixture("size 16 16\nframes from 3 to 99\n" + more, extensions) {
         focus();
         picture = painter.makeSwapchain(VK_FORMAT_R8G8B8A8_SRGB, 4, 4);
         painter.paint(picture, 4, 4, std::vector<Texel>(16, {255, 0, 0, 255}));
@@ -75,6 +76,38 @@ struct SurroundFixture : SessionFixture {
         return {both.bytes[i], both.bytes[i + 1], both.bytes[i + 2], 255};
     }
 };
+
+TEST_CASE("the room is a layer where the script and the program want it, seen while neither it nor its passthrough is paused") {
+    struct Room : SurroundFixture {
+        Room() : SurroundFixture({XR_FB_PASSTHROUGH_EXTENSION_NAME}, "passthrough on\nroom-colour 0 1 0\n") {}
+    } room;
+    const auto create = room.XR(xrCreatePassthroughFB);
+    XrPassthroughCreateInfoFB info{XR_TYPE_PASSTHROUGH_CREATE_INFO_FB};
+    XrPassthroughFB passthrough = XR_NULL_HANDLE, second = XR_NULL_HANDLE;
+    CHECK(create(room.session, &info, &passthrough) == XR_SUCCESS);
+    CHECK(create(room.session, &info, &second) == XR_ERROR_FEATURE_ALREADY_CREATED_PASSTHROUGH_FB);
+    XrPassthroughLayerCreateInfoFB of_layer{XR_TYPE_PASSTHROUGH_LAYER_CREATE_INFO_FB, nullptr, passthrough,
+                                            XR_PASSTHROUGH_IS_RUNNING_AT_CREATION_BIT_FB, XR_PASSTHROUGH_LAYER_PURPOSE_PROJECTED_FB};
+    XrCompositionLayerPassthroughFB layer{XR_TYPE_COMPOSITION_LAYER_PASSTHROUGH_FB};
+    const auto create_layer = room.XR(xrCreatePassthroughLayerFB);
+    CHECK(create_layer(room.session, &of_layer, &layer.layerHandle) == XR_ERROR_FEATURE_UNSUPPORTED);
+    of_layer.purpose = XR_PASSTHROUGH_LAYER_PURPOSE_RECONSTRUCTION_FB;
+    CHECK(create_layer(room.session, &of_layer, &layer.layerHandle) == XR_SUCCESS);
+    const Texel black{0, 0, 0, 255}, green{0, 255, 0, 255};
+    const auto seenNow = [&] {
+        REQUIRE(room.show(&layer) == XR_SUCCESS);
+        return room.seen();
+    };
+    CHECK(seenNow() == black);
+    CHECK(room.XR(xrPassthroughStartFB)(passthrough) == XR_SUCCESS);
+    CHECK(seenNow() == green);
+    CHECK(room.XR(xrPassthroughLayerPauseFB)(layer.layerHandle) == XR_SUCCESS);
+    CHECK(seenNow() == black);
+    CHECK(room.XR(xrPassthroughLayerResumeFB)(layer.layerHandle) == XR_SUCCESS);
+    CHECK(seenNow() == green);
+    CHECK(room.XR(xrDestroyPassthroughLayerFB)(layer.layerHandle) == XR_SUCCESS);
+    CHECK(room.show(&layer) == XR_ERROR_HANDLE_INVALID);
+}
 
 TEST_CASE_FIXTURE(FlatFixture, "layers are of a known type, some eye's, of poses of length 1, and as many as the system says") {
     const auto showQuad = [&] { return show(&quad); };
