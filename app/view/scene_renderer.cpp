@@ -227,8 +227,8 @@ void SceneRenderer::render(ConnectedHeadset& headset, ShownScene& shown, const V
                            const std::function<void(Commands&)>& record_panel) {
     headset.images->seeThrough(seesThrough(settings));
     for (const int e : drawnEyes()) {
-        headset.images->acquire(e, true);
-        if (headset.inset) { headset.inset_images->acquire(e, true); }
+        headset.images->acquire(e, settings.submit_depth);
+        if (headset.inset) { headset.inset_images->acquire(e, settings.submit_depth); }
     }
     if (headset.inset) {
         headset.inset_images->seeThrough(seesThrough(settings));

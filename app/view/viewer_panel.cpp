@@ -81,6 +81,7 @@ void Viewer::layOutPanel(bool hung, double step_seconds) {
     status.rate = renderer_.rate();
     status.has_scene = scenes_.get() != nullptr;
     status.can_pass_through = instance_.canSeeThrough();
+    status.takes_depth = instance_.takesDepth();
     status.tools = controls_.choices();
     if (connection_.headset() != nullptr) {
         status.refresh_rates = headset().refresh_rates;

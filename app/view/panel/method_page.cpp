@@ -124,15 +124,17 @@ void drawTimes(const PanelStatus& status) {
                           static_cast<double>(splats) / 1000.0));
 }
 
-void drawFiles(PanelWidgets& widgets, ViewSettings& settings, bool can_reload_shaders, PanelRequests& requests) {
+void drawFiles(PanelWidgets& widgets, ViewSettings& settings, const PanelStatus& status, PanelRequests& requests) {
     widgets.checkbox("Show how tiles were made", &settings.tint);
     ImGui::SameLine(0.5f * ImGui::GetContentRegionAvail().x);
     requests.save = widgets.button("Save");
     ImGui::SameLine();
     requests.load = widgets.button("Load");
-    if (!can_reload_shaders) { return; }
-    ImGui::SameLine();
-    requests.reload_shaders = widgets.button("Shaders");
+    if (status.can_reload_shaders) {
+        ImGui::SameLine();
+        requests.reload_shaders = widgets.button("Shaders");
+    }
+    if (status.takes_depth) { widgets.checkbox("Give the headset depth", &settings.submit_depth); }
 }
 
 // Facts about the scene.
@@ -171,7 +173,7 @@ void drawMethodPage(PanelWidgets& widgets, ViewSettings& settings, const PanelSt
     drawResolution(widgets, settings);
     if (!status.window) { choose(widgets, "Frame rate", *findViewRow("quality"), settings, 4); }
     ImGui::PopItemWidth();
-    drawFiles(widgets, settings, status.can_reload_shaders, requests);
+    drawFiles(widgets, settings, status, requests);
     drawSaid(status);
     if (!status.governor.empty()) { writeWrapped(status.governor); }
     drawTimes(status);

@@ -64,6 +64,7 @@ struct PanelStatus {
     std::string message;                                     // the outcome of the last button
     std::string files;                                       // the file task beside the frames; empty: none
     bool can_reload_shaders = false;                         // there is a button for it
+    bool takes_depth = false;                                // there is a box for it
     bool can_pass_through = false;                           // there is a box for it
     std::vector<ToolChoice> tools;                           // the tools' choices for the wearer
     std::array<const xr::ProfileBindings*, 2> held{};        // what the hands hold; null: unknown

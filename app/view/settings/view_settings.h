@@ -27,7 +27,7 @@ struct ViewSettings {
     double resolution_scale = 1.0;  // relative to the headset's recommendation, each way
     bool tint = false;              // show how the affiliated picture was made
     bool panel = true;
-    bool submit_depth = true;     // give the runtime depth, too; only at the start
+    bool submit_depth = true;     // give the runtime depth, too; off at the start, it is off for good
     bool visibility_mask = true;  // ask the runtime what the lenses hide; only at the start
     bool eye_tracking = false;    // whether the headset may track the eyes; only at the start
     bool foveated_inset = true;   // with half_periphery: leave that to the runtime if it has insets; only at the start

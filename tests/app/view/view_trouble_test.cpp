@@ -292,7 +292,15 @@ TEST_CASE_FIXTURE(AtWork, "events that the runtime loses are made up for: what t
     CHECK(lines("lost", fmt::format("BINOSPLAT_XR_LOSE={}", 1000031001)) == told);
 }
 
-TEST_CASE_FIXTURE(AtWork, "depth is not submitted where the config says so") {
+TEST_CASE_FIXTURE(AtWork, "depth is not submitted where the config or the panel says so") {
+    Acts acts(kSmall);
+    const double given = acts.look();
+    const double kept = acts.click(onMethod("Give the headset depth", true)).look();
+    const double given_again = acts.click(onMethod("Give the headset depth", true)).look();
+    const ViewRun switched = runClean(work, "switched", acts.script(), kOneEye + withConfig(work, kMethodPage));
+    for (const double seconds : {given, kept, given_again}) {
+        CHECK(switched.view(switched.frameAt(seconds)).contains("depth") == (seconds != kept));
+    }
     const ViewRun run = runClean(work, "depth", kSmall + "at 0.1 exit\n", kOneEye + withConfig(work, "[view]\nsubmit-depth = false\n"));
     const ViewRun with = runClean(work, "with", kSmall + "at 0.1 exit\n", kOneEye);
     CHECK(countFramesWithLayers(run) > 5);

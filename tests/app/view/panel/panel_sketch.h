@@ -117,7 +117,7 @@ inline glm::dvec2 placeOf(const std::string& name, bool with_all = false, PanelP
             PanelSketch sketch;
             sketch.settings.page = shown;
             const WidgetPlaces plain = sketch.draw().places;
-            sketch.status.can_reload_shaders = sketch.status.can_pass_through = true;
+            sketch.status.can_reload_shaders = sketch.status.can_pass_through = sketch.status.takes_depth = true;
             sketch.status.refresh_rates = {72.0, 80.0, 90.0, 120.0};  // as the simulated headset has them
             found[static_cast<std::size_t>(shown)] = {plain, sketch.draw().places};
         }
