@@ -48,7 +48,7 @@ void tagFilm(const fs::path& path, const FilmTags& tags) {
 
 std::string lastLine(const std::string& text) {
     const std::size_t end = text.find_last_not_of('\n');
-    if (end == std::string::npos) { return "without a word"; }
+    if (end == std::string::npos) { return "without a message"; }
     const std::size_t before = text.rfind('\n', end);
     return text.substr(before + 1, end - before);
 }

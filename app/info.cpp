@@ -36,7 +36,7 @@ std::string nameKind(const Scene& scene, const LoadNotes& notes) {
 double mebibytes(std::uint64_t bytes) { return static_cast<double>(bytes) / (1024.0 * 1024.0); }
 
 void printOrigin(const Scene& scene, const LoadNotes& notes) {
-    if (scene.origin != glm::dvec3(0.0)) { printRow("origin", "{}: in memory positions count from there", describeOrigin(scene)); }
+    if (scene.origin != glm::dvec3(0.0)) { printRow("origin", "{}: positions in memory are relative to it", describeOrigin(scene)); }
     printRow("axes", "{}",
              notes.axes.empty() ? "the file does not say; taken as a training's: x right, y down, z front; right-handed" : notes.axes);
     printRow("colour space", "{}",

@@ -64,10 +64,10 @@ std::uint64_t JudgedScene::countOf(const Keep& keep, const SceneTarget& target) 
     if (keep.unit == Keep::kSplats) { return static_cast<std::uint64_t>(std::min(keep.amount, all)); }
     if (keep.unit == Keep::kShare) { return std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(keep.amount * all))); }
     const std::uint64_t count = countThatFits(scene_, *thin_out_, keep.amount, target);
-    check(count > 0, "--keep is {} bytes, which is too few for any splat of {} in {}", keep.amount, scene_.name, target.extension);
+    check(count > 0, "--keep is {} bytes, too few for a single splat of {} in {}", keep.amount, scene_.name, target.extension);
     return count;
 }
 
-Scene JudgedScene::keep(std::uint64_t count) { return thin_out_->keep(count, ProgressLine("fitting what stays").progress()); }
+Scene JudgedScene::keep(std::uint64_t count) { return thin_out_->keep(count, ProgressLine("fitting the kept splats").progress()); }
 
 }  // namespace binosplat

@@ -55,7 +55,7 @@ KernelTable chosenKernels(const Context& context, const std::string& filter) {
         const std::regex pattern(filter);
         std::erase_if(table, [&](const KernelVariant& variant) { return !std::regex_search(nameOf(variant), pattern); });
     } catch (const std::regex_error&) { table.clear(); }
-    check(!table.empty(), "--filter is {}, must be a regular expression that fits a kernel's line, such as \"^rasterize .*kMasked=1\"",
+    check(!table.empty(), "--filter is {}, must be a regular expression that matches a kernel's line, such as \"^rasterize .*kMasked=1\"",
           filter);
     return table;
 }

@@ -100,7 +100,7 @@ Scene loadWithProgress(const std::string& source, const LoadOptions& options, Lo
 }
 
 bool mayLive(const std::string& source, const LoadOptions& options) {
-    check(options.splat_budget == 0 || !options.lod, "{}: lod {} is one level, splat-budget chooses among all: expected one of the two",
+    check(options.splat_budget == 0 || !options.lod, "{}: lod {} asks for one level, splat-budget for all of them: expected one of the two",
           source, options.lod.value_or(0));
     if (options.lod) { return false; }
     const bool is_streamed = isStreamedScene(source);
@@ -131,7 +131,7 @@ std::optional<OpenedScene> openLive(const Context& context, const std::string& s
     if (settings.pictures) { settings.look_ahead_rad = kPictureLookAhead; }
     // Nobody needs to know the sample's level.
     std::erase_if(scene.notes.lines, [](const std::string& line) { return line.find(": level of detail ") != std::string::npos; });
-    scene.notes.lines.push_back(fmt::format("{}: streamed, {} leaves in levels chosen by what is seen", source, chunks->leaves().size()));
+    scene.notes.lines.push_back(fmt::format("{}: streamed, {} leaves, at levels chosen by the view", source, chunks->leaves().size()));
     auto stream = std::make_unique<SceneStream>(context, std::move(chunks), settings);
     scene.stream = stream.get();
     scene.live = std::move(stream);

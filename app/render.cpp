@@ -88,7 +88,7 @@ void finishPath(const RenderOptions& options, const HeadPath& path, std::size_t 
     try {
         stopIfInterrupted();
     } catch (const Interrupted& stop) {
-        throw Interrupted{stop.signal, fmt::format("{} of {} frames are in {}, --resume goes on", done, all, options.out.string())};
+        throw Interrupted{stop.signal, fmt::format("{} of {} frames are in {}, --resume continues", done, all, options.out.string())};
     }
     if (!options.video) { return; }
     writeFilm(options.out, path.film_pattern, files.staging() / "video.mp4", path.rate_hz, filmTags(options));
@@ -160,7 +160,7 @@ void runRender(const RenderOptions& options) {
     } else {
         settings.keep_classes = true;
         const std::span<const Eye> eyes = stereo.mode == Mode::kMono ? std::span(&cameras.middle, 1) : std::span<const Eye>(cameras.eyes);
-        if (live != nullptr) { settle(*live, eyes, ProgressLine("loading what is seen of " + live->name()).progress()); }
+        if (live != nullptr) { settle(*live, eyes, ProgressLine("loading the visible part of " + live->name()).progress()); }
         FrameResult result = renderTimed(frame, eyes, settings);
         if (live != nullptr) { result.counters.streaming = streamingOf(*live); }
         writePictures(files, frame, settings, options.layout);

@@ -54,7 +54,7 @@ void requireNoOthers(const std::filesystem::path& folder, std::size_t frames, co
                               std::ranges::any_of(kEyeNames, [&](std::string_view eye) { return name.ends_with(fmt::format("_{}", eye)); });
         if (!numbered || entry.path().extension() != extension) { continue; }
         check(isReplaced(name, frames, eyes),
-              "{}: is a frame of another path, which this one's {} frames would not replace; must be taken away", entry.path().string(),
+              "{}: is a frame of another path, which this one's {} frames would not replace; must be removed", entry.path().string(),
               frames);
     }
 }

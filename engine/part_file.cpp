@@ -44,7 +44,7 @@ void PartFile::commit() {
     check(closed, "{}: writing failed: {}", target_, std::strerror(errno));
     std::error_code error;
     std::filesystem::rename(path_, target_, error);
-    check(!error, "{}: cannot be put in place: {}", target_, error.message());
+    check(!error, "{}: cannot be moved into place: {}", target_, error.message());
     renamed_ = true;
 }
 

@@ -23,9 +23,9 @@ Input::Input(const Session& session)
       squeeze_(actions_.make("squeeze", "Grab", XR_ACTION_TYPE_FLOAT_INPUT, hands_)),
       stick_(actions_.make("stick", "Move and turn", XR_ACTION_TYPE_VECTOR2F_INPUT, hands_)),
       stick_click_(actions_.make("pad", "Press the pad to move and turn", XR_ACTION_TYPE_BOOLEAN_INPUT, hands_)),
-      stick_press_(actions_.make("viewpoint", "Next viewpoint, and back on the left", XR_ACTION_TYPE_BOOLEAN_INPUT, hands_)),
+      stick_press_(actions_.make("viewpoint", "Next viewpoint, previous on the left", XR_ACTION_TYPE_BOOLEAN_INPUT, hands_)),
       menu_(actions_.make("menu", "Show or hide the panel", XR_ACTION_TYPE_BOOLEAN_INPUT, hands_)),
-      play_(actions_.make("play", "Play a scene that moves, or have it rest", XR_ACTION_TYPE_BOOLEAN_INPUT, hands_)),
+      play_(actions_.make("play", "Pause or play a scene that moves", XR_ACTION_TYPE_BOOLEAN_INPUT, hands_)),
       haptic_(actions_.make("pulse", "Feel the panel", XR_ACTION_TYPE_VIBRATION_OUTPUT, hands_)),
       gamepad_(actions_),
       gaze_(session, actions_) {
@@ -65,7 +65,7 @@ void Input::suggestBindings() const {
         const XrResult result = actions_.suggest(profile.path, bindings);
         if (XR_FAILED(result)) { rejected += fmt::format("{}{} ({})", rejected.empty() ? "" : ", ", profile.path, nameOf(result)); }
     }
-    if (!rejected.empty()) { instance.troubles().add("controllers that the OpenXR runtime does not take: " + rejected); }
+    if (!rejected.empty()) { instance.troubles().add("controllers that the OpenXR runtime rejects: " + rejected); }
 }
 
 std::array<Hand, 2> Input::read() {

@@ -78,7 +78,7 @@ void Instance::create(const InstanceOptions& options) {
         if (std::ranges::any_of(available, isIt)) { extensions_.insert(name); }
     };
     enable(XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME);
-    if (extensions_.empty()) { refuse("the OpenXR runtime has not XR_KHR_vulkan_enable2", XR_ERROR_EXTENSION_NOT_PRESENT); }
+    if (extensions_.empty()) { refuse("the OpenXR runtime lacks XR_KHR_vulkan_enable2", XR_ERROR_EXTENSION_NOT_PRESENT); }
     std::ranges::for_each(wantedExtensions(options), enable);
     std::vector<const char*> names;
     for (const std::string& name : extensions_) { names.push_back(name.c_str()); }

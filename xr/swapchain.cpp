@@ -80,7 +80,7 @@ vk::Image Swapchain::acquire() {
     info.timeout = kWaitNs;
     int waits = 0;
     while (BINOSPLAT_XR(xrWaitSwapchainImage(handle(), &info)) == XR_TIMEOUT_EXPIRED) {
-        if (++waits == kMostWaits) { throw Error(ExitCode::kNoDevice, "OpenXR: a swapchain image did not come free for ten seconds"); }
+        if (++waits == kMostWaits) { throw Error(ExitCode::kNoDevice, "OpenXR: no swapchain image became free for ten seconds"); }
     }
     return images_.at(index);
 }

@@ -24,7 +24,7 @@ public:
         try {
             act();
             return true;
-        } catch (const Error& error) { add(fmt::format("{}; on without {}", error.what(), what)); }
+        } catch (const Error& error) { add(fmt::format("{}; going on without {}", error.what(), what)); }
         return false;
     }
 

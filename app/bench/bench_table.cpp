@@ -95,7 +95,7 @@ std::string benchTable(const BenchRun& run, std::size_t most_columns) {
         table += methodsTable(point, hasLpips(run.results), most_columns) + timesTable(point, most_columns);
         for (const BenchResult* r : point) {
             if (r->move_cost) {
-                table += fmt::format("  {}: moving a tile took as long as rendering {:.0f} pairs\n", r->method, *r->move_cost);
+                table += fmt::format("  {}: reprojecting a tile took as long as rendering {:.0f} pairs\n", r->method, *r->move_cost);
             }
             if (r->seen && r->seen->mean_square == 0.0) {
                 table += fmt::format("  {}: the eye sees no error\n", r->method);

@@ -22,9 +22,9 @@ std::string ordersCsv(const std::vector<OrderResult>& results) {
 
 std::string ordersTable(const std::vector<OrderResult>& results) {
     std::string table = fmt::format(
-        "Off: pixels that differ by more than 2/255 from those of each pixel's own order. Popped: pixels that change by as much from one "
+        "Off: pixels that differ by more than 2/255 from those of each pixel's own order. Popped: pixels that change as much from one "
         "turn\n"
-        "of {} degrees to the next by the order alone, mean of {}: about the middle between the eyes, and about a neck {} m behind it.\n",
+        "of {} degrees to the next by the order alone, mean of {}: about the midpoint between the eyes, and about a neck {} m behind it.\n",
         kTurnDegrees, kTurns, kNeckMetres);
     std::string point;
     for (const OrderResult& r : results) {

@@ -124,7 +124,7 @@ void requireBenchKind(const BenchOptions& bench) {
     refuse(!bench.motion_file.empty() && !bench.lpips_weights.empty(),
            "--motion and --lpips contradict each other: frames in motion are compared by PSNR alone");
     refuse(bench.orders && (!bench.motion_file.empty() || !bench.photos_folder.empty() || !bench.lpips_weights.empty()),
-           "--orders and --motion, --photos or --lpips contradict each other: orders are compared with one of each pixel's own, by PSNR");
+           "--orders and --motion, --photos or --lpips contradict each other: orders are compared with each pixel's own order, by PSNR");
     const bool measures_speed = bench.motion_file.empty() && bench.photos_folder.empty() && !bench.orders;
     refuse(bench.repeats != 0 && !measures_speed, "--repeats and --motion, --photos or --orders contradict each other");
     refuse(bench.every != 1 && bench.motion_file.empty() && bench.photos_folder.empty(), "--every is given without --motion or --photos");

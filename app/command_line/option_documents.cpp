@@ -87,7 +87,7 @@ constexpr std::array<std::pair<const char*, const char*>, 6> kEnvironment{{
     {"BINOSPLAT_DATA", "folder that holds configs/headsets"},
     {"BINOSPLAT_PIPELINE_CACHE", "folder for what the driver compiles; 0: none"},
     {"BINOSPLAT_FONT", "TrueType font of the viewer's panel"},
-    {"BINOSPLAT_SHADERS", "folder of the shaders' sources, which the viewer's panel then compiles anew"},
+    {"BINOSPLAT_SHADERS", "folder of shader sources, which the viewer's panel then reloads"},
     {"BINOSPLAT_VISIBILITY_MASK", "0: the viewer also draws what the headset's lenses hide"},
     {"BINOSPLAT_VALIDATION", "1: with Vulkan's validation layers, whose messages fail the command"},
 }};

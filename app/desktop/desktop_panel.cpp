@@ -91,7 +91,7 @@ void DesktopShell::openAndSave(const PanelRequests& requests) {
 }
 
 void DesktopShell::load() {
-    files_.read("loading what was saved", [this, scene = scenes_.name()]() -> FileWorker::Done {
+    files_.read("loading saved settings", [this, scene = scenes_.name()]() -> FileWorker::Done {
         return [this, scene, saved = readSavedSettings(scene)] {
             if (scene != scenes_.name()) { return; }  // another one came meanwhile
             ViewSettings loaded = state_.settings();

@@ -59,7 +59,7 @@ void DesktopWindow::makePictures() {
     VkSurfaceKHR surface = VK_NULL_HANDLE;
     const VkResult result = glfwCreateWindowSurface(*context_.instance(), window_.get(), nullptr, &surface);
     if (result != VK_SUCCESS) {
-        throw Error(ExitCode::kNoDevice, fmt::format("the window cannot be drawn on: {}", vk::to_string(vk::Result(result))));
+        throw Error(ExitCode::kNoDevice, fmt::format("cannot draw in the window: {}", vk::to_string(vk::Result(result))));
     }
     vk::raii::SurfaceKHR owned(context_.instance(), surface);
     if (context_.physicalDevice().getSurfaceSupportKHR(context_.queueFamily(), *owned) != VK_TRUE) {

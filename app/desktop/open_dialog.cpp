@@ -36,7 +36,7 @@ ChosenFile askForFile() {
             return chosen;
         } catch (const Error&) {}  // the next one
     }
-    return {"", "neither zenity nor kdialog is installed to choose a file with: drop it on the window, or look on the page Scenes"};
+    return {"", "no dialog to choose a file with: install zenity or kdialog, drop the file on the window, or use the page Scenes"};
 }
 
 }  // namespace binosplat

@@ -36,8 +36,8 @@ Settings configLayer(const std::filesystem::path& config, const std::vector<Sett
             const OptionRow<RunOptions>* row = findRunRow(key);
             check(row != nullptr, "{} is not a known key, must be the name of an option of `binosplat render` without its dashes",
                   setting.origin);
-            check(table.name.empty() || table.name == row->text.table, "{} stands in [{}], must stand in [{}] or at the top",
-                  setting.origin, table.name, row->text.table);
+            check(table.name.empty() || table.name == row->text.table, "{} is in [{}], must be in [{}] or at the top", setting.origin,
+                  table.name, row->text.table);
             check(!layer.contains(key), "{} is set twice, must be set once (also {})", setting.origin,
                   layer.contains(key) ? layer.at(key).origin : "");
             Setting resolved = setting;

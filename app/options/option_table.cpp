@@ -107,21 +107,21 @@ std::span<const OptionRow<RunOptions>> runRows() {
          field::named<kStereo, &StereoOptions::mode>({kModeNames.begin(), kModeNames.end()})},
         {{"dominant", "stereo", kWearer, "SIDE", "eye that is rendered in full"},
          field::named<kStereo, &StereoOptions::dominant>({"left", "right"})},
-        {{"ipd", "stereo", kPictures, "METRES", "distance of the eyes", "0.063, or the headset's"},
+        {{"ipd", "stereo", kPictures, "METRES", "distance between the eyes", "0.063, or the headset's"},
          field::number<kStereo, &StereoOptions::ipd_m>(0.0, 10.0)},
         {{"center-roi", "stereo", kTried, "", "paper mode: also render again the holes that remain inside the picture"},
          field::flag<kStereo, kWarp, &StereoSettings::center_rois>()},
         {{"margin", "stereo", kTried, "PX", "paper mode: pixels added around what is rendered again"},
          slidesTo(128, field::count<kStereo, kWarp, &StereoSettings::margin_px>(0, kMaxSide))},
         {{"budget", "stereo", kTried, "FRACTION",
-          "share of work for patching the warped picture: of an eye's (predicted), of both eyes' (temporal)"},
+          "share of work for patching the reprojected picture: of an eye's (predicted), of both eyes' (temporal)"},
          field::share<kStereo, kWarp, &StereoSettings::budget>()},
         {{"error-bound", "stereo", kTried, "DB",
           "temporal mode: tiles expected to be under this PSNR, or up to 4.4 dB above it where contrast is low, are rendered again first, "
-          "with --budget as the most work of a frame; 0: "
+          "with --budget as the limit of a frame's work; 0: "
           "off"},
          field::number<kStereo, kWarp, &StereoSettings::error_bound_db>(0.0, 60.0)},
-        {{"move-cost", "stereo", kTried, "PAIRS", "predicted mode: tiles that meet at most this many splats are rendered, not warped"},
+        {{"move-cost", "stereo", kTried, "PAIRS", "predicted mode: tiles that meet at most this many splats are rendered, not reprojected"},
          field::count<kStereo, kWarp, &StereoSettings::move_cost>(0, kMaxMoveCost)},
         {{"depth", "stereo", kTried, "KIND", "depth that reprojects a pixel: D, D/A or A/I"},
          field::named<kStereo, kWarp, &StereoSettings::depth_choice>({"sum", "mean", "inverse"})},
@@ -129,7 +129,8 @@ std::span<const OptionRow<RunOptions>> runRows() {
           "the scene's, or depth; with view or --axes stay distance", /*required*/ false, /*by_command*/ true},
          field::named<kStereo, &StereoOptions::order>({"depth", "distance"})},
         {{"resampling", "stereo", kTried, "KIND",
-          "reproject and paper modes: warped pixels are sampled with a cubic kernel, or copied forward with gaps interpolated, as in the "
+          "reproject and paper modes: reprojected pixels are sampled with a cubic kernel, or copied forward with gaps interpolated, as in "
+          "the "
           "paper"},
          field::named<kStereo, kWarp, &StereoSettings::forward>({"cubic", "forward"})},
         {{"per-eye", "stereo", kTried, "", "paper mode: cull, sort and project for each eye by itself, as two-pass does"},
@@ -141,7 +142,7 @@ std::span<const OptionRow<RunOptions>> runRows() {
         {{"edge-bounds", "stereo", kTried, "KIND",
           "paper mode: width of the re-rendered borders, as in the paper, or also covering disocclusion by near content"},
          field::named<kStereo, kWarp, &StereoSettings::tight_edges>({"paper", "tight"})},
-        {{"hole-error", "stereo", kTried, "E", "predicted mode: weight of the difference expected of a hole's pixel"},
+        {{"hole-error", "stereo", kTried, "E", "predicted mode: weight of the error expected of a hole's pixel"},
          field::number<kStereo, kWarp, &StereoSettings::hole_error>(0.0, kMaxExpectedError)},
         {{"newcomer-error", "stereo", kTried, "E", "predicted mode: error of a pixel covered by splats that the dominant eye does not see"},
          field::number<kStereo, kWarp, &StereoSettings::newcomer_error>(0.0, kMaxExpectedError)},
@@ -157,7 +158,7 @@ std::span<const OptionRow<RunOptions>> runRows() {
         {{"axes", "stereo", kWearer, "KIND",
           "in a headset, with --path or --motion: the axes of the pictures follow the view, or stay while the head turns a few degrees; "
           "then "
-          "pictures are shown as a headset's compositor does, resampled once to the view",
+          "pictures are shown as a headset's compositor shows them, resampled once to the view",
           "view; in a headset stay", /*required*/ false, /*by_command*/ true},
          field::named<kStereo, &StereoOptions::axes>({"view", "stay"})},
         {{"gaze", "stereo", kPictures, "x,y,z", "direction of the gaze, from the head: right, down, forward", "each lens's centre"},
@@ -167,14 +168,14 @@ std::span<const OptionRow<RunOptions>> runRows() {
         {{"lod", "scene", kScenes, "N", "level of detail of a streamed SOG scene, 0 the finest", "the finest within --memory-limit"},
          field::count<kLoad, &LoadOptions::lod>(0, kAny32)},
         {{"splat-budget", "scene", kWearer, "N",
-          "splats of a streamed SOG scene that are there at a time: levels are chosen by what the eyes see",
+          "most splats of a streamed SOG scene that are loaded at a time: levels are chosen by what the eyes see",
           "the finest level, or what the memory holds"},
          noneIfZero(field::count<kLoad, &LoadOptions::splat_budget>(1, kMaxSplats))},
-        {{"scene-rate", "scene", kWearer, "HZ", "frames of a moving scene (a folder of numbered files) a second"},
+        {{"scene-rate", "scene", kWearer, "HZ", "frames per second of a moving scene (a folder of numbered files)"},
          field::number<kLoad, &LoadOptions::scene_rate_hz>(0.01, kMaxRateHz)},
-        {{"scene-blend", "scene", kWearer, "", "show what lies between two frames of a moving scene, where their splats correspond"},
+        {{"scene-blend", "scene", kWearer, "", "interpolate between two frames of a moving scene, where their splats correspond"},
          field::flag<kLoad, &LoadOptions::scene_blend>()},
-        {{"sh-degree", "scene", kScenes, "N", "highest band of colours that is kept; lower ones take less memory and time", "the scene's"},
+        {{"sh-degree", "scene", kScenes, "N", "highest band of colours to keep; lower ones take less memory and time", "the scene's"},
          field::count<kLoad, &LoadOptions::sh_degree>(0, kMaxShDegree)},
         {{"flatten", "scene", kScenes, "", "draw 3D Gaussians as discs, without the shortest axis of each"},
          field::flag<kLoad, &LoadOptions::flatten>()},
@@ -209,16 +210,16 @@ std::span<const OptionRow<RenderOptions>> renderRows() {
           "full"},
          field::named<&RenderOptions::projection>({"flat", "vr180", "360"})},
         {{"video", "", kRender, "", "with --path: also video.mp4 of its frames, by ffmpeg"}, field::flag<&RenderOptions::video>()},
-        {{"resume", "", kRender, "", "with --path: go on after the frames in --out, those of a run that was stopped"},
+        {{"resume", "", kRender, "", "with --path: continue after the frames that a stopped run left in --out"},
          field::flag<&RenderOptions::resume>()},
         {{"path", "", kRender, "POSES.csv", "head poses to render relative to the camera, one numbered frame after the other"},
          field::file<&RenderOptions::path>()},
         {{"path-axes", "", kRender, "AXES", "axes of --path"}, field::named<&RenderOptions::path_axes>({"openxr", "unity"})},
         {{"from", "", kRender, "S", "second of --path at which the frames begin; the head is at the camera then"},
          field::number<kPathSegment, &MotionSegment::from_s>(0.0, kMaxSeconds)},
-        {{"seconds", "", kRender, "S", "length of the part of --path that is rendered", "all that is left"},
+        {{"seconds", "", kRender, "S", "length of the part of --path that is rendered", "the rest of it"},
          field::number<kPathSegment, &MotionSegment::seconds>(0.001, kMaxSeconds)},
-        {{"rate", "", kRender, "HZ", "frames in a second of --path, between its poses", "one for each pose"},
+        {{"rate", "", kRender, "HZ", "frames per second of --path, between its poses", "one for each pose"},
          field::number<kPathSegment, &MotionSegment::rate_hz>(0.001, kMaxRateHz)},
     };
     return rows;
@@ -232,12 +233,12 @@ std::span<const OptionRow<BenchOptions>> benchRows() {
         {{"motion-axes", "", kBench, "AXES", "axes of --motion"}, field::named<&BenchOptions::motion_axes>({"openxr", "unity"})},
         {{"from", "", kBench, "S", "second of --motion at which the frames begin; the head is at the camera then"},
          field::number<kMotionSegment, &MotionSegment::from_s>(0.0, kMaxSeconds)},
-        {{"seconds", "", kBench, "S", "length of the part of --motion that is played", "all that is left"},
+        {{"seconds", "", kBench, "S", "length of the part of --motion that is played", "the rest of it"},
          field::number<kMotionSegment, &MotionSegment::seconds>(0.001, kMaxSeconds)},
-        {{"rate", "", kBench, "HZ", "frames in a second of --motion, between its poses", "one for each pose"},
+        {{"rate", "", kBench, "HZ", "frames per second of --motion, between its poses", "one for each pose"},
          field::number<kMotionSegment, &MotionSegment::rate_hz>(0.001, kMaxRateHz)},
         {{"frame-time", "", kBench, "MS",
-          "with --motion: what a frame of temporal may take; the viewer's controller (balanced) chooses size and bound for it; 0: no "
+          "with --motion: time that a frame of temporal may take; the viewer's controller (balanced) chooses size and bound for it; 0: no "
           "limit"},
          field::number<&BenchOptions::frame_ms>(0.0, 10000.0)},
         {{"photos", "", kBench, "DIR", "photographs of the cameras of --cameras, to compare with"},
@@ -245,7 +246,7 @@ std::span<const OptionRow<BenchOptions>> benchRows() {
         {{"orders", "", kBench, "",
           "compare both orders of splats with the exact order of each pixel, on the CPU, and count pixels that pop"},
          field::flag<&BenchOptions::orders>()},
-        {{"every", "", kBench, "N", "score only every Nth frame of --motion (methods with a past render all), or camera of --photos"},
+        {{"every", "", kBench, "N", "score only every Nth frame of --motion (methods with a history render all), or camera of --photos"},
          field::count<&BenchOptions::every>(1, kMaxStep)},
         {{"repeats", "", kBench, "N", "measured frames per method", "5, or the config's"},
          noneIfZero(field::count<&BenchOptions::repeats>(1, kMaxStep))},
@@ -328,7 +329,7 @@ std::span<const OptionRow<StabilityOptions>> stabilityRows() {
 std::span<const OptionRow<KernelsOptions>> kernelsRows() {
     static const std::vector<OptionRow<KernelsOptions>> rows{
         {{"out", "", kKernels, "DIR", "directory for kernels.json"}, field::file<&KernelsOptions::out>()},
-        {{"filter", "", kKernels, "REGEX", "only kernels whose line, name and constants, it fits", "all"},
+        {{"filter", "", kKernels, "REGEX", "only kernels whose line (name and constants) matches", "all"},
          field::text<&KernelsOptions::filter>()},
     };
     return rows;

@@ -40,11 +40,11 @@ std::optional<StartView> viewAtCamera(const Scene& scene, const SceneCameras& ow
     const auto with = [&](const std::optional<glm::dvec3>& up, const std::string& up_why) {
         const View view = viewFrom(camera.eye.world_from_camera, up, scene, wish.fov_x_deg);
         const bool keeps_own = up && glm::dot(view.up, glm::normalize(*up)) < kAbout;
-        return StartView{view, at, up_why + (keeps_own ? "; this one looks along it and keeps its own" : "")};
+        return StartView{view, at, up_why + (keeps_own ? "; this camera looks along it and keeps its own" : "")};
     };
     if (wish.up) { return with(wish.up, "given"); }
     if (const auto found = upOfCameras(own.cameras, scene)) { return with(found->up, found->why); }
-    return with({}, "this camera's, as they look every way");
+    return with({}, "this camera's, since the cameras look every way");
 }
 
 glm::dvec3 along(const FileCamera& camera, const glm::dvec3& axis) { return camera.eye.world_from_camera.orientation * axis; }
@@ -109,13 +109,13 @@ std::optional<CamerasUp> upOfCameras(const std::vector<FileCamera>& cameras, con
     // Those of a drone that look straight down have theirs in every direction, or all along one course.
     if (!(glm::length(up) > 0.5)) {
         const auto floor = upBeneath(scene, place);
-        return floor ? std::optional(CamerasUp{*floor, "of the floor beneath the cameras, as they look every way"}) : std::nullopt;
+        return floor ? std::optional(CamerasUp{*floor, "that of the floor beneath the cameras, which look every way"}) : std::nullopt;
     }
     up = glm::normalize(up);
     if (mayLookDown(cameras, ahead, up, scene)) {
         const auto floor = upBeneath(scene, place, up);
         if (floor && glm::dot(*floor, ahead) < -kAbout) {
-            return CamerasUp{*floor, "of the floor beneath the cameras, as they all look straight down"};
+            return CamerasUp{*floor, "that of the floor beneath the cameras, which all look straight down"};
         }
     }
     return CamerasUp{up, "the mean of all cameras'"};

@@ -138,10 +138,12 @@ std::string stabilityTable(const StabilityRun& run) {
     return fmt::format(
         "device: {}\nPSNR in dB against the float64 twin, of the worse eye; off: share of the values that differ by more than 2/255; "
         "full:\n"
-        "eyes that are rendered; moved: the eye that is made from the other, over tiles that both or neither render again\n\n{}\n{}\n"
+        "eyes that are rendered; moved: the eye that is reprojected from the other, over tiles that both or neither render "
+        "again\n\n{}\n{}\n"
         "PSNR in dB of the worse eye against the full render of the same frame; drift: how much worse the last frames are than the first;\n"
-        "beyond: the farthest that a value lies beyond the full render's within 3 pixels; bias: how far the mean of all values is off;\n"
-        "equal from: frame from which on all are the full render\n\n{}\n"
+        "beyond: the most by which a value exceeds the range of the full render within 3 pixels; bias: how far the mean of all values is "
+        "off;\n"
+        "equal from: the frame from which all equal the full render\n\n{}\n"
         "what bounds them\n{}",
         run.device, casesTable(run), pathsTable(run), sequencesTable(run), reasons(run));
 }

@@ -65,7 +65,7 @@ ViewSettings suitDevice(ViewOptions& options, const Context& context) {
     const auto namesRate = [](const SettingsTable& table) { return table.settings.contains("refresh-rate"); };
     if (std::ranges::none_of(options.tables, namesRate)) { options.usual_rate_hz = device.refresh_rate; }
     if (const std::string words = describeDefaults(device); !words.empty()) {
-        FrameLog::print(fmt::format("{}: a small device, begins with {}, see docs/arm.md", context.deviceName(), words));
+        FrameLog::print(fmt::format("{}: a small device, starts with {}, see docs/arm.md", context.deviceName(), words));
     }
     if (context.isSoftware()) { device.quality = Quality::kOff; }  // no setting makes these fast enough
     return startSettings(options, device);
@@ -144,8 +144,8 @@ void viewInHeadset(ViewOptions options, bool& has_headset) {
     } catch (const xr::RuntimeFailed&) {
         // The runtime has printed where and why.
         check(!options.simulate || options.script.empty(),
-              "--simulate: the simulated headset does not begin with {}, see docs/simulated_script.md", options.script);
-        check(!options.simulate || options.out.empty(), "--out: the simulated headset does not begin with {}", options.out.string());
+              "--simulate: the simulated headset does not start with {}, see docs/simulated_script.md", options.script);
+        check(!options.simulate || options.out.empty(), "--out: the simulated headset does not start with {}", options.out.string());
         throw;
     }
 }

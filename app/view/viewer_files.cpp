@@ -38,7 +38,7 @@ void Viewer::openAndSave(const PanelRequests& requests) {
 }
 
 void Viewer::load() {
-    files_.read("loading what was saved", [this, scene = scenes_.name()]() -> FileWorker::Done {
+    files_.read("loading saved settings", [this, scene = scenes_.name()]() -> FileWorker::Done {
         return [this, scene, saved = readSavedSettings(scene)] {
             if (scene != scenes_.name()) { return; }  // another one came meanwhile
             ViewSettings loaded = state_.settings();
@@ -54,7 +54,7 @@ void Viewer::reloadShaders() {
     if (scenes_.get() == nullptr || !panel_.status().can_reload_shaders) { return; }
     // The loading thread may be making kernels.
     if (scenes_.isLoading()) {
-        say("shaders stay as they are until the next scene is there");
+        say("shaders stay as they are until the next scene is loaded");
         return;
     }
     say(binosplat::reloadShaders(context_, shaderFolder(options_.shaders), [&] {

@@ -112,7 +112,7 @@ void Viewer::sayLive(LoadedScene& scene) {
     said_there_ = true;
     const StreamCounters counters = scene.stream->counters();
     log_.say(
-        fmt::format("all that is seen is there: {} splats, {} levels of leaves, {:.2f} million splats read in {:.1f} s; frames that "
+        fmt::format("everything in view is loaded: {} splats, {} levels of leaves, {:.2f} million splats read in {:.1f} s; frames that "
                     "waited for it: {}",
                     counters.splats_resident, counters.chunks_resident, 1e-6 * static_cast<double>(work->splats), work->seconds,
                     counters.frames_waited_for_loading));
@@ -248,11 +248,11 @@ void Viewer::submitFrame(const FrameViews& views) {
     // Which layer it refuses, the runtime does not say: the things are left out one after the other until it takes the rest.
     for (std::size_t most = things.size(); most-- > 0;) {
         if (!isTaken(most)) { continue; }
-        instance_.troubles().add(fmt::format("{}; on without hands, rays and the vignette: it refuses {}", refusal, things[most]));
+        instance_.troubles().add(fmt::format("{}; going on without hands, rays and the vignette: it refuses {}", refusal, things[most]));
         headset().things.giveUp();
         return;
     }
-    if (renderer_.dropDepth(headset())) { log_.say("the runtime refuses depth; on without depth"); }
+    if (renderer_.dropDepth(headset())) { log_.say("the runtime refuses depth; going on without depth"); }
     if (!isTaken(SIZE_MAX)) {
         throw Error(ExitCode::kNoDevice, fmt::format("{}: it refuses the eyes' pictures{}", refusal, panel_hangs_ ? ", or the panel" : ""));
     }

@@ -101,7 +101,7 @@ void Viewer::layOutPanel(bool hung, double step_seconds) {
     panel_.showTimes(renderer_.lastFrame(), renderer_.governorSentence(), step_seconds);
     panel_.askFor(files_, state_.settings());
     if (status.files.empty() && scenes_.isMakingKernels()) {
-        status.files = fmt::format("making ready: {}", nameOf(state_.settings().stereo.mode));
+        status.files = fmt::format("preparing {}", nameOf(state_.settings().stereo.mode));
     }
     followPanel(panel_.layOut(hung ? connection_.headset() : nullptr, window_input_.pointer, window_input_.uses_panel, state_.settings(),
                               step_seconds));

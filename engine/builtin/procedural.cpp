@@ -34,11 +34,11 @@ constexpr std::array<Entry, 6> kEntries{{
     {"atelier", "a furnished room with a window onto hills", 200'000, 1'000, 10'000'000, builtin::makeAtelier, builtin::atelierView},
     {"one-splat", "one disc", 1, 1, 1, makeFixed<builtin::makeOneSplat>, viewFromOrigin},
     {"slanted-wall", "a wall at 45 degrees", 41 * 41, 41 * 41, 41 * 41, makeFixed<builtin::makeSlantedWall>, viewFromOrigin},
-    {"two-layers", "a translucent disc before another", 2, 2, 2, makeFixed<builtin::makeTwoLayers>, viewFromOrigin},
-    {"step-edge", "a near wall that ends before a far one", 30 * 61 + kWallSplats, 30 * 61 + kWallSplats, 30 * 61 + kWallSplats,
+    {"two-layers", "a translucent disc in front of another", 2, 2, 2, makeFixed<builtin::makeTwoLayers>, viewFromOrigin},
+    {"step-edge", "a near wall that ends in front of a far one", 30 * 61 + kWallSplats, 30 * 61 + kWallSplats, 30 * 61 + kWallSplats,
      makeFixed<builtin::makeStepEdge>, viewFromOrigin},
-    {"fence", "thin bars before a wall", 9 * 81 + kWallSplats, 9 * 81 + kWallSplats, 9 * 81 + kWallSplats, makeFixed<builtin::makeFence>,
-     viewFromOrigin},
+    {"fence", "thin bars in front of a wall", 9 * 81 + kWallSplats, 9 * 81 + kWallSplats, 9 * 81 + kWallSplats,
+     makeFixed<builtin::makeFence>, viewFromOrigin},
 }};
 
 const Entry* findEntry(std::string_view name) {

@@ -87,7 +87,7 @@ std::unique_ptr<InputFile> unpack(const InputFile& packed, const std::string& na
     std::uint64_t done = 0;
     const auto requireRoom = [&](std::uint64_t more) {
         const bool fits = room.holds(done, more);  // which may look anew
-        check(fits, "{}: needs at least {} bytes unpacked, but there is room for {} in {}; make some", name, done + more, room.bytes(),
+        check(fits, "{}: needs at least {} bytes unpacked, but only {} are free in {}; free some space", name, done + more, room.bytes(),
               folder.path().parent_path().string());
     };
     const auto requireWritten = [&](bool written) {

@@ -95,8 +95,8 @@ SceneSeries::SceneSeries(const std::string& source) : name_(source) {
     }
     if (!before_missing.empty()) {
         lines_.push_back(
-            fmt::format("{}: {} of {} numbered files are missing, the first after {}: what comes before one is shown for longer", name_,
-                        frames_.size() - scenes_.size(), frames_.size(), shortName(before_missing.front())));
+            fmt::format("{}: {} of {} numbered files are missing, the first after {}: the frame before a missing one is shown for longer",
+                        name_, frames_.size() - scenes_.size(), frames_.size(), shortName(before_missing.front())));
     }
 }
 

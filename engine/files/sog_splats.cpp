@@ -56,7 +56,7 @@ SogPictures decodePictures(SogFiles& files, SogMeta& meta, int threads) {
         meta.palette->sh_degree = paletteDegree(*meta.palette, centroids);
         const std::uint64_t entries = std::uint64_t{kSogPaletteColumns} * centroids.size_px.y;
         if (meta.palette->count == std::numeric_limits<std::uint64_t>::max()) { meta.palette->count = entries; }
-        check(meta.palette->count <= entries, "{}: has room for {} entries, expected the {} of meta.json", centroids.place, entries,
+        check(meta.palette->count <= entries, "{}: holds {} entries, expected the {} of meta.json", centroids.place, entries,
               meta.palette->count);
     }
     std::uint64_t total_bytes = 0;

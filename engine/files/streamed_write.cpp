@@ -233,7 +233,7 @@ void StreamedWriter::finish() {
     std::error_code error;
     fs::remove(folder_, error);  // an empty one
     fs::rename(part_, folder_, error);
-    check(!error, "{}: cannot be put in place: {}", folder_.string(), error.message());
+    check(!error, "{}: cannot be moved into place: {}", folder_.string(), error.message());
     part_.clear();
 }
 

@@ -154,7 +154,7 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
     const bool one_eye = mode == Mode::kMono;
     assert(eyes.size() == (one_eye ? 1u : 2u));
     check(!reprojects(mode) || eyes[0].size_px == eyes[1].size_px,
-          "the eyes have {}x{} and {}x{} pixels: to make one from the other they must be equal", eyes[0].size_px.x, eyes[0].size_px.y,
+          "the eyes have {}x{} and {}x{} pixels: to reproject one into the other they must be equal", eyes[0].size_px.x, eyes[0].size_px.y,
           eyes.back().size_px.x, eyes.back().size_px.y);
     const int first = one_eye ? 0 : settings.dominant, second = 1 - first;
     // True if each eye is culled and ordered by itself.

@@ -112,7 +112,7 @@ void explainWarp(const FrameFacts& frame, std::size_t index, const LeaveOut& lea
     const StereoSettings& settings = frame.plan.targets[index].warp->settings;
     const gpu::WarpCounters& warp = frame.state.targets[index].warp_counters;
     const bool paper = settings.choice == TileChoice::kPaper, predicts = settings.choice == TileChoice::kPredicted;
-    leaveOut(predicts && warp.moves == 0, "reprojection: every tile is cheaper to render than to move, so that nothing is lost");
+    leaveOut(predicts && warp.moves == 0, "reprojection: every tile is cheaper to render than to reproject, so nothing is lost");
     leaveOut((paper || predicts) && frame.state.targets[index].chosen_tiles.count == 0, "patching: no tile needs to be rendered again");
     leaveOut(paper && !settings.center_rois, "centre ROIs: not asked for");
     leaveOut(paper && settings.center_rois && warp.hole_pixels == 0, "centre ROIs: the picture has no holes");
@@ -137,7 +137,7 @@ void explainLeftOut(const FrameFacts& frame, FrameResult& result) {
              "depth of the affiliated eye: nothing reads it");
     leaveOut(both_at_once, "culling for the affiliated eye alone: both eyes are culled at once");
     leaveOut(both_at_once && plan.shares_order,
-             plan.lists[0].eyes.middle ? "depth sort of the affiliated eye: both eyes go by the distance from the middle between them"
+             plan.lists[0].eyes.middle ? "depth sort of the affiliated eye: both eyes sort by the distance from the midpoint between them"
                                        : "depth sort of the affiliated eye: the eyes are parallel, so the dominant eye's order is exact");
     for (std::size_t e = 0; e < plan.eyes; ++e) {
         const glm::uvec2 tiles = tilesOf(plan.targets[e].eye.size_px);

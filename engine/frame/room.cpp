@@ -94,8 +94,8 @@ void FrameRoom::fitPicture(Picture& picture, glm::uvec2 size_px, const Kept& kep
     picture.half_floats = kept.half_floats;
     resize(picture.colours, "colours", pixels * (kept.half_floats ? sizeof(gpu::uvec2) : sizeof(gpu::vec4)));
     resize(picture.depths, "depths", kept.depth && !kept.past ? pixels * sizeof(float) : 0);
-    resize(picture.words, "depths of a past", kept.past ? pixels * sizeof(gpu::uint) : 0);
-    resize(picture.tiles, "tiles of a past", kept.past ? std::uint64_t{tiles.x} * tiles.y * sizeof(gpu::PastTile) : 0);
+    resize(picture.words, "depths of the history", kept.past ? pixels * sizeof(gpu::uint) : 0);
+    resize(picture.tiles, "tiles of the history", kept.past ? std::uint64_t{tiles.x} * tiles.y * sizeof(gpu::PastTile) : 0);
 }
 
 void FrameRoom::fitPictures(const FramePlan& plan, const std::array<std::span<const std::uint8_t>, 2>& hidden_tiles) {

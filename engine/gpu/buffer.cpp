@@ -37,7 +37,7 @@ Buffer::Buffer(const Context& context, const std::string& name, std::uint64_t by
     const std::uint64_t used_bytes = context.memoryUse().current_bytes, limit_bytes = context.memoryLimitBytes();
     const bool fits = kind != MemoryKind::kDevice || limit_bytes == 0 || used_bytes + bytes <= limit_bytes;
     if (!fits) {
-        refuse(fmt::format("{} beside {:.1f} MiB in use, the limit is {:.1f} MiB (memory-limit)", what, mebibytes(used_bytes),
+        refuse(fmt::format("{} in addition to {:.1f} MiB in use, the limit is {:.1f} MiB (memory-limit)", what, mebibytes(used_bytes),
                            mebibytes(limit_bytes)));
     }
     try {

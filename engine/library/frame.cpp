@@ -33,7 +33,7 @@ Mode modeOf(bsp_mode mode) {
     fail("mode is {}, must be one of bsp_mode", static_cast<int>(mode));
 }
 
-// The least of what its scenes have.
+// The least near depth of its scenes.
 double usualNear(const AskedFrame& asked) {
     double near = asked.scenes.empty() ? kUsualNear : std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < asked.scenes.size(); ++i) {
@@ -67,7 +67,7 @@ FrameSettings settingsOf(const bsp_frame_info& frame, const AskedFrame& asked) {
     return settings;
 }
 
-// Within which foveation takes nothing away; nothing without it.
+// The angle within which foveation changes nothing; empty without foveation.
 std::optional<Gaze> gazeOf(const bsp_view& view, double foveation_rad) {
     if (foveation_rad == 0.0) { return std::nullopt; }
     const glm::dvec3 gaze(view.gaze[0], view.gaze[1], view.gaze[2]);
@@ -76,7 +76,7 @@ std::optional<Gaze> gazeOf(const bsp_view& view, double foveation_rad) {
     return Gaze{length > 0.0 ? gaze : glm::dvec3(0.0, 0.0, 1.0), foveation_rad};
 }
 
-// The eyes, and targets if they are wanted.
+// The eyes, and their targets if wanted.
 void readViews(const bsp_frame_info& frame, bool with_targets, AskedFrame& asked) {
     check(frame.view_count >= 1 && frame.view_count <= kMostViews, "there are {} views, must be 1 to {}", frame.view_count, kMostViews);
     checkHeader(frame.views, BSP_TYPE_VIEW, kFirstViewSize, "bsp_view");
@@ -230,7 +230,7 @@ bsp_result readInto(bsp_renderer renderer, std::uint32_t view, bool depth, float
     return guarded([&] {
         check(renderer != nullptr && values != nullptr, "{} is null", renderer == nullptr ? "renderer" : "values");
         const Image image = renderer->read(view, depth);
-        check(count >= image.values.size(), "there is room for {} floats, must be for {}", count, image.values.size());
+        check(count >= image.values.size(), "the array holds {} floats, must hold {}", count, image.values.size());
         std::ranges::copy(image.values, values);
         return BSP_SUCCESS;
     });

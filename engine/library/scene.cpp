@@ -13,7 +13,7 @@ using namespace binosplat;
 
 namespace {
 
-constexpr std::uint64_t kCacheBytes = std::uint64_t{4} << 30;  // of scenes from the web, as --cache-limit
+constexpr std::uint64_t kCacheBytes = std::uint64_t{4} << 30;  // for scenes from the web, as --cache-limit
 WebSettings usualWeb() { return {webCacheFolder(), kCacheBytes, {}}; }
 constexpr double kReadingShare = 0.8;  // of loading; the rest is uploading
 
@@ -49,7 +49,7 @@ void bsp_scene_t::load(std::optional<Scene> scene, LoadNotes notes) {
     const auto stepOf = [this, own = std::this_thread::get_id()](double first, double share) {
         return [=, this](double done) {
             progress_ = first + share * done;
-            // A reader's other threads go on until it does not.
+            // The other threads of a reader go on until it stops.
             if (cancelled && std::this_thread::get_id() == own) { throw Cancelled(); }
         };
     };
@@ -117,8 +117,8 @@ bsp_result bsp_scene_t::state(double* progress, bool waits) {
 
 void bsp_scene_t::requireThere() {
     const std::lock_guard lock(mutex_);
-    check(has_ended_, "{}: the scene still loads, must be there", source);
-    check(failure_.code == BSP_SUCCESS, "the scene is not there: {}", failure_.text);
+    check(has_ended_, "{}: the scene is still loading, must be loaded", source);
+    check(failure_.code == BSP_SUCCESS, "the scene was not loaded: {}", failure_.text);
 }
 
 bsp_result bsp_scene_create(bsp_device device, const bsp_scene_info* info, bsp_scene* scene) {

@@ -21,7 +21,7 @@ struct StereoSettings {
     double budget = 0.2;          // share of an eye's work, or of both eyes'
     double error_bound_db = 0.0;  // with a past: tiles expected to be under this PSNR come first, within the budget; 0: no bound
     gpu::uint move_cost = 0;      // of a tile, in pairs
-    double hole_error = 1.0;      // weight of the difference expected of a hole's pixel
+    double hole_error = 1.0;      // weight of the error expected of a hole's pixel
     double newcomer_error = 0.3;  // of a pixel covered by splats that the source does not see
     bool operator==(const StereoSettings&) const = default;
 };

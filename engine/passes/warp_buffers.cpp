@@ -21,9 +21,9 @@ WarpBuffers::WarpBuffers(const Context& context, const WarpBufferNeeds& needs)
     boxes_ = Buffer(context, "boxes of holes", needs.boxes * sizeof(gpu::PixelBox));
     if (needs.past) {
         const glm::uvec2 block{gpu::kPastColumns, gpu::kPastRows}, blocks = (needs.size_px + block - 1u) / block;
-        past_blocks_ = Buffer(context, "blocks of a past", std::uint64_t{blocks.x} * blocks.y * sizeof(gpu::PastBlock));
+        past_blocks_ = Buffer(context, "blocks of the history", std::uint64_t{blocks.x} * blocks.y * sizeof(gpu::PastBlock));
     } else if (!sharesRows()) {
-        planes_ = Buffer(context, "moving pixels", 2 * sizeof(gpu::uint) * std::uint64_t{needs.size_px.x} * needs.size_px.y);
+        planes_ = Buffer(context, "reprojected pixels", 2 * sizeof(gpu::uint) * std::uint64_t{needs.size_px.x} * needs.size_px.y);
     }
 }
 

@@ -259,13 +259,12 @@ Standpoint judgeStandpoint(const Scene& scene, const StandpointWish& wish) {
         const double eye_height = eyeHeight(lie, wish.metres_per_unit);
         if (const std::optional<Place> place = findPlaceInside(lie, eye_height)) {
             const auto& [eye, look, clearance] = *place;
-            return {
-                {sides.world(eye.x, eye.y, eye.z), sides.world(look.x, look.y, look.z), up, wish.fov_x_deg},
-                fmt::format("inside: what stands there surrounds its middle in {} of {} directions; {:.3g} units above the floor, {:.3g} "
-                            "from the densest part, which is looked at",
-                            sectors, kSectors, eye_height, glm::length(look - eye)),
-                up_why,
-                true};
+            return {{sides.world(eye.x, eye.y, eye.z), sides.world(look.x, look.y, look.z), up, wish.fov_x_deg},
+                    fmt::format("inside: the scene surrounds its middle in {} of {} directions; {:.3g} units above the floor, {:.3g} "
+                                "from the densest part, which is looked at",
+                                sectors, kSectors, eye_height, glm::length(look - eye)),
+                    up_why,
+                    true};
         }
     }
     const Lie seen = lieOf(samples, axes, floor);

@@ -146,7 +146,7 @@ void MovingScene::dropSteps() {
 std::string MovingScene::noRoomFor(const Step& step) const {
     const std::uint64_t room = std::uint64_t{resident_->capacityPages()} * gpu::kPageSplats;
     if (step.frame.splats <= room) { return {}; }
-    return fmt::format("{}: has {} splats, there is room for {}, as the sizes of files let expect",
+    return fmt::format("{}: has {} splats, there is room for {}, going by the sizes of the files",
                        series_.nameOf(series_.sceneOf(step.moment.frame)), step.frame.splats, room);
 }
 

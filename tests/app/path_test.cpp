@@ -161,7 +161,7 @@ TEST_CASE_FIXTURE(Way, "frames that were finished before a signal are kept, and 
     std::size_t kept = 0;
     while (holds(fmt::format("frames/frame_{:06}_right{}", kept, kExtension))) { ++kept; }
     CHECK(kept > 0);
-    CHECK(stopped.errors.find(fmt::format("{} of 7 frames are in frames, --resume goes on", kept)) != std::string::npos);
+    CHECK(stopped.errors.find(fmt::format("{} of 7 frames are in frames, --resume continues", kept)) != std::string::npos);
     CHECK(these(files().contains("frames/report.json"), report().at("frames").size()) == these(true, kept));
     checkRefused("render builtin:fence --size 32x32 --eye 0,0,0 --look 0,0,3 --path poses.csv --mode shared --rate 4 --resume --out frames",
                  1, "must be 32x32 as the frames that --resume adds");

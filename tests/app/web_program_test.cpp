@@ -26,7 +26,7 @@ TEST_CASE_FIXTURE(AtWork, "render, bench, info, convert and view take an address
     WebServer server([bytes = work.bytesOf("wall.ply")](const WebRequest&) { return answer("200 OK", "ETag: \"1\"\r\n", bytes); });
     const std::string address = server.at("/wall.ply");
     const std::string note =
-        "note               " + address + ": came by http, so that others on the way could read and change it; https is safer\n";
+        "note               " + address + ": came by http, so others on the way could read and change it; https is safer\n";
     CHECK(replaced(done("info " + address + " --cache-limit 0"), address, "wall.ply") == near + note);
     CHECK(filesIn(work.base / "caches/binosplat/web").empty());
     done("render " + address + " --out far" + camera);

@@ -72,7 +72,8 @@ DeviceMaker deviceMaker(const Instance& instance) {
 void requireSameDevice(const Instance& instance, const Context& context) {
     static_cast<void>(leastVulkan(instance));  // required before a session
     if (vk::PhysicalDevice(graphicsDevice(instance, *context.instance())) != *context.physicalDevice()) {
-        throw Error(ExitCode::kNoDevice, fmt::format("{} is on another graphics device than before: start anew", instance.description()));
+        throw Error(ExitCode::kNoDevice,
+                    fmt::format("{} is on another graphics device than before: start the program again", instance.description()));
     }
 }
 

@@ -34,7 +34,7 @@ std::string write(const Image& picture, const std::filesystem::path& folder) {
         files.publish();
         return "picture " + written.front().filename().string();
     } catch (const Error& error) { return error.what(); } catch (const std::bad_alloc&) {
-        return "the picture cannot be written: there is no memory for it";
+        return "the picture cannot be written: there is not enough memory";
     }
 }
 

@@ -222,7 +222,7 @@ void Governor::giveBack(double now_ms) {
     // Within the period, but with less than a tenth to spare.
     if (now_ms > kTarget * period_ms_) {
         const GovernedSettings to = lowered(kCalmly * roomMs() / now_ms, work);
-        if (to != settings_) { return stepDown(to, fmt::format("{:.1f} of {:.1f} ms left too little room", now_ms, period_ms_)); }
+        if (to != settings_) { return stepDown(to, fmt::format("{:.1f} of {:.1f} ms left too little to spare", now_ms, period_ms_)); }
     } else if (now_s_ - lowered_s_ >= wait_s_ && turnsKnobs()) {
         const GovernedSettings calm = bestWithin(kCalmly * roomMs()), bold = bestWithin(kBoldly * roomMs());
         const bool is_bold =
@@ -240,7 +240,7 @@ void Governor::giveBack(double now_ms) {
         const GovernedSettings to = raised(kCalmly * roomMs() / spent_ms);
         if (to != settings_) {
             is_raised_ = true;
-            return step(to, fmt::format("there was room, {:.1f} of {:.1f} ms", now_ms, period_ms_));
+            return step(to, fmt::format("there was time to spare, {:.1f} of {:.1f} ms", now_ms, period_ms_));
         }
     }
     describe(now_ms, why_);

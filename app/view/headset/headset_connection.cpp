@@ -59,7 +59,7 @@ HeadsetConnection::Search HeadsetConnection::search(const Say& say) {
         if (!std::exchange(is_gone_, true)) { say(why_lost_ + "; the headset is gone: waiting for it"); }
         return Search::kNone;
     }
-    say(is_gone_ ? "the headset is there again; a new session begins" : why_lost_ + "; another one begins");
+    say(is_gone_ ? "the headset is back; a new session begins" : why_lost_ + "; another one begins");
     try {
         headset_ = std::make_unique<ConnectedHeadset>(instance_, context_, panel_px_);
         failures_ = 0;
@@ -71,7 +71,7 @@ HeadsetConnection::Search HeadsetConnection::search(const Say& say) {
         return Search::kNone;
     }
     if (format_ != vk::Format::eUndefined && headset_->format != format_) {
-        throw Error(ExitCode::kNoDevice, why_lost_ + ": the next one has other formats of images");
+        throw Error(ExitCode::kNoDevice, why_lost_ + ": the next one has other image formats");
     }
     return Search::kFound;
 }

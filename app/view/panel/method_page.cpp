@@ -154,8 +154,7 @@ void drawStages(const FrameResult& frame) {
                               std::max(targets[kLeft].tiles, targets[kRight].tiles)));
     }
     if (const auto& ahead = frame.counters.ahead; ahead && ahead->frames_cut_short > 0) {
-        writeLine(
-            fmt::format("{} frames had no room in their lists, {} were drawn again", ahead->frames_cut_short, ahead->frames_done_again));
+        writeLine(fmt::format("{} frames lacked capacity, {} were rendered again", ahead->frames_cut_short, ahead->frames_done_again));
     }
     ImGui::Columns(2, "stages", false);
     for (const auto& [label, ms] : addUp(frame.gpu_ms)) {

@@ -36,7 +36,7 @@ std::string describeRate(const ShownRate& rate, Quality quality) {
     if (rate.is_beaten) { return words + ": too much for this computer even so"; }
     if (quality == Quality::kOff) { return words + "; choose one to hold it"; }
     if (rate.bound_db) { return fmt::format("{}, errors within {:.0f} dB", words, *rate.bound_db); }
-    return rate.budget ? fmt::format("{}, {:.0f} % of it redrawn", words, 100.0 * *rate.budget) : words;
+    return rate.budget ? fmt::format("{}, {:.0f} % of it rendered again", words, 100.0 * *rate.budget) : words;
 }
 
 void drawQualityRow(PanelWidgets& widgets, ViewSettings& settings, const ShownRate& rate) {

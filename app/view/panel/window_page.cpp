@@ -18,7 +18,7 @@ constexpr std::array<std::pair<const char*, const char*>, 13> kKeys{{
     {"left button", "orbit around what is under the pointer"},
     {"right, middle button", "move the scene"},
     {"wheel", "towards what is under the pointer"},
-    {"double click", "this is the centre now"},
+    {"double click", "orbit around that point"},
     {"W A S D, Q E", "fly, down and up; Shift: faster"},
     {"arrows", "look around"},
     {"F, R", "the whole scene; the start view"},
@@ -27,7 +27,7 @@ constexpr std::array<std::pair<const char*, const char*>, 13> kKeys{{
     {"Tab", "this panel"},
     {"F11", "full screen"},
     {"O, P", "open a file; write a picture"},
-    {"H, Escape", "this help; end"},
+    {"H, Escape", "this help; quit"},
 }};
 
 void drawKeys() {

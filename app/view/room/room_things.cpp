@@ -36,9 +36,9 @@ RoomThings::RoomThings(const xr::Session& session, const Context& context, vk::F
 
 void RoomThings::makeSheet(const xr::Session& session, const Context& context, vk::Format format) {
     const TexelPicture sheet = drawSprites(layout_);
-    sheet_ = xr::Swapchain(session, "what hangs in the room", sheet.size_px, format, xr::ImageUse::kDraw);
+    sheet_ = xr::Swapchain(session, "things in the room", sheet.size_px, format, xr::ImageUse::kDraw);
     const std::uint64_t bytes = sheet.texels.size() * sizeof(std::uint32_t);
-    const Buffer upload(context, "what hangs in the room", bytes, MemoryKind::kUpload);
+    const Buffer upload(context, "things in the room", bytes, MemoryKind::kUpload);
     std::ranges::copy(sheet.texels, upload.mapped<std::uint32_t>().begin());
     Commands commands(context);
     commands.begin();

@@ -56,7 +56,7 @@ std::string LoadedScene::moveTime(bool play, int step, std::optional<std::size_t
     if (play) { clock.togglePlaying(); }
     if (step != 0) { clock.step(step); }
     if (frame) { clock.goTo(*frame); }
-    return fmt::format("{} frame {} of {}", clock.plays() ? "plays from" : "rests at", clock.frame() + 1, clock.frameCount());
+    return fmt::format("{} frame {} of {}", clock.plays() ? "plays from" : "paused at", clock.frame() + 1, clock.frameCount());
 }
 
 void LoadedScene::count(FrameCounters& counters) const {

@@ -70,7 +70,7 @@ void SceneNotes::openLast(const LoadedScene& now, std::function<void(const std::
         const std::vector<std::string> recent = recentScenes();
         const auto last = std::ranges::find_if(recent, [&](const std::string& scene) { return placeOf(scene) != place; });
         if (last == recent.end()) {
-            return [this] { say_("no other scene was shown yet"); };
+            return [this] { say_("no other scene has been shown yet"); };
         }
         return [open, scene = *last] { open(scene); };
     });

@@ -69,7 +69,7 @@ std::vector<Viewpoint> findViewpoints(const Scene& scene, const std::string& sou
 
 void keepViewpoint(const std::string& source, const View& view) {
     std::vector<View> kept = keptViews(source);
-    check(kept.size() < kMostKept, "{}: {} viewpoints are kept, which is the most", source, kMostKept);
+    check(kept.size() < kMostKept, "{}: {} viewpoints are kept, and there can be no more", source, kMostKept);
     kept.push_back(view);
     std::string text;
     for (const auto& [eye, look, up, fov] : kept) {

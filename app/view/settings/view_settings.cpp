@@ -62,14 +62,15 @@ std::span<const OptionRow<ViewSettings>> viewSettingsRows() {
         return OptionRow<S>{{key, "view", kView, value, help}, std::move(field)};
     };
     static const std::vector<OptionRow<S>> rows{
-        row("resolution-scale", "FACTOR", "pixels each way, of what the headset recommends", field::number<&S::resolution_scale>(0.1, 2.0)),
-        row("tint", "", "show what made the tiles that were not rendered with the rest of a picture", field::flag<&S::tint>()),
+        row("resolution-scale", "FACTOR", "share of the pixels that the headset recommends, each way",
+            field::number<&S::resolution_scale>(0.1, 2.0)),
+        row("tint", "", "tint tiles by what made them", field::flag<&S::tint>()),
         row("panel", "", "show the panel at the start", field::flag<&S::panel>()),
-        row("submit-depth", "", "give the runtime the pictures' depth, by which it may shift them for a late head",
+        row("submit-depth", "", "give the runtime the pictures' depth, so that it can correct them for late head motion",
             field::flag<&S::submit_depth>()),
         row("visibility-mask", "", "ask the runtime what the lenses hide", field::flag<&S::visibility_mask>()),
-        row("eye-tracking", "", "with foveation: follow the eyes, where the headset sees where they look", field::flag<&S::eye_tracking>()),
-        row("foveated-inset", "", "with foveation: where the runtime takes a sharp inset over a coarse picture, give it both",
+        row("eye-tracking", "", "with foveation: follow the gaze, if the headset tracks it", field::flag<&S::eye_tracking>()),
+        row("foveated-inset", "", "with foveation: if the runtime takes a sharp inset over a coarse picture, give it both",
             field::flag<&S::foveated_inset>()),
         row("tilt", "", "two hands may tilt the scene", field::flag<&S::tilt>()),
         row("refresh-rate", "HZ", "one of the headset's rates; 0: the runtime's choice", field::number<&S::refresh_rate>(0.0, 1000.0)),
@@ -80,19 +81,19 @@ std::span<const OptionRow<ViewSettings>> viewSettingsRows() {
         row("follow-ground", "", "stand on the scene's ground wherever one goes", field::flag<&S::follow_ground>()),
         row("backdrop", "COLOUR", "colour behind the scene; as-set: what --background says",
             field::named<&S::backdrop>({"as-set", "black", "grey", "white"})),
-        row("panel-page", "PAGE", "what the panel opens with; time: of a scene that moves; help: in a headset",
+        row("panel-page", "PAGE", "page on which the panel opens; time: for a scene that moves; help: in a headset",
             field::named<&S::page>({"view", "scenes", "method", "time", "help"})),
         row("first-steps", "WHEN", "show three gestures at the start: once, the first time; with --simulate never, unless this says so",
             field::named<&S::first_steps>({"once", "always", "never"})),
         row("vignette", "", "darken the edge of the view while a stick moves the wearer", field::flag<&S::vignette>()),
-        row("passthrough", "", "the room behind the scene, where the headset shows it", field::flag<&S::passthrough>()),
+        row("passthrough", "", "show the room behind the scene, if the headset can", field::flag<&S::passthrough>()),
         row("quality", "PRESET", "how the frame rate is held, see headset.md",
             field::named<&S::quality>({std::begin(kQualityNames), std::end(kQualityNames)})),
         row("window-stereo", "KIND", "in a window without a headset: one eye's picture, or how both are shown",
             field::named<&S::window_stereo>({"mono", "side-by-side", "cross-eyed", "top-bottom", "anaglyph"})),
-        row("window-eyes", "SHARE", "there: distance of the eyes, as a share of the distance of the screen's plane",
+        row("window-eyes", "SHARE", "in a window: distance between the eyes, as a share of the distance to the screen plane",
             field::number<&S::window_eyes>(0.0, 0.2)),
-        row("window-plane", "FACTOR", "there: distance of the screen's plane, in distances of the point that one orbits",
+        row("window-plane", "FACTOR", "in a window: distance to the screen plane, in distances to the point that you orbit",
             field::number<&S::window_plane>(0.1, 10.0)),
     };
     return rows;
@@ -124,14 +125,15 @@ ViewSettings readViewSettings(const std::vector<SettingsTable>& tables, ViewSett
             }
         }
         check(placed == 0 || placed == 3,
-              "{}: [view] places the scene in part, must have all of scene-position, scene-orientation and units-per-metre", table.origin);
+              "{}: [view] places the scene only in part, must have all of scene-position, scene-orientation and units-per-metre",
+              table.origin);
     }
     if (placed == 3) { settings.scene_from_room = placement; }
     return settings;
 }
 
 std::string viewSettingsToml(const ViewSettings& settings) {
-    std::string text = "# What the viewer's panel was set to, and where the wearer's room lay in the scene.\n\n[stereo]\n";
+    std::string text = "# The settings of the viewer's panel, and the place of the wearer's room in the scene.\n\n[stereo]\n";
     for (const auto& [key, value] : stereoLines(settings.stereo)) {
         if (!value.empty()) { text += fmt::format("{} = {}\n", key, value); }  // empty: left to the scene
     }

@@ -123,7 +123,7 @@ glm::uvec2 EventWindow::sizePx() const {
 VkSurfaceKHR EventWindow::surface(const Context& context) const {
     VkSurfaceKHR surface = VK_NULL_HANDLE;
     const VkResult result = glfwCreateWindowSurface(*context.instance(), window_.get(), nullptr, &surface);
-    check(result == VK_SUCCESS, "the window cannot be drawn on: {}", vk::to_string(vk::Result(result)));
+    check(result == VK_SUCCESS, "cannot draw in the window: {}", vk::to_string(vk::Result(result)));
     return surface;
 }
 

@@ -52,7 +52,7 @@ std::string explainStatus(long status) {
     if (status == 401 || status == 403) {
         return fmt::format("may not be read (the server answers {}), expected an address that anybody may read", status);
     }
-    return fmt::format("cannot be had (the server answers {}), expected the address of a scene file", status);
+    return fmt::format("cannot be fetched (the server answers {}), expected the address of a scene file", status);
 }
 
 }  // namespace
@@ -150,7 +150,7 @@ int Transfer::checkServer(void* transfer, char* ip, char*, int port, int) {
         if (!self.tally_.began_private) { self.tally_.began_private = is_private; }
         if (!is_private || *self.tally_.began_private) { return CURL_PREREQFUNC_OK; }
         self.refused_ = fmt::format("leads from the public web to {}, which is on a private network, expected a public server", server);
-    } catch (const std::exception& error) { self.refused_ = fmt::format("cannot be had ({})", error.what()); }
+    } catch (const std::exception& error) { self.refused_ = fmt::format("cannot be fetched ({})", error.what()); }
     return CURL_PREREQFUNC_ABORT;
 }
 
@@ -192,7 +192,7 @@ std::size_t Transfer::take(const char* data, std::size_t bytes) {
     }
     if (!refused_.empty()) { return 0; }
     if (!file_->write(data, bytes)) {
-        refused_ = "cannot be kept: there is no room on the disk of the cache; make some";
+        refused_ = "cannot be kept: the cache's disk is full; free some space";
         return 0;
     }
     tally_.got_bytes += bytes;
@@ -239,7 +239,7 @@ bool Transfer::beginBody() {
     } else if (exceedsCache(expected)) {
         refused_ = fmt::format("is {} bytes long, more than {}", expected, cacheLimit());
     } else if (expected > file_->roomBytes()) {
-        refused_ = fmt::format("is {} bytes long, but the disk of the cache has room for {}; make some", expected, file_->roomBytes());
+        refused_ = fmt::format("is {} bytes long, but the cache's disk has only {} free; free some space", expected, file_->roomBytes());
     }
     if (!refused_.empty()) { return false; }
     is_sized_ = true;
@@ -382,9 +382,9 @@ std::string Transfer::describe(CURLcode code, bool is_stalled) const {
     }
     if (code == CURLE_TOO_MANY_REDIRECTS) { return fmt::format("redirects more than {} times, expected a file", kMostRedirects); }
     if (code == CURLE_PEER_FAILED_VERIFICATION) {
-        return fmt::format("the server's certificate is not valid ({}), so that it may be another server; expected a valid one", detail);
+        return fmt::format("the server's certificate is not valid ({}), so it may be another server; expected a valid one", detail);
     }
-    return fmt::format("cannot be had ({}), expected the address of a scene file", detail);
+    return fmt::format("cannot be fetched ({}), expected the address of a scene file", detail);
 }
 
 }  // namespace binosplat

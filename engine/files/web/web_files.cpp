@@ -104,7 +104,7 @@ std::unique_ptr<InputFile> WebFiles::open(const std::string& name, std::uint64_t
         }
         settled_.erase(address);
     }
-    fail("{}: is thrown out of the cache in {} before it can be read, expected more room there (--cache-limit)", address, folder_.string());
+    fail("{}: is removed from the cache in {} before it can be read, expected more space there (--cache-limit)", address, folder_.string());
 }
 
 Scene loadSceneFromAnywhere(const std::string& source, std::uint64_t builtin_splats, LoadNotes& notes, const Progress& progress,
@@ -126,7 +126,7 @@ Scene loadSceneFromAnywhere(const std::string& source, std::uint64_t builtin_spl
     WebFiles files(source, settings, fetching);
     Scene scene = loadScene(files.open(""), notes, progress ? Progress(reading) : Progress(), level);
     if (isPlainHttp(source)) {
-        notes.lines.push_back(fmt::format("{}: came by http, so that others on the way could read and change it; https is safer", source));
+        notes.lines.push_back(fmt::format("{}: came by http, so others on the way could read and change it; https is safer", source));
     }
     notes.stale = files.stale();
     if (!notes.stale.empty()) { notes.lines.push_back(notes.stale); }

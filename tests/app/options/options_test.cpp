@@ -158,7 +158,7 @@ TEST_CASE_FIXTURE(AtWork, "errors in a config name file and line") {
              {"[stereo]\ngap_px = 1.5\n", "a.toml:2: gap_px is 1.5, must be a whole number from 0 to 64"},
              {"[stereo]\nedge_bounds = 3\n", "a.toml:2: edge_bounds is 3, must be paper or tight"},
              {"[stereo]\nmargins = 1\n", "a.toml:2: margins is not a known key"},
-             {"[stereo]\nnear = 1\n", "a.toml:2: near stands in [stereo], must stand in [camera]"},
+             {"[stereo]\nnear = 1\n", "a.toml:2: near is in [stereo], must be in [camera]"},
              {"[stereoo]\nmargin = 1\n", "a.toml:1: [stereoo] is not a known table"},
              {"near = 1\n[camera]\nnear = 2\n", "near is set twice"},
              {"[camera]\nnear = \n", "a.toml:2: "},

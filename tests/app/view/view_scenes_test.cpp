@@ -56,7 +56,7 @@ TEST_CASE_FIXTURE(AtWork, "a streamed scene is there at once, becomes finer whil
                                  "rate 45\nsize 96 96\nframes from 2 to 2\nhead 0 position 0 1.6 0\nhead 1 position 0 1.6 0\n"
                                  "head 1.6 position 0 1.6 0 turn 90 0\nat 4 exit\n",
                                  "split --load-first --mode shared --hide-hands --hide-panel --splat-budget 9000", kWhileLoading);
-    checkOrder(run, {"shows split", "all that is seen is there: "});
+    checkOrder(run, {"shows split", "everything in view is loaded: "});
     CHECK(run.says("16 levels of leaves, 0.0"));
     CHECK(run.says(" s; frames that waited for it: 0"));
     CHECK(run.says("0_2.sog is not there, expected a chunk of the scene; what is there stays"));
@@ -74,7 +74,7 @@ TEST_CASE("a moving scene plays, rests while a button has it rest, and plays on;
     const ViewRun played = runClean(work, "play", "rate 45\nsize 96 96\npress right a 1 1.2\npress left x 2 2.2\nat 3 exit\n",
                                     arguments + "--hide-panel", kWhileLoading);
     INFO(played.outcome.output);
-    checkOrder(played, {"a moving scene of 12 frames, 15 a second", "rests at frame", "plays from frame"});
+    checkOrder(played, {"a moving scene of 12 frames, 15 a second", "paused at frame", "plays from frame"});
     // It moves, and while it rests nothing does.
     const double begin_s = ViewRun::secondsOf(played.frames.front());
     std::size_t others = 0, same_at_rest = 0, at_rest = 0;
@@ -99,9 +99,9 @@ TEST_CASE("a moving scene plays, rests while a button has it rest, and plays on;
     const ViewRun run = runClean(work, "panel", acts.script(), arguments);
     INFO(run.outcome.output);
     // The one after the last is the first.
-    checkOrder(run, {"rests at frame 12 of 12", "rests at frame 1 of 12", "plays from frame 1 of 12"});
+    checkOrder(run, {"paused at frame 12 of 12", "paused at frame 1 of 12", "plays from frame 1 of 12"});
     CHECK(run.lines("plays from frame 1 of 12").size() == 1);
-    CHECK(run.lines("rests at frame ").size() >= 6);
+    CHECK(run.lines("paused at frame ").size() >= 6);
     CHECK(run.lines("scene frames that came late: ").size() == 1);
     CHECK(run.says("frames that waited for them: 0\n"));
 }

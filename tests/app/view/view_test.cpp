@@ -301,7 +301,7 @@ TEST_CASE_FIXTURE(AtWork, "bad input is known by its exit code, and named") {
              Wrong{"builtin:fence --simulate --out mine",
                    1,
                    {"mine/frame_000000.png: not what an earlier run left here, must be moved elsewhere\n",
-                    "--out: the simulated headset does not begin with mine"}},
+                    "--out: the simulated headset does not start with mine"}},
          }) {
         CAPTURE(wrong.arguments);
         const Outcome outcome = work.run("view " + wrong.arguments, "DISPLAY= WAYLAND_DISPLAY=");

@@ -78,7 +78,7 @@ TEST_CASE("a headset that lies on the desk at first, and that is unplugged later
                                  "at -1 worn off\nat -1 should-render off\nat 0.1 worn on\nat 0.2 should-render on\n"
                                  "at 0.5 lose-session\nat 0.8 exit\n",
                                  kOneEye, kValidated + " BINOSPLAT_VISIBILITY_MASK=0");
-    checkOrder(run, {"the headset is gone: waiting for it", "the headset is there again", "the runtime asked for the end"});
+    checkOrder(run, {"the headset is gone: waiting for it", "the headset is back", "the runtime asked for the end"});
     // Which the panel says as well, below its widgets.
     const auto pixelOf = [](const glm::dvec2& share) {
         const Panel panel = panelBefore({0.0315, 0.0, 0.0});  // of the left eye
@@ -144,8 +144,8 @@ TEST_CASE("what only decorates and fails is said once and done without, and a fi
             CHECK(run.lines(said).size() == 1);
         }
     };
-    const std::string failed = " failed: XR_ERROR_RUNTIME_FAILURE; on without ",
-                      lacks = " failed: XR_ERROR_FUNCTION_UNSUPPORTED; on without ";
+    const std::string failed = " failed: XR_ERROR_RUNTIME_FAILURE; going on without ",
+                      lacks = " failed: XR_ERROR_FUNCTION_UNSUPPORTED; going on without ";
     const ViewRun run = runFaulty("decorations",
                                   "xrCreateSession:-17:1,xrSuggestInteractionProfileBindings:-22:1,xrApplyHapticFeedback:-2,"
                                   "xrLocateHandJointsEXT:-2,xrGetDisplayRefreshRateFB:missing,xrRequestDisplayRefreshRateFB:missing,"
@@ -155,7 +155,7 @@ TEST_CASE("what only decorates and fails is said once and done without, and a fi
     CHECK(run.says("the runtime asked for the end"));
     CHECK(run.view(run.frames.size() - 4).contains("depth"));
     checkOnce(run, {"xrCreateSession failed: XR_ERROR_SESSION_LOST; another one begins",
-                    "controllers that the OpenXR runtime does not take: khr/simple_controller (XR_ERROR_PATH_UNSUPPORTED)",
+                    "controllers that the OpenXR runtime rejects: khr/simple_controller (XR_ERROR_PATH_UNSUPPORTED)",
                     "xrApplyHapticFeedback" + failed + "pulses", "xrLocateHandJointsEXT" + failed + "hand tracking",
                     "xrGetDisplayRefreshRateFB" + lacks + "the display's refresh rate",
                     "refresh-rate is 72, this headset refuses it (XR_ERROR_FUNCTION_UNSUPPORTED)",
@@ -196,7 +196,7 @@ TEST_CASE_FIXTURE(AtWork, "depth that the runtime offers and refuses is left out
         for (std::size_t frame = 0; frame < run.frames.size(); ++frame) {
             for (const auto& layer : run.layers(frame, "projection")) { CHECK_FALSE(layer.at("views").at(0).contains("depth")); }
         }
-        CHECK(run.says("on without depth") == (what == "layers"));
+        CHECK(run.says("going on without depth") == (what == "layers"));
     }
 }
 

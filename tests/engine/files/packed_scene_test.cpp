@@ -84,7 +84,7 @@ TEST_CASE("a scene is not unpacked into more room than there is, and leaves noth
         return error;
     };
     const auto said = [](std::uint64_t needed, std::uint64_t room) {
-        return fmt::format("needs at least {} bytes unpacked, but there is room for {} in ", needed, room);
+        return fmt::format("needs at least {} bytes unpacked, but only {} are free in ", needed, room);
     };
     (void)folder.write("a.gz", deflated(noise, MAX_WBITS + 16, 1));
     CHECK(unpackInto("a.gz", {100 * kMib, 100 * kMib, 100 * kMib}).empty());

@@ -141,7 +141,7 @@ TEST_CASE_FIXTURE(InFolder, "a meta.json that does not fit is named with its key
                               {"\"codebook\":[-8,", "\"codebook\":[-8,1,", "has 257 entries, expected 1 to 256"},
                               {"\"bands\":1", "\"bands\":4", "shN.bands: is 4"},
                               {"\"bands\":1", "\"bands\":2", "is 192 pixels wide"},
-                              {"\"count\":128", "\"count\":129", "room for 128 entries"},
+                              {"\"count\":128", "\"count\":129", "holds 128 entries"},
                               {"q.webp", "absent.webp", "absent.webp: no such file"},
                               {"q.webp", "meta.json", "not a WebP file"}};
     for (const char* path : {"../q.webp", "/etc/passwd", "", "..", "a\\\\b", "sub/q.webp", "q.webp\\u0000"}) {

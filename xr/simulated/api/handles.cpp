@@ -30,7 +30,7 @@ Object* findObject(std::uint64_t number) {
 }
 
 void adoptObject(Object& parent, std::unique_ptr<Object> child) {
-    require(parent.children.size() < kMostChildren, XR_ERROR_LIMIT_REACHED, "4096 objects of one parent are the most");
+    require(parent.children.size() < kMostChildren, XR_ERROR_LIMIT_REACHED, "one parent has at most 4096 objects");
     child->number = table().next_number++;
     child->parent = &parent;
     table().objects.emplace(child->number, child.get());

@@ -73,7 +73,7 @@ T* find(typename T::Handle handle) {
     return dynamic_cast<T*>(findObject(numberOf(handle)));
 }
 
-// "0x51a000000002 is not an XrSession that lives".
+// "0x51a000000002 is not an XrSession that exists".
 template <class Handle>
 [[noreturn]] void refuseHandle(Handle handle, const char* why) {
     char digits[16];
@@ -84,7 +84,7 @@ template <class Handle>
 template <class T>
 T& get(typename T::Handle handle) {
     T* const object = find<T>(handle);
-    if (object == nullptr) { refuseHandle(handle, " that lives"); }
+    if (object == nullptr) { refuseHandle(handle, " that exists"); }
     return *object;
 }
 

@@ -72,7 +72,7 @@ Sampler::Sampler(const Picture& picture, const Rect& rect) : picture_(picture), 
         throw std::invalid_argument("a layer's rectangle is not inside its picture");
     }
     if (picture.bytes.size() != std::size_t{picture.size_px.x} * picture.size_px.y * bytesPerTexel(picture.texels)) {
-        throw std::invalid_argument("a layer's picture has not the bytes of its size and format");
+        throw std::invalid_argument("a layer's picture does not have the bytes of its size and format");
     }
 }
 

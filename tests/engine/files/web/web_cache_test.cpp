@@ -164,7 +164,7 @@ TEST_CASE("several at once use one cache, even one in which nothing may stay") {
                 try {
                     const Scene far = loadFromWeb(server.at("/a.ply"), settings);
                     same += far.positions == scene.positions && far.sh == scene.sh;
-                } catch (const Error& error) { thrown_out += contains(error.what(), "is thrown out of the cache"); }
+                } catch (const Error& error) { thrown_out += contains(error.what(), "is removed from the cache"); }
             }
         };
         std::thread other(load);

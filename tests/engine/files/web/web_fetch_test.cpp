@@ -150,11 +150,11 @@ TEST_CASE("a few attempts are enough") {
 TEST_CASE("a file that is not there, not for everybody, empty or no scene is refused at once") {
     CHECK(errorOf(answer("404 Not Found", "", "<html>")) == "is not there (the server answers 404), expected the address of a scene file");
     CHECK(errorOf(answer("403 Forbidden")) == "may not be read (the server answers 403), expected an address that anybody may read");
-    CHECK(errorOf(answer("204 No Content")).starts_with("cannot be had (the server answers 204)"));
-    CHECK(errorOf(answer("304 Not Modified")).starts_with("cannot be had (the server answers 304)"));
+    CHECK(errorOf(answer("204 No Content")).starts_with("cannot be fetched (the server answers 204)"));
+    CHECK(errorOf(answer("304 Not Modified")).starts_with("cannot be fetched (the server answers 304)"));
     // Whatever comes with it, and however much.
     CHECK(errorOf(answer("404 Not Found", "", std::string(1 << 20, 'x'))).starts_with("is not there"));
-    CHECK(errorOf({"hello\r\n\r\n", WebAnswer::Then::kClose}).starts_with("cannot be had ("));
+    CHECK(errorOf({"hello\r\n\r\n", WebAnswer::Then::kClose}).starts_with("cannot be fetched ("));
     const Folder folder;
     const WebServer server({{"/empty", ""}, {"/page", "<!DOCTYPE html><html><body>A scene!</body></html>"}});
     CHECK(contains(webError(server.at("/empty"), webSettings(folder)), "is empty, expected a scene file"));
@@ -297,13 +297,12 @@ TEST_CASE("a body that is packed on its way is unpacked, and never resumed") {
         LoadNotes notes;
         checkSameScene(scene, loadFromWeb(server.at("/a.ply"), webSettings(folder), &notes));
         CHECK(server.asked().size() == 2);
-        CHECK(std::ranges::count_if(notes.lines, [](const std::string& line) { return contains(line, "came by http, so that others"); }) ==
-              1);
+        CHECK(std::ranges::count_if(notes.lines, [](const std::string& line) { return contains(line, "came by http, so others"); }) == 1);
         std::filesystem::remove_all(folder.file("cache"));
     }
     std::string broken = deflated(kPly, MAX_WBITS + 16);
     broken[broken.size() - 6] ^= 1;  // of the checksum, behind all of the file
-    CHECK(errorOf(answer("200 OK", "Content-Encoding: gzip\r\n", broken)).starts_with("cannot be had ("));
+    CHECK(errorOf(answer("200 OK", "Content-Encoding: gzip\r\n", broken)).starts_with("cannot be fetched ("));
 }
 
 TEST_CASE("a body that is not packed as the server says, or in no way that is known, is taken as it comes, and resumed") {

@@ -115,7 +115,7 @@ TEST_CASE_FIXTURE(MessageFixture, "the reason of a refusal names what was refuse
     CHECK(make(session, &info, &space) == XR_ERROR_POSE_INVALID);
     CHECK(takeReason() == "the quaternion 0 0 0 2 is not of length 1");
     CHECK(make(reinterpret_cast<XrSession>(0x1234), &info, &space) == XR_ERROR_HANDLE_INVALID);
-    CHECK(takeReason() == "0x1234 is not an XrSession that lives");
+    CHECK(takeReason() == "0x1234 is not an XrSession that exists");
 }
 
 TEST_CASE_FIXTURE(MessageFixture, "applications submit messages of their own, with the session's labels and the objects' names") {
