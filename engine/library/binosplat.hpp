@@ -1,5 +1,5 @@
-// C++ over binosplat.h, by headers alone: owners that destroy what they hold, and exceptions. The rules, units and threads are those of
-// binosplat.h, which says more about each.
+// C++ over binosplat.h, in headers only: owners that destroy what they hold, and exceptions. Rules, units and
+// threads are those of binosplat.h, which says more about each call.
 #ifndef BINOSPLAT_HPP
 #define BINOSPLAT_HPP
 
@@ -28,7 +28,7 @@ inline void check(bsp_result result) {
     if (result < 0) { throw Error(result); }
 }
 
-// A structure of nothing but its header: make<bsp_view>(BSP_TYPE_VIEW).
+// A structure with nothing set but its header: make<bsp_view>(BSP_TYPE_VIEW).
 template <typename Structure>
 Structure make(int type) {
     Structure structure{};
@@ -82,7 +82,7 @@ inline Views lookAt(const double (&eye)[3], const double (&look)[3], const doubl
 
 class Scene : public Owner<bsp_scene, bsp_scene_destroy> {
 public:
-    // Begins to load; wait() until it is there.
+    // Starts loading; wait() until it is loaded.
     Scene(const Device& device, const std::string& source) {
         auto info = make<bsp_scene_info>(BSP_TYPE_SCENE_INFO);
         info.source = source.c_str();
@@ -137,7 +137,7 @@ public:
         check(bsp_render(get(), &frame, &result));
         return result;
     }
-    // With the usual settings, or those of `frame`.
+    // With the default settings, or those of `frame`.
     bsp_frame_result render(const Scene& scene, const Views& views, bsp_frame_info frame = bsp::frame()) {
         frame.scene = scene.get();
         frame.views = views.data();

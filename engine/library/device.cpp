@@ -1,4 +1,4 @@
-// Devices, and what needs none.
+// Devices, and functions that need none.
 #include "engine/library/objects.h"
 #include "engine/library/structures.h"
 #include "engine/picture/image_io.h"

@@ -1,4 +1,4 @@
-// Between the engine's exceptions and the interface's codes and texts.
+// Translates the engine's exceptions to the interface's codes and texts.
 #pragma once
 
 #include "engine/error.h"
@@ -8,7 +8,7 @@
 
 namespace binosplat {
 
-// Of a call that loads or draws, as told by Progress.
+// Thrown by Progress where a call that loads or draws was cancelled.
 struct Cancelled {};
 
 struct Failure {
@@ -16,13 +16,13 @@ struct Failure {
     std::string text;
 };
 
-// Of the exception that is being handled.
+// For the exception that is being handled.
 Failure failureNow() noexcept;
 
-// From now on the thread's error text; returns the code.
+// Becomes the thread's error text; returns the code.
 bsp_result report(const Failure& failure) noexcept;
 
-// Runs what a function of the interface does.
+// Runs the body of an interface function.
 template <typename Body>
 bsp_result guarded(Body&& body) noexcept {
     try {

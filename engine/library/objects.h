@@ -1,4 +1,4 @@
-// What the interface's handles lead to.
+// The objects behind the interface's handles.
 #pragma once
 
 #include "engine/frame/stereo_frame.h"
@@ -21,32 +21,33 @@
 
 namespace binosplat {
 
-// Scenes of bsp_splats. Throws Error where a field makes no sense.
+// Scenes of bsp_splats. Throws Error if a field makes no sense.
 Scene sceneOf(const bsp_splats& splats, LoadNotes& notes);
 
 // Of the first version.
 constexpr std::size_t kFirstViewSize = offsetof(bsp_view, height) + sizeof(std::uint32_t);
-// A view as the engine has it; positions count from `origin`.
+// A view as the engine has it; positions are relative to `origin`.
 Eye eyeOf(const bsp_view& view, const glm::dvec3& origin);
 
-// What a frame is asked for, as the engine has it.
+// A frame's settings as the engine has them.
 struct AskedFrame {
     std::vector<Eye> eyes;
     std::vector<std::optional<Gaze>> gazes;
-    std::vector<bsp_target> targets;  // for each eye, if the frame has them
+    std::vector<bsp_target> targets;  // one for each eye, if the frame has them
     FrameSettings settings;
-    std::vector<bsp_scene_t*> scenes;  // one, or those of the instances
+    std::vector<bsp_scene_t*> scenes;  // a single one, or those of the instances
     std::vector<PlacedScene> placed;   // the instances; empty: the scene by itself
-    glm::dvec3 origin{0.0};            // that eyes count from
+    glm::dvec3 origin{0.0};            // eyes are relative to it
     double time_s = 0.0;
     bool is_cut = false, settles = false;
 };
 
-// Brings what changes in a scene to the device by submissions of its own: frames that the program holds may then be dropped.
+// Brings a scene's changes to the device by submissions of its own, so that frames which the program holds
+// may be dropped.
 class ChangeUploads {
 public:
     explicit ChangeUploads(const Context& context) : context_(context) {}
-    // Waits for nothing. If it throws, the device may lack what the scene counts as brought: hasLost().
+    // Does not wait. If it throws, the device may lack what the scene believes it has: hasLost().
     void bring(const GpuScene& scene);
     [[nodiscard]] bool hasLost() const { return has_lost_; }
 
@@ -59,7 +60,7 @@ private:
 bsp_frame_info readFrame(const bsp_frame_info* frame);
 bsp_frame_result resultOf(const FrameResult& result, double share_there);
 
-// A command buffer of the library's own around what was lent.
+// A command buffer of the library's own, which executes lent commands.
 struct Submission {
     explicit Submission(const Context& context);
     vk::raii::CommandPool pool;
@@ -79,37 +80,39 @@ struct bsp_device_t {
     bsp_log log_to;
     void* log_user;
     binosplat::Context context;
-    binosplat::GpuScene empty;  // what renderers show that show nothing
+    binosplat::GpuScene empty;  // shown by renderers that show nothing
     std::mutex renderers_mutex;
     std::set<bsp_renderer_t*> renderers;
 };
 
-// Loads on a thread of its own, which ends with the object at the latest.
+// Loads on a thread of its own, which ends before the object does.
 struct bsp_scene_t {
     bsp_scene_t(bsp_device_t& of_device, const bsp_scene_info& info, std::optional<binosplat::Scene> of_splats, binosplat::LoadNotes notes);
     ~bsp_scene_t();
 
     [[nodiscard]] const binosplat::GpuScene& onDevice() const { return live ? live->scene() : *gpu; }
-    // If it is live: asks for what the eyes see at that time, and brings what is there; all of it, if it settles.
+    // For a live scene: requests what the eyes see at that time, and brings what has been loaded; everything,
+    // if it settles.
     void advance(std::span<const binosplat::Eye> eyes, double time_s, bool settles);
 
     [[nodiscard]] bsp_result state(double* progress, bool waits);
-    // Throws unless it is there.
+    // Throws unless the scene is loaded.
     void requireThere();
 
     bsp_device_t& device;
     const std::string source;
-    const bsp_scene_info asked;  // its pointers have gone
+    const bsp_scene_info asked;  // its pointers are no longer valid
     std::atomic<bool> cancelled{false};
-    // The rest is there once loading has ended well.
+    // The rest is set once loading has succeeded.
     std::unique_ptr<binosplat::GpuScene> gpu;
-    std::unique_ptr<binosplat::LiveScene> live;  // instead
+    std::unique_ptr<binosplat::LiveScene> live;  // in place of `scene`
     bsp_scene_properties properties{};
     glm::dvec3 origin{0.0};
 
 private:
     void load(std::optional<binosplat::Scene> scene, binosplat::LoadNotes notes);
-    // Makes `live`, and returns what it is judged by; nothing if the source is not one that streams or moves.
+    // Makes `live`, and returns the scene by which it is judged; nothing if the source neither streams nor
+    // moves.
     std::optional<binosplat::Scene> openLive(binosplat::LoadNotes& notes, const binosplat::Progress& progress);
     void judge(const binosplat::Scene& scene, const binosplat::LoadNotes& notes);
 
@@ -130,7 +133,7 @@ struct bsp_renderer_t {
     [[nodiscard]] binosplat::AskedFrame ask(const bsp_frame_info& frame, bool with_targets) const;
     void render(binosplat::AskedFrame& asked, bsp_frame_result* result);
     binosplat::Image read(std::uint32_t view, bool depth);
-    // From now on frames are of nothing.
+    // Frames show nothing from now on.
     void forget() noexcept;
     [[nodiscard]] bool shows(const bsp_scene_t* scene);
 
@@ -138,14 +141,14 @@ struct bsp_renderer_t {
     void prepare(binosplat::AskedFrame& asked);
     std::uint64_t record(binosplat::AskedFrame& asked, VkCommandBuffer commands);
     std::uint64_t submit(binosplat::AskedFrame& asked, const bsp_submit_info& info);
-    // False if the device is not done with it.
+    // False if the device has not finished it.
     bool collect(std::uint64_t number, bsp_frame_result* result);
     void discard(std::uint64_t number);
 
     bsp_device_t& device;
 
 private:
-    // A frame that was recorded: for each part its number there.
+    // A recorded frame: its number in each part.
     struct Lent {
         std::vector<std::uint64_t> numbers;
         double share_there = 1.0;
@@ -154,29 +157,29 @@ private:
 
     static std::span<const binosplat::Eye> eyesOf(const binosplat::AskedFrame& asked, std::size_t part);
     static binosplat::FrameSettings settingsOf(const binosplat::AskedFrame& asked, std::size_t part);
-    // Reads what is to be shown.
+    // Reads the scenes to show.
     void readScenes(const bsp_frame_info& frame, binosplat::AskedFrame& asked) const;
-    // True if splats are tested against the program's depths one by one as this part is rendered.
+    // True if this part tests splats one by one against the program's depths.
     [[nodiscard]] static bool isCut(const binosplat::AskedFrame& asked, std::size_t part);
-    // Of a pair of views, or of the last one alone.
+    // For a pair of views, or for the last one alone.
     binosplat::StereoFrame& part(std::size_t index);
-    // From now on frames are of its scenes.
+    // Frames show these scenes from now on.
     void show(const binosplat::AskedFrame& asked);
     void showOnDevice(const binosplat::GpuScene& scene);
-    // Shows its scenes as they now are, and drops pasts if it says so.
+    // Shows its scenes as they now are, and drops histories if it says so.
     void begin(binosplat::AskedFrame& asked);
-    // Records all parts; none if one fails.
+    // Records all parts, or none if one fails.
     std::vector<vk::CommandBuffer> lend(binosplat::AskedFrame& asked, Lent& lent);
     void drop(Lent& lent);
     void dropAll() noexcept;
 
-    // Of another thread, too, which may destroy another scene.
+    // Also called by other threads, which may destroy another scene.
     std::mutex shown_mutex_;
     std::vector<bsp_scene_t*> shown_;
-    std::unique_ptr<binosplat::PlacedScenes> group_;              // of these, if they are instances
+    std::unique_ptr<binosplat::PlacedScenes> group_;              // the scenes, if they are instances
     binosplat::ChangeUploads uploads_;                            // of the group
-    const binosplat::GpuScene* on_device_;                        // what parts show
-    std::vector<std::unique_ptr<binosplat::StereoFrame>> parts_;  // the first one owns the kernels of all
+    const binosplat::GpuScene* on_device_;                        // what the parts show
+    std::vector<std::unique_ptr<binosplat::StereoFrame>> parts_;  // the first one owns everyone's kernels
     binosplat::TargetImages targets_;
     std::uint64_t last_number_ = 0;
     std::map<std::uint64_t, Lent> lent_;

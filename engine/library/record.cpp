@@ -25,7 +25,7 @@ void bsp_renderer_t::prepare(AskedFrame& asked) {
     for (std::size_t p = 0; 2 * p < asked.eyes.size(); ++p) {
         if (!isCut(asked, p)) { continue; }
         FrameSettings settings = settingsOf(asked, p);
-        settings.mesh_depths = {MeshDepths{}, MeshDepths{}};  // which kernels are made; nothing is drawn
+        settings.mesh_depths = {MeshDepths{}, MeshDepths{}};  // selects the kernels; nothing is drawn
         part(p).makeKernels(eyesOf(asked, p), settings);
     }
     render(asked, nullptr);

@@ -1,4 +1,4 @@
-// What a renderer shows: one scene, or several where they are placed; and what changes in these from frame to frame.
+// What a renderer shows, one scene or several placed ones, and how they change from frame to frame.
 #include "engine/library/objects.h"
 #include "engine/library/structures.h"
 
@@ -10,7 +10,7 @@ using namespace binosplat;
 namespace {
 
 constexpr std::uint32_t kMostInstances = 4096;
-// Of a frame after a long pause.
+// For a frame after a long pause.
 constexpr double kLongestStep = 0.1;
 
 PlacedScene placedOf(const bsp_instance& instance) {
@@ -28,7 +28,7 @@ PlacedScene placedOf(const bsp_instance& instance) {
             .is_shown = instance.hidden == 0};
 }
 
-// All views as they see a scene, from each place in which it is shown.
+// All views as they see a scene, from each place where it is shown.
 std::vector<Eye> eyesIn(const AskedFrame& asked, const bsp_scene_t* scene) {
     if (asked.placed.empty()) { return asked.eyes; }
     std::vector<Eye> eyes;
@@ -172,7 +172,7 @@ void bsp_renderer_t::begin(AskedFrame& asked) {
         try {
             uploads_.bring(group_->scene());
         } catch (...) {
-            forget();  // the next frame begins anew
+            forget();  // the next frame starts afresh
             throw;
         }
     }

@@ -1,4 +1,4 @@
-// A program's arrays as a scene, on the way that files take.
+// Turns a program's arrays into a scene, as a file's would be.
 #include "engine/files/scene_builder.h"
 #include "engine/library/objects.h"
 

@@ -1,4 +1,4 @@
-// Structures of programs that were compiled against an earlier or a later header than this library.
+// Structures of programs that were compiled against an earlier or later header than this library.
 #pragma once
 
 #include "engine/error.h"
@@ -12,7 +12,8 @@ namespace binosplat {
 // Throws Error unless it is one of this type, and of the size that it had in the first version or more.
 void checkHeader(const void* given, bsp_type type, std::size_t first_size, const char* name);
 
-// What this library knows of it; 0 what the program does not. Throws Error if the program sets what the library does not know.
+// The fields that this library knows; 0 for those that the program does not know. Throws Error if the program
+// sets a field that the library does not know.
 template <typename Structure>
 Structure readStructure(const Structure* given, bsp_type type, std::size_t first_size, const char* name) {
     checkHeader(given, type, first_size, name);
@@ -26,7 +27,7 @@ Structure readStructure(const Structure* given, bsp_type type, std::size_t first
     return known;
 }
 
-// Fills what the program knows of it.
+// Fills the fields that the program knows.
 template <typename Structure>
 void writeStructure(Structure* given, const Structure& known) {
     auto* bytes = reinterpret_cast<unsigned char*>(given);
@@ -35,7 +36,7 @@ void writeStructure(Structure* given, const Structure& known) {
                 std::min<std::size_t>(given->size, sizeof(Structure)) - sizeof(bsp_header));
 }
 
-// The structure of this type that `next` leads to; null if there is none.
+// The structure of this type in the chain of `next`; null if there is none.
 const bsp_header* findNext(const void* next, std::uint32_t type);
 
 }  // namespace binosplat

@@ -1,4 +1,4 @@
-// Copies from and to images, and `present` between them.
+// Copies from and to images, with `present` in between.
 #include "engine/library/targets.h"
 
 #include "engine/error.h"
@@ -20,7 +20,7 @@ struct Part {
     std::uint32_t layer;
     glm::uvec2 size_px;
 
-    // Waits for everything before, and lets everything after wait.
+    // Waits for everything before it, and makes everything after it wait.
     void change(Commands& commands, Layout from, Layout to) const {
         const auto all = vk::AccessFlagBits::eMemoryRead | vk::AccessFlagBits::eMemoryWrite;
         const auto stage = vk::PipelineStageFlagBits::eAllCommands;
