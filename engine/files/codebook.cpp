@@ -1,4 +1,4 @@
-// Numbers in order: a cluster is a range of them, its mean the difference of two sums.
+// Numbers in order: a cluster is a range of them, and its mean comes from the difference of two sums.
 #include "engine/files/codebook.h"
 
 #include <algorithm>
@@ -13,10 +13,10 @@ namespace {
 constexpr std::size_t kSize = 256;
 constexpr std::size_t kMostSamples = std::size_t{1} << 22;
 constexpr std::size_t kStartCells = 4096;
-constexpr double kMostPerCell = 4.0;  // values that a cell may have at first, so that an outlier does not have them all
+constexpr double kMostPerCell = 4.0;  // values that a cell may have at first, so that an outlier does not take them all
 constexpr int kIterations = 100;
 
-// Evenly picked, in ascending order, the least and the largest among them.
+// Evenly picked, in ascending order, including the least and the largest.
 std::vector<float> sortedSamples(std::span<const float> numbers) {
     std::vector<float> samples;
     if (numbers.size() <= kMostSamples) {
@@ -31,8 +31,9 @@ std::vector<float> sortedSamples(std::span<const float> numbers) {
     return samples;
 }
 
-// Where clusters end at first. The best quantizer's values lie as densely as the cube root of the numbers' density (Panter and Dite 1951);
-// over cells of equally many numbers, that is each cell's width to the power of two thirds.
+// Where clusters end at first. The best quantizer's values are as dense as the cube root of the numbers'
+// density (Panter and Dite 1951); over cells with equally many numbers, that is each cell's width to the
+// power of two thirds.
 std::vector<std::size_t> startEnds(const std::vector<float>& sorted, std::size_t size) {
     const std::size_t cells = std::min(kStartCells, sorted.size());
     const auto edge = [&](std::size_t cell) { return cell * (sorted.size() - 1) / cells; };
@@ -55,7 +56,7 @@ std::vector<std::size_t> startEnds(const std::vector<float>& sorted, std::size_t
     return ends;
 }
 
-// Up to `size` values, ascending.
+// At most `size` values, ascending.
 std::vector<float> findValues(std::span<const float> numbers, std::size_t size) {
     const std::vector<float> sorted = sortedSamples(numbers);
     std::vector<float> values = sorted;

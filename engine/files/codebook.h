@@ -10,8 +10,9 @@ namespace binosplat {
 
 class Codebook {
 public:
-    // The values that come nearest to `numbers`, in squares: Lloyd's algorithm along one axis. As many different numbers as there are
-    // values are kept as they are. `apart`, less than all numbers, is the first value.
+    // The values nearest to `numbers` by squared distance: Lloyd's algorithm along one axis. If there are no
+    // more different numbers than values, they are kept as they are. `apart`, less than all numbers, is the
+    // first value.
     explicit Codebook(std::span<const float> numbers, std::optional<float> apart = {});
 
     // Ascending; the last one fills the rest.
@@ -20,7 +21,7 @@ public:
 
 private:
     std::array<float, 256> values_{};
-    std::array<float, 255> borders_{};  // between a value and the next
+    std::array<float, 255> borders_{};  // between each value and the next
 };
 
 }  // namespace binosplat

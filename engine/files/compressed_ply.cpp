@@ -1,4 +1,4 @@
-// Unpacking of words of 11, 10 and 8 bits between the bounds of their chunk.
+// Unpacks words of 11, 10 and 8 bits between the bounds of their chunk.
 #include "engine/files/compressed_ply.h"
 
 #include "engine/error.h"
@@ -26,13 +26,13 @@ constexpr std::array<const char*, 4> kWordNames{"packed_position", "packed_rotat
 
 using Bounds = std::array<float, kBoundNames.size()>;
 
-// Where the wanted properties of one element lie within a row.
+// Where the wanted properties of one element are within a row.
 struct Fields {
     std::vector<std::size_t> offsets;
     std::size_t row_bytes = 0;
 };
 
-// All of `names` must be there, once, with the type of the format.
+// All of `names` must be present, once, with the format's type.
 Fields findFields(const InputFile& file, const ply::Element& element, ply::Type type, const char* type_name,
                   std::span<const std::string> names) {
     Fields fields;
@@ -57,7 +57,7 @@ Fields findFields(const InputFile& file, const ply::Element& element, ply::Type 
     return fields;
 }
 
-// Its elements, checked against each other and against what is left of the file.
+// Its elements, checked against each other and against the rest of the file.
 struct ChunkLayout {
     std::uint64_t splats = 0, chunks = 0;
     Fields bounds, words, rest;
@@ -154,7 +154,7 @@ void unpackSplat(const Words& words, const Bounds& bounds, StoredBlock& block, s
     for (std::size_t i = 0; i < 4; ++i) { put(kStoredRot0 + static_cast<int>(i), rotation[i]); }
 }
 
-// Bytes stand for the middle of their interval within -4 to 4; the first and the last for its ends.
+// Bytes stand for the middle of their interval within -4 to 4; the first and the last stand for its ends.
 float unpackRest(std::byte value) {
     const int level = std::to_integer<int>(value);
     const float share = level == 0 ? 0.0f : level == 255 ? 1.0f : (static_cast<float>(level) + 0.5f) / 256.0f;
@@ -175,7 +175,7 @@ Scene readCompressedPly(InputFile& file, LoadNotes& notes, const Progress& progr
     const ply::Header header = ply::readHeader(file);
     const ChunkLayout layout = planElements(file, header);
     const std::vector<Bounds> bounds = readBounds(file, layout);
-    // SH follow behind all words, so these wait in memory.
+    // SH come after all words, so these wait in memory.
     std::vector<Words> all_words(layout.splats);
     for (std::uint64_t splat = 0; splat < layout.splats; ++splat) {
         const std::span<const std::byte> row = readRow(file, layout.words, "vertex", splat);

@@ -9,8 +9,9 @@ namespace binosplat {
 // True if the file is a PLY whose header names a property packed_position.
 bool isCompressedPly(InputFile& file);
 
-// Reads the elements chunk (min and max of position and logarithmic scale, optionally of colour, as float), vertex (packed_position,
-// packed_rotation, packed_scale, packed_color, as uint) and, if it is there, sh (9, 24 or 45 f_rest, as uchar), in this order.
+// Reads, in this order, the elements chunk (min and max of position and logarithmic scale, optionally of
+// colour, as float), vertex (packed_position, packed_rotation, packed_scale, packed_color, as uint) and, if
+// present, sh (9, 24 or 45 f_rest, as uchar).
 Scene readCompressedPly(InputFile& file, LoadNotes& notes, const Progress& progress);
 
 }  // namespace binosplat

@@ -1,4 +1,4 @@
-// From the columns of a glTF to stored attributes, as each node places them.
+// From the columns of a glTF to stored attributes, placed by each node.
 #include "engine/files/gltf.h"
 
 #include "engine/error.h"
@@ -22,10 +22,12 @@ namespace binosplat {
 
 namespace {
 
-// Instances aside, a splat takes 44 bytes and more; a small file with more splats than that is there to fill the memory.
+// Instances aside, a splat takes at least 44 bytes; a small file with more splats than that is meant to fill
+// the memory.
 constexpr std::uint64_t kMostSplatsPerByte = 256;
 
-// Scales are lengths. Until 2026 the extension's drafts had logarithms, some of which are negative in any scene, as no length is.
+// Scales are lengths. Drafts of the extension up to 2026 had logarithms: some of these are negative in any
+// scene, lengths never are.
 bool holdsLogarithms(const GltfDocument& document) {
     std::vector<float> scales;
     for (const GltfSplats& part : document.parts) {
@@ -37,7 +39,8 @@ bool holdsLogarithms(const GltfDocument& document) {
     return false;
 }
 
-// Of what nodes move there, in float64: positions that are themselves far from 0 have lost their detail already.
+// Of positions that nodes move, in float64: positions that are themselves far from 0 have lost their detail
+// already.
 glm::dvec3 findOrigin(const GltfDocument& document) {
     constexpr std::size_t kMostSamples = 4096;
     double all = 0.0;
@@ -45,7 +48,7 @@ glm::dvec3 findOrigin(const GltfDocument& document) {
     std::array<std::vector<double>, 3> places, moves;
     std::vector<float> values;
     for (const GltfSplats& part : document.parts) {
-        const double share = static_cast<double>(part.count()) / std::max(all, 1.0);  // so that small parts far away move nobody
+        const double share = static_cast<double>(part.count()) / std::max(all, 1.0);  // so that small parts far away do not shift the rest
         const auto rows = std::min(static_cast<std::size_t>(part.count()), static_cast<std::size_t>(std::ceil(share * kMostSamples)));
         part.position.read(0, rows, values);
         for (std::size_t row = 0; row < rows; ++row) {
@@ -80,7 +83,7 @@ public:
           is_similarity_(isSimilarity(linear_)),
           turn_(nearestRotation(linear_)),
           harmonics_(turn_) {
-        // A mirrored ellipsoid is the one that is turned by the opposite matrix: its axes have no sign.
+        // A mirrored ellipsoid equals the one that is turned by the opposite matrix: its axes have no sign.
         const double sign = glm::determinant(turn_) < 0.0 ? -1.0 : 1.0;
         turned_ = glm::quat_cast(sign * turn_);
         scale_ = std::cbrt(std::abs(glm::determinant(linear_)));
@@ -145,7 +148,7 @@ private:
             const auto width = static_cast<std::size_t>(part_.colour->components());
             for (std::size_t row = 0; row < block.rows; ++row) {
                 for (int channel = 0; channel < 3; ++channel) {
-                    // Without the half that a displayed colour has more: so the extension has it.
+                    // Without the 0.5 that is added to a displayed colour, as the extension defines it.
                     block.put(kStoredDc0 + channel, row, values_[width * row + static_cast<std::size_t>(channel)] / kShConstant);
                 }
             }
@@ -171,7 +174,8 @@ private:
         }
     }
 
-    // The constant colour exactly; what is added by direction with the curve's mean slope over its usual range.
+    // The constant colour is exact; what depends on direction uses the curve's mean slope over its usual
+    // range.
     void convertColours(StoredBlock& block) const {
         const std::size_t per_channel = static_cast<std::size_t>(shCoefficientCount(sh_degree_)) - 1;
         for (std::size_t row = 0; row < block.rows; ++row) {
@@ -180,7 +184,8 @@ private:
                 const std::span<float> rest(block.rest(row) + channel * per_channel, per_channel);
                 double squares = 0.0;
                 for (const float value : rest) { squares += static_cast<double>(value) * static_cast<double>(value); }
-                // The basis is orthonormal on the sphere: this is the root of the mean square over all directions.
+                // The basis is orthonormal on the sphere, so this is the root mean square over all
+                // directions.
                 const double range = std::max(std::sqrt(squares / (4.0 * std::numbers::pi)), 1e-3);
                 const double colour = 0.5 + static_cast<double>(kShConstant) * static_cast<double>(constant);
                 const double slope = (convert_(colour + range) - convert_(colour - range)) / (2.0 * range);
@@ -195,11 +200,11 @@ private:
     bool logarithms_;
     int sh_degree_;
     glm::dmat3 linear_;
-    bool is_rigid_, is_similarity_;  // rigid: moved alone
+    bool is_rigid_, is_similarity_;  // rigid: only moved
     glm::dmat3 turn_;
     glm::dquat turned_{};
     double scale_ = 1.0;
-    Curve convert_ = nullptr;  // of a colour's channel; null: it stays as it is
+    Curve convert_ = nullptr;  // for a colour's channel; null: it stays as it is
     ShTurn harmonics_;
     std::vector<float> values_, scales_;
 };
@@ -211,7 +216,7 @@ bool isGltf(InputFile& file) {
     if (start.starts_with("glTF")) { return true; }
     // A tileset of 3D Tiles has an asset, too.
     if (!startsObject(start) || start.find("\"geometricError\"") != std::string_view::npos) { return false; }
-    // Any of them may come first, and be longer than this.
+    // Any of them may come first, and may be longer than this.
     constexpr std::string_view kKeys[] = {"\"asset\"", "\"accessors\"", "\"bufferViews\"", "\"extensionsUsed\"", "\"meshes\""};
     return std::ranges::any_of(kKeys, [&](std::string_view key) { return start.find(key) != std::string_view::npos; });
 }

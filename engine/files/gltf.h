@@ -9,11 +9,11 @@ namespace binosplat {
 // True if the file is a GLB, by its first bytes, or JSON with the keys of glTF.
 bool isGltf(InputFile& file);
 
-// All splats that the default scene's nodes place, in that scene's axes; the harmonics are rotated with them. Nodes without splats are left
-// out, with a note.
+// All splats that the default scene's nodes place, in that scene's axes, with their harmonics rotated. Nodes
+// without splats are left out, with a note.
 Scene readGltf(InputFile& file, LoadNotes& notes, const Progress& progress);
 
-// The Scene::origin that the reader of that file will choose.
+// The Scene::origin that the reader of that file would choose.
 glm::dvec3 originOfGltf(InputFile& file);
 
 }  // namespace binosplat

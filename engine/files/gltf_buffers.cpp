@@ -1,4 +1,4 @@
-// Files by InputFile; URIs after RFC 3986, as far as glTF uses them.
+// Files by InputFile; URIs as in RFC 3986, as far as glTF uses them.
 #include "engine/files/gltf_buffers.h"
 
 #include "engine/error.h"
@@ -17,7 +17,7 @@ namespace binosplat {
 
 namespace {
 
-// %20 and the like; none if a % has no two digits behind it.
+// %20 and the like; empty if a % is not followed by two digits.
 std::optional<std::string> decodePercents(const std::string& uri) {
     std::string text;
     for (std::size_t i = 0; i < uri.size(); ++i) {
@@ -35,7 +35,7 @@ std::optional<std::string> decodePercents(const std::string& uri) {
     return text;
 }
 
-// RFC 4648, section 4; none if it is anything else.
+// RFC 4648, section 4; empty if it is anything else.
 std::optional<std::vector<std::byte>> decodeBase64(std::string_view text) {
     constexpr std::string_view kLetters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     if (text.size() % 4 != 0) { return std::nullopt; }
@@ -58,7 +58,7 @@ std::optional<std::vector<std::byte>> decodeBase64(std::string_view text) {
     return bytes;
 }
 
-// The bytes within a data URI of any type (RFC 2397); none if they are not in base64.
+// The bytes within a data URI of any type (RFC 2397); empty if they are not base64.
 std::optional<std::vector<std::byte>> decodeDataUri(std::string_view uri) {
     const std::size_t comma = uri.find(',');
     if (comma == std::string_view::npos || !uri.substr(0, comma).ends_with(";base64")) { return std::nullopt; }

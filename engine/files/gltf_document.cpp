@@ -17,9 +17,9 @@ namespace binosplat {
 
 namespace {
 
-constexpr std::uint64_t kMostTextBytes = std::uint64_t{32} << 20;            // in memory ten times as long; splats belong into a buffer
+constexpr std::uint64_t kMostTextBytes = std::uint64_t{32} << 20;            // in memory it is ten times as long; splats belong in a buffer
 constexpr std::uint32_t kJsonChunk = 0x4e4f534a, kBinaryChunk = 0x004e4942;  // "JSON", "BIN\0"
-// In all nodes: a file of a few megabytes may name each of a million primitives a million times.
+// For all nodes together: a file of a few megabytes may name each of a million primitives a million times.
 constexpr std::uint64_t kMostPrimitives = std::uint64_t{1} << 18;
 constexpr const char* kPrefix = "KHR_gaussian_splatting:";
 
@@ -104,7 +104,7 @@ struct Place {
 
 enum class Integers { kNone, kNormalized, kAny };
 
-// None if the primitive has no such attribute.
+// Empty if the primitive has no such attribute.
 std::optional<GltfColumn> findColumn(const Place& place, const std::string& attribute, int components, Integers integers) {
     const auto found = place.primitive.attributes.find(attribute);
     if (found == place.primitive.attributes.end()) { return std::nullopt; }
@@ -137,7 +137,7 @@ GltfColumn requireColumn(const Place& place, const std::string& attribute, int c
     return std::move(*column);
 }
 
-// All coefficients of the degrees that are there, each degree whole and none left out below.
+// All coefficients of the degrees in the file; each degree must be whole, with none missing below it.
 std::vector<GltfColumn> findHarmonics(const Place& place) {
     std::vector<GltfColumn> columns;
     int degree = -1;
@@ -182,7 +182,7 @@ GltfSplats openSplats(const Place& place, const glm::dmat4& world_from_node) {
     return splats;
 }
 
-// The primitives' requests, and the unknown ones among them.
+// What the primitives ask for, and which of it is unknown.
 class Wishes {
 public:
     explicit Wishes(const std::string& file) : file_(file) {}
@@ -212,7 +212,7 @@ public:
     }
 
     void finish(GltfDocument& document) {
-        // Splats are blended in one space: the fewer are converted.
+        // Splats are blended in one colour space; the smaller group is converted to the other's.
         document.is_linear = linear_ > encoded_;
         if (linear_ > 0 && encoded_ > 0) {
             const auto [kept, converted] = document.is_linear ? std::pair(kLinear, kEncoded) : std::pair(kEncoded, kLinear);
@@ -237,7 +237,7 @@ private:
     std::set<std::string> others_;
 };
 
-// Walks the nodes of the scene, each of which has one parent at most.
+// Walks the scene's nodes, each of which has at most one parent.
 void placeParts(const gltf::Model& model, const std::string& file, GltfDocument& document) {
     std::vector<std::pair<std::size_t, glm::dmat4>> open;
     for (const std::size_t root : model.roots) { open.emplace_back(root, glm::dmat4(1.0)); }

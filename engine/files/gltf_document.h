@@ -17,13 +17,14 @@ namespace binosplat {
 // One attribute of all splats of a primitive.
 class GltfColumn {
 public:
-    // `components` is the accessor's. Its bytes lie within the buffer, which outlives the column.
+    // `components` is the accessor's. Its bytes are within the buffer, which outlives the column.
     GltfColumn(const GltfBuffer& buffer, std::uint64_t offset, std::uint64_t stride, const gltf::Accessor& accessor)
         : buffer_(&buffer), offset_(offset), stride_(stride), accessor_(accessor) {}
 
     [[nodiscard]] std::uint64_t count() const { return accessor_.count; }
     [[nodiscard]] int components() const { return accessor_.components; }
-    // The values of `rows` splats from `first` on, `components` each; integers as the accessor says, as they are or as -1 to 1.
+    // The values of `rows` splats from `first` on, `components` each; integers as they are or scaled to -1 to
+    // 1, as the accessor says.
     void read(std::uint64_t first, std::size_t rows, std::vector<float>& values) const;
 
 private:
@@ -36,7 +37,7 @@ private:
 // A primitive at a node.
 struct GltfSplats {
     GltfColumn position, rotation, scale, opacity;
-    std::vector<GltfColumn> sh;  // by coefficient, from the constant one on; empty: `colour` stands for the constant one
+    std::vector<GltfColumn> sh;  // by coefficient, starting with the constant one; empty: `colour` stands for that one
     std::optional<GltfColumn> colour;
     glm::dmat4 world_from_node{1.0};
     bool is_linear = false;  // its colours are light; otherwise display-encoded
@@ -49,12 +50,12 @@ struct GltfDocument {
     std::vector<GltfSplats> parts;
     std::uint64_t bytes = 0;   // of the file and all buffers
     int sh_degree = 0;         // the highest of the parts'
-    bool is_linear = false;    // most splats' colours are light, and the scene's shall be
+    bool is_linear = false;    // most splats' colours are light, and the scene's will be
     bool by_distance = false;  // the blending order
     std::vector<std::string> notes;
 };
 
-// Throws Error for anything that violates the format, before a splat is read.
+// Throws Error for anything that violates the format, before any splat is read.
 GltfDocument openGltf(InputFile& file);
 
 }  // namespace binosplat

@@ -1,4 +1,4 @@
-// From JSON to the structure, with every index checked.
+// From JSON to the model, with every index checked.
 #include "engine/files/gltf_parser.h"
 
 #include "engine/error.h"
@@ -18,7 +18,7 @@ namespace {
 
 constexpr const char* kExtension = "KHR_gaussian_splatting";
 
-// What lies at the index that `node` holds as `key`, which is one of `size`.
+// The element at the index that `node` holds as `key`; there are `size` of them.
 std::size_t indexOf(const JsonNode& index, std::size_t size, const std::string& place, const char* what) {
     const std::uint64_t value = index.count();
     check(value < size, "{}: names {} {} of {}", place, what, value, size);

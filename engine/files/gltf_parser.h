@@ -29,7 +29,7 @@ struct Accessor {
     int components = 0;  // 1 of a SCALAR, 2 to 4 of a VEC, 0 of a matrix
 };
 
-// The extension's keys; empty where they are not.
+// The extension's keys; empty if absent.
 struct Splatting {
     std::string kernel, colour_space, projection, sorting;
     std::vector<std::string> extensions;  // of the extension
@@ -56,7 +56,8 @@ struct Model {
     std::vector<std::string> required_extensions;
 };
 
-// `file` is the name for messages. Every index in the model is one of its arrays', or of the document's buffers.
+// `file` is the name for messages. Every index in the model is valid for its arrays, or for the document's
+// buffers.
 Model parse(const nlohmann::json& document, const std::string& file);
 
 }  // namespace binosplat::gltf

@@ -33,7 +33,7 @@ std::vector<std::byte> peekGzip(InputFile& file, std::size_t count) {
     stream.avail_in = zlibCount(start.size());
     stream.next_out = zlibBytes(bytes.data());
     stream.avail_out = zlibCount(count);
-    inflate(&stream, Z_SYNC_FLUSH);  // whatever it says, what came out came out
+    inflate(&stream, Z_SYNC_FLUSH);  // whatever it returns, the bytes that came out count
     bytes.resize(count - stream.avail_out);
     inflateEnd(&stream);
     return bytes;
@@ -72,13 +72,13 @@ bool GzipReader::fill() {
     z_stream& stream = state_->stream;
     if (stream.avail_in > 0) { return true; }
     const std::span<const std::byte> block = file_.readBlock(kBlockBytes);
-    stream.next_in = zlibBytes(block.data());  // valid until the next block is asked for, which is when this one is used up
+    stream.next_in = zlibBytes(block.data());  // valid until the next block is requested, after this one is used up
     stream.avail_in = zlibCount(block.size());
     return !block.empty();
 }
 
 bool GzipReader::next() {
-    // Zeros behind a stream are padding, as gzip takes them.
+    // Zeros after a stream are padding, as gzip treats them.
     z_stream& stream = state_->stream;
     while (fill() && *stream.next_in == 0) { ++stream.next_in, --stream.avail_in; }
     if (stream.avail_in == 0) { return false; }

@@ -11,7 +11,8 @@
 
 namespace binosplat {
 
-// The first bytes of the stream in a gzip file, as many as `count` if they are there, without moving the file on; empty for other files.
+// The first `count` bytes of the stream in a gzip file, or fewer if it is shorter, without advancing the
+// file; empty for other files.
 std::vector<std::byte> peekGzip(InputFile& file, std::size_t count);
 
 class GzipReader {
@@ -21,9 +22,10 @@ public:
     GzipReader(const GzipReader&) = delete;
     GzipReader& operator=(const GzipReader&) = delete;
 
-    // Fills `target` as far as the stream goes and returns how many bytes it gave. Throws Error if the stream is broken or the file ends.
+    // Fills `target` as far as the stream goes and returns how many bytes it gave. Throws Error if the stream
+    // is broken or the file ends.
     std::size_t read(std::span<std::byte> target);
-    // Goes on with the stream behind the one that has ended; false if the file ends there, too.
+    // Continues with the next stream after one has ended; false if the file ends there, too.
     bool next();
 
 private:

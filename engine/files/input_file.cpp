@@ -1,5 +1,5 @@
-// Buffered reading of one file. The buffer is 1 MiB, large enough for full disk speed and small beside any scene, or what a smaller file
-// needs.
+// Buffered reading of one file. The buffer is 1 MiB, large enough for full disk speed and small beside any
+// scene, or as large as a smaller file needs.
 #include "engine/files/input_file.h"
 
 #include "engine/error.h"
@@ -68,9 +68,9 @@ void InputFile::open() {
         std::array<char, kLfsPointerStart.size()> start{};
         requireNoLfsPointer({start.data(), readAt(0, std::as_writable_bytes(std::span(start)))}, name_);
     }
-    // One more than a small file has: its last line is not too long only because it fills the buffer.
+    // One byte more than a small file, so that its last line does not seem too long for filling the buffer.
     const auto buffer_bytes = static_cast<std::size_t>(std::clamp<std::uint64_t>(sizeBytes() + 1, kLeastBufferBytes, kMostBufferBytes));
-    room_ = std::make_unique_for_overwrite<char[]>(buffer_bytes);  // untouched where the file is read by its parts
+    room_ = std::make_unique_for_overwrite<char[]>(buffer_bytes);  // stays unused if the file is read in parts
     buffer_ = {room_.get(), buffer_bytes};
 }
 
@@ -105,7 +105,8 @@ std::string_view InputFile::peek(std::size_t count) {
 }
 
 InputFile::LineEnd InputFile::readLine(std::string_view& line) {
-    // Most lines are short, so the search starts small and widens to the whole buffer only if no break is there.
+    // Most lines are short, so the search starts small and widens to the whole buffer only if it finds no
+    // break.
     for (const std::size_t reach : {kLeastBufferBytes, buffer_.size()}) {
         fillTo(reach);
         const char* start = buffer_.data() + begin_;

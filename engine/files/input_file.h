@@ -1,4 +1,5 @@
-// A file read once from front to back through one buffer, by lines or by blocks; its name is part of every message.
+// A file read once from front to back through one buffer, by lines or by blocks; its name is part of every
+// message.
 #pragma once
 
 #include "engine/platform.h"
@@ -20,42 +21,43 @@ namespace binosplat {
 
 class SceneFiles;
 
-// The start of a text without the byte order mark that some editors put there.
+// The start of a text, without the byte order mark that some editors put there.
 std::string_view withoutByteOrderMark(std::string_view start);
 
 class InputFile {
 public:
     // Throws Error if `path` is missing, a directory, not a regular file, not readable or a Git LFS pointer.
     explicit InputFile(const std::string& path);
-    // A file that messages call `name`; its scene's other files are had from `others`, which outlive it.
+    // A file that messages call `name`; the other files of its scene come from `others`, which outlive it.
     InputFile(const std::filesystem::path& path, std::string name, SceneFiles& others);
-    // A file in a folder of its own, which is gone with it; messages call it `name`.
+    // A file in a folder of its own, which is removed with it; messages call it `name`.
     InputFile(TemporaryFolder folder, const std::string& file, std::string name);
     ~InputFile();
 
     [[nodiscard]] const std::string& name() const { return name_; }
-    // Where it lies on the disk.
+    // Its path on the disk.
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-    // Null: they lie beside it, on the disk.
+    // Null: they are beside it, on the disk.
     [[nodiscard]] SceneFiles* others() const { return others_; }
     void takeOthers(std::unique_ptr<SceneFiles> others);
-    // Opens it once more, while this one lives, or the others that it was given.
+    // Opens it once more, while this one exists or the others that it was given do.
     [[nodiscard]] std::function<std::unique_ptr<InputFile>()> again() const;
     [[nodiscard]] std::uint64_t sizeBytes() const { return opened_.size_bytes; }
     [[nodiscard]] std::uint64_t positionBytes() const { return position_bytes_; }
     [[nodiscard]] std::uint64_t bytesLeft() const { return sizeBytes() > position_bytes_ ? sizeBytes() - position_bytes_ : 0; }
 
-    // Throws Error if the file was written to since it was opened: what was read may be half of each. Removed or replaced by another, it
-    // is read to its end as it was.
+    // Throws Error if the file has been written to since it was opened, since what was read may be half old
+    // and half new. A file that was removed or replaced is read to its end as it was.
     void requireUnchanged() const;
 
-    // Bytes from anywhere, without moving on; fewer at the end of the file.
+    // Bytes from anywhere, without advancing; fewer at the end of the file.
     [[nodiscard]] std::size_t readAt(std::uint64_t offset, std::span<std::byte> target) const;
 
-    // The next bytes, `count` at most, without moving on. Valid until the next call.
+    // The next bytes, at most `count`, without advancing. Valid until the next call.
     [[nodiscard]] std::string_view peek(std::size_t count);
 
-    // The end of a line: a line break, the end of the file after at least one character, or there was no line at all.
+    // How a line ended: by a line break, by the end of the file after at least one character, or there was no
+    // line at all.
     enum class LineEnd { kBreak, kFileEnd, kNoLine };
     // The next line without its break ("\n" or "\r\n"); valid until the next call. Throws Error for a line over 1 MiB.
     LineEnd readLine(std::string_view& line);
@@ -63,13 +65,13 @@ public:
     // The next `count` bytes, at most 1 MiB; fewer only at the end of the file. Valid until the next call.
     [[nodiscard]] std::span<const std::byte> readBlock(std::size_t count);
 
-    // Fills `target` as far as the file goes, and says how far.
+    // Fills `target` as far as the file goes, and returns how far.
     [[nodiscard]] std::size_t read(std::span<std::byte> target);
 
-    // Moves on by `count` bytes, which must be there.
+    // Skips `count` bytes, which must exist.
     void skip(std::uint64_t count);
 
-    // All of it, before anything was read. Throws Error for more than `most_bytes`.
+    // The whole file, before anything has been read. Throws Error if it has more than `most_bytes`.
     [[nodiscard]] std::vector<std::byte> readWhole(std::uint64_t most_bytes);
 
     // The open file, for a library; nothing can be read here afterwards.
@@ -78,7 +80,7 @@ public:
 private:
     void open();
     [[nodiscard]] FileStamp stamp() const;
-    void fillTo(std::size_t count);  // at least `count` unread bytes in the buffer, or all that is left
+    void fillTo(std::size_t count);  // to at least `count` unread bytes in the buffer, or the rest of the file
 
     std::optional<TemporaryFolder> folder_;  // removed after the file is closed
     std::filesystem::path path_;

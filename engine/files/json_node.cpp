@@ -1,4 +1,4 @@
-// One check for each type that is asked for.
+// One check for each type that can be requested.
 #include "engine/files/json_node.h"
 
 #include "engine/error.h"
@@ -60,7 +60,7 @@ float JsonNode::number() const {
 }
 
 std::uint64_t JsonNode::count() const {
-    // Some writers know no integers: 608.0. Beyond 2^53 a double may have been rounded.
+    // Some writers have no integers: 608.0. Beyond 2^53 a double may have been rounded.
     const double wide = value.is_number_float() ? value.get<double>() : -1.0;
     if (wide >= 0.0 && wide <= 0x1p53 && wide == std::floor(wide)) { return static_cast<std::uint64_t>(wide); }
     check(value.is_number_unsigned(), "{}: is {}, expected a whole number from 0 on", place(),

@@ -1,4 +1,5 @@
-// A header of 4096 bytes, one of 1024 for each section, then the sections: lengths of the buckets that are not full, buckets, splats.
+// A header of 4096 bytes, one of 1024 for each section, then the sections: lengths of the buckets that are
+// not full, then buckets, then splats.
 #include "engine/files/ksplat.h"
 
 #include "engine/error.h"
@@ -20,7 +21,8 @@ constexpr std::size_t kHeaderBytes = 4096, kSectionHeaderBytes = 1024, kBucketBy
 constexpr std::uint32_t kMostSections = 65536;
 constexpr int kMostDegree = 2;
 
-// By level: bytes of a coordinate, of a scale, of a rotation's part, and of a coefficient of the harmonics.
+// By level: bytes of a coordinate, of a scale, of a component of the rotation, and of a coefficient of the
+// harmonics.
 struct Level {
     std::size_t position, scale, rotation, harmonic;
 
@@ -34,7 +36,7 @@ struct Header {
     float least_harmonic = 0.0f, most_harmonic = 0.0f;  // of level 2
 };
 
-// One section's bytes, all of which are in the file.
+// The bytes of one section, all of which are in the file.
 struct Section {
     std::string place;
     std::uint64_t splats = 0, splats_at = 0, splat_bytes = 0;
@@ -59,7 +61,7 @@ Header parseHeader(const InputFile& file, std::span<const std::byte> bytes) {
     return header;
 }
 
-// `at` is where the section's bytes begin; it is moved behind them.
+// `at` is where the section's bytes begin; it is moved to their end.
 Section openSection(const InputFile& file, const Header& header, std::uint32_t index, std::span<const std::byte> bytes, std::uint64_t& at) {
     Section section;
     section.place = fmt::format("{}: section {}", file.name(), index);
@@ -77,7 +79,7 @@ Section openSection(const InputFile& file, const Header& header, std::uint32_t i
     check(section.sh_degree <= kMostDegree, "{}: header: SH degree {}, expected 0 to {}", section.place, section.sh_degree, kMostDegree);
     section.splat_bytes =
         level.harmonicsAt() + 3 * (static_cast<std::uint64_t>(shCoefficientCount(section.sh_degree)) - 1) * level.harmonic;
-    // Each of these fits into 64 bits by far.
+    // Each of these easily fits into 64 bits.
     const std::uint64_t bytes_needed = 4 * others + bucket_bytes * buckets + section.splat_bytes * room, left = file.sizeBytes() - at;
     check(bytes_needed <= left, "{}: data: {} bytes are left of {} for {} splats and {} buckets", section.place, left, bytes_needed, room,
           buckets);
@@ -107,7 +109,7 @@ Section openSection(const InputFile& file, const Header& header, std::uint32_t i
     return section;
 }
 
-// Which bucket a splat lies in, asked for one after the other.
+// The bucket of a splat; splats are asked for in order.
 class Buckets {
 public:
     explicit Buckets(const Section& section) : section_(section) { rest_ = sizeOf(0); }
@@ -134,7 +136,7 @@ float loadFloat(std::span<const std::byte> bytes, std::size_t offset, std::size_
     return size == 4 ? loadLittle<float>(bytes, offset) : glm::unpackHalf1x16(loadLittle<std::uint16_t>(bytes, offset));
 }
 
-// `sh_degree` is the builder's, at least the section's; what a block held before is overwritten.
+// `sh_degree` is the builder's, at least the section's; the block's old content is overwritten.
 void unpackSplat(const Header& header, const Section& section, std::span<const std::byte> bytes, Buckets& buckets, int sh_degree,
                  StoredBlock& block, std::size_t row) {
     const Level& level = kLevels[header.level];

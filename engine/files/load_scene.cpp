@@ -1,4 +1,4 @@
-// loadScene: which reader a source belongs to.
+// loadScene: finds the reader for a source.
 #include "engine/files/load_scene.h"
 
 #include "engine/builtin/procedural.h"
@@ -28,14 +28,15 @@ namespace binosplat {
 
 namespace {
 
-// The user's choice: a directory, or a file (then open, nothing read yet).
+// What the user chose: a directory, or a file (then open, with nothing read yet).
 struct Source {
     std::string path;
     std::unique_ptr<InputFile> file;  // null for a directory
     const LevelChoice& level;
 };
 
-// A format is known by its content, never by its name; the first that matches reads. A new one is one more file and one more line below.
+// A format is recognized by its content, never by its name; the first that matches reads. A new format is one
+// more file and one more line below.
 struct SceneFormat {
     const char* name;
     bool (*matches)(Source& source);
@@ -77,7 +78,7 @@ std::string listFormats() {
     return names;
 }
 
-// A file that changes meanwhile is the reason for whatever else is found wrong with it.
+// If a file changes meanwhile, that is the reason for anything else that is wrong with it.
 Scene readWhole(const SceneFormat& format, Source& source, LoadNotes& notes, const Progress& progress) {
     const auto requireUnchanged = [&] {
         if (source.file) { source.file->requireUnchanged(); }
@@ -102,7 +103,7 @@ const SceneFormat* findFormat(Source& source) {
     return found == kSceneFormats.end() ? nullptr : found;
 }
 
-// Of a folder that is none of a scene.
+// For a folder that is not a scene's.
 [[noreturn]] void refuseFolder(const Source& folder) {
     std::error_code error;
     static_cast<void>(std::filesystem::directory_iterator(folder.path, error));
@@ -164,7 +165,7 @@ Scene loadFrom(Source& source, LoadNotes& notes, const Progress& progress) {
 }  // namespace
 
 std::string formatOfFile(const std::string& path) {
-    constexpr std::uint64_t kFirstBytes = 65536;  // no format looks at more before it is chosen
+    constexpr std::uint64_t kFirstBytes = 65536;  // formats look at no more than this before one is chosen
     const LevelChoice no_level;
     Source source{path, openUnpacked(path, {.first_bytes = kFirstBytes}), no_level};
     const SceneFormat* const format = findFormat(source);

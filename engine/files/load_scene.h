@@ -1,4 +1,4 @@
-// A scene from wherever it is: a file of any format, a folder, a built-in scene.
+// Loads a scene from anywhere: a file of any format, a folder, a built-in scene.
 #pragma once
 
 #include "engine/scene/scene.h"
@@ -13,18 +13,21 @@ namespace binosplat {
 
 // The choice among several levels of detail.
 struct LevelChoice {
-    std::optional<std::uint32_t> level;  // 0: the finest; an error if there is no such level
-    // Without `level`: true if so many splats fit. The finest level that does is loaded, or the coarsest; absent: the finest.
+    std::optional<std::uint32_t> level;  // 0: the finest; an error if the scene lacks that level
+    // Without `level`: true if that many splats fit. The finest level that fits is loaded, or else the
+    // coarsest; if absent, the finest.
     std::function<bool(std::uint64_t splats, int sh_degree)> fits;
 };
 
-// Loads `source`: a file; a directory, which is a SOG scene, a training's output, of which the newest scene is taken, a moving scene, of
-// which the first frame is, or has one scene file; or builtin:NAME (then `builtin_splats` sets the size, 0 for its default).
-// Needs at most twice the scene's own size in host memory. Throws Error with file, place, what is wrong and what was expected.
+// Loads `source`: a file, a directory, or builtin:NAME (then `builtin_splats` sets the size, 0 for its
+// default). A directory is a SOG scene, a training's output (its newest scene is taken), a moving scene (its
+// first frame is), or holds one scene file. Needs at most twice the scene's own size in host memory. Throws
+// Error with file, place, what is wrong and what was expected.
 Scene loadScene(const std::string& source, std::uint64_t builtin_splats = 0, LoadNotes* notes = nullptr, const Progress& progress = {},
                 const LevelChoice& level = {});
 
-// The format of the scene in a file, by the beginning of its content; empty if it is none. Throws Error if that cannot be read.
+// The format of the scene in a file, by the beginning of its content; empty if unknown. Throws Error if that
+// cannot be read.
 std::string formatOfFile(const std::string& path);
 
 // The same for an open file, wherever its scene's other files are.

@@ -1,4 +1,4 @@
-// A walk through the tree that keeps the leaves' ranges, sorted by chunk.
+// Walks the tree and keeps the leaves' ranges, sorted by chunk.
 #include "engine/files/lod_meta.h"
 
 #include "engine/error.h"
@@ -15,13 +15,14 @@ namespace binosplat {
 namespace {
 
 constexpr std::uint64_t kMaxLevels = 64;
-// Leaves of half a million splats make a scene of 2^40 with 21 nodes one below the other; a tree cut by size may need some more.
+// With leaves of half a million splats, 21 nodes below each other make a scene of 2^40; a tree cut by size
+// may need a few more.
 constexpr int kMaxTreeDepth = 64;
-// So large that no scene has as many; so small that those of all leaves that a file can hold add up within 64 bits.
+// No scene has this many; and the counts of all leaves that a file can hold add up within 64 bits.
 constexpr std::uint64_t kMaxSplats = std::uint64_t{1} << 40;
 
-// A path that leads to a file within the folder: no root (Windows takes "/a" for relative), no "..", nothing another system would take for
-// either.
+// A path to a file within the folder: without a root (Windows takes "/a" for relative), without "..", and
+// without anything that another system would take for either.
 std::string readChunkPath(const JsonNode& node) {
     const std::string text = node.filePath();
     const std::filesystem::path path(text);
@@ -59,7 +60,7 @@ std::uint64_t readSplats(const JsonNode& node) {
     return splats;
 }
 
-// By level; those of levels that the leaf does not have mean nothing.
+// By level; values of levels that the leaf lacks mean nothing.
 void readErrors(const JsonNode& errors, LodLeaf& leaf) {
     const std::size_t size = errors.arraySize();
     for (const LodRange& range : leaf.levels) {
@@ -91,12 +92,12 @@ void readLeaf(const JsonNode& node, LodLeaf leaf, LodMeta& meta) {
     const bool any = !leaf.levels.empty();
     for (std::size_t level = 0; level < present.size(); ++level) { meta.leaves_without[level] += any && !present[level]; }
     ++meta.leaves;
-    if (!any) { return; }  // then its box may be none, too
+    if (!any) { return; }  // then its box may be empty, too
     const bool is_box = glm::all(glm::lessThanEqual(leaf.low, leaf.high));
     check(is_box, "{}: lies in no box, expected a bound whose min is at most its max", lods.place());
     std::ranges::sort(leaf.levels, {}, &LodRange::level);
     if (meta.has_errors) { readErrors(node.at("errors"), leaf); }
-    // Where a leaf has a coarser level, but not this one, the next coarser one stands in.
+    // If a leaf lacks this level but has a coarser one, the next coarser one is used.
     for (std::uint32_t level = 0; level < leaf.levels.back().level; ++level) {
         if (present[level]) { continue; }
         const LodRange& coarser = *std::ranges::upper_bound(leaf.levels, level, {}, &LodRange::level);
@@ -115,7 +116,7 @@ LodLeaf readBounds(const JsonNode& bound) {
     return {readCorner("min"), readCorner("max"), {}};
 }
 
-// The parser has bounded the depth.
+// The parser has limited the depth.
 void readTree(const JsonNode& node, LodMeta& meta) {
     const LodLeaf box = readBounds(node.at("bound"));
     const bool is_leaf = node.has("lods");
@@ -127,7 +128,7 @@ void readTree(const JsonNode& node, LodMeta& meta) {
     for (std::size_t i = 0; i < children.arraySize(); ++i) { readTree(children.at(i), meta); }
 }
 
-// Leaves that lie side by side in a chunk become one range.
+// Ranges of leaves that are adjacent in a chunk are merged.
 void joinRanges(const LodMeta& meta, std::size_t file, std::vector<SplatRange>& ranges, const std::string& place) {
     std::ranges::sort(ranges, {}, &SplatRange::first);
     std::vector<SplatRange> joined;
@@ -147,7 +148,7 @@ void joinRanges(const LodMeta& meta, std::size_t file, std::vector<SplatRange>& 
 }  // namespace
 
 LodMeta parseLodMeta(std::span<const std::byte> text, const std::string& place) {
-    // A node of the tree is an object within an array; a leaf's entries are two deeper.
+    // A node of the tree is an object within an array; a leaf's entries are two levels deeper.
     const nlohmann::json document = parseJson(text, place, "the levels of a streamed SOG scene", 2 * kMaxTreeDepth + 4);
     const JsonNode root{document, place};
     if (root.has("version")) {

@@ -1,5 +1,5 @@
-// lod-meta.json of a streamed SOG scene, as PlayCanvas specifies it (developer.playcanvas.com, "The Streamed SOG Format", version 1):
-// the splats of each chunk that make up each level of detail.
+// lod-meta.json of a streamed SOG scene, as PlayCanvas specifies it (developer.playcanvas.com, "The Streamed
+// SOG Format", version 1): which splats of each chunk make up each level of detail.
 #pragma once
 
 #include "engine/files/lod_tree.h"
@@ -22,17 +22,17 @@ struct LodLevel {
 
 struct LodMeta {
     std::vector<std::string> files;  // the meta.json or .sog bundle of each chunk, relative to the folder of lod-meta.json and within it
-    std::string environment;         // the same, of splats that belong to every level; empty: none
+    std::string environment;         // likewise, for splats that belong to every level; empty: none
     std::vector<LodLevel> levels;    // at least one
     bool has_errors = false;         // each leaf has LodLeaf::errors
     std::vector<LodLeaf> tree;       // its leaves that have splats
     std::uint64_t leaves = 0;        // all of them
-    std::vector<std::uint64_t> leaves_without;  // for each level: leaves with splats at other levels, but not at this one
-    std::vector<std::uint64_t> leaves_coarser;  // those of them that have a coarser level: the next one stands in
+    std::vector<std::uint64_t> leaves_without;  // for each level: leaves with splats at other levels but not at this one
+    std::vector<std::uint64_t> leaves_coarser;  // those of them that have a coarser level: the next coarser one is used instead
 };
 
-// `place` is the file's name for messages. Throws Error naming the key and what was expected. The reader checks
-// that the chunks have as many splats as the ranges say.
+// `place` is the file's name for messages. Throws Error naming the key and what was expected. The reader
+// checks that chunks have as many splats as the ranges say.
 LodMeta parseLodMeta(std::span<const std::byte> text, const std::string& place);
 
 }  // namespace binosplat

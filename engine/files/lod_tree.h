@@ -1,4 +1,4 @@
-// The leaves of a streamed SOG scene: the place of each, and the splats that show it at each level of detail.
+// The leaves of a streamed SOG scene: where each is, and which splats show it at each level of detail.
 #pragma once
 
 #include "engine/files/sog_meta.h"
@@ -10,7 +10,7 @@
 
 namespace binosplat {
 
-// At least one splat of a chunk, which is named by its index in the scene's list of chunks.
+// At least one splat of a chunk, which is identified by its index in the scene's list of chunks.
 struct LodRange {
     std::uint32_t level = 0;  // 0 is the scene's finest
     std::uint32_t file = 0;
@@ -20,8 +20,8 @@ struct LodRange {
 struct LodLeaf {
     glm::vec3 low{0.0f}, high{0.0f};  // the corners of its box, scene units; finite, and low <= high
     std::vector<LodRange> levels;     // at least one, the finest first; a leaf need not have every level of the scene
-    // Of each of `levels`, how far what it shows is from what the finest does, in any unit that all leaves share and in which errors add
-    // up; finite, not negative. Empty: nobody has measured it.
+    // For each of `levels`, how far its picture is from that of the finest, in any unit that all leaves share
+    // and in which errors add up; finite and not negative. Empty: not measured.
     std::vector<float> errors = {};
 };
 

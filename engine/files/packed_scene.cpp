@@ -1,4 +1,4 @@
-// Unpacking into a temporary file: formats want to look at a file's beginning first, and some at its end.
+// Unpacks into a temporary file: formats want to look at a file's beginning first, and some at its end.
 #include "engine/files/packed_scene.h"
 
 #include "engine/error.h"
@@ -20,18 +20,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What grows more is there to fill the disk: as for SPZ.
+// Anything that grows more is meant to fill the disk, as with SPZ.
 constexpr std::uint64_t kMostGrowth = 256, kAlwaysAllowedBytes = 65536;
 constexpr std::uint64_t kUnpackedPieceBytes = std::uint64_t{1} << 20;
 constexpr std::size_t kMostNames = 3;  // in a message
 constexpr const char* kExpected = "one with a scene in it";
 
-// The second is that of an empty one.
+// The second is that of an empty archive.
 bool isZip(InputFile& file) {
     return file.peek(4) == std::string_view("PK\x03\x04", 4) || file.peek(4) == std::string_view("PK\x05\x06", 4);
 }
 
-// Some writers of Windows have backslashes between folders.
+// Some Windows writers put backslashes between folders.
 std::string fileNameOf(const std::string& path) { return path.substr(path.find_last_of("/\\") + 1); }
 
 bool isNamed(const std::string& path, std::string_view name) { return fileNameOf(path) == name; }
@@ -48,7 +48,7 @@ bool hasPlainSceneName(const fs::path& file) {
     return std::ranges::find(kExtensions, extensionOf(file)) != kExtensions.end();
 }
 
-// Without folders, hidden files and what macOS adds.
+// Without folders, hidden files and the extra files of macOS.
 std::vector<std::string> filesIn(const ZipArchive& archive) {
     std::vector<std::string> files = archive.names();
     std::erase_if(files, [](const std::string& name) {
@@ -76,7 +76,8 @@ std::string findScene(const std::string& path, std::vector<std::string> files) {
 
 std::uint64_t mostUnpacked(const InputFile& packed) { return kMostGrowth * packed.sizeBytes() + kAlwaysAllowedBytes; }
 
-// What `read` gives, as far as `how` asks for it, in a file that messages call `name`. `told_bytes`: how long it says that it is.
+// Writes what `read` gives, as far as `how` asks for it, to a file that messages call `name`. `told_bytes`:
+// the length that it claims.
 template <typename Read>
 std::unique_ptr<InputFile> unpack(const InputFile& packed, const std::string& name, std::uint64_t told_bytes, const Unpacking& how,
                                   const Read& read) {
@@ -86,7 +87,7 @@ std::unique_ptr<InputFile> unpack(const InputFile& packed, const std::string& na
     DiskRoom room(folder.path(), how.room);
     std::uint64_t done = 0;
     const auto requireRoom = [&](std::uint64_t more) {
-        const bool fits = room.holds(done, more);  // which may look anew
+        const bool fits = room.holds(done, more);  // which may look again
         check(fits, "{}: needs at least {} bytes unpacked, but only {} are free in {}; free some space", name, done + more, room.bytes(),
               folder.path().parent_path().string());
     };
@@ -121,7 +122,8 @@ std::unique_ptr<InputFile> unpackEntry(const InputFile& packed, const ZipArchive
     });
 }
 
-// What lies beside a packed scene: in the same folder of its archive, or, without one, where the packed file is.
+// The neighbours of a packed scene: in the same folder of its archive, or, without an archive, beside the
+// packed file.
 class FilesBeside final : public SceneFiles {
 public:
     FilesBeside(std::unique_ptr<InputFile> packed, std::unique_ptr<ZipArchive> archive, std::string folder)
@@ -130,7 +132,7 @@ public:
     std::unique_ptr<InputFile> open(const std::string& name, std::uint64_t most_bytes) override {
         if (name.empty()) { return unpackScene(packed_->again()(), {}); }
         if (archive_ == nullptr) { return packed_->others()->open(name, most_bytes); }
-        // Also one that was written with backslashes.
+        // Finds names that were written with backslashes, too.
         const std::vector<std::string> names = archive_->names();
         const auto found = std::ranges::find(names, withSlashes(folder_ + name), withSlashes);
         const ZipArchive::Entry entry = archive_->find(found != names.end() ? *found : folder_ + name);

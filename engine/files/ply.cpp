@@ -1,4 +1,4 @@
-// From PLY properties to stored attributes: names, counts, and what is missing.
+// From PLY properties to stored attributes: names, counts, and anything missing.
 #include "engine/files/ply.h"
 
 #include "engine/error.h"
@@ -21,7 +21,7 @@ namespace {
 constexpr std::array<const char*, kStoredRest0> kRequiredNames{"x",       "y",       "z",       "f_dc_0", "f_dc_1", "f_dc_2", "opacity",
                                                                "scale_0", "scale_1", "scale_2", "rot_0",  "rot_1",  "rot_2",  "rot_3"};
 
-// Which columns the vertex element gives, and what follows from their number.
+// The columns that the vertex element provides, and what follows from their number.
 struct Layout {
     std::vector<ply::Column> columns;
     int sh_degree = 0;
@@ -29,7 +29,7 @@ struct Layout {
     bool three_scales = false;
 };
 
-// CloudCompare writes a field that it does not know as scalar_NAME.
+// CloudCompare writes fields that it does not know as scalar_NAME.
 void dropPrefixes(ply::Header& header) {
     constexpr std::string_view kPrefix = "scalar_";
     for (ply::Element& element : header.elements) {
@@ -89,7 +89,7 @@ const ply::Element& findSplats(const InputFile& file, const ply::Header& header)
     return vertex;
 }
 
-// Harmonics of one channel beyond the constant one.
+// Harmonics of one channel, without the constant one.
 std::size_t restPerChannel(int sh_degree) { return static_cast<std::size_t>(shCoefficientCount(sh_degree)) - 1; }
 
 Layout planColumns(const InputFile& file, const ply::Element& vertex) {
@@ -113,7 +113,7 @@ Layout planColumns(const InputFile& file, const ply::Element& vertex) {
               file.name(), name);
         layout.columns.push_back({found->second, attribute});
     }
-    constexpr int kMostDegree = kMaxShDegree + 1;  // of which the highest band is left out
+    constexpr int kMostDegree = kMaxShDegree + 1;  // its highest band is left out
     int& in_file = layout.sh_degree_in_file;
     while (in_file <= kMostDegree && 3 * restPerChannel(in_file) != rest_count) { ++in_file; }
     check(in_file <= kMostDegree, "{}: header: element vertex has {} f_rest properties, expected 0, 9, 24, 45 or 72", file.name(),
@@ -132,7 +132,8 @@ Layout planColumns(const InputFile& file, const ply::Element& vertex) {
     return layout;
 }
 
-// True if all scales so far are positive and all opacities within 0 to 1: no training leaves such logarithms and logits.
+// True if all scales so far are positive and all opacities within 0 to 1: no training has such logarithms and
+// logits.
 bool looksActivated(const StoredBlock& block, bool three_scales) {
     const auto all = [&](int attribute, auto&& isSo) {
         return std::all_of(block.column(attribute), block.column(attribute) + block.rows, isSo);
@@ -142,7 +143,7 @@ bool looksActivated(const StoredBlock& block, bool three_scales) {
            all(kStoredScale1, is_positive) && (!three_scales || all(kStoredScale2, is_positive));
 }
 
-// Of the axes in float64: what is float32 has lost its detail already.
+// Only for float64 axes: float32 has lost its detail already.
 glm::dvec3 findOrigin(const ply::Element& vertex, const Layout& layout, const StoredBlock& some) {
     glm::dvec3 origin(0.0);
     for (int axis = 0; axis < 3; ++axis) {
@@ -178,7 +179,7 @@ struct OpenedPly {
     glm::dvec3 origin{0.0};
 };
 
-// What is noted of parts, as of one scene.
+// Notes about the parts, as about one scene.
 void addNotes(LoadNotes& notes, LoadNotes part) {
     part.skipped_not_finite += notes.skipped_not_finite;
     part.skipped_zero_rotation += notes.skipped_zero_rotation;

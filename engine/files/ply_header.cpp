@@ -102,7 +102,7 @@ bool equalsIgnoringCase(std::string_view a, std::string_view b) {
     return std::ranges::equal(a, b, {}, lower, lower);
 }
 
-// `words` of a comment line. Says nothing of what it does not know.
+// `words` of a comment line. Unknown comments are ignored.
 void readComment(std::span<const std::string_view> words, Header& header) {
     if (words.size() == 2 && words[1].starts_with("postshot.anti_aliasing=")) { header.antialiased = words[1].ends_with("=1"); }
     if (words.size() == 4 && equalsIgnoringCase(words[1], "vertical") && equalsIgnoringCase(words[2], "axis:")) {

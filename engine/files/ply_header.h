@@ -19,7 +19,7 @@ struct Property {
     std::string name;
     Type type = Type::kFloat32;
     bool is_list = false;
-    Type count_type = Type::kUint8;  // of a list
+    Type count_type = Type::kUint8;  // for a list
 };
 
 struct Element {
@@ -35,12 +35,12 @@ struct Header {
     Encoding encoding = Encoding::kLittleEndian;
     std::vector<Element> elements;
     int line_count = 0;
-    bool antialiased = false;  // as a comment says: "SplatRenderMode: mip" (Brush, gsplat), "antialiased 1" or "postshot.anti_aliasing=1"
+    bool antialiased = false;  // from a comment: "SplatRenderMode: mip" (Brush, gsplat), "antialiased 1" or "postshot.anti_aliasing=1"
                                // (Postshot); the last one counts
-    int vertical_axis = -1;    // 0 or 2, as a comment says: "Vertical axis: z". Of y it says nothing: Brush writes it into every file
+    int vertical_axis = -1;    // 0 or 2, from a comment: "Vertical axis: z". "y" says nothing: Brush writes it into every file
 };
 
-// Reads up to and including the end_header line. Throws Error with the line at fault.
+// Reads up to and including the end_header line. Throws Error naming the line at fault.
 Header readHeader(InputFile& file);
 
 }  // namespace binosplat::ply

@@ -11,30 +11,31 @@
 
 namespace binosplat::ply {
 
-// Fields as Spacetime Gaussians (Li et al. 2024) have them: a splat's own time, how long it is seen, the polynomial of its motion up to the
-// cube, and the speed of its rotation. Each may be missing. Other methods name the first two t and scale_t. Where that method has no
-// harmonics, f_dc is the colour itself, or, of its larger model, a number whose sigmoid a network changes; that is left out.
+// Fields as Spacetime Gaussians (Li et al. 2024) have them: a splat's own time, how long it is visible, the
+// cubic polynomial of its motion, and the speed of its rotation. Any may be missing. Other methods call the
+// first two t and scale_t. If that method has no harmonics, f_dc is the colour itself or, in its larger
+// model, a number whose sigmoid a network changes; the network is left out.
 class Moment {
 public:
-    // Adds a column for each field that the element has; they use room of a block's f_rest values, from `first_attribute` on. Without such
-    // room the splats stay as they are.
+    // Adds a column for each field of the element, in a block's f_rest values from `first_attribute` on. If
+    // these are not free, the splats stay as they are.
     Moment(const Element& element, int first_attribute, std::vector<Column>& columns);
 
     [[nodiscard]] bool isDynamic() const { return !fields_.empty(); }
-    // The median of some splats' times.
+    // The median of these splats' times.
     void choose(const StoredBlock& some);
-    // Puts a block's splats where and how they are then.
+    // Moves and fades a block's splats to that moment.
     void apply(StoredBlock& block) const;
-    // Which fields, and which moment.
+    // Which fields there are, and which moment is shown.
     [[nodiscard]] std::string describe() const;
 
 private:
     static constexpr std::size_t kFields = 15;
-    std::array<int, kFields> attribute_of_;  // -1: the file does not have it
+    std::array<int, kFields> attribute_of_;  // -1: not in the file
     std::vector<std::string> fields_;
     enum class Colours { kHarmonics, kPlain, kLogits } colours_ = Colours::kHarmonics;
-    bool changes_ = false;      // by more than its time: then it is known how
-    bool is_gaussian_ = false;  // seen as exp(-d^2/2) of the distance in time, not as exp(-d^2)
+    bool changes_ = false;      // by more than its time, in a way that is known
+    bool is_gaussian_ = false;  // visible as exp(-d^2/2) of the distance d in time, not as exp(-d^2)
     float time_ = 0.0f;
 };
 

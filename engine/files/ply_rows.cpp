@@ -24,7 +24,8 @@ T loadValue(const std::byte* source) {
     return std::bit_cast<T>(bytes);
 }
 
-// One property of a block: rows are `stride` bytes apart, and `step` values in the block. `zero` is taken off a float64.
+// One property of a block: rows are `stride` bytes apart, and values in the block `step` apart. `zero` is
+// subtracted from a float64.
 template <typename T, bool kSwap>
 void convertColumn(const std::byte* source, std::size_t stride, std::size_t rows, float* target, std::size_t step, double zero) {
     for (std::size_t row = 0; row < rows; ++row) {
@@ -81,7 +82,7 @@ public:
             if (i == 0) { rest_offset_ = offsets[column.property]; }
             rest_count_ += in_place;
         }
-        // Values that lie in the file as in a block are copied together.
+        // Values that are laid out in the file as in a block are copied together.
         std::erase_if(columns_, [&](const Source& source) {
             return source.attribute >= kStoredRest0 && static_cast<std::size_t>(source.attribute - kStoredRest0) < rest_count_;
         });
@@ -105,7 +106,7 @@ public:
         std::vector<std::byte> row(stride_);
         for (std::size_t i = 0; i < block.rows; ++i) {
             const std::uint64_t offset = file_.positionBytes() + total_ * i / block.rows * stride_;
-            if (file_.readAt(offset, row) < row.size()) {  // it was cut off meanwhile, as reading it will say
+            if (file_.readAt(offset, row) < row.size()) {  // it has been cut off, which reading it will report
                 block.rows = i;
                 return;
             }
@@ -142,11 +143,12 @@ private:
     InputFile& file_;
     std::uint64_t total_, done_ = 0;
     std::size_t stride_;
-    std::size_t rest_offset_ = 0, rest_count_ = 0;  // the first f_rest values, where they lie together as float32
+    std::size_t rest_offset_ = 0, rest_count_ = 0;  // the first f_rest values, if they lie together as float32
     std::vector<Source> columns_;
 };
 
-// The number at the front of `text`, which is moved past it; false if there is none. Overflow gives an infinity.
+// The number at the front of `text`, which is advanced past it; false if there is none. Overflow gives an
+// infinity.
 bool takeNumber(std::string_view& text, double& value) {
     const std::size_t start = text.find_first_not_of(" \t");
     if (start == std::string_view::npos) { return false; }
@@ -155,7 +157,8 @@ bool takeNumber(std::string_view& text, double& value) {
     const char* begin = text.data() + (text[0] == '+' && length > 1 ? 1 : 0);
     const auto [end, error] = std::from_chars(begin, text.data() + length, value);
     if (error == std::errc::invalid_argument || end != text.data() + length) { return false; }
-    // Out of float64's range, from_chars leaves the value alone; it matters only whether the exponent was negative.
+    // Beyond float64's range, from_chars leaves the value unset; all that matters is whether the exponent was
+    // negative.
     if (error == std::errc::result_out_of_range) {
         const bool tiny =
             text.substr(0, length).find("e-") != std::string_view::npos || text.substr(0, length).find("E-") != std::string_view::npos;
@@ -180,7 +183,8 @@ public:
                 end = file_.readLine(text);
             } while (end == InputFile::LineEnd::kBreak && text.find_first_not_of(" \t") == std::string_view::npos);
             check(end != InputFile::LineEnd::kNoLine, "{}: data: ends before splat {} of {}", file_.name(), done_, element_.count);
-            // A number cut short is a number still; only the line break tells that the last one is whole.
+            // A number that is cut short is still a number; only the line break shows that the last one is
+            // whole.
             check(end == InputFile::LineEnd::kBreak, "{}: data: ends in splat {} of {}: its line has no line break", file_.name(), done_,
                   element_.count);
             for (std::size_t i = 0; i < attribute_of_.size(); ++i) {
@@ -205,7 +209,7 @@ public:
             if (text.find_first_not_of(" \t") == std::string_view::npos) { continue; }
             for (const int attribute : attribute_of_) {
                 double value = 0.0;
-                if (!takeNumber(text, value)) { return; }  // as reading it will say
+                if (!takeNumber(text, value)) { return; }  // which reading it will report
                 put(block, attribute, block.rows, value);
             }
             ++block.rows;
@@ -239,7 +243,7 @@ private:
     glm::dvec3 origin_{0.0};
 };
 
-// The count in front of a binary list.
+// The count at the start of a binary list.
 std::uint64_t readListCount(InputFile& file, Encoding encoding, const Element& element, const Property& property) {
     const std::span<const std::byte> bytes = file.readBlock(typeBytes(property.count_type));
     check(bytes.size() == typeBytes(property.count_type), "{}: data: ends in element {}, list {}", file.name(), element.name,

@@ -1,4 +1,4 @@
-// Writing of PLY: inverse activations into blocks.
+// Writes PLY: inverse activations into blocks.
 #include "engine/error.h"
 #include "engine/files/ply.h"
 #include "engine/files/quantized.h"
@@ -16,7 +16,7 @@ namespace {
 
 bool isFar(const Scene& scene) { return scene.origin != glm::dvec3(0.0); }
 
-// As two float32 of the same bytes, the lower half first.
+// As two float32 with the same bytes, the lower half first.
 std::array<float, 2> halvesOf(double value) {
     const auto bits = std::bit_cast<std::uint64_t>(value);
     return {std::bit_cast<float>(static_cast<std::uint32_t>(bits)), std::bit_cast<float>(static_cast<std::uint32_t>(bits >> 32))};
@@ -39,7 +39,7 @@ std::string makeHeader(const Scene& scene) {
     return header + "end_header\n";
 }
 
-// Appends one splat's row; returns the place behind it.
+// Appends one splat's row; returns the end of it.
 float* putRow(const Scene& scene, std::size_t splat, float* row) {
     const auto put = [&row](std::initializer_list<float> values) { row = std::copy(values.begin(), values.end(), row); };
     const glm::vec3& p = scene.positions[splat];

@@ -31,7 +31,7 @@ void ReadAhead::fillBatch(Batch& batch) {
 }
 
 void ReadAhead::run() {
-    // A batch without a block ends it.
+    // A batch without a block ends the sequence.
     for (std::size_t i = 0;; i = (i + 1) % batches_.size()) {
         free_.acquire();
         if (stops_) { return; }

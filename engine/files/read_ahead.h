@@ -1,4 +1,4 @@
-// Two threads for one scene: one reads blocks and activates them, the other assembles them.
+// Two threads for one scene: one reads and activates blocks, the other assembles them.
 #pragma once
 
 #include "engine/files/stored_block.h"
@@ -14,8 +14,8 @@
 
 namespace binosplat {
 
-// std::counting_semaphore of GCC 12 for Windows may sleep on though it was released: it looks at the count before it takes the lock under
-// which it sleeps.
+// GCC 12's std::counting_semaphore for Windows may sleep on although it was released: it looks at the count
+// before it takes the lock under which it sleeps.
 class BatchCount {
 public:
     explicit BatchCount(std::ptrdiff_t count) : count_(count) {}
@@ -36,21 +36,22 @@ private:
     std::ptrdiff_t count_;
 };
 
-// Blocks of `rows` rows in all, filled in order on a thread of its own, a little ahead of their consumer. A scene of few rows is filled
-// on the consumer's thread: another would take longer to start.
+// Blocks of `rows` rows in all, filled in order on a thread of its own, a little ahead of their consumer. A
+// scene with few rows is filled on the consumer's thread, since starting another would take longer.
 class ReadAhead {
 public:
     struct Block {
         StoredBlock stored;
         ActiveBlock active;
     };
-    // `fill(block)` fills stored.rows rows and activates them. If it throws, next() throws the same in place of that block.
+    // `fill(block)` fills stored.rows rows and activates them. If it throws, next() throws the same in place
+    // of that block.
     ReadAhead(std::uint64_t rows, std::function<void(Block&)> fill);
     ReadAhead(const ReadAhead&) = delete;
     ReadAhead& operator=(const ReadAhead&) = delete;
     ~ReadAhead();  // also before the last block
 
-    // Valid until the next call; null behind the last block.
+    // Valid until the next call; null after the last block.
     [[nodiscard]] const Block* next();
 
 private:
@@ -58,7 +59,7 @@ private:
     struct Batch {
         std::array<Block, 8> blocks;
         std::size_t count = 0;
-        std::exception_ptr failure;  // behind the `count` blocks
+        std::exception_ptr failure;  // after the `count` blocks
     };
     static constexpr std::ptrdiff_t kBatches = 4;
 

@@ -1,4 +1,4 @@
-// Puts blocks together into a scene, and notes what was odd about them.
+// Joins blocks to a scene, and notes what was odd about them.
 #include "engine/files/scene_builder.h"
 
 #include "engine/error.h"
@@ -12,7 +12,8 @@ namespace binosplat {
 
 namespace {
 
-// Room for `count` entries, in large pages where the system has them: small ones take a third of the time of loading.
+// Memory for `count` entries, in large pages if the system has them: small ones take a third of the loading
+// time.
 template <typename T>
 void reserveLarge(std::vector<T>& values, std::size_t count) {
     values.reserve(count);
@@ -26,7 +27,7 @@ SceneBuilder::SceneBuilder(std::string name, std::uint64_t splats, int sh_degree
     notes_.splats_in_file = splats;
     notes_.sh_degree_in_file = sh_degree;
     notes_.three_scales = three_scales;
-    // Reserved, not filled: pages of SH bands that turn out to be zero are never touched.
+    // Reserved but not filled: pages of SH bands that turn out to be zero are never touched.
     const std::size_t sh_count = 3 * static_cast<std::size_t>(shCoefficientCount(sh_degree));
     try {
         reserveLarge(scene_.positions, splats);
@@ -69,7 +70,8 @@ void SceneBuilder::append(const StoredBlock& block, const ActiveBlock& active) {
 
 namespace {
 
-// A splat's coefficients in the scene's order: coefficient by coefficient, channels together. The file has `in_file` a channel.
+// A splat's coefficients in the scene's order: by coefficient, channels together. The file has `in_file` per
+// channel.
 template <int kCoefficients>
 void gatherSh(const StoredBlock& block, std::size_t row, int in_file, float* target) {
     const float* rest = block.rest(row);
@@ -82,7 +84,7 @@ void gatherSh(const StoredBlock& block, std::size_t row, int in_file, float* tar
 }  // namespace
 
 void SceneBuilder::appendSh(const StoredBlock& block, const ActiveBlock& active) {
-    // The highest band any kept splat uses decides how wide the rows are from here on.
+    // The highest band that a kept splat uses determines the width of rows from here on.
     if (active.sh_degree > scene_.sh_degree) { growShTo(active.sh_degree); }
     constexpr std::array gathers{gatherSh<1>, gatherSh<4>, gatherSh<9>, gatherSh<16>};
     const auto gather = gathers[static_cast<std::size_t>(scene_.sh_degree)];
@@ -110,7 +112,7 @@ void SceneBuilder::growShTo(int sh_degree) {
     scene_.sh_degree = sh_degree;
 }
 
-// Of up to a hundred thousand splats, evenly picked: a median needs no more.
+// Of at most a hundred thousand splats, evenly picked: enough for a median.
 void SceneBuilder::measureFlatness() {
     const std::size_t step = scene_.size() / 100'000 + 1;
     std::vector<float> flatness;

@@ -1,5 +1,6 @@
-// From attributes as files store them to a Scene: activations, skipped splats, the order of axes, the SH bands worth keeping.
-// A format fills blocks column by column and hands them over; all formats share the rest.
+// From attributes as files store them to a Scene: activations, skipped splats, the order of axes, the SH
+// bands worth keeping. A format fills blocks column by column and hands them over; everything else is common
+// to all formats.
 #pragma once
 
 #include "engine/files/stored_block.h"
@@ -13,14 +14,15 @@ namespace binosplat {
 
 class SceneBuilder {
 public:
-    // `splats` must already be known to be plausible: room for all of them is reserved here.
+    // `splats` must already be known to be plausible: memory for all of them is reserved here.
     SceneBuilder(std::string name, std::uint64_t splats, int sh_degree, bool three_scales);
 
-    // Some of the splats to come, so that the bands they use have room from the start on: making it later means moving all that is there.
+    // A sample of the splats to come, so that there is space for the bands they use from the start: making it
+    // later means moving everything.
     void expect(const StoredBlock& some);
 
     void append(const StoredBlock& block);
-    // The same in two steps; the first one may be taken on another thread.
+    // The same in two steps; the first may run on another thread.
     void activate(const StoredBlock& block, ActiveBlock& active) const;
     void append(const StoredBlock& block, const ActiveBlock& active);
 
@@ -37,14 +39,15 @@ private:
     ActiveBlock active_;
 };
 
-// The Scene::origin along an axis for positions about `middle` that a file has in more than float32: a whole number near it where float32
-// has steps of a millimetre and more; otherwise 0.
+// The Scene::origin along an axis, for positions around `middle` that a file has in more than float32: a
+// nearby whole number if steps of float32 there are a millimetre or more; otherwise 0.
 double originAbout(double middle);
 
-// For the positions that were read already; says so, unless it is 0.
+// For positions that have been read; adds a note unless it is 0.
 void setOrigin(Scene& scene, const glm::dvec3& origin, LoadNotes& notes);
 
-// For a file that says that its splats are discs, though it has a third scale for each: the shortest one has no meaning.
+// For a file that says that its splats are discs, although each has a third scale: the shortest one is
+// meaningless.
 void takeAsDiscs(Scene& scene, LoadNotes& notes);
 
 }  // namespace binosplat

@@ -1,4 +1,4 @@
-// Looking through a folder's names.
+// Searches a folder's names.
 #include "engine/files/scene_folder.h"
 
 #include "engine/address.h"
@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 
 bool isDigit(char letter) { return letter >= '0' && letter <= '9'; }
 
-// A number of any length, by its value first: its digits without zeros in front.
+// A number of any length, compared by value: by its digits without leading zeros.
 std::pair<std::size_t, std::string> numberOf(std::string_view digits) {
     digits.remove_prefix(std::min(digits.find_first_not_of('0'), digits.size()));
     return {digits.size(), std::string(digits)};
@@ -36,14 +36,14 @@ struct Checkpoint {
     fs::path scene;
 };
 
-// What stands between a name's front and its end, if these are all digits.
+// The part between a name's front and its end, if it is all digits.
 std::string_view digitsOf(std::string_view name, std::string_view front, std::string_view end) {
     if (!name.starts_with(front) || !name.ends_with(end) || name.size() <= front.size() + end.size()) { return {}; }
     const std::string_view digits = name.substr(front.size(), name.size() - front.size() - end.size());
     return std::ranges::all_of(digits, isDigit) ? digits : std::string_view();
 }
 
-// Folders iteration_N with a scene in them, in no order.
+// Folders iteration_N with a scene in them, in no particular order.
 std::vector<Checkpoint> findIterations(const fs::path& folder) {
     std::vector<Checkpoint> found;
     std::error_code error, ignored;
@@ -56,10 +56,12 @@ std::vector<Checkpoint> findIterations(const fs::path& folder) {
     return found;
 }
 
-// A training saves after round numbers of steps, some counted from 0; the frames of a film are counted one by one.
+// A training saves after round numbers of steps, some counted from 0; the frames of a film are numbered one
+// by one.
 bool isRound(std::string_view steps) { return steps.ends_with("00") || steps.ends_with("99"); }
 
-// Scenes named after the step of a training at which they were saved, in no order. None if a number is none of a step.
+// Scenes named after the training step at which they were saved, in no particular order. Empty if one of the
+// numbers cannot be a step.
 std::vector<Checkpoint> findCheckpointFiles(const fs::path& folder) {
     std::vector<Checkpoint> found;
     std::error_code error, ignored;
@@ -103,7 +105,7 @@ fs::path findCameraFile(const fs::path& scene) {
     if (whole.filename().empty()) { whole = whole.parent_path(); }  // of a folder with a slash behind it
     const fs::path folder = whole.parent_path();
     const bool is_trained = folder.filename().string().starts_with("iteration_") && folder.parent_path().filename() == "point_cloud";
-    // A training's output is a whole: what lies beside its folder is of another one.
+    // A training's output is complete: what lies beside its folder belongs to another one.
     const fs::path beside = is_trained ? folder.parent_path().parent_path() : folder;
     std::vector<fs::path> places{whole, beside};
     if (const std::optional<TrainingOutput> training = findTrainingOutput(whole)) {
@@ -130,7 +132,7 @@ std::optional<std::string> findOnlyScene(const fs::path& folder) {
         const std::string path = entry->path().string();
         try {
             if (formatOfFile(path).empty()) { continue; }
-        } catch (const Error&) { continue; }  // whatever cannot be read is not the scene
+        } catch (const Error&) { continue; }  // what cannot be read is not the scene
         if (found) { return std::nullopt; }
         found = path;
     }
@@ -138,7 +140,8 @@ std::optional<std::string> findOnlyScene(const fs::path& folder) {
 }
 
 std::vector<std::vector<NumberedFile>> findNumberedFiles(const fs::path& folder) {
-    // By what is left of a name without one of its numbers; a name with several numbers belongs to as many groups.
+    // By what is left of a name without one of its numbers; a name with several numbers belongs to that many
+    // groups.
     std::map<std::string, std::map<std::pair<std::size_t, std::string>, std::string>> groups;
     std::error_code error;
     for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
@@ -150,7 +153,7 @@ std::vector<std::vector<NumberedFile>> findNumberedFiles(const fs::path& folder)
                                              name.begin());
             stop = std::min(name.find_first_not_of("0123456789", begin), name.size());
             if (begin == stop) { break; }
-            // No file's name has a slash.
+            // File names do not contain slashes.
             groups[name.substr(0, begin) + '/' + name.substr(stop)].emplace(numberOf(std::string_view(name).substr(begin, stop - begin)),
                                                                             entry->path().string());
         }
@@ -160,7 +163,7 @@ std::vector<std::vector<NumberedFile>> findNumberedFiles(const fs::path& folder)
         if (files.size() < 2) { continue; }
         std::vector<NumberedFile>& group = found.emplace_back();
         for (const auto& [digits, file] : files) {
-            std::uint64_t number = 0;  // of none but zeros
+            std::uint64_t number = 0;  // if there are only zeros
             const char* const begin = digits.second.data();
             if (std::from_chars(begin, begin + digits.second.size(), number).ec == std::errc::result_out_of_range) { number = ~number; }
             group.push_back({file, number});

@@ -1,4 +1,5 @@
-// Folders that are no format of their own: the output of a training, or the numbered files of a moving scene.
+// Folders that are not a format of their own: the output of a training, or the numbered files of a moving
+// scene.
 #pragma once
 
 #include <cstdint>
@@ -9,32 +10,35 @@
 
 namespace binosplat {
 
-// As 3DGS and 2DGS trainings leave it: point_cloud/iteration_N/point_cloud.ply, and cameras.json beside point_cloud. Also that folder
-// point_cloud by itself, or one of checkpoints: iteration_N/point_cloud.ply, or files such as point_cloud_N.ply with round numbers.
+// As 3DGS and 2DGS trainings leave it: point_cloud/iteration_N/point_cloud.ply, and cameras.json beside
+// point_cloud. Also that folder point_cloud by itself, or a folder of checkpoints:
+// iteration_N/point_cloud.ply, or files such as point_cloud_N.ply with round numbers.
 struct TrainingOutput {
-    std::string scene;               // of the highest N that has one
+    std::string scene;               // the one with the highest N
     std::string cameras;             // empty: there are none
-    std::vector<std::string> older;  // the other scenes, the newest first, relative to the folder
+    std::vector<std::string> older;  // the other scenes, newest first, relative to the folder
 };
 
-// None if the folder is no such output, or is judged to be something else before that: a SOG scene, streamed or not.
+// Empty if the folder is not such an output, or is recognized as something else first: a SOG scene, streamed
+// or not.
 std::optional<TrainingOutput> findTrainingOutput(const std::filesystem::path& folder);
 
-// The cameras.json of a scene, a file or a folder: in its folder, beside it, or, of FOLDER/point_cloud/iteration_N/FILE, in FOLDER. Empty:
-// there is none.
+// The cameras.json of a scene, a file or a folder: in its folder, beside it, or, for
+// FOLDER/point_cloud/iteration_N/FILE, in FOLDER. Empty if there is none.
 std::filesystem::path findCameraFile(const std::filesystem::path& scene);
 
-// The one file of a folder that is a scene, by its content, among those whose names do not say otherwise; none if there are several, or
-// more files than are worth opening.
+// The only file of a folder that is a scene by its content, among those whose names do not rule that out;
+// empty if there are several, or more files than are worth opening.
 inline constexpr int kMostFilesOpened = 64;
 std::optional<std::string> findOnlyScene(const std::filesystem::path& folder);
 
 struct NumberedFile {
     std::string path;
-    std::uint64_t number = 0;  // beyond what that holds: the highest there is
+    std::uint64_t number = 0;  // the highest value if it does not fit
 };
 
-// Files whose names differ in one number alone, in the order of that number: every such group of two or more, the largest first.
+// Files whose names differ in a single number, in the order of that number: every such group of two or more,
+// the largest first.
 std::vector<std::vector<NumberedFile>> findNumberedFiles(const std::filesystem::path& folder);
 
 }  // namespace binosplat

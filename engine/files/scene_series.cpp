@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// More frames than files by this: the numbers say nothing of time.
+// If more numbers are missing than this factor allows, the numbers say nothing about time.
 constexpr std::uint64_t kMostFramesAFile = 4;
 
 std::string shortName(const std::string& path) { return fs::path(path).filename().string(); }
@@ -34,7 +34,7 @@ std::vector<std::vector<NumberedFile>> findSceneGroups(const std::string& folder
     const auto formatIn = [](const std::string& path) {
         try {
             return mayHaveScene(path) ? formatOfFile(path) : std::string();
-        } catch (const Error&) { return std::string(); }  // an archive without a scene, as weights of networks are
+        } catch (const Error&) { return std::string(); }  // an archive without a scene, such as a network's weights
     };
     std::erase_if(groups, [&](const std::vector<NumberedFile>& group) {
         const std::string format = formatIn(group.front().path);
@@ -48,7 +48,7 @@ glm::dvec3 originOf(const std::string& path) {
         const std::unique_ptr<InputFile> file = openUnpacked(path);
         if (isPly(*file) && !isCompressedPly(*file)) { return originOfPly(*file); }
         return isGltf(*file) ? originOfGltf(*file) : glm::dvec3(0.0);
-    } catch (const Error&) { return glm::dvec3(0.0); }  // whoever reads it says why
+    } catch (const Error&) { return glm::dvec3(0.0); }  // reading it will report why
 }
 
 }  // namespace
@@ -89,7 +89,7 @@ SceneSeries::SceneSeries(const std::string& source) : name_(source) {
         scenes_.push_back(file.path);
         std::error_code error;
         const auto bytes = static_cast<double>(fs::file_size(file.path, error));
-        if (error) { continue; }  // whoever reads it says so
+        if (error) { continue; }  // reading it will report it
         if (first_bytes == 0.0) { first_bytes = std::max(bytes, 1.0); }
         growth_ = std::max(growth_, bytes / first_bytes);
     }

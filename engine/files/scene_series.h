@@ -10,24 +10,27 @@
 
 namespace binosplat {
 
-// True if `source` is such a folder; false for a folder that is recognized as something else first: SOG, streamed or not, or a
-// training's output.
+// True if `source` is such a folder; false for a folder that is recognized as something else first: SOG,
+// streamed or not, or a training's output.
 bool isMovingScene(const std::string& source);
 
 class SceneSeries {
 public:
-    // Throws Error unless `source` is one, if two groups of numbered files might be meant, and if the folder cannot be read.
+    // Throws Error if `source` is not one, if it may mean either of two groups of numbered files, or if the
+    // folder cannot be read.
     explicit SceneSeries(const std::string& source);
 
     [[nodiscard]] const std::string& name() const { return name_; }
-    // Frames. A number missing from an otherwise even sequence counts as a frame, too, which shows the same as the one before it.
+    // The number of frames. A number that is missing from an otherwise even sequence also counts as a frame,
+    // which shows the same scene as the frame before it.
     [[nodiscard]] std::size_t size() const { return frames_.size(); }
     // Files.
     [[nodiscard]] std::size_t sceneCount() const { return scenes_.size(); }
-    // Which scene a frame shows.
+    // The scene that a frame shows.
     [[nodiscard]] std::size_t sceneOf(std::size_t frame) const { return frames_[frame]; }
     [[nodiscard]] const std::string& nameOf(std::size_t scene) const { return scenes_[scene]; }
-    // The size of the largest file over that of the first, at least 1: all that is known of counts before all are read.
+    // The size of the largest file relative to the first, at least 1: all that is known of splat counts
+    // before all files are read.
     [[nodiscard]] double growth() const { return growth_; }
     // What a user should know, one sentence each.
     [[nodiscard]] const std::vector<std::string>& lines() const { return lines_; }
@@ -37,7 +40,7 @@ public:
 
 private:
     std::string name_, format_;
-    glm::dvec3 origin_{0.0};           // of the first file, and so of all: otherwise the scene would jump
+    glm::dvec3 origin_{0.0};           // of the first file, and so of all files: otherwise the scene would jump
     std::vector<std::string> scenes_;  // files
     std::vector<std::size_t> frames_;
     double growth_ = 1.0;

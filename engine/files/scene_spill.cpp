@@ -1,4 +1,4 @@
-// Of each part the arrays as they lie in memory, each behind its size.
+// The arrays of each part as they are in memory, each after its size.
 #include "engine/files/scene_spill.h"
 
 #include "engine/error.h"

@@ -1,4 +1,4 @@
-// Scenes that wait on the disk.
+// Scenes kept on the disk for a while.
 #pragma once
 
 #include "engine/scene/scene.h"
@@ -11,13 +11,13 @@ namespace binosplat {
 
 class SceneSpill {
 public:
-    // In a folder that is made, and gone with this. Throws Error if it cannot be.
+    // In a folder that is made for it and removed with it. Throws Error if that cannot be made.
     explicit SceneSpill(std::filesystem::path folder);
     SceneSpill(const SceneSpill&) = delete;
     SceneSpill& operator=(const SceneSpill&) = delete;
     ~SceneSpill();
 
-    // Behind what was added as this scene before, which may have other bands. Throws Error where there is no room.
+    // Appends to this scene's earlier parts, which may have other bands. Throws Error if the disk is full.
     void add(std::size_t scene, const Scene& part);
     [[nodiscard]] Scene read(std::size_t scene) const;
 
@@ -25,7 +25,7 @@ private:
     [[nodiscard]] std::string fileOf(std::size_t scene) const;
 
     std::filesystem::path folder_;
-    std::vector<std::vector<Scene>> parts_;  // of each scene, without their splats
+    std::vector<std::vector<Scene>> parts_;  // of each scene, without splats
 };
 
 }  // namespace binosplat

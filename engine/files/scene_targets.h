@@ -1,4 +1,4 @@
-// The formats that a scene can be written in, by the end of the file's name, and what each loses.
+// The formats in which a scene can be written, chosen by the end of the file's name, and what each loses.
 #pragma once
 
 #include "engine/scene/scene.h"
@@ -11,7 +11,7 @@ namespace binosplat {
 struct SceneTarget {
     const char* extension;  // with its dot
     void (*write)(const Scene& scene, const std::string& path, const Progress& progress);
-    // The losses of this scene in the file, for the user; one line.
+    // What this scene would lose in the file, for the user; one line.
     std::string (*describeLoss)(const Scene& scene);
 };
 

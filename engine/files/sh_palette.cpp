@@ -1,5 +1,5 @@
-// k-means where every splat against every entry would take hours: a tree of splits gives the first clusters, and then each splat looks for
-// a nearer entry among those beside its own in the tree's order.
+// Plain k-means, every splat against every entry, would take hours. A tree of splits gives the first
+// clusters; then each splat looks for a nearer entry among the neighbours of its own in the tree's order.
 #include "engine/files/sh_palette.h"
 
 #include "engine/parallel.h"
@@ -17,12 +17,12 @@ namespace binosplat {
 namespace {
 
 constexpr std::size_t kMostNumbers = 45;
-constexpr std::size_t kAxisSamples = 2048;  // of a cluster, for the axis it is split along
-constexpr std::size_t kNeighbours = 256;    // entries that a splat is compared with
+constexpr std::size_t kAxisSamples = 2048;  // of a cluster, for the axis along which it is split
+constexpr std::size_t kNeighbours = 256;    // entries with which a splat is compared
 constexpr int kRefinements = 6;
 constexpr double kSplittingShare = 0.6;  // of the time
 
-// The rows that are to be clustered.
+// The rows to cluster.
 struct Rows {
     const float* first;
     std::size_t stride, width;
@@ -34,7 +34,7 @@ using Vector = std::array<double, kMostNumbers>;
 
 // Splats order[begin] to order[end - 1].
 struct Cluster {
-    double error = 0.0;  // squares of the distances from the mean, summed up
+    double error = 0.0;  // sum of squared distances from the mean
     std::size_t begin = 0, end = 0;
     Vector mean{};
 
@@ -61,7 +61,8 @@ Cluster measure(const Rows& rows, std::span<const std::uint32_t> order, std::siz
     return cluster;
 }
 
-// About the direction in which a cluster is longest: two steps of the power iteration, from the number that varies most.
+// The direction in which a cluster is longest: two steps of power iteration, starting with the number that
+// varies most.
 std::array<float, kMostNumbers> longestAxis(const Rows& rows, std::span<const std::uint32_t> order, const Cluster& cluster) {
     const std::size_t step = (cluster.end - cluster.begin + kAxisSamples - 1) / kAxisSamples;
     Vector spread{}, axis{};
@@ -87,7 +88,7 @@ std::array<float, kMostNumbers> longestAxis(const Rows& rows, std::span<const st
     return rounded;
 }
 
-// Moves those before the mean in front, and says where the others begin.
+// Moves those below the mean to the front, and returns where the others begin.
 std::size_t split(const Rows& rows, std::span<std::uint32_t> order, const Cluster& cluster) {
     const std::array<float, kMostNumbers> axis = longestAxis(rows, order, cluster);
     std::array<float, kMostNumbers> mean{};
@@ -103,7 +104,7 @@ std::size_t split(const Rows& rows, std::span<std::uint32_t> order, const Cluste
     return static_cast<std::size_t>(std::partition(first, last, isBefore) - order.begin());
 }
 
-// Splits the cluster with the largest error until there are `most`; in the order of the splats.
+// Splits the cluster with the largest error until there are `most`; in the splats' order.
 std::vector<Cluster> grow(const Rows& rows, std::span<std::uint32_t> order, std::size_t most, const Progress& progress) {
     std::priority_queue<Cluster> open;
     std::vector<Cluster> done;
@@ -127,7 +128,8 @@ std::vector<Cluster> grow(const Rows& rows, std::span<std::uint32_t> order, std:
     return done;
 }
 
-// Which of up to kNeighbours entries, `first` to `end`, is nearest to a row: `columns` has the entries number by number.
+// Which of at most kNeighbours entries, `first` to `end`, is nearest to a row; `columns` has the entries
+// number by number.
 std::size_t nearest(const float* row, std::size_t width, const std::vector<float>& columns, std::size_t count) {
     std::array<float, kNeighbours> distances{};
     for (std::size_t k = 0; k < width; ++k) {
@@ -142,7 +144,7 @@ std::size_t nearest(const float* row, std::size_t width, const std::vector<float
                                     distances.begin());
 }
 
-// One step of Lloyd's algorithm within each window of neighbouring entries; windows begin at `offset`.
+// One step of Lloyd's algorithm within each window of adjacent entries; windows begin at `offset`.
 void refine(const Rows& rows, std::span<const std::uint32_t> splats, std::size_t first_entry, std::size_t offset, int threads,
             ShPalette& palette) {
     const std::size_t entries = palette.size() - first_entry;

@@ -1,4 +1,5 @@
-// A directory through InputFile or SceneFiles, an archive through ZipArchive; libzip also makes one.
+// Reads a directory through InputFile or SceneFiles, and an archive through ZipArchive; libzip also makes
+// one.
 #include "engine/files/sog_files.h"
 
 #include "engine/error.h"
@@ -90,14 +91,15 @@ public:
 
     std::vector<std::byte> read(const std::string& name, std::uint64_t max_bytes) override {
         const ZipArchive::Entry entry = find(name);
-        // Pictures are compressed already and meta.json is text: what grows a hundredfold is there to fill the memory.
+        // Pictures are compressed already and meta.json is text: anything that grows a hundredfold is meant
+        // to fill the memory.
         const std::uint64_t bound = std::min(max_bytes, 100 * size_bytes_);
         check(entry.size_bytes <= bound, "{}: is {} bytes long, expected at most {}", place(name), entry.size_bytes, bound);
         ZipReader opened(archive_, entry);
         std::vector<std::byte> bytes(entry.size_bytes);
         const std::size_t got = opened.read(bytes);
         check(got == bytes.size(), "{}: ends after {} of {} bytes", place(name), got, entry.size_bytes);
-        // The checksum is compared where the entry ends.
+        // The checksum is compared at the end of the entry.
         std::byte behind{};
         check(opened.read({&behind, 1}) == 0, "{}: is longer than its {} bytes", place(name), entry.size_bytes);
         return bytes;
@@ -107,13 +109,14 @@ public:
     std::string place(const std::string& name) const override { return path_ + ": " + prefix_ + name; }
 
 private:
-    // Some archives hold the folder, not its files: all are looked for where meta.json is, and that is the one with the shortest path.
+    // Some archives hold the folder instead of its files: all files are looked up beside meta.json, the one
+    // with the shortest path if there are several.
     void findPrefix() {
         constexpr std::string_view kMeta = kMetaName;
         std::optional<std::string> found;
         for (const std::string& name : archive_.names()) {
             if (!name.ends_with(kMeta)) { continue; }
-            // Some writers of Windows have backslashes between folders.
+            // Some Windows writers put backslashes between folders.
             const std::string_view folder = std::string_view(name).substr(0, name.size() - kMeta.size());
             const bool is_meta = folder.empty() || folder.ends_with('/') || folder.ends_with('\\');
             if (is_meta && (!found || name.size() < found->size())) { found = name; }
@@ -157,7 +160,7 @@ std::vector<std::byte> packSogBundle(const std::vector<NamedBytes>& files, const
     zip_error_init(&error);
     const std::unique_ptr<zip_source_t, SourceCloser> target(zip_source_buffer_create(nullptr, 0, 0, &error));
     require(target != nullptr);
-    zip_source_keep(target.get());  // one for the archive, which gives its own back even if it is not opened
+    zip_source_keep(target.get());  // a reference for the archive, which releases its own even if it is not opened
     std::unique_ptr<zip_t, ArchiveCloser> archive(zip_open_from_source(target.get(), ZIP_TRUNCATE, &error));
     if (archive == nullptr) { zip_source_free(target.get()); }
     require(archive != nullptr);

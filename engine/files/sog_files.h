@@ -15,7 +15,8 @@ namespace binosplat {
 class SogFiles {
 public:
     virtual ~SogFiles() = default;
-    // The bytes of `name`, at most `max_bytes`. Throws Error if it is missing, larger, or not a plain file name: no path leads out.
+    // The bytes of `name`, at most `max_bytes`. Throws Error if it is missing, larger, or not a plain file
+    // name, so that no path leads out.
     [[nodiscard]] virtual std::vector<std::byte> read(const std::string& name, std::uint64_t max_bytes) = 0;
     // For a file that could be read. Throws Error as `read` does.
     [[nodiscard]] virtual std::uint64_t sizeBytes(const std::string& name) const = 0;
@@ -31,7 +32,7 @@ std::unique_ptr<SogFiles> openSogFolder(const std::string& folder);
 // Those beside `meta`, a meta.json among `files`, which outlive it.
 std::unique_ptr<SogFiles> openSogFolder(SceneFiles& files, const std::string& meta);
 
-// Only in a build with SOG. Throws Error if `file` is no zip archive or holds no meta.json.
+// Only in a build with SOG. Throws Error if `file` is not a zip archive or holds no meta.json.
 std::unique_ptr<SogFiles> openSogBundle(const InputFile& file);
 std::unique_ptr<SogFiles> openSogBundle(SceneFiles& files, const std::string& bundle);
 
@@ -39,7 +40,8 @@ struct NamedBytes {
     std::string name;
     std::vector<std::byte> bytes;
 };
-// A bundle of such files, stored as they are; the same for the same files. `place` is for messages.
+// A bundle of such files, stored uncompressed; the same files always give the same bundle. `place` is for
+// messages.
 std::vector<std::byte> packSogBundle(const std::vector<NamedBytes>& files, const std::string& place);
 
 }  // namespace binosplat

@@ -11,14 +11,15 @@
 
 namespace binosplat {
 
-// A float for each of the 256 values of a byte; NaN where the file has none, so that a splat that uses it is skipped.
+// A float for each of the 256 values of a byte; NaN where the file has none, so that a splat with that byte
+// is skipped.
 using ByteTable = std::array<float, 256>;
 
 inline constexpr std::size_t kSogPaletteColumns = 64;  // entries per row of the picture of centroids
 
 // SH beyond the constant band: each splat has a label, each label a row of coefficients.
 struct SogPalette {
-    int sh_degree = 0;                                                // 0: version 1 does not say, the picture's width tells
+    int sh_degree = 0;                                                // 0: version 1 does not say; the picture's width does
     std::uint64_t count = std::numeric_limits<std::uint64_t>::max();  // the same
     ByteTable values{};
     std::string centroids_file, labels_file;
@@ -32,7 +33,7 @@ struct SplatRange {
 struct SogMeta {
     std::uint64_t count = 0;
     bool antialiased = false;
-    bool discs = false;                      // trained as 2DGS: the shortest of three scales means nothing
+    bool discs = false;                      // trained as 2DGS: the shortest of the three scales is meaningless
     std::array<float, 3> mins{}, maxs{};     // of the positions after x -> sign(x) ln(1 + |x|)
     std::array<std::string, 2> means_files;  // low bytes, high bytes
     std::array<ByteTable, 3> scales{};

@@ -16,10 +16,12 @@ struct SogPlaces {
 };
 SogPlaces findSogPlaces(const Scene& scene);
 
-// The splats along a Morton curve: neighbours in space are neighbours in the pictures, which then compress better.
+// The splats along a Morton curve: neighbours in space become neighbours in the pictures, which then compress
+// better.
 std::vector<std::uint32_t> mortonOrder(const SogPlaces& places);
 
-// Three bytes for the smaller components, between -1/sqrt(2) and 1/sqrt(2), and one from 252 on for which of w, x, y, z is left out.
+// Three bytes for the smaller components, between -1/sqrt(2) and 1/sqrt(2), and one from 252 on that says
+// which of w, x, y, z is left out.
 std::array<std::uint8_t, 4> packSogRotation(const glm::quat& rotation);
 
 }  // namespace binosplat

@@ -15,10 +15,10 @@ namespace {
 constexpr std::uint64_t kMaxMetaBytes = std::uint64_t{1} << 22;
 constexpr std::uint64_t kMaxPictureBytes = std::uint64_t{1} << 30;
 
-// Positions are noise in their low bytes: a scene of so many pixels has more bytes than that.
+// The low bytes of positions are noise: a scene with so many pixels has more bytes than that.
 std::uint64_t mostPixels(std::uint64_t bytes) { return 256 * bytes + 65536; }
 
-// A picture read but not decoded, so that all sizes can be judged first.
+// A picture that is read but not decoded, so that all sizes can be judged first.
 struct Packed {
     std::string place;
     std::vector<std::byte> bytes;
@@ -33,7 +33,7 @@ Packed readPacked(SogFiles& files, const std::string& name) {
     return packed;
 }
 
-// The SH degree that version 1 tells by the width of its palette.
+// The SH degree of version 1, which the width of its palette tells.
 int paletteDegree(const SogPalette& palette, const Packed& centroids) {
     for (int degree = 1; degree <= kMaxShDegree; ++degree) {
         const std::size_t width = kSogPaletteColumns * (static_cast<std::size_t>(shCoefficientCount(degree)) - 1);
@@ -89,7 +89,7 @@ SogPictures decodePictures(SogFiles& files, SogMeta& meta, int threads) {
 // The inverse of x -> sign(x) ln(1 + |x|).
 float expandPosition(float value) { return std::copysign(std::expm1(std::abs(value)), value); }
 
-// `sh_degree` is the block's, at least the palette's; what a block held before is overwritten.
+// `sh_degree` is the block's, at least the palette's; the block's old content is overwritten.
 void unpackSplat(const SogMeta& meta, const SogPictures& pictures, std::size_t splat, StoredBlock& block, std::size_t row, int sh_degree) {
     const auto put = [&](int attribute, float value) { block.put(attribute, row, value); };
     const std::size_t pixel = 4 * splat;
@@ -103,10 +103,11 @@ void unpackSplat(const SogMeta& meta, const SogPictures& pictures, std::size_t s
     }
     put(kStoredOpacity, meta.sh0[3][pictures.sh0.rgba[pixel + 3]]);
 
-    // Alpha 252 to 255 says which of w, x, y, z is the largest; the others lie between -1/sqrt(2) and 1/sqrt(2).
+    // Alpha 252 to 255 says which of w, x, y, z is the largest; the others lie between -1/sqrt(2) and
+    // 1/sqrt(2).
     const std::uint8_t* quat = pictures.quats.rgba.data() + pixel;
     const auto component = [&](std::size_t i) { return (static_cast<float>(quat[i]) / 255.0f * 2.0f - 1.0f) * 0.70710678f; };
-    std::array<float, 4> rotation{};  // of length zero for any other alpha: skipped and counted
+    std::array<float, 4> rotation{};  // any other alpha leaves length zero: skipped and counted
     if (quat[3] >= 252) { rotation = fromSmallestThree(quat[3] - 252u, {component(0), component(1), component(2)}); }
     for (std::size_t i = 0; i < 4; ++i) { put(kStoredRot0 + static_cast<int>(i), rotation[i]); }
 

@@ -1,4 +1,5 @@
-// The splats of one SOG directory or bundle, in steps, so that many can be checked before the first is decoded.
+// The splats of one SOG directory or bundle, in steps, so that many can be checked before the first is
+// decoded.
 #pragma once
 
 #include "engine/files/scene_builder.h"
@@ -22,21 +23,22 @@ struct SogPictures {
 
 class SogSplats {
 public:
-    // Reads meta.json; of a version 1 with SH also its palette, whose width is the only place that says their degree.
+    // Reads meta.json, and for a version 1 with SH also its palette, whose width alone tells their degree.
     explicit SogSplats(std::unique_ptr<SogFiles> files);
 
     [[nodiscard]] std::uint64_t count() const { return meta_.count; }
     [[nodiscard]] bool antialiased() const { return meta_.antialiased; }
     [[nodiscard]] bool discs() const { return meta_.discs; }
     [[nodiscard]] int shDegree() const { return meta_.palette ? meta_.palette->sh_degree : 0; }
-    // Its pictures will be asked for soon.
+    // Its pictures will be needed soon.
     void expect() const;
-    // Throws Error where a picture is missing or all are too small for so many splats: room for them can be reserved.
+    // Throws Error if a picture is missing or all are too small for so many splats; memory for the splats can
+    // then be reserved.
     void requirePlausibleCount() const;
 
-    // Several pictures at a time, on so many threads.
+    // Several pictures at a time, on that many threads.
     [[nodiscard]] SogPictures decode(int threads = 1);
-    // Of `range`, which lies below count(). `sh_degree` is the builder's, at least shDegree().
+    // The splats in `range`, which lies below count(). `sh_degree` is the builder's, at least shDegree().
     void append(const SogPictures& pictures, SplatRange range, int sh_degree, SceneBuilder& builder, const Progress& progress) const;
 
 private:

@@ -24,7 +24,7 @@ namespace binosplat {
 
 namespace {
 
-// The logarithm of a scale of no extent: nothing is as small, and its square is still a normal float32.
+// The logarithm of a scale of no extent: nothing else is as small, and its square is still a normal float32.
 constexpr float kNoExtent = -20.0f;
 constexpr double kPaletteShare = 0.6, kPicturesShare = 0.35;  // of the time
 
@@ -34,7 +34,7 @@ Pixels blank(glm::uvec2 size_px) {
     return pixels;
 }
 
-// As square as it goes, in sides of four.
+// As square as possible, with sides that are multiples of four.
 glm::uvec2 choosePictureSize(std::size_t splats, const std::string& path) {
     const auto fours = [](double side) { return 4 * std::max(1u, static_cast<std::uint32_t>(std::ceil(side / 4.0))); };
     check(splats <= std::size_t{kMaxWebpSide - 3} * (kMaxWebpSide - 3), "{}: cannot hold {} splats, WebP's sides end at {} pixels", path,
@@ -43,7 +43,7 @@ glm::uvec2 choosePictureSize(std::size_t splats, const std::string& path) {
     return {width, fours(static_cast<double>(splats) / width)};
 }
 
-// The logarithms of s_u, s_v, s_w of each splat; of a disc the last is kNoExtent.
+// The logarithms of s_u, s_v, s_w of each splat; a disc's last one is kNoExtent.
 std::vector<float> listScales(const Scene& scene) {
     std::vector<float> logarithms;
     logarithms.reserve(3 * scene.size());
@@ -63,7 +63,7 @@ std::vector<float> listColours(const Scene& scene) {
     return colours;
 }
 
-// Scales of no extent have the first value to themselves: the others lie far from it.
+// Scales of no extent have the first value to themselves, since the others are far from it.
 Codebook makeScaleBook(const std::vector<float>& logarithms) {
     std::vector<float> some;
     std::ranges::copy_if(logarithms, std::back_inserter(some), [](float logarithm) { return logarithm > kNoExtent; });
@@ -98,7 +98,7 @@ Pixels drawPalette(const ShPalette& palette, const Codebook& book) {
     return pixels;
 }
 
-// Two pictures at a time; progress is told from the calling thread.
+// Two pictures at a time; progress is reported by the calling thread.
 std::vector<NamedBytes> encodeAll(std::vector<std::pair<std::string, Pixels>>& pictures, const std::string& path,
                                   const Progress& progress) {
     std::vector<NamedBytes> files(pictures.size());
@@ -190,7 +190,7 @@ void write(const Scene& scene, const std::string& path, const Progress& progress
 
 }  // namespace
 
-// A power of two: rows of the palette's picture are full.
+// A power of two: the rows of the palette's picture are full.
 std::size_t sogPaletteSize(const Scene& scene) { return std::min(std::bit_floor(scene.size()), kMostPaletteEntries); }
 
 void writeSog(const Scene& scene, const std::string& path, const Progress& progress) { write(scene, path, progress, mortonOrder); }

@@ -1,4 +1,4 @@
-// Rows of .splat files, and the guess that a file is one.
+// Rows of .splat files, and the guess whether a file is one.
 #include "engine/files/splat_file.h"
 
 #include "engine/error.h"
@@ -21,7 +21,7 @@ float loadRotation(std::span<const std::byte> row, std::size_t i) { return (load
 bool isRotation(std::span<const std::byte> row, const std::array<int, 4>& bytes) {
     return std::ranges::equal(row.subspan(28, 4), bytes, {}, [](std::byte byte) { return std::to_integer<int>(byte); });
 }
-// A quaternion of length zero, from writers that have no rotations.
+// A quaternion of length zero, from writers without rotations.
 bool isNoRotation(std::span<const std::byte> row) { return isRotation(row, {128, 128, 128, 128}); }
 // One of length 2, which some writers leave in every row; it is normalised like any other.
 bool isLongRotation(std::span<const std::byte> row) { return isRotation(row, {255, 0, 0, 0}); }
@@ -46,7 +46,7 @@ bool isSplatFile(InputFile& file) {
     std::size_t plausible = 0;
     const std::size_t samples = bytes.size() / kSplatBytes;
     for (std::size_t i = 0; i < samples; ++i) { plausible += isPlausible(bytes.subspan(i * kSplatBytes, kSplatBytes)); }
-    return samples > 0 && 10 * plausible >= 9 * samples;  // a few may be broken, and are counted when they are read
+    return samples > 0 && 10 * plausible >= 9 * samples;  // a few may be broken; they are counted when they are read
 }
 
 Scene readSplatFile(InputFile& file, LoadNotes& notes, const Progress& progress) {

@@ -6,12 +6,12 @@
 
 namespace binosplat {
 
-// The format has no mark of its own: a file is taken for one if its first splats have finite positions and scales of plausible size and
-// quaternions of length 1. Ask this after all other formats.
+// The format has no magic number: a file is taken for one if its first splats have finite positions, scales
+// of plausible size and quaternions of length 1. Ask this after all other formats.
 bool isSplatFile(InputFile& file);
 
-// Reads per splat: position (3 floats), scale (3 floats, not logarithmic), red, green, blue, opacity (bytes), quaternion w, x, y, z
-// (bytes; 128 is zero). The colour is the one displayed: there are no SH.
+// Reads for each splat: position (3 floats), scale (3 floats, not logarithmic), red, green, blue, opacity
+// (bytes), and quaternion w, x, y, z (bytes; 128 is zero). The colour is display-encoded; there are no SH.
 Scene readSplatFile(InputFile& file, LoadNotes& notes, const Progress& progress);
 
 }  // namespace binosplat

@@ -1,5 +1,5 @@
-// The numbers are bits and one: x leads right, not left; the vertical one of y and z up, not down; the other one front, not back; z is
-// vertical.
+// The numbers are bits plus one: x leads right instead of left; the vertical one of y and z up instead of
+// down; the other one front instead of back; z is the vertical one.
 #include "engine/files/spz_axes.h"
 
 #include "engine/files/quantized.h"
@@ -24,7 +24,8 @@ glm::vec3 signsOf(std::uint32_t bits) {
 glm::dmat3 matrixOf(std::uint32_t bits) {
     const glm::dvec3 signs(signsOf(bits));
     const glm::dvec3 right(signs.x, 0.0, 0.0), down(0.0, signs.y, 0.0), forward(0.0, 0.0, signs.z);
-    return (bits & kVerticalZ) != 0 ? glm::dmat3(right, forward, down) : glm::dmat3(right, down, forward);  // columns: where x, y, z lead
+    return (bits & kVerticalZ) != 0 ? glm::dmat3(right, forward, down)
+                                    : glm::dmat3(right, down, forward);  // the columns say where x, y, z lead
 }
 
 }  // namespace
@@ -60,7 +61,7 @@ glm::quat SpzAxes::turn(const glm::quat& rotation) const {
         turned = glm::quat(half, -half, 0.0f, 0.0f) * rotation;
         signs.z = -signs.z;
     }
-    // Signs s turn R into diag(s) R diag(s), which is the same ellipsoid: an axis has no sign.
+    // Signs s turn R into diag(s) R diag(s), which is the same ellipsoid: axes have no sign.
     return {turned.w, signs.y * signs.z * turned.x, signs.x * signs.z * turned.y, signs.x * signs.y * turned.z};
 }
 

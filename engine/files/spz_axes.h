@@ -1,5 +1,5 @@
-// The axes of an SPZ file, which its extension SPZ_ADOBE_coordinate_system may name, and the conversion of splats to the axes of trained
-// PLY scenes.
+// The axes of an SPZ file, which its extension SPZ_ADOBE_coordinate_system may name, and the conversion of
+// splats to the axes of trained PLY scenes.
 #pragma once
 
 #include "engine/scene/sh_turn.h"
@@ -18,7 +18,7 @@ namespace binosplat {
 
 class SpzAxes {
 public:
-    static constexpr std::uint32_t kUsual = 4, kLast = 16;  // right, up, back; what the extension knows ends with right, front, up
+    static constexpr std::uint32_t kUsual = 4, kLast = 16;  // right, up, back; the last one that the extension knows is right, front, up
 
     // `system` is the extension's number, 1 to kLast.
     explicit SpzAxes(std::uint32_t system = kUsual);
@@ -37,11 +37,11 @@ private:
     glm::vec3 signs_;  // of right, down, forward
     bool z_is_up_;     // or down: y and z have changed places
     ShTurn sh_turn_;
-    std::array<float, 15> sh_signs_{};  // all that it is where y and z keep their places
+    std::array<float, 15> sh_signs_{};  // enough if y and z keep their places
 };
 
-// The number in the records of a file's extensions, if there is one: type, length and content, one after the other. A broken record
-// ends the search.
+// The number in the records of a file's extensions, if there is one. Records are type, length and content,
+// one after the other; a broken one ends the search.
 std::optional<std::uint32_t> findSpzAxes(std::span<const std::byte> records);
 
 }  // namespace binosplat

@@ -18,18 +18,20 @@ namespace binosplat {
 
 namespace {
 
-// A scene of so many bytes per byte of its file is none: positions alone do not compress so well.
+// A file with so many bytes of scene per byte of its own is not a scene: positions alone do not compress so
+// well.
 constexpr std::uint64_t kMaxExpansion = 256;
-// How much is unpacked at a time, so that loading can be stopped; and unpacking's share of loading.
+// How much is unpacked at a time, so that loading can be stopped; and the share of loading that unpacking
+// takes.
 constexpr std::size_t kPieceBytes = std::size_t{4} << 20;
 constexpr double kUnpackingShare = 0.5;
-// As much of the extensions' records is looked at.
+// How much of the extensions' records is searched.
 constexpr std::size_t kMostRecords = std::size_t{1} << 16;
 
 struct Header {
     std::uint32_t version = 0;
     std::uint64_t splats = 0;
-    int sh_degree = 0;  // kept; see sh_bytes for what is there
+    int sh_degree = 0;  // after cutting; sh_bytes tells what the file has
     int fractional_bits = 0;
     bool antialiased = false;
     bool has_extensions = false;
@@ -64,7 +66,7 @@ struct Attributes {
     const std::byte *positions, *alphas, *colours, *scales, *rotations, *sh;
 };
 
-// Room for all attributes, if the file can hold as many.
+// Memory for all attributes, if the file can hold that many.
 Attributes reserveAttributes(const InputFile& file, const Header& header) {
     const std::uint64_t total = header.splats * header.bytesPerSplat();
     check(total <= kMaxExpansion * file.sizeBytes() + 65536,
@@ -81,7 +83,7 @@ Attributes reserveAttributes(const InputFile& file, const Header& header) {
     return attributes;
 }
 
-// Fills its target as far as there is something to read, and says how far.
+// Fills its target as far as there is something to read, and returns how far.
 using ReadSome = std::function<std::size_t(std::span<std::byte> target)>;
 
 // Versions 2 and 3: one stream, within gzip or bare.
@@ -94,7 +96,7 @@ Attributes readStream(InputFile& file, const ReadSome& read, const Header& heade
         more = read(std::span(attributes.bytes).subspan(got, std::min(total - got, kPieceBytes)));
     }
     check(got == total, "{}: data: ends after {} bytes, expected {} for {} splats", file.name(), got, total, header.splats);
-    // The checksum is compared where a gzip stream ends; records of extensions may lie before that.
+    // The checksum is compared at the end of a gzip stream; records of extensions may come before that.
     std::array<std::byte, 4096> behind;
     std::uint64_t extra = 0;
     for (std::size_t more = 0; (more = read(behind)) > 0;) {
@@ -107,11 +109,12 @@ Attributes readStream(InputFile& file, const ReadSome& read, const Header& heade
     return attributes;
 }
 
-// Version 4: behind the header the number of streams, where their table is (two 64-bit sizes each: packed, plain), and a stream per
-// attribute, each compressed by itself. Records of extensions lie between header and table.
+// Version 4: after the header come the number of streams, the place of their table (two 64-bit sizes each:
+// packed, plain), and a stream per attribute, each compressed by itself. Records of extensions are between
+// header and table.
 Attributes readContainer(InputFile& file, const Header& header, std::size_t streams, std::uint64_t table_at, const Progress& progress) {
     const std::array<std::uint64_t, 6> per_splat{9, 1, 3, 3, header.rotation_bytes, header.sh_bytes};
-    const std::size_t least = header.sh_bytes == 0 ? 5 : 6;  // what is empty may be left out
+    const std::size_t least = header.sh_bytes == 0 ? 5 : 6;  // empty streams may be left out
     check(streams >= least && streams <= 6, "{}: header: {} streams, expected {}", file.name(), streams, least);
     check(table_at >= file.positionBytes() && table_at <= file.sizeBytes(),
           "{}: header: the table of streams is at byte {}, expected it from {} to {}", file.name(), table_at, file.positionBytes(),
@@ -157,13 +160,14 @@ float loadFixed(const std::byte* at, int fractional_bits) {
     return std::ldexp(static_cast<float>(value), -fractional_bits);
 }
 
-// w, x, y, z as stored, before the axes change. Version 2: x, y, z in bytes, w not negative.
+// w, x, y, z as stored, before the axes change. Version 2: x, y, z in bytes; w is not negative.
 std::array<float, 4> loadRotation2(const std::byte* at) {
     const auto component = [&](std::size_t i) { return loadByte(at + i) / 127.5f - 1.0f; };
     return fromSmallestThree(0, {component(0), component(1), component(2)});
 }
 
-// Version 3: two bits for the largest of x, y, z, w; of the others, first to last from the top, a sign bit and nine bits up to 1/sqrt(2).
+// Version 3: two bits say which of x, y, z, w is the largest; each of the others, first to last from the top,
+// has a sign bit and nine bits up to 1/sqrt(2).
 std::array<float, 4> loadRotation3(const std::byte* at) {
     const auto word = loadLittle<std::uint32_t>(std::span(at, 4), 0);
     const auto component = [&](int shift) {
@@ -202,7 +206,7 @@ void unpackSplat(const Header& header, const SpzAxes& axes, const Attributes& at
     }
 }
 
-// The file's axes, or those of files that do not name any.
+// The file's axes, or the format's own if the file names none.
 SpzAxes chooseAxes(const std::string& file, const Header& header, const Attributes& attributes, LoadNotes& notes, bool& known) {
     const std::optional<std::uint32_t> said = header.has_extensions ? findSpzAxes(attributes.records) : std::nullopt;
     if (said && *said > SpzAxes::kLast) {

@@ -1,4 +1,4 @@
-// Packing into SPZ version 3.
+// Packs SPZ version 3.
 #include "engine/error.h"
 #include "engine/files/gzip.h"
 #include "engine/files/spz.h"
@@ -42,7 +42,8 @@ std::byte* putColour(const float* f_dc, std::byte* at) {
     return at;
 }
 
-// The third scale is the smallest, so that it is the one that readers of surfaces drop; of discs the smallest there is.
+// The third scale is the smallest, so that readers of surfaces drop that one; for discs it is the smallest
+// possible.
 std::byte* putScale(const Scene& scene, std::size_t splat, std::byte* at) {
     const glm::vec2& scale = scene.scales[splat];
     for (const float axis : {scale.x, scale.y, scene.isGaussian3d() ? scene.thicknesses[splat] : 0.0f}) {

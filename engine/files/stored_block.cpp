@@ -1,4 +1,4 @@
-// Activations, skipped splats, the order of axes, the SH bands in use.
+// Activations, skipped splats, the order of axes, and the SH bands in use.
 #include "engine/files/stored_block.h"
 
 #include "engine/scene/scene.h"
@@ -11,12 +11,13 @@ namespace binosplat {
 
 namespace {
 
-// Any finite number whose exponential float32 does not hold.
+// Any finite number whose exponential is too large for float32.
 constexpr float kFarLogarithm = 1000.0f;
 
-// Which rows hold only numbers that mean something: v * 0 is 0 for a finite v and NaN otherwise, and a sum keeps a NaN. Two infinities mean
-// something, and are bounded before they count: a logit of +infinity is opacity 1; the logarithm of a length of 0, -infinity, is a third
-// axis without extent. Where it is not the shortest axis alone, it is found later.
+// Finds the rows that hold only meaningful numbers: v * 0 is 0 for a finite v and NaN otherwise, and a sum
+// keeps a NaN. Two infinities have a meaning, and are bounded before they count: a logit of +infinity is
+// opacity 1; -infinity, the logarithm of length 0, is a third axis without extent. If that is not the
+// shortest axis, it is found later.
 std::array<bool, StoredBlock::kRows> findFiniteRows(const StoredBlock& block, bool three_scales) {
     std::array<float, StoredBlock::kRows> zeros{};
     for (int attribute = 0; attribute < kStoredRest0; ++attribute) {
@@ -30,7 +31,7 @@ std::array<bool, StoredBlock::kRows> findFiniteRows(const StoredBlock& block, bo
     }
     std::array<bool, StoredBlock::kRows> finite{};
     for (std::size_t row = 0; row < block.rows; ++row) {
-        std::array<float, 16> of_rest{};  // side by side, which is how a compiler can add them
+        std::array<float, 16> of_rest{};  // side by side, as a compiler can add them
         const float* rest = block.rest(row);
         for (std::size_t first = 0; first < StoredBlock::kRestStride; first += of_rest.size()) {
             for (std::size_t i = 0; i < of_rest.size(); ++i) { of_rest[i] += rest[first + i] * 0.0f; }
@@ -43,7 +44,8 @@ std::array<bool, StoredBlock::kRows> findFiniteRows(const StoredBlock& block, bo
     return finite;
 }
 
-// The unit quaternion along (w, x, y, z), in float64 so that neither tiny nor huge lengths are lost; false for length zero.
+// The unit quaternion along (w, x, y, z), in float64 so that neither tiny nor huge lengths are lost; false
+// for length zero.
 bool normaliseRotation(double w, double x, double y, double z, glm::dquat& unit) {
     const double length = std::sqrt(w * w + x * x + y * y + z * z);
     if (!(length > 0.0)) { return false; }
@@ -59,11 +61,11 @@ struct Turned {
     float log_scale_u, log_scale_v, log_scale_w;
 };
 
-// Makes the shortest of three axes the last. The two others follow it in cyclic order, so (t_u, t_v, t_w) is a cyclic permutation of
-// the columns of the rotation: right-handed, with t_w along the shortest axis. Such a permutation is a turn by 120 degrees about
-// (1, 1, 1), hence the product with (1/2, +-1/2, +-1/2, +-1/2).
+// Makes the shortest of three axes the last. The two others follow it in cyclic order, so (t_u, t_v, t_w) is
+// a cyclic permutation of the columns of the rotation: right-handed, with t_w along the shortest axis. Such a
+// permutation is a turn by 120 degrees about (1, 1, 1), hence the product with (1/2, +-1/2, +-1/2, +-1/2).
 Turned turnShortestLast(const glm::dquat& rotation, const std::array<float, 3>& log_scales) {
-    std::size_t shortest = 2;  // ties keep the order of the file
+    std::size_t shortest = 2;  // ties keep the file's order
     for (const std::size_t axis : {std::size_t{1}, std::size_t{0}}) {
         if (log_scales[axis] < log_scales[shortest]) { shortest = axis; }
     }
@@ -77,10 +79,10 @@ Turned turnShortestLast(const glm::dquat& rotation, const std::array<float, 3>& 
     return {rotation * turn, u, v, log_scales[shortest]};
 }
 
-// The highest band with a value that is not zero, of the rows that are kept.
+// The highest band with a non-zero value, over the rows that are kept.
 int findUsedDegree(const StoredBlock& block, const ActiveBlock& active, int sh_degree) {
     const int per_channel = shCoefficientCount(sh_degree) - 1;
-    std::array<float, StoredBlock::kRestStride> seen{};  // sums of magnitudes, all finite or infinite: 0 where all are
+    std::array<float, StoredBlock::kRestStride> seen{};  // sums of magnitudes, finite or infinite: 0 if all are 0
     for (std::size_t i = 0; i < active.count; ++i) {
         const float* rest = block.rest(active.source[i]);
         for (std::size_t k = 0; k < seen.size(); ++k) { seen[k] += std::abs(rest[k]); }
@@ -126,7 +128,7 @@ void activate(const StoredBlock& block, int sh_degree, bool three_scales, Active
             thickness = std::exp(axes.log_scale_w);
             usable = std::isfinite(axes.log_scale_u + axes.log_scale_v);
         }
-        if (!usable || !std::isfinite(scale.x + scale.y)) {  // a logarithm over 88.7 is an infinite float32 scale
+        if (!usable || !std::isfinite(scale.x + scale.y)) {  // a logarithm over 88.7 gives an infinite float32 scale
             ++active.skipped_not_finite;
             continue;
         }

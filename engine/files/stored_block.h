@@ -1,4 +1,4 @@
-// Splats as files store them, in blocks, and the same splats after the activations of their training.
+// Splats as files store them, in blocks, and the same splats after their training's activations.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -11,7 +11,8 @@
 
 namespace binosplat {
 
-// The stored attributes of a splat. The f_rest values are channel-major: kRest0 + channel * (coefficients - 1) + (k - 1).
+// The stored attributes of a splat. The f_rest values are channel-major: kRest0 + channel * (coefficients -
+// 1) + (k - 1).
 enum StoredAttribute : int {
     kStoredX,
     kStoredY,
@@ -31,17 +32,18 @@ enum StoredAttribute : int {
     kStoredAttributeCount = kStoredRest0 + 45,
 };
 
-// Up to kRows splats as stored: a column for each attribute but f_rest, whose values lie together for each splat, as most files have them.
-// 256 rows of 62 values stay within a core's second-level cache beside their source.
+// Up to kRows splats as stored: a column for each attribute except f_rest, whose values lie together for each
+// splat, as in most files. 256 rows of 62 values stay within a core's second-level cache, along with their
+// source.
 class StoredBlock {
 public:
     static constexpr std::size_t kRows = 256;
-    static constexpr std::size_t kRestStride = 48;  // 45 at most, and zeros
+    static constexpr std::size_t kRestStride = 48;  // at most 45, and zeros
     StoredBlock() : columns_(kRows * kStoredRest0), rest_(kRows * kRestStride) {}
-    // Of an attribute before kStoredRest0.
+    // For an attribute before kStoredRest0.
     [[nodiscard]] float* column(int attribute) { return columns_.data() + static_cast<std::size_t>(attribute) * kRows; }
     [[nodiscard]] const float* column(int attribute) const { return columns_.data() + static_cast<std::size_t>(attribute) * kRows; }
-    // The f_rest values of a row; those that the file does not have stay 0.
+    // The f_rest values of a row; those that the file lacks stay 0.
     [[nodiscard]] float* rest(std::size_t row) { return rest_.data() + row * kRestStride; }
     [[nodiscard]] const float* rest(std::size_t row) const { return rest_.data() + row * kRestStride; }
     void put(int attribute, std::size_t row, float value) {
@@ -60,7 +62,7 @@ private:
     std::vector<float> columns_, rest_;
 };
 
-// Of an attribute's finite values; 0 if there are none.
+// Over an attribute's finite values; 0 if there are none.
 float medianOf(const StoredBlock& block, int attribute);
 
 // The splats of a block that are kept, one after the other.
@@ -72,7 +74,7 @@ struct ActiveBlock {
     std::array<glm::vec2, StoredBlock::kRows> scales;
     std::array<float, StoredBlock::kRows> opacities{};
     std::array<float, StoredBlock::kRows> thicknesses{};  // the shortest axis; three scales only
-    int sh_degree = 0;                                    // the highest band that one of them uses
+    int sh_degree = 0;                                    // the highest band that a kept splat uses
     std::size_t skipped_not_finite = 0, skipped_zero_rotation = 0;
 };
 

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// A hundred thousand leaves of five levels.
+// Enough for a hundred thousand leaves of five levels.
 constexpr std::uint64_t kMaxLodMetaBytes = std::uint64_t{1} << 25;
 
 fs::path folderOf(const std::string& file) {

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A chunk and which of its splats are wanted.
+// A chunk, and which of its splats are wanted.
 struct Chunk {
     SogSplats splats;
     std::vector<SplatRange> ranges;
@@ -29,7 +29,7 @@ struct ReadLevel {
     std::vector<Chunk> chunks;  // the environment last
     std::uint64_t splats = 0;
     int sh_degree = 0;        // the highest of the chunks'
-    const char* reason = "";  // why not the finest, if nobody asked for it
+    const char* reason = "";  // why it is not the finest, if nobody asked for it
 };
 
 ReadLevel openLevel(StreamedChunks& scene, std::size_t index) {
@@ -65,7 +65,7 @@ ReadLevel chooseLevel(StreamedChunks& scene, const LevelChoice& choice) {
         return openLevel(scene, *choice.level);
     }
     for (std::size_t index = 0;; ++index) {
-        // Not even without harmonics: nothing of it need be fetched.
+        // It does not fit even without harmonics, so none of it need be fetched.
         const bool is_hopeless =
             scene.areElsewhere() && index + 1 < levels && choice.fits && !choice.fits(scene.meta().levels[index].splats, 0);
         if (is_hopeless) { continue; }
@@ -101,7 +101,7 @@ Scene readStreamedSog(const std::string& source, StreamedChunks scene, const Lev
         for (const Chunk& chunk : level.chunks) { chunk.splats.expect(); }
         for (const Chunk& chunk : level.chunks) { chunk.splats.requirePlausibleCount(); }
     }
-    // One builder for all: room for every splat once, and of the chunks no more than one chunk's pictures at a time.
+    // One builder for all: memory for every splat once, and for the pictures of one chunk at a time.
     SceneBuilder builder(source, level.splats, level.sh_degree, true);
     std::uint64_t done = 0;
     for (Chunk& chunk : level.chunks) {

@@ -1,4 +1,4 @@
-// A tree of boxes with about as many splats each, and their levels, chunk after chunk.
+// A tree of boxes with about equally many splats, and their levels, chunk by chunk.
 #include "engine/files/streamed_write.h"
 
 #include "engine/error.h"
@@ -22,10 +22,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMostDepth = 48;  // readers bound it, too
-constexpr float kReach = 2.0f;  // in standard deviations: a leaf's box holds what is seen of its splats
+constexpr int kMostDepth = 48;  // readers limit it, too
+constexpr float kReach = 2.0f;  // in standard deviations: a leaf's box holds the visible part of its splats
 constexpr float kBeyond = std::numeric_limits<float>::max();
-constexpr double kLeastSeen = 1.0;  // in pixels: what is seen less is taken for as the others are
+constexpr double kLeastSeen = 1.0;  // in pixels: splats that show less are taken to be like the others
 
 // Along a Morton curve of their own.
 void sortAlongCurve(const Scene& scene, std::span<std::uint32_t> splats) {
@@ -86,7 +86,7 @@ std::uint32_t StreamedWriter::cut(std::span<const glm::vec3> centres, std::span<
     const auto along = [&](std::uint32_t splat) { return centres[splat][axis]; };
     const auto half = splats.begin() + static_cast<std::ptrdiff_t>(splats.size() / 2);
     std::ranges::nth_element(splats, half, {}, along);
-    // Where many lie at the middle one's place, the cut moves up to the next.
+    // If many centres share the middle one's coordinate, the cut moves up to the next.
     float at = along(*half);
     if (at == low[axis]) {
         at = kBeyond;
@@ -181,8 +181,8 @@ void StreamedWriter::add(std::size_t level, const Scene& scene, std::span<const 
     counts_[level] += scene.size();
 }
 
-// By level: the mean square where its splats show, or that of the whole level where none was seen. What a level is off by from one that is
-// off itself adds up, and no coarser level counts as better than a finer one.
+// By level: the mean square where its splats show, or the whole level's if none showed. Errors add up if a
+// level is compared with one that is off itself, and no coarser level counts as better than a finer one.
 std::vector<double> StreamedWriter::errorsOf(const Node& leaf) const {
     std::vector<double> errors(counts_.size());
     for (std::size_t level = 1; level < errors.size(); ++level) {
@@ -196,7 +196,7 @@ std::vector<double> StreamedWriter::errorsOf(const Node& leaf) const {
     return errors;
 }
 
-// Boxes of what is below; returns the node's corners.
+// Boxes of everything below; returns the node's corners.
 glm::mat2x3 StreamedWriter::boundParents(std::uint32_t node) {
     if (nodes_[node].axis >= 0) {
         const glm::mat2x3 first = boundParents(nodes_[node].first), second = boundParents(nodes_[node].second);

@@ -1,5 +1,6 @@
-// Streamed SOG scenes, version 1, as PlayCanvas specifies them ("The Streamed SOG Format"): a folder of chunks, each a SOG scene of its own
-// folder, and a lod-meta.json that says which of their splats show which part of the scene at which level.
+// Streamed SOG scenes, version 1, as PlayCanvas specifies them ("The Streamed SOG Format"): a folder of
+// chunks, each a SOG scene in a folder of its own, and a lod-meta.json that says which of their splats show
+// which part of the scene at which level.
 #pragma once
 
 #include "engine/scene/scene.h"
@@ -13,55 +14,58 @@
 namespace binosplat {
 
 struct StreamedWriteSettings {
-    std::uint64_t chunk_splats = 512 * 1024;  // at most, unless a leaf has more
+    std::uint64_t chunk_splats = 512 * 1024;  // at most, unless a single leaf has more
     std::uint64_t leaf_splats = 16 * 1024;    // of the finest level, at most
 };
 
-// What pictures of a level are off by where one of its splats shows: sums over their pixels of its blending weight, and of the weight
-// times the mean square over channels of what is wrong there.
+// How far pictures of a level are off where one of its splats shows: sums over pixels of the splat's blending
+// weight, and of that weight times the mean squared error over channels.
 struct SplatError {
     double weight = 0.0, square = 0.0;
 };
 
 class StreamedWriter {
 public:
-    // `path` ends in /lod-meta.json. Its folder appears whole, with finish(), or not at all: until then all lies in one beside it. Throws
-    // Error if the folder is there already and holds anything.
+    // `path` ends in /lod-meta.json. Its folder appears whole, with finish(), or not at all; until then
+    // everything is in a folder beside it. Throws Error if the folder exists and is not empty.
     StreamedWriter(const std::filesystem::path& path, const StreamedWriteSettings& settings);
     StreamedWriter(const StreamedWriter&) = delete;
     StreamedWriter& operator=(const StreamedWriter&) = delete;
     ~StreamedWriter();
 
-    // First: the leaves, of about as many of the finest level's splats each, whose centres these are. Throws Error for none.
+    // Call this first. Makes the leaves, with about equally many splats of the finest level each, whose
+    // centres these are. Throws Error for none.
     void cutLeaves(std::span<const glm::vec3> centres);
-    // Blocks of whole leaves, of `most` of these splats each at most unless a leaf has more: of each leaf, by its node, its block's number.
+    // Groups whole leaves into blocks of at most `most` of these splats, unless a single leaf has more: the
+    // block of each leaf, by its node.
     struct Blocks {
         std::vector<std::uint32_t> of_node;
         std::uint32_t count = 0;
     };
     [[nodiscard]] Blocks cutBlocks(std::uint64_t most) const;
-    // The places of some centres, by block, ascending.
+    // The indices of these centres by block, ascending.
     [[nodiscard]] std::vector<std::vector<std::uint32_t>> sortInto(const Blocks& blocks, std::span<const glm::vec3> centres) const;
-    // Splats of a level: all, or those of some leaves to which none were added before. They go to the leaves in which their centres lie,
-    // in Morton order. `errors`: of each splat, against level `against`, an earlier one; empty, of any level but 0: not known.
+    // Adds splats of a level: all, or those of some leaves to which none have been added. They go to the
+    // leaves in which their centres lie, in Morton order. `errors`: for each splat, against level `against`,
+    // an earlier one; empty at level 0, and otherwise if unknown.
     void add(std::size_t level, const Scene& scene, std::span<const SplatError> errors = {}, std::size_t against = 0,
              const Progress& progress = {});
     // How many splats each level has so far.
     [[nodiscard]] const std::vector<std::uint64_t>& counts() const { return counts_; }
-    // A place on the disk that goes with the writer: a folder that is not there yet.
+    // A path for scratch files that goes with the writer: a folder that does not exist yet.
     [[nodiscard]] std::filesystem::path scratchFolder() const { return part_ / "scratch"; }
-    // No scratch folder may be left.
+    // Scratch folders must be gone by then.
     void finish();
 
 private:
-    // Where a leaf's splats of a level are, and what they are off by.
+    // Where a leaf's splats of a level are, and how far they are off.
     struct Part {
         std::size_t level = 0, file = 0, offset = 0, count = 0, against = 0;
         SplatError error;
     };
     struct Node {
         glm::vec3 low{0.0f}, high{0.0f};  // of what its splats reach, at all levels
-        int axis = -1;                    // of a leaf -1; else splats at `cut` or beyond it go to the second child
+        int axis = -1;                    // -1 for a leaf; otherwise splats at or beyond `cut` go to the second child
         float cut = 0.0f;
         std::uint32_t first = 0, second = 0;  // children
         std::uint64_t splats = 0;             // of the finest level

@@ -30,9 +30,9 @@ public:
     ZipArchive(std::string path, std::string expected, Open open);
     ~ZipArchive();
 
-    // Of all entries, folders among them, in the archive's order. Throws Error if it is no whole archive.
+    // Of all entries, including folders, in the archive's order. Throws Error if it is not a whole archive.
     [[nodiscard]] std::vector<std::string> names() const;
-    // Throws Error if there is none of that name, or it is encrypted.
+    // Throws Error if there is no such entry, or if it is encrypted.
     [[nodiscard]] Entry find(const std::string& name) const;
     // Until it is needed again.
     void close();
@@ -43,7 +43,7 @@ private:
     std::unique_ptr<State> state_;
 };
 
-// An entry from front to back; its archive stays open meanwhile.
+// An entry read from front to back; its archive stays open meanwhile.
 class ZipReader {
 public:
     ZipReader(const ZipArchive& archive, const ZipArchive::Entry& entry);
@@ -51,8 +51,8 @@ public:
     ZipReader(const ZipReader&) = delete;
     ZipReader& operator=(const ZipReader&) = delete;
 
-    // Fills `target` as far as the entry goes and returns how many bytes it gave. Throws Error if the entry is broken; its checksum is
-    // compared where it ends.
+    // Fills `target` as far as the entry goes and returns how many bytes it gave. Throws Error if the entry
+    // is broken; its checksum is compared at the end.
     std::size_t read(std::span<std::byte> target);
 
 private:

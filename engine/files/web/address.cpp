@@ -1,4 +1,4 @@
-// By hand, since little of the standard is needed and a name must not lead out of its folder.
+// Written by hand, since little of the standard is needed and a name must not lead out of its folder.
 #include "engine/files/web/address.h"
 
 #include "engine/address.h"
@@ -61,7 +61,7 @@ Address parseAddress(const std::string& source) {
     check(isAddress(source) && source.size() <= kLongest, "{}: not an http or https address of at most {} bytes", source.substr(0, 200),
           kLongest);
     Address address;
-    // Characters that are allowed in an address stay as they are, a percent sign, too.
+    // Characters that are allowed in an address stay as they are, including a percent sign.
     address.text = encoded(std::string_view(source).substr(0, source.find('#')), "-._~:/?[]@!$&'()*+,;=%");
     const std::size_t host = address.text.find("//") + 2, host_end = std::min(address.text.find_first_of("/?", host), address.text.size());
     const std::string_view authority = std::string_view(address.text).substr(host, host_end - host);

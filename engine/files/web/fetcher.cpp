@@ -1,4 +1,5 @@
-// One thread that runs curl's transfers; connections are kept between them, and shared where servers allow it (HTTP/2).
+// One thread that runs curl's transfers; connections are kept between them, and shared if servers allow it
+// (HTTP/2).
 #include "engine/files/web/fetcher.h"
 
 #include "engine/error.h"
@@ -26,7 +27,7 @@ struct CurlLibrary {
     static void require() { static const CurlLibrary library; }
 };
 
-// How often stalled servers are looked for, at most.
+// The shortest time between two checks for stalled servers.
 constexpr std::chrono::milliseconds kWatch(100), kIdle(10000);
 
 }  // namespace
@@ -88,7 +89,7 @@ private:
         }
     }
 
-    // False if nobody waits any more.
+    // False if nobody is waiting any more.
     bool takeAsked() {
         const std::lock_guard lock(mutex_);
         std::ranges::move(asked_, std::back_inserter(waiting_));
@@ -114,13 +115,13 @@ private:
         const auto found = std::ranges::find(running_, handle, [](const auto& transfer) { return transfer->handle(); });
         std::unique_ptr<Transfer> transfer = std::move(*found);
         running_.erase(found);
-        // Judged before it is removed, which closes the connection of an interrupted one.
+        // It is judged before it is removed, which closes the connection of an interrupted one.
         const bool is_over = transfer->finish(code, is_stalled);
         curl_multi_remove_handle(multi_.get(), handle);
         if (!is_over) { waiting_.push_back(std::move(transfer)); }
     }
 
-    // Milliseconds until something is due; curl itself wakes up for incoming data, and for its own timers.
+    // Milliseconds until something is due; incoming data, and curl's own timers, wake curl anyway.
     [[nodiscard]] int untilNext() const {
         auto pause = running_.empty() ? kIdle : std::min(kWatch, settings_.patience);
         const Transfer::Clock::time_point now = Transfer::Clock::now();
@@ -136,7 +137,7 @@ private:
     const FetchSettings settings_;
     FetchTally tally_;
     std::unique_ptr<CURLM, CurlCloser<curl_multi_cleanup>> multi_;
-    Transfers waiting_, running_;  // the thread's own
+    Transfers waiting_, running_;  // for the thread alone
 
     std::mutex mutex_;
     Transfers asked_;

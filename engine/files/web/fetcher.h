@@ -1,4 +1,5 @@
-// Fetches files from the web, several at once, on a thread of its own. A build without libcurl has none: no_fetcher.cpp.
+// Fetches files from the web, several at once, on a thread of its own. A build without libcurl has none:
+// no_fetcher.cpp.
 #pragma once
 
 #include "engine/files/web/address.h"
@@ -15,46 +16,47 @@ namespace binosplat {
 
 struct FetchSettings {
     using Milliseconds = std::chrono::milliseconds;
-    std::uint64_t most_bytes = std::uint64_t{64} << 30;  // of one file
-    std::uint64_t cache_bytes = 0;                       // that the whole cache may have; 0: nothing is kept, and this is no bound
+    std::uint64_t most_bytes = std::uint64_t{64} << 30;  // for one file
+    std::uint64_t cache_bytes = 0;                       // the most for the whole cache; 0: nothing is kept, and there is no limit
     int attempts = 4;
     Milliseconds first_pause{500};   // before the second attempt, then doubled each time
-    Milliseconds most_pause{20000};  // that a server may ask for
+    Milliseconds most_pause{20000};  // the longest that a server may ask for
     Milliseconds patience{20000};    // with a server that sends next to nothing
     std::size_t at_once = 8;
-    std::function<bool(const std::string& ip)> is_private = isPrivateAddress;  // a server's address; no redirect leads there from others
+    std::function<bool(const std::string& ip)> is_private =
+        isPrivateAddress;  // by a server's address; redirects from public ones must not lead there
 };
 
 struct FetchRequest {
     std::string address;
-    FileVersion version;  // of the copy that is there already; empty: none
+    FileVersion version;  // of the existing copy; empty: none
     std::uint64_t most_bytes = 0;
 };
 
 struct Fetched {
     enum class Kind {
         kNew,          // the whole file
-        kUnchanged,    // the existing copy is still the file
-        kUnreachable,  // no server answers, or it cannot serve anybody at present
-        kRefused,      // there is no such file, or none that may be taken
+        kUnchanged,    // the existing copy is still current
+        kUnreachable,  // no server answers, or it cannot serve anyone at present
+        kRefused,      // there is no such file, or it may not be taken
     };
     Kind kind = Kind::kRefused;
-    std::string reason;  // for the last two: what is wrong and what to do, after the address
+    std::string reason;  // for the last two: what is wrong and what to do, to follow the address
     std::unique_ptr<IncomingFile> file{};
     FileVersion version{};
 };
 
 class Fetcher {
 public:
-    // `cache` outlives it. Throws Error in a build without network.
+    // `cache` outlives it. Throws Error in a build without network access.
     Fetcher(const WebCache& cache, const FetchSettings& settings);
     Fetcher(const Fetcher&) = delete;
     Fetcher& operator=(const Fetcher&) = delete;
-    ~Fetcher();  // gives up what is on its way
+    ~Fetcher();  // abandons what is on its way
 
     [[nodiscard]] std::future<Fetched> request(FetchRequest request);
 
-    // Of everything requested so far, as far as the servers have said how much it is.
+    // For everything requested so far, as far as servers have stated sizes.
     [[nodiscard]] double share() const;
 
 private:

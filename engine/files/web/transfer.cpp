@@ -1,4 +1,4 @@
-// Requests to curl, and the meaning of its verdicts.
+// Requests to curl, and what its results mean.
 #include "engine/files/web/transfer.h"
 
 #include "engine/address.h"
@@ -20,7 +20,7 @@ namespace {
 constexpr long kMostRedirects = 5;
 constexpr long kBufferBytes = 1 << 18;
 constexpr std::uint64_t kLongestErrorPage = 1 << 16;
-// Fewer bytes than this while a server's patience lasts count as none.
+// Fewer bytes than this within the time limit count as none.
 constexpr std::uint64_t kLeastBytes = 1024;
 constexpr std::size_t kLongestVersion = 256;
 constexpr long kOk = 200, kPartial = 206, kNoSuchRange = 416;
@@ -61,7 +61,8 @@ Transfer::Transfer(const WebCache& cache, const FetchSettings& settings, FetchTa
     : cache_(cache), settings_(settings), tally_(tally), request_(std::move(request)), easy_(curl_easy_init()) {
     if (easy_ == nullptr) { throw std::bad_alloc(); }
     const auto set = [&](CURLoption option, auto value) { curl_easy_setopt(easy_.get(), option, value); };
-    // Never followed: redirects to a file of this machine, and from a secure address to an insecure one.
+    // Redirects that are never followed: to a file of this machine, and from a secure address to an insecure
+    // one.
     const bool is_secure = request_.address.substr(0, 5).find_first_of("sS") != std::string::npos;
     set(CURLOPT_URL, request_.address.c_str());
     set(CURLOPT_PROTOCOLS_STR, "http,https");
@@ -102,7 +103,7 @@ void Transfer::setHeaders() {
         (void)headers.release();
         headers.reset(longer);
     };
-    // Whole files are asked for as they are, but some servers hold packed ones and send no others.
+    // Files are requested whole and as they are, but some servers only have packed ones.
     add("Accept-Encoding", "identity");
     curl_easy_setopt(easy_.get(), CURLOPT_ACCEPT_ENCODING, is_unpacked_ ? "gzip, deflate" : nullptr);
     if (kept_bytes_ == 0) {
@@ -116,8 +117,8 @@ void Transfer::setHeaders() {
     headers_ = std::move(headers);
 }
 
-// Of the server that is asked, where curl is connected to `ip`; empty if that is a proxy's, which alone knows it. A proxy on the very port
-// of the server is taken for the server.
+// The address of the server, to which curl is connected as `ip`; empty if that is a proxy's, since only the
+// proxy knows it. A proxy on the server's very port is taken for the server.
 std::string Transfer::ipOfServer(const std::string& ip, int port) const {
     char* text = nullptr;
     curl_easy_getinfo(easy_.get(), CURLINFO_EFFECTIVE_URL, &text);
@@ -141,7 +142,7 @@ std::string Transfer::ipOfServer(const std::string& ip, int port) const {
     return part(CURLUPART_PORT) == std::to_string(port) ? ip : "";
 }
 
-// A scene from a public server must not make us ask those that only this machine, or its network, can reach.
+// A scene from a public server must not make us ask servers that only this machine or its network can reach.
 int Transfer::checkServer(void* transfer, char* ip, char*, int port, int) {
     auto& self = *static_cast<Transfer*>(transfer);
     try {
@@ -176,7 +177,7 @@ std::size_t Transfer::take(const char* data, std::size_t bytes) {
             if (!isTheRest()) { return 0; }
         } else if (answer != kOk) {
             return got_bytes_ - kept_bytes_ <= kLongestErrorPage ? bytes : 0;
-        } else if (kept_bytes_ > 0) {  // another version, or a server that sends whole files only
+        } else if (kept_bytes_ > 0) {  // another version, or a server that only sends whole files
             startOver();
             got_bytes_ = bytes;
         }
@@ -295,7 +296,8 @@ bool Transfer::saysLength() const {
     return length >= 0 || http >= CURL_HTTP_VERSION_2_0 || !header("Transfer-Encoding").empty();
 }
 
-// Nothing if the server does not say where the file ends: a truncated one would be taken for whole forever.
+// Refused if the server does not say where the file ends: a truncated file would be taken for a whole one
+// forever.
 FileVersion Transfer::versionSent() const {
     if (!saysLength()) { return {}; }
     FileVersion version{header("ETag"), header("Last-Modified")};
@@ -305,8 +307,8 @@ FileVersion Transfer::versionSent() const {
 }
 
 bool Transfer::finish(CURLcode code, bool is_stalled) {
-    // Some servers name what is no packing (UTF-8, aws-chunked), or one that they have not done: asked once more, for the bytes as they
-    // come.
+    // Some servers state an encoding that is none (UTF-8, aws-chunked), or one that they did not apply: ask
+    // again, and take the bytes as they come.
     if (code == CURLE_BAD_CONTENT_ENCODING && got_bytes_ == kept_bytes_ && std::exchange(is_unpacked_, false)) {
         --attempts_;
         return false;
@@ -325,11 +327,11 @@ bool Transfer::finish(CURLcode code, bool is_stalled) {
 std::optional<Fetched> Transfer::judge(CURLcode code, bool is_stalled) {
     using Kind = Fetched::Kind;
     const long answer = status();
-    // An answer that curl takes for whole, but that ended before it began.
+    // An answer that curl considers complete, but that ended before it began.
     if (code == CURLE_OK && answer == kOk && (file_ == nullptr || kept_bytes_ > 0) && !saysLength()) { code = CURLE_GOT_NOTHING; }
     if (!refused_.empty()) { return Fetched{Kind::kRefused, refused_}; }
     const bool is_rest = answer == kPartial && kept_bytes_ > 0 && isTheRest();
-    // A resumed file is as long as the server said of the whole, whatever it says of the rest.
+    // A resumed file is as long as the server first said, whatever it says about the rest.
     if (code == CURLE_OK && is_rest && file_->sizeBytes() != (is_sized_ ? expected_bytes_ : contentRange()->total)) {
         code = CURLE_PARTIAL_FILE;
     }

@@ -1,5 +1,6 @@
-// One request to a server, as often as it takes. A file that broke off is resumed where it ended, if the server says which version of it
-// that was (a strong ETag, RFC 9110, section 8.8.3) and sends the rest of the same; else it starts over.
+// One request to a server, repeated as often as necessary. A file that broke off is resumed where it ended,
+// if the server says which version it was (a strong ETag, RFC 9110, section 8.8.3) and sends the rest of the
+// same version; otherwise it starts over.
 #pragma once
 
 #include "engine/files/web/fetcher.h"
@@ -14,20 +15,20 @@
 
 namespace binosplat {
 
-// Gives back what curl made.
+// Releases what curl made.
 template <auto kClose>
 struct CurlCloser {
     void operator()(auto* made) const { kClose(made); }
 };
 
-// Of all transfers together: bytes that came and bytes to come.
+// For all transfers together: bytes that have come and bytes to come.
 struct FetchTally {
     std::atomic<std::uint64_t> got_bytes = 0, expected_bytes = 0;
     std::atomic<std::size_t> asked = 0, sized = 0;  // files, and those of known length
-    std::optional<bool> began_private;  // whether the first server that was asked is on a private network; curl's thread alone has it
+    std::optional<bool> began_private;              // whether the first server is on a private network; only curl's thread uses it
 };
 
-// Stays where it is: curl has its address.
+// Must not move: curl has its address.
 class Transfer {
 public:
     using Clock = std::chrono::steady_clock;
@@ -42,9 +43,10 @@ public:
 
     // Before it is given to curl.
     void start();
-    // True if too little came for too long.
+    // True if too little has come for too long.
     [[nodiscard]] bool isStalled();
-    // With curl's verdict, or as stalled. True if it is over; otherwise it is to be started again when it is due.
+    // With curl's result, or as stalled. True if it is over; otherwise it is to be started again when it is
+    // due.
     [[nodiscard]] bool finish(CURLcode code, bool is_stalled = false);
 
 private:
@@ -52,18 +54,19 @@ private:
     static std::size_t writeBody(char* data, std::size_t size, std::size_t count, void* transfer);
     [[nodiscard]] std::string ipOfServer(const std::string& ip, int port) const;
     std::size_t take(const char* data, std::size_t bytes);
-    // False, with the reason, if the body is not to be had.
+    // False, with the reason, if the body cannot be used.
     [[nodiscard]] bool beginBody();
     struct ContentRange {
         std::uint64_t first = 0, total = 0;
     };
     [[nodiscard]] std::optional<ContentRange> contentRange() const;
-    // True if the answer (206) is the rest of what is there.
+    // True if the answer (206) is the rest of the existing bytes.
     [[nodiscard]] bool isTheRest() const;
-    // The rest was requested, and the answer says that it cannot be had that way.
+    // The rest was requested, and the answer says that the server cannot provide it.
     [[nodiscard]] bool isNoRest() const;
     [[nodiscard]] bool canGoOn() const;
-    // True if the body is packed on its way: lengths and places that the server tells are not those of the file.
+    // True if the body is packed on its way: the lengths and places that the server states are then not the
+    // file's.
     [[nodiscard]] bool isEncoded() const;
     [[nodiscard]] bool exceedsCache(std::uint64_t bytes) const;
     [[nodiscard]] std::string cacheLimit() const;
@@ -73,7 +76,7 @@ private:
     // True if the answer says how long the body is, or where it ends.
     [[nodiscard]] bool saysLength() const;
     [[nodiscard]] FileVersion versionSent() const;
-    // None: another attempt may do.
+    // Empty: another attempt may succeed.
     [[nodiscard]] std::optional<Fetched> judge(CURLcode code, bool is_stalled);
     [[nodiscard]] std::string describe(CURLcode code, bool is_stalled) const;
     void startOver();
@@ -87,19 +90,20 @@ private:
     std::unique_ptr<curl_slist, CurlCloser<curl_slist_free_all>> headers_;
     std::array<char, CURL_ERROR_SIZE> error_{};
 
-    // An attempt that brought this much, and whose rest can be asked for, does not count: large files may break off often.
+    // An attempt that brought this much, and whose rest can be requested, does not count: large files may
+    // break off often.
     static constexpr std::uint64_t kWorthwhileBytes = 1 << 20;
-    int attempts_ = 0;                                   // since one that was worthwhile
-    std::uint64_t worthwhile_bytes_ = kWorthwhileBytes;  // this much of the file makes the next one that; it never falls, or a server whose
-                                                         // file is always another one would be asked forever
+    int attempts_ = 0;                                   // since the last one that does not count
+    std::uint64_t worthwhile_bytes_ = kWorthwhileBytes;  // with this much of the file, the next one does not count; it never falls, or a
+                                                         // server whose file is always a different one would be asked forever
     Clock::time_point due_{}, watched_since_{};
     std::uint64_t got_bytes_ = 0, watched_bytes_ = 0, expected_bytes_ = 0;
-    bool is_sized_ = false;    // the server has said how long it is
-    bool is_unpacked_ = true;  // as Content-Encoding says
+    bool is_sized_ = false;    // the server has stated its length
+    bool is_unpacked_ = true;  // according to Content-Encoding
     std::unique_ptr<IncomingFile> file_;
     FileVersion version_;           // of the bytes in file_
-    std::uint64_t kept_bytes_ = 0;  // of them, those from earlier attempts; more than 0: the rest was asked for
-    std::string refused_;           // why the body was not taken
+    std::uint64_t kept_bytes_ = 0;  // how many are from earlier attempts; more than 0: only the rest was requested
+    std::string refused_;           // why the body was not used
 };
 
 }  // namespace binosplat

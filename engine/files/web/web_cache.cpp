@@ -21,10 +21,10 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t kLongestNote = 1 << 16;
 constexpr int kMostNames = 1000;
-// A file that is no copy, and that nothing was written to for this long, is no longer on its way.
+// A file that is not a copy, and has not been written to for this long, is no longer on its way.
 constexpr std::chrono::hours kOnItsWay(1);
 
-// FNV-1a. Two addresses with the same one would only replace each other: the note names the address.
+// FNV-1a. Two addresses with the same one merely replace each other, because the note names the address.
 std::string fingerprint(const std::string& text) {
     std::uint64_t hash = 0xcbf29ce484222325u;
     for (const char letter : text) { hash = (hash ^ static_cast<std::uint8_t>(letter)) * 0x100000001b3u; }
@@ -40,7 +40,7 @@ struct Note {
 
 constexpr const char *kNote = ".json", *kData = ".data";
 
-// None if it is not there or is not whole.
+// Empty if it does not exist or is not whole.
 std::optional<Note> readNote(const fs::path& path) {
     std::string reason;
     const File file = openRegularFile(path, reason);
@@ -57,7 +57,7 @@ std::optional<Note> readNote(const fs::path& path) {
     } catch (const nlohmann::json::exception&) { return std::nullopt; }
 }
 
-// None if there is no such file.
+// Empty if there is no such file.
 std::optional<FileStamp> stampOf(const fs::path& path) {
     std::string reason;
     const File file = openRegularFile(path, reason);
@@ -158,7 +158,8 @@ void WebCache::trim(std::uint64_t most_bytes) const noexcept {
                 total_bytes += copies.back().bytes;
                 continue;
             }
-            // Bytes come before their note, and a note that has lost its bytes gets no others.
+            // Bytes are put in place before their note, and a note that has lost its bytes does not get
+            // others.
             const bool is_copy = path.extension() == kData && fs::exists(note, error);
             const bool is_on_its_way = path.extension() != kNote && used > fs::file_time_type::clock::now() - kOnItsWay;
             if (!is_copy && !is_on_its_way) { fs::remove(path, error); }

@@ -1,6 +1,6 @@
-// Fetched files, kept on the disk for the next time: for each address a file of its bytes, and a note (JSON) of whose they are.
-// Several programs may use one folder: bytes are written under a name that nobody else has and put in place in one step, as are notes, and
-// a note that was written for other bytes is ignored.
+// Fetched files, kept on the disk for the next time: for each address a file with its bytes, and a note
+// (JSON) that says whose they are. Several programs may use one folder: bytes and notes are written under a
+// unique name and put in place in one step, and a note that was written for other bytes is ignored.
 #pragma once
 
 #include "engine/disk_room.h"
@@ -14,7 +14,7 @@
 
 namespace binosplat {
 
-// A file on its way into the cache: removed again unless it is kept.
+// A file on its way into the cache: it is removed again unless it is kept.
 class IncomingFile {
 public:
     IncomingFile(std::filesystem::path path, File file);
@@ -22,9 +22,9 @@ public:
     IncomingFile& operator=(const IncomingFile&) = delete;
     ~IncomingFile();
 
-    // False if the disk has no room for them.
+    // False if the disk is too full for them.
     [[nodiscard]] bool write(const char* data, std::size_t bytes);
-    // How much may be written in all, so that the disk keeps some free space.
+    // How much may be written in all, to leave some of the disk free.
     [[nodiscard]] std::uint64_t roomBytes() const { return room_.bytes(); }
     [[nodiscard]] std::uint64_t sizeBytes() const { return size_bytes_; }
 
@@ -37,7 +37,7 @@ private:
     bool is_kept_ = false;
 };
 
-// A server's description of a version of a file, to ask it whether there is a newer one.
+// A server's description of a version of a file, with which to ask whether there is a newer one.
 struct FileVersion {
     std::string etag, last_modified;
 };
@@ -50,17 +50,17 @@ struct KeptCopy {
 
 class WebCache {
 public:
-    // Makes the folder if it is not there.
+    // Makes the folder if it does not exist.
     explicit WebCache(std::filesystem::path folder);
 
-    // Null, with the reason in errno, if no file can be made. By any thread.
+    // Null, with the reason in errno, if no file can be made. Any thread.
     [[nodiscard]] std::unique_ptr<IncomingFile> begin(const std::string& address) const;
-    // Replaces the copy that was kept of it. Throws Error if it cannot be written to the disk.
+    // Replaces the copy of it. Throws Error if it cannot be written to the disk.
     void keep(const std::string& address, std::unique_ptr<IncomingFile> file, const FileVersion& version) const;
     // Counts as a use.
     [[nodiscard]] std::optional<KeptCopy> find(const std::string& address) const;
-    // Removes copies until those left have `most_bytes` at most, the least recently used first, and leftovers of programs that broke
-    // off. What cannot be removed stays.
+    // Removes copies, the least recently used first, until at most `most_bytes` are left, and leftovers of
+    // programs that broke off. What cannot be removed stays.
     void trim(std::uint64_t most_bytes) const noexcept;
 
 private:

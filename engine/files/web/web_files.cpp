@@ -1,4 +1,4 @@
-// Copies, validators and servers that are gone.
+// Copies, validators, and servers that do not answer.
 #include "engine/files/web/web_files.h"
 
 #include "engine/address.h"
@@ -18,10 +18,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// The share of the whole that fetching takes; the rest is reading.
+// The share of the whole time that fetching takes; the rest is reading.
 constexpr double kFetchingShare = 0.7;
 constexpr std::chrono::milliseconds kLook(50);
-// Another program may remove what was just fetched, but hardly time and again.
+// Another program may remove what was just fetched, but hardly again and again.
 constexpr int kMostTurns = 3;
 
 std::string dateOf(std::int64_t seconds) { return fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(static_cast<std::time_t>(seconds))); }
@@ -98,7 +98,7 @@ std::unique_ptr<InputFile> WebFiles::open(const std::string& name, std::uint64_t
         try {
             if (copy) { return std::make_unique<InputFile>(copy->path, address, *this); }
         } catch (const Error&) {
-            // Whoever threw it out may have put it back meanwhile.
+            // Another program may have put it back meanwhile.
             std::error_code error;
             if (turn + 1 == kMostTurns && fs::exists(copy->path, error)) { throw; }
         }

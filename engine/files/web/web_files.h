@@ -1,4 +1,4 @@
-// The files of a scene on the web: kept copies that have not changed there, and otherwise what the server sends.
+// The files of a scene on the web: kept copies that are still current, and otherwise what the server sends.
 #pragma once
 
 #include "engine/files/load_scene.h"
@@ -18,19 +18,22 @@
 namespace binosplat {
 
 struct WebSettings {
-    std::filesystem::path cache_folder;  // empty: nothing is kept beyond the run
+    std::filesystem::path cache_folder;  // empty: nothing is kept after the run
     std::uint64_t cache_bytes = std::uint64_t{4} << 30;
     FetchSettings fetch;
 };
 
-// Where scenes from the web are kept: web/ in the program's folder in the user's folder of caches; empty if there is none.
+// Where scenes from the web are kept: web/ in the program's folder in the user's cache folder; empty if there
+// is none.
 std::filesystem::path webCacheFolder();
 
-// For one thread. Files of the cache stay while it lives, unless another program needs the room; then they are fetched again.
+// For one thread. Files of the cache stay while it exists, unless another program needs the space; then they
+// are fetched again.
 class WebFiles final : public SceneFiles {
 public:
-    // `waiting` is called now and then while a file is waited for, with the share done of everything requested; it may throw. Throws
-    // Error if `address` is none, in a build without network, and if the cache cannot be written.
+    // `waiting` is called now and then while waiting for a file, with the share of all requests that is done;
+    // it may throw. Throws Error if `address` is not an address, in a build without network access, and if
+    // the cache cannot be written.
     WebFiles(const std::string& address, const WebSettings& settings, Progress waiting = {});
     WebFiles(const WebFiles&) = delete;
     WebFiles& operator=(const WebFiles&) = delete;
@@ -40,14 +43,14 @@ public:
     void expect(const std::vector<std::string>& names, std::uint64_t most_bytes = kAnyLength) override;
     std::string place(const std::string& name) const override { return addressOf(address_, name); }
 
-    // A sentence if a server did not answer and copies were taken for its files; else empty.
+    // A sentence if a server did not answer and copies were used for its files; otherwise empty.
     [[nodiscard]] const std::string& stale() const { return stale_; }
-    // How many files could not be had so far: they may be had later.
+    // How many files could not be fetched so far; later they may be.
     [[nodiscard]] std::uint64_t failedCount() const { return failed_count_; }
 
 private:
     void ask(const std::string& address, std::uint64_t most_bytes);
-    // Until there is a copy in the cache, or not. Throws Error if there is none.
+    // Waits until there is a copy in the cache, or there will not be. Throws Error if there is none.
     void settle(const std::string& address);
 
     Address address_;
@@ -60,11 +63,11 @@ private:
     std::set<std::string> settled_;
     std::string stale_;
     std::uint64_t failed_count_ = 0;
-    bool is_unreachable_ = false;  // kept copies are taken as they are
+    bool is_unreachable_ = false;  // kept copies are used as they are
     Fetcher fetcher_;              // destroyed first
 };
 
-// Loads `source`, which is an address or whatever loadScene takes.
+// Loads `source`, which is an address or anything that loadScene takes.
 Scene loadSceneFromAnywhere(const std::string& source, std::uint64_t builtin_splats, LoadNotes& notes, const Progress& progress,
                             const LevelChoice& level, const WebSettings& settings);
 
