@@ -1,4 +1,4 @@
-// Allocating buffers, and keeping the count of device memory.
+// Allocates buffers, and counts device memory.
 #include "engine/gpu/buffer.h"
 
 #include "engine/gpu/device_error.h"
@@ -9,7 +9,7 @@ namespace binosplat {
 
 namespace {
 
-// From the first of the types whose heap has as much left.
+// From the first of these types whose heap has that much left.
 vk::raii::DeviceMemory allocate(const Context& context, const vk::MemoryRequirements& needs, const std::vector<std::uint32_t>& types,
                                 bool has_address) {
     const vk::MemoryAllocateFlagsInfo flags(vk::MemoryAllocateFlagBits::eDeviceAddress);

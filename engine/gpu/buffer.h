@@ -1,4 +1,4 @@
-// Device memory: one allocation per buffer, known by its address.
+// Device memory: one allocation per buffer, identified by its address.
 #pragma once
 
 #include "engine/gpu/context.h"

@@ -34,7 +34,7 @@ Commands::Commands(const Context& context, Level level) : context_(context), lev
 
 Commands::~Commands() {
     if (!under_way_ || level_ == Level::kSecondary) { return; }
-    // A lost device has nothing under way any more.
+    // A lost device has nothing left to finish.
     const vk::Fence fence = *fence_;
     (void)context_.device().getDispatcher()->vkWaitForFences(*context_.device(), 1, reinterpret_cast<const VkFence*>(&fence), VK_TRUE,
                                                              UINT64_MAX);
@@ -43,7 +43,7 @@ Commands::~Commands() {
 void Commands::begin(bool times_passes) {
     assert(!under_way_);
     times_passes_ = times_passes;
-    in_pass_ = beside_ = staged_ = false;  // of what was dropped
+    in_pass_ = beside_ = staged_ = false;  // from the dropped recording
     passes_.clear();
     timestamp_count_ = 0;
     count_ = 0;
@@ -129,7 +129,7 @@ const Buffer& Commands::staging(std::uint64_t bytes) {
     staged_ = true;
     if (staging_.bytes() < bytes) {
         staging_ = {};
-        constexpr std::uint64_t kStep = 1 << 20;  // so that it seldom grows
+        constexpr std::uint64_t kStep = 1 << 20;  // large, so that it seldom grows
         const std::uint64_t rounded = std::min((bytes + kStep - 1) / kStep * kStep, std::max(bytes, context_.maxAllocationBytes()));
         staging_ = Buffer(context_, "staging", rounded, MemoryKind::kUpload);
     }
@@ -208,7 +208,7 @@ void Commands::wait() {
     const auto [status, ticks] =
         timestamps_.getResults<std::uint64_t>(0, timestamp_count_, timestamp_count_ * sizeof(std::uint64_t), sizeof(std::uint64_t),
                                               level_ == Level::kPrimary ? Flag::e64 | Flag::eWait : Flag::e64);
-    if (status == vk::Result::eNotReady) { return; }  // whoever submits said so too early
+    if (status == vk::Result::eNotReady) { return; }  // the caller said too early that it was done
     check(status == vk::Result::eSuccess, "{}: no timestamps: {}", context_.deviceName(), vk::to_string(status));
     const std::uint64_t mask = context_.timestampMask();
     const double ms_per_tick = context_.timestampPeriodNs() * 1e-6;

@@ -1,4 +1,4 @@
-// Recording a frame: one runner writes label, timestamps and barriers for every pass.
+// Records a frame: one place writes labels, timestamps and barriers for every pass.
 #pragma once
 
 #include "engine/gpu/buffer.h"
@@ -37,35 +37,36 @@ using PassTimes = std::vector<PassTime>;
 
 class Commands {
 public:
-    // kSecondary: a part of somebody else's commands, see lend.
+    // kSecondary: part of a program's own commands, see lend.
     enum class Level { kPrimary, kSecondary };
     explicit Commands(const Context& context, Level level = Level::kPrimary);
     Commands(const Commands&) = delete;
     Commands& operator=(const Commands&) = delete;
-    // Waits for what is under way.
+    // Waits for work in flight.
     ~Commands();
 
-    // begin, any of the recording calls, submit, wait; then totalMs() and, if `times_passes`, times() may be asked for, and begin again.
+    // Call begin, recording calls, submit, wait; then totalMs() and, if `times_passes`, times() are valid
+    // until the next begin.
     void begin(bool times_passes = true);
     // Everything up to the next beginPass counts as this pass.
     void beginPass(const PassLabel& label);
     void endPass();
 
-    // Each waits for everything recorded before it, unless this call says that it runs beside the one before: then neither may write
-    // what the other touches.
+    // Each waits for everything recorded before it, unless this call says that it runs beside the one before:
+    // then neither may write what the other touches.
     void beside() { beside_ = true; }
     template <typename Pass>
     void dispatch(const Kernel& kernel, const Pass& pass, std::uint32_t groups_x, std::uint32_t groups_y = 1, std::uint32_t groups_z = 1) {
         recordKernel(kernel, &pass, sizeof(Pass));
         command_buffer_.dispatch(groups_x, groups_y, groups_z);
     }
-    // As many workgroups as the size at `offset_bytes` into `sizes` says.
+    // As many workgroups as the size at `offset_bytes` in `sizes` says.
     template <typename Pass>
     void dispatchIndirect(const Kernel& kernel, const Pass& pass, const Buffer& sizes, std::uint64_t offset_bytes) {
         recordKernel(kernel, &pass, sizeof(Pass));
         command_buffer_.dispatchIndirect(sizes.handle(), offset_bytes);
     }
-    // `groups` workgroups in rows of equal length, as lib/list.glsl has it: fewer than there are rows are left over.
+    // `groups` workgroups in rows of equal length, as in lib/list.glsl: at most one row's worth does nothing.
     static vk::Extent2D rowsOf(std::uint32_t groups) {
         const std::uint32_t rows = (groups + gpu::kMaxGroupsX - 1) / gpu::kMaxGroupsX;
         return {(groups + rows - 1) / std::max(rows, 1u), rows};
@@ -79,29 +80,33 @@ public:
         dispatch(kernel, pass, rows.width, rows.height);
     }
     void fillZero(const Buffer& buffer);
-    // Little, carried by the command buffer itself.
+    // A few bytes, carried by the command buffer itself.
     void update(const Buffer& buffer, const void* data, std::uint64_t bytes, std::uint64_t to_offset = 0);
     void copy(const Buffer& from, const Buffer& to, std::uint64_t bytes, std::uint64_t from_offset = 0, std::uint64_t to_offset = 0);
     // The same for several parts, none of which may overlap.
     void copy(const Buffer& from, const Buffer& to, std::span<const vk::BufferCopy> parts);
-    // Memory for copies of this recording to read, of at least this many bytes: the host may write to it until submit, and it lives until
-    // begin is called again. Once per recording. Throws Error if there is not that much.
+    // Memory from which copies of this recording read, at least this many bytes: the host may write to it
+    // until submit, and it exists until the next begin. Once per recording. Throws Error if there is not
+    // enough memory.
     [[nodiscard]] const Buffer& staging(std::uint64_t bytes);
 
-    // A whole image from tightly packed rows, or in one colour. Its contents before do not matter; it is left as an attachment.
+    // A whole image from tightly packed rows, or in one colour. Its old content is lost; it is left as an
+    // attachment.
     void copyToImage(const Buffer& from, vk::Image image, glm::uvec2 size_px, vk::ImageAspectFlagBits aspect);
-    // Instead of submit: nothing of what was recorded is executed. Also after lend, if nobody submits that.
+    // Call this instead of submit to execute nothing of what was recorded; also after lend, if nobody submits
+    // that.
     void drop();
 
-    // Instead of submit, of the second level: what was recorded, for somebody's commands outside of render passes. Once the device is done
-    // with these, wait() does not wait, and measures.
+    // Call this instead of submit, for a secondary buffer: what was recorded, for a program's commands
+    // outside of render passes. Once the device has finished these, wait() returns at once, with the
+    // measurements.
     vk::CommandBuffer lend();
 
-    // The device starts; `signals`, if given, is signalled once it is done.
+    // Starts the device; `signals`, if given, is signalled at the end.
     void submit(vk::Semaphore signals = {});
-    // Waits until the device is done, if anything is under way.
+    // Waits for work in flight, if there is any.
     void wait();
-    // True once the device is done, for which it waits that long. The measurements are there after wait().
+    // True once the device is done; waits this long for it. The measurements are valid after wait().
     [[nodiscard]] bool isDone(std::uint64_t most_ns = 0) const;
     void submitAndWait() {
         submit();
@@ -109,10 +114,11 @@ public:
     }
     [[nodiscard]] bool isUnderWay() const { return under_way_; }
 
-    // For anything that is not a pass: pictures that leave for a headset or a window. Between begin and submit.
+    // For anything that is not a pass: pictures for a headset or a window. Between begin and submit.
     [[nodiscard]] const vk::raii::CommandBuffer& buffer() const { return command_buffer_; }
 
-    // Of the frame that wait() finished; empty if its passes were not timed, or the device has no timestamps.
+    // For the frame that wait() finished; empty if its passes were not timed, or the device has no
+    // timestamps.
     [[nodiscard]] const PassTimes& times() const { return times_; }
     [[nodiscard]] double totalMs() const { return total_ms_; }
     // Kernels, fills, updates and copies of buffers since begin.
@@ -129,7 +135,7 @@ private:
 
     const Context& context_;
     Level level_;
-    vk::raii::CommandPool pool_{nullptr};  // its own, so that threads may record at the same time
+    vk::raii::CommandPool pool_{nullptr};  // a pool of its own, so that threads may record at the same time
     vk::raii::CommandBuffer command_buffer_{nullptr};
     vk::raii::Fence fence_{nullptr};
     vk::raii::QueryPool timestamps_{nullptr};

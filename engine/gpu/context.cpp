@@ -1,4 +1,4 @@
-// Opening the Vulkan device.
+// Opens the Vulkan device.
 #include "engine/gpu/context.h"
 
 #include "engine/error.h"
@@ -27,7 +27,7 @@ VKAPI_ATTR VkBool32 VKAPI_CALL onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT,
     return VK_FALSE;
 }
 
-// The queue family that the frame runs on: compute, and graphics too if there is such a family (viewers draw with it).
+// The queue family for frames: one with compute, and graphics too if possible (viewers draw with it).
 std::optional<std::uint32_t> queueFamilyOf(const vk::raii::PhysicalDevice& device) {
     const auto families = device.getQueueFamilyProperties();
     std::optional<std::uint32_t> found;
@@ -131,11 +131,11 @@ void Context::createInstance(const ContextOptions& options, bool validation) {
         check(found, "BINOSPLAT_VALIDATION: {} is not installed (package vulkan-validationlayers)", kValidationLayer);
         layers.push_back(kValidationLayer);
     }
-    // Newer layers no longer have it: there a settings file or the environment says what is checked.
+    // Newer layers no longer have it: there a settings file or the environment selects the checks.
     const bool chooses_checks = validation && offersExtension(loader_->enumerateInstanceExtensionProperties(std::string(kValidationLayer)),
                                                               VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME);
     if (chooses_checks) { extensions.push_back(VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME); }
-    // The validation layer has it, too, if no driver does.
+    // The validation layer provides it, too, if no driver does.
     labels_ = validation || offersExtension(loader_->enumerateInstanceExtensionProperties(), VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
     if (labels_) { extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME); }
     const vk::ValidationFeatureEnableEXT synchronization = vk::ValidationFeatureEnableEXT::eSynchronizationValidation;
@@ -197,7 +197,8 @@ void Context::createDevice(const ContextOptions& options) {
     queue_family_ = queueFamilyOf(physical_device_).value();
     const float priority = 1.0f;
     const vk::DeviceQueueCreateInfo queue_info({}, queue_family_, 1, &priority);
-    // Not one struct for all of Vulkan 1.2: whoever makes the device may add structs of single features, which must not stand beside it.
+    // Not one struct for all of Vulkan 1.2: the maker of the device may add structs of single features, which
+    // must not appear beside it.
     vk::PhysicalDeviceScalarBlockLayoutFeatures scalar_layout(VK_TRUE);
     vk::PhysicalDeviceBufferDeviceAddressFeatures addresses(VK_TRUE);
     scalar_layout.pNext = &addresses;
@@ -214,7 +215,7 @@ void Context::createDevice(const ContextOptions& options) {
             device_extensions_.insert(wanted);
         }
     }
-    // What kernels ask for where it can be had, see lib/group.glsl.
+    // What kernels request if it is available, see lib/group.glsl.
     const auto enable = [&]<typename Features>(const char* extension, Features& its) {
         if (!hasDeviceExtension(extension)) { return; }
         its = physical_device_.getFeatures2<vk::PhysicalDeviceFeatures2, Features>().template get<Features>();
@@ -252,7 +253,7 @@ void Context::readLimits() {
             physical_device_.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceSubgroupSizeControlProperties>();
         min_subgroup_size_ = sizes.get<vk::PhysicalDeviceSubgroupSizeControlProperties>().minSubgroupSize;
         max_subgroup_size_ = sizes.get<vk::PhysicalDeviceSubgroupSizeControlProperties>().maxSubgroupSize;
-    } else {  // some drivers vary the size between 8 and 32 without saying so
+    } else {  // some drivers vary the size between 8 and 32 without reporting it
         min_subgroup_size_ = std::min(8u, subgroup_size_);
         max_subgroup_size_ = std::max(32u, subgroup_size_);
     }
@@ -275,7 +276,7 @@ std::span<const std::uint32_t> Context::shaderWords(std::string_view name) const
 vk::PipelineShaderStageCreateFlags Context::fullSubgroups(std::uint32_t local_size_x) const {
     using Flag = vk::PipelineShaderStageCreateFlagBits;
     if (!has_full_subgroups_ || local_size_x % max_subgroup_size_ != 0) { return {}; }
-    // Of any width: some devices otherwise take their widest, which is their slowest.
+    // Of any width: otherwise some devices choose their widest, which is their slowest.
     return min_subgroup_size_ == max_subgroup_size_ ? Flag::eRequireFullSubgroups
                                                     : Flag::eRequireFullSubgroups | Flag::eAllowVaryingSubgroupSize;
 }
@@ -303,7 +304,7 @@ std::uint64_t Context::deviceMemoryBytes() const {
 std::vector<std::uint32_t> Context::memoryTypes(std::uint32_t allowed_types, vk::MemoryPropertyFlags wanted,
                                                 vk::MemoryPropertyFlags preferred) const {
     using Flag = vk::MemoryPropertyFlagBits;
-    // These want a feature or a use of their own.
+    // These need a feature or a usage of their own.
     constexpr vk::MemoryPropertyFlags kSpecial =
         Flag::eProtected | Flag::eLazilyAllocated | Flag::eDeviceCoherentAMD | Flag::eDeviceUncachedAMD;
     const auto memory = physical_device_.getMemoryProperties();

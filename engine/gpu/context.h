@@ -1,4 +1,4 @@
-// The Vulkan device: chosen, opened, and what it can do. One queue; no descriptor sets anywhere.
+// The Vulkan device: choosing and opening it, and what it can do. One queue; no descriptor sets anywhere.
 #pragma once
 
 #include "engine/gpu/foreign_device.h"
@@ -19,7 +19,8 @@
 
 namespace binosplat {
 
-// Somebody else who creates the instance and the device and chooses the GPU: an OpenXR runtime. All three or none.
+// Creates the instance and the device and chooses the GPU in our place: an OpenXR runtime. All three
+// functions, or none.
 struct DeviceMaker {
     std::function<VkInstance(PFN_vkGetInstanceProcAddr, const VkInstanceCreateInfo&)> create_instance;
     std::function<VkPhysicalDevice(VkInstance)> choose_device;
@@ -29,13 +30,13 @@ struct DeviceMaker {
 struct ContextOptions {
     std::string device;       // index, or part of a name; empty: the first discrete GPU, or else the first device that will do
     bool validation = false;  // Khronos validation with synchronization checks; also BINOSPLAT_VALIDATION=1 in the environment
-    std::uint64_t max_allocation_bytes = 0;             // at most so many in one allocation; 0: what the device allows
-    std::uint64_t memory_limit_bytes = 0;               // at most so many in all buffers together; 0: what the device has
-    DeviceMaker maker = {};                             // instead of Vulkan itself; `device` is then without effect
-    const ForeignDevice* foreign = nullptr;             // instead of all of the others
-    std::vector<const char*> instance_extensions = {};  // in addition to those that the passes need; literals
-    std::vector<const char*> device_extensions = {};    // the same, but only those that the device has
-    void* device_features = nullptr;                    // more of these, too: a chain of feature structs
+    std::uint64_t max_allocation_bytes = 0;             // the most in one allocation; 0: what the device allows
+    std::uint64_t memory_limit_bytes = 0;               // the most in all buffers together; 0: what the device has
+    DeviceMaker maker = {};                             // in place of Vulkan itself; `device` then has no effect
+    const ForeignDevice* foreign = nullptr;             // in place of everything else
+    std::vector<const char*> instance_extensions = {};  // in addition to those that the passes need; must be literals
+    std::vector<const char*> device_extensions = {};    // likewise, but only those that the device has
+    void* device_features = nullptr;                    // also enable these: a chain of feature structs
 };
 
 // Shaders by name, as SPIR-V.
@@ -43,11 +44,12 @@ using ShaderWords = std::map<std::string, std::vector<std::uint32_t>, std::less<
 
 class Context {
 public:
-    // Throws Error with ExitCode::kNoDevice if there is no loader, no device, or none that has what the passes need.
+    // Throws Error with ExitCode::kNoDevice if there is no loader, no device, or none with what the passes
+    // need.
     explicit Context(const ContextOptions& options = {});
     Context(const Context&) = delete;
     Context& operator=(const Context&) = delete;
-    // Prints on stderr what the validation layers find only now, above all leaks.
+    // Prints to stderr what the validation layers find only now, above all leaks.
     ~Context();
 
     [[nodiscard]] const vk::raii::Instance& instance() const { return instance_; }
@@ -55,13 +57,13 @@ public:
     [[nodiscard]] const vk::raii::PhysicalDevice& physicalDevice() const { return physical_device_; }
     [[nodiscard]] const vk::raii::Queue& queue() const { return queue_; }
     [[nodiscard]] std::uint32_t queueFamily() const { return queue_family_; }
-    // To be held by whoever uses the queue, directly or through OpenXR: a second thread may be uploading a scene.
+    // Hold this while using the queue, directly or through OpenXR: another thread may be uploading a scene.
     [[nodiscard]] QueueMutex& queueMutex() const { return queue_mutex_; }
     [[nodiscard]] const std::string& deviceName() const { return device_name_; }
-    // True for a CPU implementation, not a GPU.
+    // True if it is a CPU implementation, not a GPU.
     [[nodiscard]] bool isSoftware() const { return is_software_; }
     [[nodiscard]] std::uint64_t maxAllocationBytes() const { return max_allocation_bytes_; }
-    // The device's own, in its largest heap.
+    // The device's own memory, in its largest heap.
     [[nodiscard]] std::uint64_t deviceMemoryBytes() const;
     // For memoryUse(); 0: none.
     [[nodiscard]] std::uint64_t memoryLimitBytes() const { return memory_limit_bytes_; }
@@ -72,32 +74,34 @@ public:
     [[nodiscard]] std::uint32_t subgroupSize() const { return subgroup_size_; }
     [[nodiscard]] std::uint32_t minSubgroupSize() const { return min_subgroup_size_; }
     [[nodiscard]] std::uint32_t maxSubgroupSize() const { return max_subgroup_size_; }
-    // What a kernel with workgroups of this width asks of the device: subgroups without idle lanes, where they can be had. 0: nothing.
+    // What a kernel with workgroups of this width requests from the device: subgroups without idle lanes, if
+    // possible. 0: nothing.
     [[nodiscard]] vk::PipelineShaderStageCreateFlags fullSubgroups(std::uint32_t local_size_x) const;
     // True if SPV_KHR_subgroup_uniform_control_flow may be used.
     [[nodiscard]] bool hasSubgroupUniformFlow() const { return has_subgroup_uniform_flow_; }
-    // For a workgroup that lies along x.
+    // For a workgroup that extends along x.
     [[nodiscard]] std::uint32_t maxGroupInvocations() const { return max_group_invocations_; }
     // Per workgroup, in bytes.
     [[nodiscard]] std::uint32_t sharedMemory() const { return shared_memory_; }
     [[nodiscard]] bool validates() const { return validates_; }
     // True if names and labels go into captures and messages: VK_EXT_debug_utils.
     [[nodiscard]] bool hasLabels() const { return labels_; }
-    // Throws Error if the validation layers said anything so far.
+    // Throws Error if the validation layers have reported anything so far.
     void requireNoValidationMessages() const;
     // The layers' messages so far; empty is good.
     [[nodiscard]] std::vector<std::string> validationMessages() const;
 
-    // The words of shaders/NAME.comp for kernels that are made from now on: its replacement, or those the program carries.
+    // The words of shaders/NAME.comp for kernels made from now on: a replacement, or the embedded ones.
     [[nodiscard]] std::span<const std::uint32_t> shaderWords(std::string_view name) const;
-    // For work on the shaders while the program runs; empty otherwise. Existing kernels stay as they are.
+    // For work on the shaders while the program runs; otherwise empty. Existing kernels stay as they are.
     [[nodiscard]] ShaderWords& replacedShaders() const { return replaced_shaders_; }
 
     [[nodiscard]] const vk::raii::PipelineCache& pipelineCache() const { return pipeline_cache_.handle(); }
 
     [[nodiscard]] MemoryUse& memoryUse() const { return memory_use_; }
     [[nodiscard]] FreedBuffers& freedBuffers() const { return freed_buffers_; }
-    // Those that will do, of a buffer's or an image's allowed ones; the preferred ones first. Throws Error if there are none.
+    // The suitable types among those allowed for a buffer or an image, preferred ones first. Throws Error if
+    // there are none.
     [[nodiscard]] std::vector<std::uint32_t> memoryTypes(std::uint32_t allowed_types, vk::MemoryPropertyFlags wanted,
                                                          vk::MemoryPropertyFlags preferred) const;
     [[nodiscard]] std::uint32_t memoryType(std::uint32_t allowed_types, vk::MemoryPropertyFlags wanted,
@@ -105,10 +109,11 @@ public:
         return memoryTypes(allowed_types, wanted, preferred).front();
     }
 
-    // True if a device extension was asked for and is there.
+    // True if a device extension was requested and is available.
     [[nodiscard]] bool hasDeviceExtension(const std::string& extension) const { return device_extensions_.contains(extension); }
 
-    // True if the driver reports statistics of kernels; only if VK_KHR_pipeline_executable_properties was asked for.
+    // True if the driver reports statistics of kernels; only if VK_KHR_pipeline_executable_properties was
+    // requested.
     [[nodiscard]] bool hasKernelStatistics() const { return kernel_statistics_; }
 
     // Gives a Vulkan object its name in validation messages and captures.

@@ -8,7 +8,7 @@
 
 namespace binosplat {
 
-// A lack of memory is the input's fault (exit code 1), anything else the device's (3).
+// Lack of memory is the input's fault (exit code 1), anything else the device's (3).
 class DeviceError : public Error {
 public:
     enum class Kind { kMemory, kLost, kOther };

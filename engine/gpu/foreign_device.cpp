@@ -1,4 +1,4 @@
-// Taking over a device that stays its owner's.
+// Uses a device that remains its owner's.
 #include "engine/gpu/context.h"
 
 #include "engine/error.h"
@@ -11,7 +11,7 @@ namespace {
 VKAPI_ATTR void VKAPI_CALL keepInstance(VkInstance, const VkAllocationCallbacks*) {}
 VKAPI_ATTR void VKAPI_CALL keepDevice(VkDevice, const VkAllocationCallbacks*) {}
 
-// What of it was enabled that kernels use.
+// Which of its enabled features kernels use.
 struct Enabled {
     bool addresses = false, scalar_layout = false, full_subgroups = false, uniform_flow = false;
 };
@@ -54,7 +54,7 @@ void Context::adopt(const ForeignDevice& foreign) {
                                 enabled.addresses ? "" : "bufferDeviceAddress", enabled.addresses || enabled.scalar_layout ? "" : " and ",
                                 enabled.scalar_layout ? "" : "scalarBlockLayout"));
     }
-    // They stay when these owners go.
+    // They remain when these owners go.
     instance_ = vk::raii::Instance(*loader_, foreign.instance);
     const_cast<vk::raii::InstanceDispatcher*>(instance_.getDispatcher())->vkDestroyInstance = keepInstance;
     physical_device_ = vk::raii::PhysicalDevice(instance_, foreign.physical_device);

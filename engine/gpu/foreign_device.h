@@ -1,4 +1,5 @@
-// A program's own Vulkan device, used as it is and left as it is; and a mutex that locks the program's own besides.
+// A program's own Vulkan device, used as it is and left as it is; and a mutex that also locks the program's
+// own.
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -40,7 +41,7 @@ struct ForeignDevice {
     VkQueue queue = VK_NULL_HANDLE;
     const void* enabled_features = nullptr;          // the chain of structs that the device was made with
     std::vector<std::string> enabled_extensions;     // the device's
-    std::function<void()> lock_queue, unlock_queue;  // around each use of the queue; or none
+    std::function<void()> lock_queue, unlock_queue;  // around each use of the queue; may be empty
 };
 
 }  // namespace binosplat

@@ -1,4 +1,4 @@
-// When what was freed goes.
+// When freed buffers are destroyed.
 #include "engine/gpu/freed_buffers.h"
 
 #include <utility>

@@ -1,4 +1,5 @@
-// Buffers that are freed while frames may use them that somebody else submits, so that nobody here could wait for these.
+// Buffers that are freed while frames may use them that the program submits, so that nothing here could wait
+// for those frames.
 #pragma once
 
 #include <atomic>
@@ -10,7 +11,7 @@
 
 namespace binosplat {
 
-// Bytes of device memory in use, and the most there ever were.
+// Bytes of device memory in use, and the most ever.
 struct MemoryUse {
     // Any thread may make and free buffers.
     std::atomic<std::uint64_t> current_bytes = 0, peak_bytes = 0;
@@ -27,9 +28,10 @@ public:
 
     explicit FreedBuffers(MemoryUse& use) : use_(use) {}
 
-    // From now on what is freed stays until the frame ends; its number, which is greater than those before.
+    // From now on freed buffers stay until the frame ends; returns its number, which is greater than earlier
+    // ones.
     [[nodiscard]] std::uint64_t beginFrame();
-    // The device is done with it, or will never get it.
+    // The device has finished the frame, or will never get it.
     void endFrame(std::uint64_t number);
     void take(Freed freed) noexcept;
 
@@ -40,7 +42,7 @@ private:
     std::mutex mutex_;
     std::uint64_t last_ = 0;
     std::set<std::uint64_t> under_way_;
-    std::vector<std::pair<std::uint64_t, Freed>> kept_;  // by the last frame that was begun
+    std::vector<std::pair<std::uint64_t, Freed>> kept_;  // with the number of the last frame begun before
 };
 
 }  // namespace binosplat

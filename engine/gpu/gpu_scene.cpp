@@ -1,4 +1,4 @@
-// Uploading a scene to the device.
+// Uploads a scene to the device.
 #include "engine/gpu/gpu_scene.h"
 
 #include "engine/error.h"
@@ -10,15 +10,15 @@
 namespace binosplat {
 namespace {
 
-// Splats that are packed and copied at a time: the upload buffer is at most 9 MiB.
+// Splats that are packed and copied at a time: the upload buffer has at most 9 MiB.
 constexpr std::uint32_t kUploadSplats = 65536;
 
-// Words of a chunk are then counted in less than 31 bits, see kMaxItems.
+// Words of a chunk can then be counted in less than 31 bits, see kMaxItems.
 constexpr std::uint64_t kMaxChunkBytes = std::uint64_t{4} << 30;
 
 constexpr auto kPageBits = static_cast<std::uint32_t>(std::countr_zero(gpu::kPageSplats));
 
-// The chunk's splats from the page's first on.
+// The chunk's splats, starting with the page's first.
 gpu::SceneChunk pageOf(const gpu::SceneChunk& chunk, std::uint64_t first, std::uint64_t sh_words) {
     gpu::SceneChunk page = chunk;
     page.positions = chunk.positions.at(first);
@@ -59,7 +59,7 @@ GpuScene::GpuScene(const Context& context, const Scene& scene, const Progress& p
         const ChunkLayout layout(room, traits_);
         const Buffer& buffer = buffers_.emplace_back(context, fmt::format("scene chunk {}", buffers_.size()), layout.bytes);
         table.push_back(layout.chunkAt(buffer, 0, 1.0f));
-        if (room > count) {  // the rest of the last page is never seen
+        if (room > count) {  // the rest of the last page is never visible
             commands.begin();
             commands.fillZero(buffer);
             commands.submitAndWait();

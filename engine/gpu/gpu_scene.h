@@ -1,4 +1,4 @@
-// A scene in device memory, see packed_splats.h for what a splat takes.
+// A scene in device memory; packed_splats.h says what a splat takes.
 #pragma once
 
 #include "engine/gpu/packed_splats.h"
@@ -12,7 +12,8 @@ namespace binosplat {
 
 class Commands;
 
-// A part of a scene that came, went or faded: where, in the world, and by how much its opacity changed, up to 1.
+// A part of a scene that appeared, disappeared or faded: where in the world, and by how much its opacity
+// changed, up to 1.
 struct SceneChange {
     glm::vec3 low, high;
     float amount;
@@ -24,21 +25,22 @@ struct PageTable {
     std::vector<gpu::ScenePage> bounds;
 };
 
-// Positions, rotations, scales and opacities stay float32, rotations are normalised; colours are half floats (off by at most 2^-11 of
-// themselves, and not beyond 65504). A splat with an attribute that is not finite, or a rotation of length zero, is never seen.
+// Positions, rotations, scales and opacities stay float32, with rotations normalised; colours become half
+// floats (off by at most 2^-11, and at most 65504). A splat with an attribute that is not finite, or a
+// rotation of length zero, is never visible.
 class GpuScene {
 public:
-    // All of a scene that stays as it is. Splits it into chunks of a power of two splats if one allocation cannot hold it.
-    // `keeps_table`: it may be placed among others.
+    // A whole scene that stays as it is. Splits it into chunks of a power of two splats if one allocation
+    // cannot hold it. `keeps_table`: it may be placed among others.
     GpuScene(const Context& context, const Scene& scene, const Progress& progress = {}, bool keeps_table = false);
 
-    // Places for splats; in a scene of pages some may be free.
+    // Capacity in splats; in a scene of pages some places may be free.
     [[nodiscard]] std::uint32_t splatCount() const { return splat_count_; }
     // Splats that are there.
     [[nodiscard]] std::uint32_t splatsHeld() const { return splats_held_; }
-    // Pages that are there, if the scene is in pages.
+    // Loaded pages, if the scene is in pages.
     [[nodiscard]] std::uint32_t pagesHeld() const { return pages_held_; }
-    // Splats that will be there once all pending changes are recorded.
+    // Splats there will be once all pending changes are recorded.
     [[nodiscard]] std::uint32_t splatsComing() const { return splats_coming_; }
     [[nodiscard]] const SceneTraits& traits() const { return traits_; }
     [[nodiscard]] int shDegree() const { return traits_.sh_degree; }
@@ -46,7 +48,7 @@ public:
     [[nodiscard]] std::uint32_t splatKind() const { return traits_.splat_kind; }
     // For passes in which dimming makes no difference: kDiscs or kGaussians.
     [[nodiscard]] std::uint32_t splatShape() const { return traits_.isGaussian3d() ? gpu::kGaussians : gpu::kDiscs; }
-    // As the scene asks for it.
+    // The order that the scene asks for.
     [[nodiscard]] Order usualOrder() const { return traits_.usual_order; }
     // True if its colours are light, to be encoded after blending.
     [[nodiscard]] bool isLight() const { return traits_.is_light; }
@@ -54,20 +56,22 @@ public:
     [[nodiscard]] std::uint32_t chunkBits() const { return chunk_bits_; }
     [[nodiscard]] std::size_t chunkCount() const { return chunk_count_; }
     [[nodiscard]] gpu::DeviceAddress<gpu::SceneChunk> chunks() const { return chunks_; }
-    // True if chunks come and go: each is a page then, and pages() are their bounds.
+    // True if chunks come and go: then each is a page, and pages() are their bounds.
     [[nodiscard]] bool isInPages() const { return pages_.value != 0; }
     [[nodiscard]] gpu::DeviceAddress<gpu::ScenePage> pages() const { return pages_; }
-    // Of what the next frame reads; empty if it was not kept. Scenes in pages always keep it.
+    // What the next frame reads; empty if it was not kept. Scenes in pages always keep it.
     [[nodiscard]] const PageTable& table() const { return table_; }
     // True if its chunks are those of several scenes, each with a placement.
     [[nodiscard]] bool isPlaced() const { return is_placed_; }
     [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
-    // Records what changes from one frame to the next, before any pass of the next; nothing for a scene that stays as it is.
+    // Records changes from one frame to the next, before any pass of the next; does nothing for a scene that
+    // stays as it is.
     void recordChanges(Commands& commands) const {
         if (record_changes_) { record_changes_(commands); }
     }
-    // Where something changed: what is noted for the next recordChanges(); the number of all changes that were ever recorded; and those
-    // after the first `known` of them, until the next recordChanges(), or none if changes that old are forgotten.
+    // Where something changed: notes it for the next recordChanges(); counts all changes ever recorded; and
+    // returns those after the first `known` of them, until the next recordChanges(), or nothing if changes
+    // that old are forgotten.
     [[nodiscard]] std::span<const SceneChange> changesNoted() const { return changes_noted_; }
     [[nodiscard]] std::uint64_t changesRecorded() const { return changes_forgotten_ + changes_.size(); }
     [[nodiscard]] std::optional<std::span<const SceneChange>> changesSince(std::uint64_t known) const {
@@ -93,7 +97,7 @@ private:
     PageTable table_;
     bool is_placed_ = false;
     std::function<void(Commands&)> record_changes_;
-    std::vector<SceneChange> changes_noted_, changes_;  // changes_: only the latest
+    std::vector<SceneChange> changes_noted_, changes_;  // of the recorded ones, only the latest
     std::uint64_t changes_forgotten_ = 0;
 };
 

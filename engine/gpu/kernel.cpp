@@ -1,4 +1,4 @@
-// Building compute pipelines.
+// Builds compute pipelines.
 #include "engine/gpu/kernel.h"
 
 #include "engine/error.h"
@@ -48,12 +48,13 @@ void eachInstruction(std::span<const std::uint32_t> words, const Take& take) {
     }
 }
 
-// A shader with these values of constant_id 0, 1, 2 ..., as plain constants. Not through VkSpecializationInfo, since not all drivers
-// remove what a value rules out before they do their slow work: SwiftShader takes a minute for a variant of resample then. Without
-// `has_uniform_flow` it does not ask for subgroup-uniform control flow.
+// A shader with these values of constant_id 0, 1, 2 ..., as plain constants. VkSpecializationInfo will not
+// do, since some drivers do their slow work before they remove what a value rules out: SwiftShader then takes
+// a minute for a variant of resample. Without `has_uniform_flow` the shader does not ask for subgroup-uniform
+// control flow.
 std::vector<std::uint32_t> specialize(std::span<const std::uint32_t> words, const std::vector<std::uint32_t>& values,
                                       bool has_uniform_flow) {
-    std::map<std::uint32_t, std::uint32_t> value_of;  // by the id of the constant
+    std::map<std::uint32_t, std::uint32_t> value_of;  // by the constant's id
     std::vector<std::uint32_t> specialized(words.begin(), words.begin() + std::min(words.size(), kHeaderWords));
     eachInstruction(words, [&](std::span<const std::uint32_t> instruction, std::uint32_t opcode) {
         if (opcode == kDecorate && instruction[2] == kSpecId) {
@@ -113,7 +114,7 @@ Kernel::Kernel(const Context& context, const std::string& shader, std::uint32_t 
     const vk::PipelineShaderStageCreateInfo stage(subgroups_, vk::ShaderStageFlagBits::eCompute, *module, "main");
     const auto flags =
         keep == Keep::kStatistics ? vk::PipelineCreateFlags(vk::PipelineCreateFlagBits::eCaptureStatisticsKHR) : vk::PipelineCreateFlags();
-    // A driver may have no statistics of a kernel that it did not compile just now.
+    // A driver may have no statistics of a kernel that it did not just compile.
     const vk::raii::PipelineCache* cache = keep == Keep::kNothing ? &context.pipelineCache() : nullptr;
     try {
         pipeline_ = vk::raii::Pipeline(context.device(), cache, vk::ComputePipelineCreateInfo(flags, stage, *layout_));

@@ -14,7 +14,7 @@ namespace binosplat {
 
 class Kernel {
 public:
-    enum class Keep { kNothing, kStatistics };  // of VK_KHR_pipeline_executable_properties, only where Context::hasKernelStatistics
+    enum class Keep { kNothing, kStatistics };  // from VK_KHR_pipeline_executable_properties, only if Context::hasKernelStatistics
 
     Kernel() = default;
     // Throws Error (ExitCode::kNoDevice) if the driver rejects it.
@@ -27,7 +27,7 @@ public:
     [[nodiscard]] vk::Pipeline pipeline() const { return *pipeline_; }
     [[nodiscard]] vk::PipelineLayout layout() const { return *layout_; }
     [[nodiscard]] std::uint32_t pushBytes() const { return push_bytes_; }
-    // What it asks of its subgroups, see Context::fullSubgroups.
+    // What it requests of its subgroups, see Context::fullSubgroups.
     [[nodiscard]] vk::PipelineShaderStageCreateFlags subgroups() const { return subgroups_; }
 
 private:
@@ -37,10 +37,10 @@ private:
     vk::PipelineShaderStageCreateFlags subgroups_;
 };
 
-// Kernels, made when they are first needed: no mode pays for another's.
+// Kernels, made when they are first needed: a mode does not pay for another's.
 class KernelCache {
 public:
-    // `table`: all that will ever be asked for.
+    // `table`: all that will ever be requested.
     KernelCache(const Context& context, KernelTable table) : context_(context), table_(std::move(table)) {}
     // One of the table; the reference stays valid until rebuild() or take().
     template <typename K>
@@ -49,9 +49,11 @@ public:
     }
     [[nodiscard]] const KernelTable& table() const { return table_; }
     [[nodiscard]] std::size_t size() const { return kernels_.size(); }
-    // Makes all of them anew, see Context::replacedShaders. Throws as Kernel does, and then keeps the old ones.
+    // Makes all of them again, see Context::replacedShaders. Throws as Kernel does, and then keeps the old
+    // ones.
     void rebuild();
-    // Takes the kernels of another cache of the same device, and keeps those of its own that the other lacks. The rest goes to the other.
+    // Takes over the kernels of another cache of the same device, keeps its own that the other lacks, and
+    // gives the other the rest.
     void take(KernelCache& from) {
         from.kernels_.merge(kernels_);
         kernels_.swap(from.kernels_);

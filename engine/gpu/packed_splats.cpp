@@ -1,4 +1,4 @@
-// Packing splats, and the bounds of pages of them.
+// Packs splats, and computes the bounds of pages of them.
 #include "engine/gpu/packed_splats.h"
 
 #include "engine/error.h"
@@ -21,7 +21,7 @@ std::uint32_t packHalves(float low, float high) {
     return glm::packHalf2x16(glm::clamp(glm::vec2(low, high), glm::vec2(-65504.0f), glm::vec2(65504.0f)));
 }
 
-// The rotation as the device holds it: x, y, z, w of unit length. Nothing for a splat that cannot be shown.
+// The rotation as the device holds it: x, y, z, w of unit length. Empty for a splat that cannot be shown.
 std::optional<glm::vec4> rotationToShow(const Scene& scene, std::uint64_t splat) {
     const glm::vec3& p = scene.positions[splat];
     const glm::vec2& scale = scene.scales[splat];
@@ -39,7 +39,7 @@ std::optional<glm::vec4> rotationToShow(const Scene& scene, std::uint64_t splat)
 
 constexpr double kHair = 1.0 + 1e-5, kRounding = 1e-5;
 
-// How far a splat of this opacity is seen, in scales.
+// How far a splat of this opacity is visible, in scales.
 double reachOf(float opacity) { return kHair * std::sqrt(std::max(2.0 * std::log(255.0 * static_cast<double>(opacity)), 0.0) + kRounding); }
 
 }  // namespace
@@ -150,7 +150,7 @@ PackedPages::PackedPages(const Scene& scene, std::size_t first, std::size_t coun
           scene.isGaussian3d() ? 3 : 2, traits.isGaussian3d() ? 3 : 2);
     const ChunkLayout layout(gpu::kPageSplats, traits);
     const std::size_t pages = (count + gpu::kPageSplats - 1) / gpu::kPageSplats;
-    bytes_.resize(pages * layout.bytes);  // zeros: an opacity of 0 is never seen
+    bytes_.resize(pages * layout.bytes);  // zeros: an opacity of 0 is never visible
     for (std::size_t page = 0; page < pages; ++page) {
         const std::size_t from = first + page * gpu::kPageSplats, splats = std::min<std::size_t>(gpu::kPageSplats, first + count - from);
         PageBounds bounds;

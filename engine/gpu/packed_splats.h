@@ -1,4 +1,5 @@
-// Splats as the device holds them: 48 bytes a disc, 52 a 3D Gaussian, and 20, 48 or 92 for SH bands 1 to 3 where the scene has them.
+// Splats as the device holds them: 48 bytes a disc, 52 a 3D Gaussian, and 20, 48 or 92 more for SH bands 1 to
+// 3 if the scene has them.
 #pragma once
 
 #include "engine/gpu/buffer.h"
@@ -18,7 +19,7 @@ namespace binosplat {
 struct SceneTraits {
     int sh_degree = 0;
     std::uint32_t splat_kind = gpu::kDiscs;  // or kGaussians, kAntialiasedGaussians
-    Order usual_order = Order::kDepth;       // as the scene asks for it
+    Order usual_order = Order::kDepth;       // the order that the scene asks for
     bool is_light = false;                   // its colours are light, to be encoded once they are blended
 
     [[nodiscard]] bool isGaussian3d() const { return splat_kind != gpu::kDiscs; }
@@ -29,7 +30,8 @@ SceneTraits traitsOf(const Scene& scene);
 // Device bytes of one splat.
 std::uint64_t deviceBytesPerSplat(int sh_degree, bool gaussian_3d);
 
-// Where the arrays of `capacity` splats begin within their chunk, in bytes; each at a multiple of 16, and so is the end.
+// Where the arrays of `capacity` splats begin within their chunk, in bytes; each begins, and the last ends,
+// at a multiple of 16.
 struct ChunkLayout {
     ChunkLayout(std::uint64_t capacity, const SceneTraits& traits);
     // For such splats that begin this far into a buffer.
@@ -40,12 +42,12 @@ struct ChunkLayout {
     std::uint32_t sh_degree = 0;
 };
 
-// Half the size of the axis-aligned box, in the world, around all of a splat that is not fainter than kMinAlpha, and a hair for what the
-// device rounds. `scales` are along the axes of `rotation`, which has unit length (a disc's third is 0); a splat with an opacity below
-// kMinAlpha is not visible at all.
+// Half the size of the axis-aligned box, in the world, around every part of a splat that is not fainter than
+// kMinAlpha, with a small margin for the device's rounding. `scales` are along the axes of `rotation`, which
+// has unit length (a disc's third is 0). A splat with an opacity below kMinAlpha is not visible at all.
 glm::dvec3 halfExtentOf(const glm::quat& rotation, const glm::vec3& scales, float opacity);
 
-// What the device must know of a page: the box around its visible splats, and how many these are.
+// What the device must know about a page: the box around its visible splats, and how many these are.
 class PageBounds {
 public:
     void add(const glm::vec3& centre, const glm::quat& rotation, const glm::vec3& scales, float opacity);
@@ -57,20 +59,21 @@ private:
     std::uint32_t shown_ = 0;
 };
 
-// Writes splats [first, first + count) of `scene`, which is of the same kind, to `to`, laid out as `layout` (of at least `count` splats).
-// Bands of colours that the scene lacks are zeros, those beyond the traits' degree are left out. `bounds` takes in those that can be
-// seen.
+// Writes splats [first, first + count) of `scene`, which is of the same kind, to `to`, laid out as `layout`
+// (for at least `count` splats). Bands of colours that the scene lacks become zeros, those beyond the traits'
+// degree are left out. `bounds` grows by the visible ones.
 void packSplats(const Scene& scene, std::uint64_t first, std::uint64_t count, const SceneTraits& traits, const ChunkLayout& layout,
                 std::uint8_t* to, PageBounds* bounds = nullptr);
 
-// Splats in pages of kPageSplats, each with its own layout and bounds; the last one is padded with splats that are never
-// seen. Made on any thread.
+// Splats in pages of kPageSplats, each with its own layout and bounds; the last page is padded with splats
+// that are never visible. Can be made on any thread.
 class PackedPages {
 public:
-    // Splats [first, first + count) of `scene`. Throws Error if these are discs and the traits' 3D Gaussians, or the other way round.
+    // Splats [first, first + count) of `scene`. Throws Error if they are discs and the traits' are 3D
+    // Gaussians, or the other way round.
     PackedPages(const Scene& scene, std::size_t first, std::size_t count, const SceneTraits& traits);
     PackedPages(const Scene& scene, const SceneTraits& traits) : PackedPages(scene, 0, scene.size(), traits) {}
-    // One page, as it was packed.
+    // One page in its packed form.
     PackedPages(std::uint32_t splats, const gpu::ScenePage& page, std::vector<std::uint8_t> bytes)
         : splat_count_(splats), pages_{page}, bytes_(std::move(bytes)) {}
     PackedPages() = default;

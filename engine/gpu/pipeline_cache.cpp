@@ -1,4 +1,4 @@
-// Reading and writing the file. Drivers need not survive wrong bytes, so these are checked first.
+// Reads and writes the file. Drivers may not survive wrong bytes, so these are checked first.
 #include "engine/gpu/pipeline_cache.h"
 
 #include "engine/part_file.h"
@@ -24,7 +24,7 @@ std::uint64_t checksumOf(std::span<const std::uint8_t> bytes) {
     return sum;
 }
 
-// Nothing if there is no such file, or one so long that no driver made it.
+// Empty if there is no such file, or one too long for any driver to have made.
 std::vector<std::uint8_t> readWhole(const std::filesystem::path& path) {
     constexpr std::uint64_t kMostBytes = std::uint64_t{256} << 20;
     std::string reason;

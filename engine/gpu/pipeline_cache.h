@@ -10,13 +10,14 @@ namespace binosplat {
 
 class PipelineCache {
 public:
-    // Without a file it serves only this run.
+    // Without a file it serves this run only.
     PipelineCache() = default;
-    // Starts with the file's contents, if it is intact and of this device and driver.
+    // Starts with the file's contents, if they are intact and from this device and driver.
     PipelineCache(const vk::raii::PhysicalDevice& physical_device, const vk::raii::Device& device);
 
     [[nodiscard]] const vk::raii::PipelineCache& handle() const { return cache_; }
-    // Writes the file if there is something new, as a whole or not at all. Failures are silent: the next run compiles again.
+    // Writes the file if there is something new, whole or not at all. Failures are silent: the next run
+    // compiles again.
     void save() const noexcept;
 
 private:
@@ -25,12 +26,14 @@ private:
     vk::raii::PipelineCache cache_{nullptr};
 };
 
-// The folder that BINOSPLAT_PIPELINE_CACHE names, none if that is 0; if it is not set, binosplat/ in the user's cache folder.
+// The folder that BINOSPLAT_PIPELINE_CACHE names, or none if that is 0; if it is not set, binosplat/ in the
+// user's cache folder.
 std::filesystem::path pipelineCacheFolder();
-// The file in it; empty if there is no folder.
+// The file in that folder; empty if there is no folder.
 std::filesystem::path pipelineCacheFile(const vk::raii::PhysicalDevice& device);
 
-// A cache's bytes as stored in a file, and back: nothing if they were cut off, changed, or made by another device or driver.
+// A cache's bytes as stored in a file, and back: empty if they were cut off, changed, or made by another
+// device or driver.
 std::vector<std::uint8_t> sealPipelineCache(const std::vector<std::uint8_t>& data);
 std::vector<std::uint8_t> unsealPipelineCache(const std::vector<std::uint8_t>& file, const vk::PhysicalDeviceProperties& device);
 

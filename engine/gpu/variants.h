@@ -1,4 +1,5 @@
-// The kernels of shaders/passes.def as types: RasterizeKernel{.depth = 1} is shaders/splat/rasterize.comp compiled with kDepth true.
+// The kernels of shaders/passes.def as types: RasterizeKernel{.depth = 1} is shaders/splat/rasterize.comp
+// compiled with kDepth true.
 #pragma once
 
 #include "shaders/shared/passes.h"
@@ -25,7 +26,7 @@ constexpr FrameStage stageOfFolder(std::string_view folder) {
     return static_cast<FrameStage>(stage);
 }
 
-// A constant that a shader is specialized for, and how many values it has, from 0 up; 0: up to the device.
+// A constant for which a shader is specialized, and how many values it has, from 0 up; 0: the device decides.
 struct ShaderConstant {
     const char* field;
     std::uint32_t count;
@@ -87,12 +88,14 @@ KernelVariant variantOf(const K& kernel) {
     return variant;
 }
 
-// All kernels used in any mode: each group of passes states its own, and `binosplat kernels` makes all of them.
+// All kernels used in any mode: each group of passes lists its own, and `binosplat kernels` makes all of
+// them.
 using KernelTable = std::vector<KernelVariant>;
 
 void append(KernelTable& table, const KernelTable& more);
 
-// A shader in every combination of its constants that `is_used` accepts, none of which may be up to the device; the last changes first.
+// A shader in every combination of its constants that `is_used` accepts; the device decides none of them. The
+// last changes first.
 template <typename K>
 KernelTable everyVariant(const std::function<bool(const K&)>& is_used = [](const K&) { return true; }) {
     constexpr auto kConstants = K::constants();
