@@ -1,4 +1,4 @@
-// Image files, by what a library does in this build and what it does not.
+// Image files: what a library does in this build, and what it does not.
 #include "engine/picture/image_io.h"
 
 #include "engine/error.h"
@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// "dir/left" + ".exr"; not replace_extension, which would cut a stem that holds a dot.
+// "dir/left" + ".exr"; replace_extension would cut a stem that contains a dot.
 fs::path withExtension(const fs::path& stem, const char* extension) { return stem.string() + extension; }
 
 }  // namespace

@@ -25,7 +25,7 @@ void requireWhole(const Image& image, const fs::path& path) {
           image.channels);
 }
 
-// Nothing half-written stays.
+// A half-written file is removed.
 void finish(std::ofstream& file, const fs::path& path) {
     file.close();
     if (!file) {
@@ -39,7 +39,7 @@ void finish(std::ofstream& file, const fs::path& path) {
 struct Header {
     std::string magic;
     glm::uvec2 size_px{0, 0};
-    double last = 0.0;  // PFM: scale, its sign tells the byte order; PNM: largest value
+    double last = 0.0;  // PFM: scale, whose sign gives the byte order; PNM: largest value
 };
 
 // Magic, width, height and one number, separated by white space; then one white space and the values.
@@ -55,7 +55,7 @@ Header readHeader(std::ifstream& file, const fs::path& path) {
     return header;
 }
 
-// Before anything is reserved for what the header promises.
+// Before anything is reserved that the header promises.
 void requireBytes(std::ifstream& file, const fs::path& path, std::uint64_t bytes) {
     const std::streamoff begin = file.tellg();
     file.seekg(0, std::ios::end);

@@ -7,11 +7,11 @@
 
 namespace binosplat {
 
-// 1 or 3 channels, little endian, rows bottom to top as the format wants. Throws Error naming the file.
+// 1 or 3 channels, little endian, rows bottom to top as the format requires. Throws Error naming the file.
 void writePfm(const std::filesystem::path& path, const Image& image);
 Image readPfm(const std::filesystem::path& path);
 
-// 1 (PGM) or 3 (PPM) channels; 0 to 1 becomes 0 to 255, clamped, to the nearest; NaN becomes 0.
+// 1 (PGM) or 3 (PPM) channels; 0 to 1 becomes 0 to 255, clamped and rounded; NaN becomes 0.
 void writePnm(const std::filesystem::path& path, const Image& image);
 Image readPnm(const std::filesystem::path& path);
 

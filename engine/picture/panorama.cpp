@@ -14,8 +14,8 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 // How far a face reaches: the tangent of the angle from its middle. At 1 the next one begins.
 constexpr double kReach = 1.1;
-// Pixels of a face for one of the panorama, at the face's middle, where they are widest: as many as the places that are looked up, so that
-// splats' low-pass, which is narrower towards a face's edge, is not what limits sharpness.
+// Pixels of a face for one of the panorama, at the face's middle, where they are widest: as many as places
+// are looked up. Otherwise splats' low-pass, which is narrower towards a face's edge, would limit sharpness.
 constexpr double kFiner = 2.0;
 
 glm::dquat about(const glm::dvec3& axis, double angle_rad) { return glm::angleAxis(angle_rad, axis); }
@@ -31,7 +31,7 @@ std::vector<glm::dquat> turnsOf(const Panorama& panorama) {
 
 double focalOf(const Panorama& panorama) { return kFiner * static_cast<double>(panorama.size_px.x) / panorama.width_rad; }
 
-// Catmull and Rom's weights of the four pixels around a place, of which two lie before it.
+// Catmull and Rom's weights of the four pixels around a place, two of which come before it.
 std::array<float, 4> cubicWeights(float t) {
     return {0.5f * t * (t * (2.0f - t) - 1.0f), 0.5f * (t * t * (3.0f * t - 5.0f) + 2.0f), 0.5f * t * (t * (4.0f - 3.0f * t) + 1.0f),
             0.5f * t * t * (t - 1.0f)};
@@ -56,7 +56,8 @@ glm::vec4 sample(const Image& image, const glm::dvec2& place) {
     return sum;
 }
 
-// The weights of two faces that meet are 1 together on their edge, and where one alone sees a direction its weight is 1.
+// The weights of two adjacent faces add up to 1 along their edge; a single face has weight 1 where no other
+// sees a direction.
 float weightOf(double tangent) {
     static const double kWide = std::log(kReach);
     return static_cast<float>(std::clamp((kWide - std::log(tangent)) / (2.0 * kWide), 0.0, 1.0));

@@ -1,4 +1,5 @@
-// Pictures of all directions, or of those ahead, on a grid of equal angles (equirectangular), from flat pictures of the faces of a cube.
+// Pictures of all directions, or of those ahead, on a grid of equal angles (equirectangular), from flat
+// pictures of the faces of a cube.
 #pragma once
 
 #include "engine/geometry.h"
@@ -9,21 +10,23 @@
 
 namespace binosplat {
 
-// From straight up in the first row to straight down in the last one; the middle column is ahead, and a column further right lies further
-// to the right.
+// The first row is straight up, the last one straight down; the middle column is ahead, and columns further
+// right lie further to the right.
 struct Panorama {
     double width_rad;  // 2 pi: all around; pi: what lies ahead
     glm::uvec2 size_px;
 };
 
-// What a camera at this place with these axes has to see for it: as an eye of the panorama's own, with pixels per radian for intrinsics.
+// What a camera at this place with these axes must see for it: an eye of the panorama's own, with pixels per
+// radian as intrinsics.
 Eye panoramaEye(const Panorama& panorama, const Pose& world_from_camera);
 
-// The flat pictures that the panorama is made of. Each reaches a little over its edges.
+// The flat pictures from which the panorama is made. Each reaches a little beyond its edges.
 std::vector<Eye> facesOf(const Panorama& panorama, const Pose& world_from_camera);
 
-// From pictures of these faces, with four channels: the mean of four places in each pixel, by a cubic kernel. Near an edge faces change
-// over into one another, since splats that are wide for their distance do not look alike from two cameras' axes.
+// From pictures of these faces, with four channels: each pixel is the mean of four places, by a cubic kernel.
+// Near an edge one face fades into the next, since splats that are wide for their distance look different
+// along two cameras' axes.
 Image panoramaOf(const Panorama& panorama, std::span<const Image> faces);
 
 }  // namespace binosplat

@@ -89,7 +89,7 @@ std::string withPanoramaTags(const std::string& png, const Panorama& panorama) {
 
 std::string withFilmTags(const std::string& moov, const FilmTags& tags) {
     const std::string boxes = filmBoxes(tags);
-    // The boxes around the descriptions of a track's pictures; what begins each before its own boxes.
+    // The boxes around the descriptions of a track's pictures; and what comes in each before its own boxes.
     constexpr std::size_t kStsd = 8, kPicture = 78;
     std::string tagged = moov;
     std::size_t end = moov.size(), begin = 8;
@@ -101,7 +101,7 @@ std::string withFilmTags(const std::string& moov, const FilmTags& tags) {
         around.push_back(found);
         begin = found + 8, end = found + readBigEndian(moov, found);
     }
-    // The first description, and in it the first box: how the decoder is set up.
+    // The first description, and in it the first box: how to set up the decoder.
     const std::size_t description = begin + kStsd, inner = description + 8 + kPicture;
     around.push_back(description);
     const std::size_t place = inner + readBigEndian(moov, inner);

@@ -1,5 +1,5 @@
-// What a file says of the picture in it, for galleries and players of headsets: GPano in the XMP of a PNG, and the boxes of Google's
-// Spherical Video V2 (docs/spherical-video-v2-rfc.md of its spatial-media) in an MP4.
+// What a file says about its picture, for galleries and headset players: GPano in the XMP of a PNG, and the
+// boxes of Google's Spherical Video V2 (docs/spherical-video-v2-rfc.md in its spatial-media) in an MP4.
 #pragma once
 
 #include "engine/picture/panorama.h"
@@ -19,8 +19,8 @@ struct FilmTags {
     std::optional<double> width_rad;  // of a panorama
 };
 
-// The box moov of an MP4, with the tags in the descriptions of its pictures. It must not lie before the pictures, whose places in the file
-// it names. Throws Error if it is not such a box.
+// The box moov of an MP4, with the tags in the descriptions of its pictures. It must not come before the
+// pictures, whose places in the file it names. Throws Error if it is not such a box.
 std::string withFilmTags(const std::string& moov, const FilmTags& tags);
 
 }  // namespace binosplat

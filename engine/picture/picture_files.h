@@ -1,4 +1,5 @@
-// PNG and EXR, and the other formats that this build's library knows: one of picture_files_*.cpp.
+// PNG and EXR, and the other formats that this build's library knows: implemented by one of
+// picture_files_*.cpp.
 #pragma once
 
 #include "engine/picture/image.h"
@@ -12,14 +13,14 @@ namespace binosplat {
 // The largest number of values of a picture: a broken file must not exhaust memory.
 inline constexpr std::uint64_t kMostPictureValues = std::uint64_t{1} << 30;
 
-// If not, neither of the next two is called.
+// If not, the next two are never called.
 bool hasPngAndExr();
-// float32. Throws Error; the file is gone then.
+// float32. Throws Error, and then there is no file.
 void writeExr(const std::filesystem::path& path, const Image& image);
-// 8 bits, of an image of three channels. Throws Error; the file is gone then.
+// 8 bits, from an image with three channels. Throws Error, and then there is no file.
 void writePng(const std::filesystem::path& path, const Image& rgb);
 
-// `file` is the file `path`, at its beginning. Throws Error.
+// `file` is the file at `path`, at its beginning. Throws Error.
 Image readPictureFile(const std::filesystem::path& path, std::FILE* file);
 
 }  // namespace binosplat

@@ -1,4 +1,4 @@
-// Image files through OpenImageIO; this alone knows it.
+// Image files through OpenImageIO, which is used nowhere else.
 #include "engine/error.h"
 #include "engine/picture/netpbm.h"
 #include "engine/picture/picture_files.h"
@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// The library's messages can span lines; ours are one.
+// The library's messages can span lines; ours must not.
 std::string oneLine(std::string text) {
     std::ranges::replace(text, '\n', ' ');
     while (!text.empty() && text.back() == ' ') { text.pop_back(); }
@@ -31,7 +31,7 @@ void writeWithLibrary(const fs::path& path, const OIIO::ImageSpec& spec, OIIO::T
     const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(path.string());
     check(output != nullptr, "{}: cannot be written ({})", path.string(), oneLine(OIIO::geterror()));
     const bool opened = output->open(path.string(), spec);
-    // `close` flushes: a full disk may show there only.
+    // `close` flushes: a full disk may be noticed only there.
     const bool written = opened && output->write_image(type, values);
     const std::string first_error = written ? "" : output->geterror();
     const bool closed = output->close();

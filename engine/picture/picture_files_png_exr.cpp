@@ -35,7 +35,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// The libraries' messages can span lines; ours are one.
+// The libraries' messages can span lines; ours must not.
 std::string oneLine(std::string text) {
     std::ranges::replace(text, '\n', ' ');
     while (!text.empty() && text.back() == ' ') { text.pop_back(); }
@@ -49,13 +49,13 @@ std::string oneLine(std::string text) {
 }
 
 void requireSize(const fs::path& path, std::uint64_t width, std::uint64_t height, std::uint64_t channels) {
-    constexpr std::uint64_t kMostSide = std::uint64_t{1} << 30;  // of which two can be multiplied
+    constexpr std::uint64_t kMostSide = std::uint64_t{1} << 30;  // two of them can be multiplied
     const bool fits = width > 0 && height > 0 && channels > 0 && width <= kMostSide && height <= kMostSide &&
                       width * height <= kMostPictureValues / channels;
     check(fits, "{}: has {}x{} pixels of {} channels, must be a flat picture of up to 2^30 values", path.string(), width, height, channels);
 }
 
-// OpenEXR ends a file where a destructor can say nothing: a full disk is asked for afterwards.
+// OpenEXR finishes a file in a destructor, which cannot report errors, so check for a full disk afterwards.
 class ExrOutput final : public Imf::OStream {
 public:
     explicit ExrOutput(const fs::path& path) : Imf::OStream("picture"), stream_(path, std::ios::binary) {}
@@ -93,13 +93,13 @@ private:
     std::ifstream stream_;
 };
 
-// Where the picture's values of one channel lie. OpenEXR counts from pixel (0,0), which its window may not hold.
+// Where the values of one channel are. OpenEXR counts from pixel (0,0), which may be outside its window.
 Imf::Slice sliceOf(float* first, std::size_t channels, const Imath::Box2i& window) {
     const auto width = static_cast<std::size_t>(window.max.x - window.min.x + 1);
     return Imf::Slice::Make(Imf::FLOAT, first, window, sizeof(float) * channels, sizeof(float) * channels * width);
 }
 
-// Colours first, as everybody has them; a file has its channels by the alphabet.
+// Colours first, in the usual order; a file has its channels in alphabetical order.
 std::vector<std::string> channelsOf(const Imf::Header& header) {
     std::vector<std::string> names;
     for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel) { names.emplace_back(channel.name()); }
@@ -153,7 +153,7 @@ struct PngReader {
         if (setjmp(png_jmpbuf(png)) != 0) { return false; }
         png_init_io(png, file);
         png_read_info(png, info);
-        // Palettes, single bits and colours that stand for transparency become bytes of R, G, B, A; two bytes stay two.
+        // Palettes, single bits and transparent colours become bytes of R, G, B, A; two bytes stay two.
         png_set_expand(png);
         png_set_interlace_handling(png);
         png_read_update_info(png, info);

@@ -11,31 +11,32 @@ namespace binosplat {
 
 // Where a pixel of the finished affiliated picture came from.
 enum class PixelOrigin : std::uint8_t {
-    kReprojected,   // warped from the dominant picture
+    kReprojected,   // reprojected from the dominant picture
     kGap,           // interpolated: a small gap between reprojected pixels
-    kHole,          // interpolated: a wide hole that no tile was rendered for
+    kHole,          // interpolated: a wide hole for which no tile was rendered
     kEdgeRoi,       // rendered again: at the picture's border
     kCenterRoi,     // rendered again: a hole's box
     kPredictedRoi,  // rendered again: great expected error
-    kCheap,         // rendered: cheaper than to warp
+    kCheap,         // rendered: cheaper than reprojecting
 };
 
-// One PixelOrigin a pixel, row-major. `tile_kinds` holds kTileEdge, kTileCenter, kTilePredicted, kTileCheap, or 0 for a tile that stays as
-// reprojected; tiles of kTileSize pixels, row-major, ceil(width / kTileSize) to a row. `pixel_classes` holds kCovered, kGap or kHole
-// for each pixel and counts where the tile's kind is 0. Either list may be empty: then it says 0 everywhere.
-// Throws Error if a list has another length than the picture needs, or an unknown value.
+// One PixelOrigin a pixel, row-major. `tile_kinds` holds kTileEdge, kTileCenter, kTilePredicted, kTileCheap,
+// or 0 for a tile that stays as reprojected; tiles have kTileSize pixels and are row-major, ceil(width /
+// kTileSize) to a row. `pixel_classes` holds kCovered, kGap or kHole for each pixel, and counts if the tile's
+// kind is 0. An empty list means 0 everywhere. Throws Error if a list has another length than the picture
+// needs, or an unknown value.
 std::vector<std::uint8_t> pixelOrigins(glm::uvec2 size_px, std::span<const std::uint32_t> tile_kinds,
                                        std::span<const std::uint8_t> pixel_classes);
 
-// The tint of an origin, RGB 0 to 1: gaps yellow, holes red, edge ROIs blue, centre ROIs green, predicted tiles magenta, cheap ones cyan.
-// Reprojected pixels have none (black, unused).
+// The tint of an origin, RGB 0 to 1: gaps yellow, holes red, edge ROIs blue, centre ROIs green, predicted
+// tiles magenta, cheap ones cyan. Reprojected pixels have none (black, unused).
 glm::vec3 tintOf(PixelOrigin origin);
 
-// The share of the tint in a tinted pixel; the rest is the picture, so that the content of a tile stays visible.
+// The share of the tint in a tinted pixel; the rest is the picture, which keeps the tile's content visible.
 inline constexpr float kTintShare = 0.4f;
 
-// The picture (3 channels or more, display-encoded) with every pixel that was not reprojected tinted by its origin: 3 channels.
-// Throws Error as pixelOrigins does.
+// The picture (3 channels or more, display-encoded) with every pixel that was not reprojected tinted by its
+// origin: 3 channels. Throws Error as pixelOrigins does.
 Image makeRoiPicture(const Image& affiliated, std::span<const std::uint32_t> tile_kinds, std::span<const std::uint8_t> pixel_classes);
 
 }  // namespace binosplat

@@ -25,7 +25,7 @@ std::vector<glm::vec4> linearOf(const Image& picture) {
     return pixels;
 }
 
-// A place off a pixel's middle by rounding alone is there.
+// A place that is off a pixel's middle by rounding alone counts as the middle.
 glm::dvec2 settled(const glm::dvec2& place) {
     const glm::dvec2 whole = glm::round(place);
     return {std::abs(place.x - whole.x) < 1e-6 ? whole.x : place.x, std::abs(place.y - whole.y) < 1e-6 ? whole.y : place.y};

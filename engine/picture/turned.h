@@ -1,4 +1,4 @@
-// A picture as a view from the same place with other axes or angles shows it.
+// A picture as it looks from the same place with other axes or angles.
 #pragma once
 
 #include "engine/geometry.h"
@@ -6,8 +6,9 @@
 
 namespace binosplat {
 
-// What a headset's compositor makes of a picture of `eye` for `view`: each pixel of the view from the four around its place in the picture,
-// by linear weights, in linear light. A view that has the picture's own axes and pixels gets these as they are.
+// What a headset's compositor makes of a picture of `eye` for `view`: each pixel of the view comes from the
+// four around its place in the picture, by linear weights, in linear light. If the view has the picture's own
+// axes and pixels, it gets the pixels as they are.
 Image showTurned(const Image& picture, const Eye& eye, const Eye& view);
 
 }  // namespace binosplat

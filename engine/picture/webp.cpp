@@ -21,7 +21,8 @@ std::uint32_t loadWord(std::span<const std::byte> bytes, std::size_t offset) {
     return word;
 }
 
-// The stream of a lossless picture: one byte 0x2f, 14 bits width - 1, 14 bits height - 1, a bit that says whether alpha is used.
+// The stream of a lossless picture: one byte 0x2f, 14 bits width - 1, 14 bits height - 1, and a bit that says
+// whether alpha is used.
 constexpr std::size_t kStreamHeaderBytes = 5;
 
 // The chunk VP8L of a file, alone or among others.
@@ -61,7 +62,7 @@ Pixels decodeWebp(std::span<const std::byte> file, const std::string& name) {
     const glm::uvec2 size_px = streamSize(stream);
     const std::size_t stride = std::size_t{4} * size_px.x;
     Pixels pixels{size_px, std::vector<std::uint8_t>(stride * size_px.y)};
-    // A bare stream is a file to libwebp as well.
+    // A bare stream counts as a file for libwebp, too.
     const auto* begin = reinterpret_cast<const std::uint8_t*>(stream.data());
     check(WebPDecodeRGBAInto(begin, stream.size(), pixels.rgba.data(), pixels.rgba.size(), static_cast<int>(stride)) != nullptr,
           "{}: cannot be decoded, its picture is damaged", name);
@@ -70,7 +71,7 @@ Pixels decodeWebp(std::span<const std::byte> file, const std::string& name) {
 
 namespace {
 
-// Of 0 to 9. Data is mostly noise: 7 takes twice the time, and saves a hundredth.
+// From 0 to 9. The data are mostly noise: 7 takes twice the time, and saves a hundredth.
 constexpr int kEffort = 3;
 
 struct WebpMemory {

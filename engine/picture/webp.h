@@ -20,8 +20,8 @@ struct Pixels {
 // True if this build can decode and encode WebP: it needs libwebp.
 bool canDecodeWebp();
 
-// The size that the header of a lossless WebP file states, so that it can be checked before anything is decoded. Throws Error naming `name`
-// if there is no lossless picture in `file`.
+// The size that the header of a lossless WebP file states, to be checked before anything is decoded. Throws
+// Error naming `name` if `file` does not hold a lossless picture.
 glm::uvec2 webpSize(std::span<const std::byte> file, const std::string& name);
 
 // Throws Error naming `name`.
@@ -29,8 +29,8 @@ Pixels decodeWebp(std::span<const std::byte> file, const std::string& name);
 
 inline constexpr std::uint32_t kMaxWebpSide = 16383;
 
-// A lossless file: the same bytes, also where alpha is 0. The sides are 1 to kMaxWebpSide. Throws Error naming `name` if memory is
-// short.
+// A lossless file: the same bytes, also where alpha is 0. The sides are 1 to kMaxWebpSide. Throws Error
+// naming `name` if memory is short.
 std::vector<std::byte> encodeWebp(const Pixels& pixels, const std::string& name);
 
 }  // namespace binosplat
