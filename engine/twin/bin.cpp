@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::size_t kBlock = 2048;
 
-// Marks the tiles that a row's run of pixels touches, after taking off the ends that `meet` denies.
+// Marks the tiles that a row's run of pixels touches, after trimming the ends that `meet` denies.
 void markRun(const RayPlane& plane, int y, Span run, std::vector<std::uint8_t>& marks) {
     const auto meets = [&](int x) {
         Hit hit;
@@ -19,7 +19,8 @@ void markRun(const RayPlane& plane, int y, Span run, std::vector<std::uint8_t>& 
     for (int tile = run.begin / kTileSize; tile <= (run.end - 1) / kTileSize; ++tile) { marks[tile] = 1; }
 }
 
-// Appends the pairs of one splat, tiles ascending. `marks` has one zero per column of tiles, and is left so.
+// Appends the pairs of one splat, tiles ascending. `marks` has a zero for each column of tiles, and is left
+// that way.
 void binOne(const ProjectedSplat& splat, std::uint32_t rank, glm::uvec2 size_px, double near, std::vector<std::uint8_t>& marks,
             std::vector<TilePair>& pairs) {
     const glm::ivec4 box = splat.box_px;

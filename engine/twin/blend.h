@@ -17,7 +17,7 @@ struct PixelState {
     bool open = true;
 };
 
-// Blends one hit; closes the pixel instead if the transmittance would fall under its limit.
+// Blends one hit; closes the pixel instead if the transmittance would fall below its limit.
 inline bool blend(PixelState& pixel, const ProjectedSplat& splat, const Hit& hit, bool inverse_moments) {
     const double alpha = std::min(kMaxAlpha, splat.opacity * std::exp(-0.5 * hit.rho));
     const double transmittance = pixel.transmittance * (1.0 - alpha);

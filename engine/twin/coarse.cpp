@@ -1,4 +1,4 @@
-// rasterize where tiles may be coarse.
+// rasterize for coarse tiles.
 #include "engine/twin/coarse.h"
 
 #include "engine/parallel.h"
@@ -22,7 +22,7 @@ double cubic(double distance) {
     return d < 1.0 ? 1.0 + d * d * (1.5 * d - 2.5) : 2.0 + d * (-4.0 + d * (2.5 - 0.5 * d));
 }
 
-// The value at `place` among samples at 0, 1, 2 ... 7, and at -1 and 8 where parabolas lead.
+// The value at `place` among samples at 0, 1, 2 ... 7, and at -1 and 8, to which parabolas are continued.
 template <typename At>
 glm::dvec4 alongAxis(double place, const At& at) {
     glm::dvec4 sum(0.0);

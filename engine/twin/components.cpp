@@ -23,7 +23,7 @@ void markBox(const Box& box, std::vector<TileKind>& kinds, const glm::ivec2& siz
     }
 }
 
-// Takes the pixels out of `open` that can be reached from `first` over pixels that touch, corners included.
+// Removes from `open` the pixels that can be reached from `first` over touching pixels, including corners.
 Box floodFill(std::vector<std::uint8_t>& open, const glm::ivec2& size, const glm::ivec2& first) {
     const auto indexOf = [&](const glm::ivec2& at) { return static_cast<std::size_t>(at.y * size.x + at.x); };
     Box box{first, first + 1};

@@ -1,4 +1,4 @@
-// contribute: blending again, with an account for each splat.
+// contribute: blends again, and keeps an account for each splat.
 #include "engine/twin/contribute.h"
 #include "engine/twin/blend.h"
 
@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kMostBehind = 4.0;
 
-// Of a pixel: what it shows, and what it should.
+// What a pixel shows, and what it should show.
 struct PixelWish {
     glm::dvec3 shown, missing;
 };

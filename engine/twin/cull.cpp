@@ -1,12 +1,14 @@
-// cull: which splats may touch a pixel. A disc with support function h(n) = n.c + r |(n.a, n.b)| lies outside a half-space
-// n.p >= d of the frustum if h(n) < d; r = sqrt(cut) is as far as its opacity lets it reach. A 3D Gaussian has a box on the screen.
+// cull: which splats may touch a pixel. A disc with support function h(n) = n.c + r |(n.a, n.b)| lies outside
+// a half-space n.p >= d of the frustum if h(n) < d, where r = sqrt(cut) is how far its opacity lets it reach.
+// A 3D Gaussian has a box on the screen.
 #include "engine/parallel.h"
 #include "engine/twin/splat.h"
 
 namespace binosplat::reference {
 namespace {
 
-// Half-spaces through the eye of the outermost pixel centres, n.p >= 0, and the image's bounds, with a hair against rounding.
+// Half-spaces n.p >= 0 through the eye and the outermost pixel centres, and the image's bounds, with a small
+// margin against rounding.
 struct Frustum {
     Frustum(const Eye& eye, double near_depth) : frame(eye), near(near_depth) {
         const Intrinsics& k = eye.intrinsics;
@@ -46,7 +48,7 @@ private:
         return beyond.x <= reach.x && beyond.y <= reach.y;
     }
 
-    // From the picture to the projected centre, where that lies outside.
+    // From the picture to the projected centre, if that is outside.
     [[nodiscard]] glm::dvec2 beyondPicture(const CameraSplat& splat) const {
         const Intrinsics& k = frame.intrinsics;
         const glm::dvec2 centre(k.fx * splat.c.x / splat.c.z + k.cx, k.fy * splat.c.y / splat.c.z + k.cy);

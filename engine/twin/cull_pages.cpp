@@ -1,7 +1,8 @@
-// cull_pages: a box has a corner on the inner side of each plane of the view, or nothing in it is seen. The low-pass makes the view wider
-// by its reach on the screen, 2 ln 255 being the greatest cut there is. A 3D Gaussian on the screen is as wide as its ellipsoid along
-// f (1, 0, -slope), with the slope held within 0.3 of half the picture beside it (splat.h): if it is beside the picture, its reach along
-// the plane's own normal and as much of its reach in depth.
+// cull_pages: a page's box has a corner on the inner side of each plane of the view, or nothing in it is
+// visible. The low-pass widens the view by its reach on the screen, with 2 ln 255, the greatest cut possible.
+// A 3D Gaussian on the screen is as wide as its ellipsoid along f (1, 0, -slope), with the slope held to 0.3
+// of half the picture beside it (splat.h). If it is beside the picture, this is its reach along the plane's
+// own normal plus as much of its reach in depth.
 #include "engine/twin/splat.h"
 
 #include <array>
@@ -28,7 +29,7 @@ bool mayShow(const Page& page, bool gaussians, const EyeFrame& frame, double nea
     const Corners corners = cornersOf(page, frame);
     double farthest = 0.0;
     for (const glm::dvec3& c : corners) { farthest = std::max(farthest, glm::length(c)); }
-    // True if all of it lies beyond a plane through the eye, by at least `more`.
+    // True if the whole box lies beyond a plane through the eye, by at least `more`.
     const auto isBeyond = [&](const glm::dvec3& normal, double more) {
         return std::ranges::all_of(
             corners, [&](const glm::dvec3& c) { return glm::dot(normal, c) + more + slack * farthest * glm::length(normal) < 0.0; });

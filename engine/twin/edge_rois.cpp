@@ -21,7 +21,8 @@ Landed sampleEdge(const EyeChange& change, const glm::dvec2& first_px, const glm
         for (const double inverse_depth : {bounds.far, bounds.near}) {
             const EyeChange::Moved moved = change.move(first_px + (i + 0.5) * step_px, inverse_depth);
             if (!moved.in_front) { continue; }
-            // Rounded to 2^-14 px, as fine as single precision in a wide picture, so that an edge that does not move stays at 0.
+            // Rounded to 2^-14 px, as fine as single precision in a wide picture, so that an edge that does
+            // not move stays at 0.
             const glm::dvec2 place = glm::round((moved.place_px - 0.5) * 0x1p14) * 0x1p-14;
             landed.least = glm::min(landed.least, place);
             landed.greatest = glm::max(landed.greatest, place);
@@ -47,7 +48,8 @@ InverseDepthBounds findInverseDepthBounds(std::span<const std::uint32_t> bins) {
     if (total == 0) { return {0.0, 0.0}; }
     const std::uint64_t outliers = total / 200;
     const auto inverseDepthAt = [](std::size_t edge) { return std::exp2(16.0 - static_cast<double>(edge) / 32.0); };
-    // The near edge of the bin of the first pixel after the outliers, and the far edge of the bin of the last one before them.
+    // The near edge of the bin with the first pixel after the outliers, and the far edge of the bin with the
+    // last one before them.
     const auto binOf = [&](std::uint64_t rank) {
         std::size_t bin = 0;
         for (std::uint64_t before = bins[0]; before <= rank; before += bins[bin]) { ++bin; }
@@ -65,7 +67,8 @@ Borders findBorders(const InverseDepthBounds& bounds, const EyePair& eyes, const
     const Landed top = sampleEdge(change, {0.0, 0.5}, across, bounds, settings.edge_samples);
     const Landed right = sampleEdge(change, {size.x - 0.5, 0.0}, down, bounds, settings.edge_samples);
     const Landed bottom = sampleEdge(change, {0.0, size.y - 0.5}, across, bounds, settings.edge_samples);
-    // The paper's extremes are those of all samples: as far as the farthest content needs. Tight ones use each edge's own, inwards.
+    // The paper takes the extremes of all samples: as far as the farthest content needs. Tight ones use each
+    // edge's own samples, inwards.
     glm::dvec2 least = glm::min(glm::min(left.least, top.least), glm::min(right.least, bottom.least));
     glm::dvec2 greatest = glm::max(glm::max(left.greatest, top.greatest), glm::max(right.greatest, bottom.greatest));
     if (settings.tight_edges) {

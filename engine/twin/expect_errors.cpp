@@ -1,4 +1,4 @@
-// resample: the error to expect of a tile whose pixels are warped.
+// resample: the expected error of a tile whose pixels are reprojected.
 #include "engine/twin/eye_change.h"
 #include "engine/twin/splat.h"
 
@@ -16,15 +16,15 @@ glm::dvec3 colourAt(const Picture& picture, const glm::ivec2& pixel) {
     return glm::dvec3(picture.rgba[static_cast<std::size_t>(at.y * (last.x + 1) + at.x)]);
 }
 
-// How much the picture changes from `source` to `distance_px` beside it, squared: the hidden content is assumed to differ as much from the
-// repeated one.
+// How much the picture changes, squared, from `source` to `distance_px` beside it: hidden content is assumed
+// to differ as much from the content that is repeated.
 double holeError(const Picture& dominant, const glm::ivec2& source, int distance_px, double weight) {
     const glm::dvec3 change = weight * (colourAt(dominant, source + glm::ivec2(distance_px, 0)) - colourAt(dominant, source));
     return glm::dot(change, change) + kLeastHoleError;
 }
 
-// Variance of the inverse depth of the pixel in column x of `row`: half the spread of what it blends, and the greatest step to
-// what arrived beside it.
+// Variance of the inverse depth of the pixel in column x of `row`: half the spread of what it blends, and the
+// greatest step to what arrived beside it.
 double uncertainty(std::span<const Arrival> row, int x, const Resolved& pixel) {
     double step = 0.0;
     for (const int beside : {x - 1, x + 1}) {
@@ -36,7 +36,8 @@ double uncertainty(std::span<const Arrival> row, int x, const Resolved& pixel) {
     return own * own + step * step;
 }
 
-// The variance of a disparity times the squared change of the picture along it where the pixel came from, a mean over the channels.
+// The variance of a disparity times the squared change of the picture along it where the pixel came from, as
+// a mean over the channels.
 double uncertainDepthError(const Picture& dominant, const EyeChange& target_from_source, double variance, const glm::ivec2& source) {
     const glm::dvec2 disparity = target_from_source.disparity(glm::dvec2(source) + 0.5);
     const double length = glm::length(disparity);
@@ -48,8 +49,9 @@ double uncertainDepthError(const Picture& dominant, const EyeChange& target_from
     return variance_px2 * glm::dot(change, change) / 3.0;
 }
 
-// What alternates in sign from pixel to pixel along `step` with an amplitude d has third differences of 8 d. All of it is lost halfway
-// between two pixels, nothing on one: squared, a mean over the channels. `at`: the pixel before the place, `t`: how far it lies beyond.
+// A signal that alternates in sign from pixel to pixel along `step` with an amplitude d has third differences
+// of 8 d. Halfway between two pixels all of it is lost, on a pixel nothing: squared, as a mean over the
+// channels. `at`: the pixel before the place, `t`: how far the place is beyond it.
 double lostBetween(const Picture& dominant, const glm::ivec2& at, const glm::ivec2& step, double t) {
     const glm::dvec3 before = colourAt(dominant, at - step), first = colourAt(dominant, at);
     const glm::dvec3 second = colourAt(dominant, at + step), after = colourAt(dominant, at + 2 * step);

@@ -20,9 +20,9 @@ public:
     struct Moved {
         glm::dvec2 place_px;
         double inverse_depth;
-        bool in_front;  // of the target
+        bool in_front;  // in the target
     };
-    // A point that is infinitely far (inverse depth 0) has a direction alone.
+    // A point that is infinitely far (inverse depth 0) has only a direction.
     [[nodiscard]] Moved move(const glm::dvec2& place_px, double inverse_depth) const {
         const glm::dvec3 direction((place_px.x - source_.cx) / source_.fx, (place_px.y - source_.cy) / source_.fy, 1.0);
         const glm::dvec3 point = turn_ * direction + inverse_depth * move_;
@@ -30,11 +30,13 @@ public:
                 inverse_depth / point.z,
                 point.z > 0.0};
     }
-    // How far a place moves in the target per unit of the source's inverse depth, where both depths are about the same.
+    // How far a place moves in the target per unit of the source's inverse depth, if both depths are about
+    // the same.
     [[nodiscard]] glm::dvec2 disparity(const glm::dvec2& place_px) const {
         return {target_.fx * move_.x + (target_.cx - place_px.x) * move_.z, target_.fy * move_.y + (target_.cy - place_px.y) * move_.z};
     }
-    // True if every point keeps its row and its depth, up to the rounding of poses, which is greater far from the origin.
+    // True if every point keeps its row and its depth, except for the rounding of poses, which is greater far
+    // from the origin.
     [[nodiscard]] bool keepsRows() const {
         const double rounding = 1e-12 * away_ + 1e-9 * std::abs(move_.x);
         return glm::length(turn_[0] - glm::dvec3(1, 0, 0)) + glm::length(turn_[1] - glm::dvec3(0, 1, 0)) < 1e-9 &&
@@ -45,7 +47,7 @@ private:
     Intrinsics target_, source_;
     glm::dmat3 turn_;
     glm::dvec3 move_;
-    double away_;  // of the source from the origin
+    double away_;  // the source's distance from the origin
 };
 
 }  // namespace binosplat::reference

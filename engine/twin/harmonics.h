@@ -10,10 +10,11 @@
 
 namespace binosplat::reference {
 
-// The device holds coefficients and colours as half floats, which end here: anything beyond counts as this.
+// The device holds coefficients and colours as half floats, which end here; values beyond count as this.
 inline constexpr double kMaxHalf = 65504.0;
 
-// Sum of the bands up to `degree` in the unit direction d; `sh` holds three channels per coefficient. Not finite if one of them is not.
+// The sum of the bands up to `degree` in the unit direction d; `sh` holds three channels per coefficient. Not
+// finite if one of them is not.
 inline glm::dvec3 evaluateHarmonics(const float* sh, int degree, const glm::dvec3& d) {
     const std::array<double, 16> basis = shBasis(d);
     const auto limit = [](float value) {

@@ -1,4 +1,5 @@
-// rasterize: what the source's picture tells about a pixel that is going to be warped: its depth, and how certain that is.
+// rasterize: what the source's picture tells about a pixel that will be reprojected: its depth, and how
+// certain that is.
 #include "engine/twin/stereo.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// newcomers: splats that the target sees and the source does not, by the tiles they stand in.
+// newcomers: splats that the target sees and the source does not, by the tiles that hold them.
 #include "engine/twin/splat.h"
 #include "engine/twin/stereo.h"
 
@@ -10,8 +10,8 @@ namespace binosplat::reference {
 namespace {
 
 constexpr double kTilePixels = kTileSize * kTileSize;
-constexpr double kMostTileError = 2048.0 - 0x1p-20;  // a tile with this much is rendered anyway: more than a fixed-point sum holds
-constexpr double kInFrontRatio = 1.01;               // a wall that continues beyond the border does not stand in front of itself
+constexpr double kMostTileError = 2048.0 - 0x1p-20;  // with this much, a tile is rendered anyway: it is more than a fixed-point sum holds
+constexpr double kInFrontRatio = 1.01;               // a wall that continues beyond the border must not count as in front of itself
 
 // The integral of exp(-rho) over the image, i.e. of alpha^2 / o^2: the disc's, pi sigma_u sigma_v, and the low-pass's.
 double squareCoverage(const ProjectedSplat& splat) {
@@ -34,7 +34,8 @@ std::size_t addNewcomers(std::vector<double>& errors, std::span<const ProjectedS
                          std::span<const TilePair> source_pairs, const Picture& dominant, std::span<const TileKind> kinds,
                          const StereoSettings& settings) {
     const glm::uvec2 size_px = dominant.size_px;
-    // True if the centre, clamped to the image, is nearer than the middle of its tile; always if the tile is not warped.
+    // True if the centre, clamped to the image, is nearer than the middle of its tile; always true if the
+    // tile is not reprojected.
     const auto standsInFront = [&](const ProjectedSplat& splat) {
         const glm::uvec2 at(glm::clamp(splat.reference_px, glm::dvec2(0.0), glm::dvec2(size_px) - 1.0));
         const std::size_t tile = at.y / kTileSize * ((size_px.x + kTileSize - 1) / kTileSize) + at.x / kTileSize;
@@ -52,7 +53,7 @@ std::size_t addNewcomers(std::vector<double>& errors, std::span<const ProjectedS
     for (const TilePair& pair : target_pairs) {
         if (kinds[pair.tile] != TileKind::kNone || !isNewcomer(pair.splat)) { continue; }
         const ProjectedSplat& splat = target_splats[pair.splat];
-        // A splat's part of a tile is its share of the box of tiles about it.
+        // A splat's part of a tile is the tile's share of the box of tiles around the splat.
         const glm::ivec4& box = splat.box_px;
         const auto tilesAcross = [](int begin, int end) { return static_cast<double>((end - 1) / kTileSize - begin / kTileSize + 1); };
         const double shared_by = tilesAcross(box.x, box.z) * tilesAcross(box.y, box.w);

@@ -1,4 +1,5 @@
-// price and rasterize, with a past: the errors expected of its tiles, and what they turn out to have been.
+// price and rasterize, with a history: the expected errors of its tiles, and what these turn out to have
+// been.
 #include "engine/twin/past_view.h"
 
 namespace binosplat::reference {

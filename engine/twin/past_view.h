@@ -1,4 +1,4 @@
-// A past as warp_past and warp_pixels see it.
+// A history as warp_past and warp_pixels see it.
 #pragma once
 
 #include "engine/twin/eye_change.h"
@@ -14,9 +14,9 @@ inline constexpr int kCell = kTileSize / 2;
 inline constexpr glm::ivec2 kPastBlock{4, 8};
 inline constexpr double kMostSpreadPx = 4.0, kOwnSpread = 0.5;
 inline constexpr double kMostPixelError = 4.0;  // squared, of three channels
-inline constexpr double kLeastGrowth = 1.9e-7;  // squared, of three channels, of a pixel that is made from another
-inline constexpr double kSameDepthPx = 0.25;    // content whose depths move it apart by no more moves as one
-inline constexpr double kAgreesPx = 0.51;       // a pixel of the past this close to where it is wanted is what is seen there
+inline constexpr double kLeastGrowth = 1.9e-7;  // squared, of three channels, for a pixel that is made from another
+inline constexpr double kSameDepthPx = 0.25;    // content whose depths separate it by no more than this moves as one
+inline constexpr double kAgreesPx = 0.51;       // a pixel of the history this close to the wanted place is what is seen there
 
 inline constexpr int kReach = 3;  // the taps of a place reach this far from its pixel
 
@@ -34,7 +34,8 @@ public:
     [[nodiscard]] bool isInside(const glm::dvec2& place_px) const {
         return glm::all(glm::greaterThanEqual(place_px, glm::dvec2(0.0))) && glm::all(glm::lessThan(place_px, glm::dvec2(last) + 1.0));
     }
-    // Where a pixel lies in the past. A place off a pixel by rounding alone is that pixel: a head that stands still sees what it saw.
+    // Where a pixel is in the history. A place that is off a pixel by rounding alone counts as that pixel: a
+    // head that stands still sees what it saw.
     [[nodiscard]] EyeChange::Moved place(const glm::dvec2& pixel_px, double inverse_depth) const {
         EyeChange::Moved moved = past_from_now.move(pixel_px, inverse_depth);
         for (int axis = 0; axis < 2; ++axis) {
@@ -55,7 +56,8 @@ public:
         return isHidden(at) ? std::nullopt : past_.pixels[indexOf(at)];
     }
 
-    // True if taps about pixels of a box, at most a tile wide, are hidden ones: these show nothing, which would leak.
+    // True if taps around the pixels of a box, at most a tile wide, include hidden ones, whose background
+    // would leak in.
     [[nodiscard]] bool reachesHidden(const glm::ivec2& first, const glm::ivec2& end) const {
         for (int y = first.y - kReach; y <= end.y + kReach; ++y) {
             for (int x = first.x - kReach; x <= end.x + kReach; ++x) {
@@ -64,14 +66,14 @@ public:
         }
         return false;
     }
-    // Whether it was hidden or not.
+    // Whether it was hidden.
     [[nodiscard]] std::optional<MovingPixel> own(const glm::ivec2& at) const { return past_.pixels[indexOf(at)]; }
 
-    // What the past shows at a place.
+    // What the history shows at a place.
     struct Seen {
         std::optional<MovingPixel> pixel;
-        double inverse_depth = 0.0;  // as the picture that is made sees it
-        glm::dvec2 lands_px{0.0};    // where the pixel's middle comes to lie
+        double inverse_depth = 0.0;  // as seen in the picture that is being made
+        glm::dvec2 lands_px{0.0};    // where the pixel's middle lands
     };
     [[nodiscard]] Seen look(const glm::dvec2& place_px) const {
         const glm::ivec2 at(glm::floor(glm::clamp(place_px, glm::dvec2(0.0), glm::dvec2(last))));
@@ -89,7 +91,7 @@ public:
     }
 
     EyeChange past_from_now, now_from_past;
-    glm::ivec2 last;  // pixel of the past
+    glm::ivec2 last;  // pixel of the history
 
 private:
     std::size_t columns_;
@@ -98,7 +100,8 @@ private:
 
 // With six taps each way.
 glm::dvec4 sampleSmoothly(const PastView& view, const glm::dvec2& place_px);
-// The squared error expected of that, `t` after the pixel `wanted`, if the place may be off by `off_px`, and the picture's gradient there.
+// The expected squared error of that, `t` after the pixel `wanted`, if the place may be off by `off_px`; and
+// the picture's gradient there.
 struct Loss {
     double error, squared_gradient;
 };

@@ -1,4 +1,4 @@
-// present: pictures in bytes.
+// present: pictures as bytes.
 #include "engine/twin/present.h"
 
 #include "engine/srgb.h"

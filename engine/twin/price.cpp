@@ -1,4 +1,4 @@
-// price: the worth of mending a tile's error, relative to the tile's cost.
+// price: the worth of rendering a tile's error away, relative to the tile's cost.
 #include "engine/twin/splat.h"
 #include "engine/twin/stereo.h"
 

@@ -6,7 +6,7 @@
 namespace binosplat::reference {
 namespace {
 
-// 0.5 + SH(d); d is zero, so that only the constant is left, where the splat is at the eye itself.
+// 0.5 + SH(d); d is zero if the splat is at the eye itself, and only the constant is left.
 glm::dvec3 shade(const Scene& scene, std::size_t splat, const EyeFrame& eye) {
     const glm::dvec3 from_eye = glm::dvec3(scene.positions[splat]) - eye.position_world;
     const double distance = glm::length(from_eye);
@@ -15,12 +15,12 @@ glm::dvec3 shade(const Scene& scene, std::size_t splat, const EyeFrame& eye) {
     return 0.5 + evaluateHarmonics(scene.sh.data() + splat * stride, scene.sh_degree, direction);
 }
 
-// Linear functions 1/z, u/z and v/z of the pixel about reference_px, with the (u, v) frame turned so that v/z does not
-// depend on dx. Computed from a, b, c and not from the rows, which tests hold against it.
+// Linear functions 1/z, u/z and v/z of the pixel about reference_px, with the (u, v) frame turned so that v/z
+// does not depend on dx. Computed from a, b, c instead of the rows, which tests compare with it.
 void reduce(ProjectedSplat& splat, const CameraSplat& camera, const Intrinsics& k) {
     const glm::dvec3 &a = camera.a, &b = camera.b, &c = camera.c;
-    // The ray's direction through the reference, and its change per pixel: (1/fx, 0, 0) and (0, 1/fy, 0). The plane's dual
-    // basis b x c, c x a, a x b, over det, takes a direction to (u/z, v/z, 1/z).
+    // The ray's direction through the reference, and its change per pixel: (1/fx, 0, 0) and (0, 1/fy, 0). The
+    // plane's dual basis b x c, c x a, a x b, over det, maps a direction to (u/z, v/z, 1/z).
     const double det = glm::dot(a, glm::cross(b, c));
     const glm::dmat3 dual(glm::cross(b, c) / det, glm::cross(c, a) / det, glm::cross(a, b) / det);
     const glm::dvec3 ray((splat.reference_px.x - k.cx) / k.fx, (splat.reference_px.y - k.cy) / k.fy, 1.0);
@@ -41,7 +41,7 @@ void reduce(ProjectedSplat& splat, const CameraSplat& camera, const Intrinsics& 
     }
 }
 
-// The ellipse of a 3D Gaussian, and its opacity after dimming. False where that shows nowhere.
+// The ellipse of a 3D Gaussian, and its opacity after dimming. False if it is visible nowhere.
 bool placeGaussian(ProjectedSplat& splat, const CameraSplat& camera, const EyeFrame& eye, bool dimmed) {
     const ScreenGaussian g = screenGaussian(camera, eye);
     if (dimmed) {

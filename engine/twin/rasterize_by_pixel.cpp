@@ -6,8 +6,8 @@
 namespace binosplat::reference {
 namespace {
 
-// How deep a 3D Gaussian is along a pixel's ray: with M taking camera space to standard deviations about c, the ray z r has
-// its greatest response where |M (z r - c)| is least.
+// The depth of a 3D Gaussian along a pixel's ray: with M mapping camera space to standard deviations about c,
+// the response along the ray z r is greatest where |M (z r - c)| is least.
 struct GreatestResponse {
     glm::dmat3 deviations_from_camera;
     glm::dvec3 centre;
@@ -25,7 +25,8 @@ struct OwnHit {
     Hit hit;
 };
 
-// Hits of one pixel that wait to be blended, the next one last; among equals the one that came first goes first.
+// Hits of one pixel that wait to be blended, the next one last; among equals the first to come is blended
+// first.
 struct Waiting {
     std::vector<OwnHit> hits;
 

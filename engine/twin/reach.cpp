@@ -1,4 +1,5 @@
-// Bounds of a splat's picture: extremes of a conic clipped at the near plane, and its chord in one row of pixels.
+// Bounds of a splat's picture: extremes of a conic clipped at the near plane, and its chord in one row of
+// pixels.
 #include "engine/twin/reach.h"
 
 #include <algorithm>
@@ -8,7 +9,7 @@ namespace binosplat::reference {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// Bounds are widened by this much against rounding; `meet` decides about the pixel.
+// Bounds are widened by this much against rounding; `meet` decides about each pixel.
 constexpr double kSlackPx = 1e-6;
 
 // An interval of pixel coordinates; empty at first.
@@ -29,16 +30,16 @@ Span pixelsIn(double low, double high, int first, int last) {
     return {clip(begin), clip(end)};
 }
 
-// Extremes of one pixel coordinate, less the origin's, over the part of the disc with z >= near. `row` is the coordinate's
-// row. They lie where a line of constant coordinate L = row - x w touches the circle u^2 + v^2 = cut, i.e.
-// L.z^2 = cut (L.x^2 + L.y^2), or at the ends of the chord z = near.
+// Extremes of one pixel coordinate, relative to the origin's, over the part of the disc with z >= near. `row`
+// is the coordinate's row. They are where a line of constant coordinate L = row - x w touches the circle u^2
+// + v^2 = cut, that is L.z^2 = cut (L.x^2 + L.y^2), or at the ends of the chord z = near.
 Interval extremesOfDisc(const glm::dvec3& row, const glm::dvec3& w, double cut, double near) {
     Interval result;
     const double tilt = std::hypot(w.x, w.y), reach = std::sqrt(cut);
     if (w.z + reach * tilt < near) { return result; }
     const bool crosses = w.z - reach * tilt < near;
-    // Quadratic in x with the form <p, q> = p.z q.z - cut (p.x q.x + p.y q.y). Its discriminant by Lagrange's identity keeps
-    // its digits where <row, w>^2 - <row, row> <w, w> would cancel.
+    // Quadratic in x with the form <p, q> = p.z q.z - cut (p.x q.x + p.y q.y). Lagrange's identity keeps the
+    // digits of its discriminant, where <row, w>^2 - <row, row> <w, w> would cancel.
     const glm::dvec3 m = glm::cross(row, w);
     const double square = w.z * w.z - cut * tilt * tilt;
     const double half = row.z * w.z - cut * (row.x * w.x + row.y * w.y);
@@ -46,7 +47,7 @@ Interval extremesOfDisc(const glm::dvec3& row, const glm::dvec3& w, double cut, 
     const double discriminant = cut * (m.x * m.x + m.y * m.y - cut * m.z * m.z);
     if (discriminant >= 0.0) {
         const double q = half + std::copysign(std::sqrt(discriminant), half);
-        // The two roots, neither by a difference of near equals.
+        // The two roots, neither as a difference of near equals.
         for (const double x : {q / square, q != 0.0 ? constant / q : 0.0}) {
             const glm::dvec3 line = row - x * w;
             const double scale = -line.z / (line.x * line.x + line.y * line.y);
@@ -73,7 +74,8 @@ Span chordOfDisc(const RayPlane& plane, int y, int x0, int x1) {
     const double square = step.x * step.x + step.y * step.y - plane.cut * step.z * step.z;
     const double half = start.x * step.x + start.y * step.y - plane.cut * start.z * step.z;
     const double constant = start.x * start.x + start.y * start.y - plane.cut * start.z * start.z;
-    // By Lagrange's identity again; the hair on top keeps rows that just touch, where the root has half the digits.
+    // By Lagrange's identity again; the margin added keeps rows that are just touched, where the root has
+    // half the digits.
     const double discriminant = plane.cut * (m.x * m.x + m.y * m.y) * (1.0 + 1e-12) - m.z * m.z;
     double low = -kInfinity, high = kInfinity;
     if (discriminant >= 0.0) {
@@ -82,7 +84,7 @@ Span chordOfDisc(const RayPlane& plane, int y, int x0, int x1) {
         if (square > 0.0) {
             low = std::min(one, other), high = std::max(one, other);
         } else if (square < 0.0) {
-            // Two rays; the one behind the eye is its mirror image.
+            // Two rays; the one behind the eye is a mirror image.
             if (step.z > 0.0) { low = std::max(one, other); }
             if (step.z < 0.0) { high = std::min(one, other); }
         }
@@ -154,7 +156,7 @@ std::uint64_t countSquareBoxTiles(const ProjectedSplat& splat, const Settings& s
         const double longest = 0.5 * (variance.x + variance.y) + std::hypot(0.5 * (variance.x - variance.y), xy);
         return countTilesOfSquare(splat.reference_px, std::ceil(kSigmas * std::sqrt(longest)), size_px);
     }
-    // The public rasterizer's box, flaws included: the conic at 3 sigma, no smaller than 3 sigma of the low-pass.
+    // The public rasterizer's box, flaws included: the conic at 3 sigma, at least 3 sigma of the low-pass.
     const glm::dvec3 signs(kSigmas * kSigmas, kSigmas * kSigmas, -1.0);
     const glm::dvec3& w = splat.row_w;
     const glm::dvec3 f = signs / glm::dot(signs, w * w);
@@ -167,7 +169,7 @@ std::uint64_t countSquareBoxTiles(const ProjectedSplat& splat, const Settings& s
 
 std::array<Span, 2> runsOfReach(const RayPlane& plane, int y, int x0, int x1) {
     const Span none{x0, x0};
-    // So few pixels are tested faster than bounded.
+    // Testing so few pixels is faster than bounding them.
     if (x1 - x0 <= 4) { return {Span{x0, x1}, none}; }
     Span disc = plane.disc ? chordOfDisc(plane, y, x0, x1) : none;
     if (!plane.low_pass) { return {disc, none}; }

@@ -1,4 +1,4 @@
-// Where in the image a splat can be seen: the box of its pixels and, row by row, the runs of them.
+// Where a splat can be visible in the image: the box of its pixels and, row by row, the runs of them.
 #pragma once
 
 #include "engine/twin/splat.h"
@@ -16,8 +16,9 @@ struct Span {
     int begin, end;
 };
 
-// The pixels of row `y` in [x0, x1) that the splat can reach, as at most two runs that do not overlap (the disc and the
-// low-pass are convex, their union need not be): all of them and at most a rounding error more, so `meet` has the last word.
+// The pixels of row `y` in [x0, x1) that the splat can reach, as at most two runs that do not overlap (the
+// disc and the low-pass are convex, but their union need not be): all of them, and at most a rounding error
+// more, so `meet` has the last word.
 std::array<Span, 2> runsOfReach(const RayPlane& plane, int y, int x0, int x1);
 
 }  // namespace binosplat::reference

@@ -1,6 +1,6 @@
-// The float64 twins of the GPU passes: same names, same order, no shared arithmetic. They are the truth tests compare with.
-// Each function is one pass of shaders/sort and shaders/splat; `render` runs them all. The equations: docs/how-it-works.md
-// (2DGS, Huang et al. 2024, section 4; 3DGS, Kerbl et al. 2023, section 4).
+// The float64 twins of the GPU passes: same names, same order, no shared arithmetic. Tests compare the passes
+// with them. Each function is one pass of shaders/sort and shaders/splat; `render` runs them all. The
+// equations: docs/how-it-works.md (2DGS, Huang et al. 2024, section 4; 3DGS, Kerbl et al. 2023, section 4).
 #pragma once
 
 #include "engine/geometry.h"
@@ -17,10 +17,12 @@ namespace binosplat::reference {
 struct Settings {
     double near = 0.2;           // positive; hits closer than this are skipped, scene units along the camera's z
     glm::dvec3 background{0.0};  // display-encoded
-    bool is_light = false;       // colours are light, to be encoded after blending: taken from the scene, if one is given
-    // Front to back is by the distance of centres from here (the middle between the eyes); nothing: by their camera z.
+    bool is_light = false;       // colours are light, to be encoded after blending: the scene decides, if one is given
+    // Front to back by the distance of centres from this point (the midpoint between the eyes); empty: by
+    // their camera z.
     std::optional<glm::dvec3> order_from = {};
-    // By pixel, row by row: how far along z a mesh lies that cuts through the splats, and hides what is not nearer; empty: there is none.
+    // By pixel, row by row: the depth along z of a mesh that cuts through the splats, and hides what is not
+    // nearer; empty: no mesh.
     std::span<const double> mesh_depths = {};
     bool inverse_depth_moments = false;  // also I = sum w/z and J = sum w/z^2
     int threads = 2;
@@ -58,8 +60,9 @@ struct ProjectedSplat {
     glm::dvec3 row_u, row_v, row_w;
     // Pixels whose centres the splat can reach, [x0, x1) x [y0, y1), clipped to the image; empty if it reaches none.
     glm::ivec4 box_px;  // x0, y0, x1, y1
-    // The same in tiles for the usual square box of 3 sigma (ceil of three standard deviations of the larger screen
-    // extent about the projected box's centre, as the public 2DGS rasterizer bins), for the report alone. 0 where c.z <= near.
+    // The same in tiles for the usual square box of 3 sigma (ceil of three standard deviations of the larger
+    // screen extent about the projected box's centre, as the public 2DGS rasterizer bins), for the report
+    // only. 0 if c.z <= near.
     std::uint64_t square_box_tiles;
 };
 
@@ -71,7 +74,7 @@ struct Picture {
     std::vector<double> inverse_depth, inverse_depth_squared;  // I, J; empty unless asked for
 };
 
-// A splat in a 16x16 tile: `splat` is the rank in depth order, i.e. an index into the projected splats.
+// A splat in a 16x16 tile: `splat` is its rank in depth order, that is an index into the projected splats.
 struct TilePair {
     std::uint32_t tile;  // row-major
     std::uint32_t splat;
@@ -82,25 +85,26 @@ struct TileRange {
     std::uint32_t begin, end;
 };
 
-// A page: splats that come and go together. The two corners, along the world's axes, enclose all of its splats that can be seen, as far as
-// each reaches until its alpha falls to 1/255.
+// A page: splats that are loaded and dropped together. The two corners, along the world's axes, enclose all
+// of its visible splats, each as far as it reaches until its alpha falls to 1/255.
 struct Page {
     glm::dvec3 low, high;
-    double reach = 0.0;       // how far any one splat extends from its centre, at most
-    std::uint32_t count = 0;  // of these splats; 0: the other fields mean nothing
+    double reach = 0.0;       // how far any of its splats extends from its centre, at most
+    std::uint32_t count = 0;  // of its visible splats; 0: the other fields mean nothing
 };
 Page boundPage(const Scene& scene, std::size_t first, std::size_t count);
 
-// cull_pages: which pages may hold splats that cull keeps for any of the eyes (1 or 0 per page): those whose box reaches the inner side of
-// each plane of the view. The planes are moved outwards by `slack` times the box's distance.
+// cull_pages: which pages may hold splats that cull keeps for any of the eyes (1 or 0 per page): those whose
+// box reaches the inner side of each plane of the view. The planes are moved outwards by `slack` times the
+// box's distance.
 std::vector<std::uint8_t> cullPages(std::span<const Page> pages, bool gaussians, std::span<const Eye> eyes, const Settings& settings,
                                     double slack = 0.0);
 
 // cull: which splats may touch a pixel of any of the eyes (1 or 0 per splat). Never 0 for one that does.
 std::vector<std::uint8_t> cull(const Scene& scene, std::span<const Eye> eyes, const Settings& settings);
 
-// compact: indices of the visible splats, ascending, and their sort keys: the camera z of its centre in `order_eye`, or the square of its
-// distance from Settings::order_from.
+// compact: indices of the visible splats, ascending, and their sort keys: the camera z of the centre in
+// `order_eye`, or the square of its distance from Settings::order_from.
 struct Visible {
     std::vector<std::uint32_t> splats;
     std::vector<double> depths;
@@ -113,15 +117,15 @@ std::vector<std::uint32_t> sortDepth(const Visible& visible, const Settings& set
 // project: one eye's view of each splat, in the given order.
 std::vector<ProjectedSplat> project(const Scene& scene, std::span<const std::uint32_t> order, const Eye& eye, const Settings& settings);
 
-// bin: exactly the (tile, splat) pairs in which at least one pixel centre has rho < cut with a hit not nearer than near, in
-// depth order and tiles ascending within a splat. Where the disc's own hit lies nearer than near, or behind the eye, the
-// low-pass is what remains (rho = rho2), if there is one.
+// bin: exactly the (tile, splat) pairs in which at least one pixel centre has rho < cut with a hit not nearer
+// than near, in depth order, with tiles ascending within a splat. If the disc's own hit is nearer than near,
+// or behind the eye, only the low-pass remains (rho = rho2), if there is one.
 std::vector<TilePair> bin(std::span<const ProjectedSplat> splats, glm::uvec2 size_px, const Settings& settings);
 
-// Also bin: removes the pairs in tiles that nobody sees. `hidden` has a byte a tile, 1 for these; empty: all are seen.
+// Also bin: removes the pairs in hidden tiles. `hidden` has a byte a tile, 1 for these; empty: none.
 void hidePairs(std::vector<TilePair>& pairs, std::span<const std::uint8_t> hidden);
 
-// sort_tiles: pairs by tile, depth order kept within; and where each tile's pairs lie.
+// sort_tiles: pairs by tile, in depth order within each; and where each tile's pairs are.
 void sortTiles(std::vector<TilePair>& pairs, const Settings& settings = {});
 std::vector<TileRange> tileRanges(std::span<const TilePair> pairs, glm::uvec2 size_px);
 
@@ -132,10 +136,11 @@ Picture rasterize(std::span<const ProjectedSplat> splats, std::span<const TilePa
 // All passes for one eye.
 Picture render(const Scene& scene, const Eye& eye, const Settings& settings);
 
-// rasterize without an order of splats: each pixel blends its own hits front to back, by where its ray meets each splat: a disc at the hit
-// or, if the low-pass wins, at the centre's depth; a 3D Gaussian where it is densest along the ray. D is summed as in rasterize(). `pairs`
-// and `splats` follow `order`. With a `window`, hits come in that order, this many of them wait, and the nearest of these is blended next
-// (Radl et al. 2024, StopThePop, in its simplest form). A window of 1 is rasterize().
+// rasterize without an order of splats: each pixel blends its own hits front to back, by where its ray meets
+// each splat: a disc at the hit or, if the low-pass wins, at the centre's depth; a 3D Gaussian where it is
+// densest along the ray. D is summed as in rasterize(). `pairs` and `splats` follow `order`. With a `window`,
+// hits come in that order, this many of them wait, and the nearest of these is blended next (Radl et al.
+// 2024, StopThePop, in its simplest form). A window of 1 is rasterize().
 Picture rasterizeByPixel(const Scene& scene, std::span<const std::uint32_t> order, std::span<const ProjectedSplat> splats,
                          std::span<const TilePair> pairs, std::span<const TileRange> ranges, const Eye& eye, const Settings& settings,
                          std::size_t window = SIZE_MAX);

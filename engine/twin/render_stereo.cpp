@@ -9,7 +9,7 @@
 namespace binosplat::reference {
 namespace {
 
-// Splats both eyes see, as one of them sees them; pairs by splat.
+// Splats that both eyes see, as one of them sees them; pairs by splat.
 struct EyeSplats {
     EyeSplats(const Scene& scene, std::span<const std::uint32_t> order, const Eye& eye, const Settings& settings)
         : splats(project(scene, order, eye, settings)), pairs(bin(splats, eye.size_px, settings)) {}
@@ -28,7 +28,7 @@ std::vector<TileRange> tilesOfPairs(std::vector<TilePair> pairs, glm::uvec2 size
     return tileRanges(pairs, size_px);
 }
 
-// Renders the marked tiles over what is there.
+// Renders the marked tiles over the existing picture.
 void patch(StereoPictures& pictures, const Scene& scene, const Visible& visible, const Eye& eye, Settings settings) {
     const EyeSplats seen(scene, sortDepth(visible, settings), eye, settings);
     std::vector<TilePair> pairs = seen.pairs;

@@ -27,7 +27,8 @@ struct Moved : EyeChange::Moved {
 };
 glm::ivec2 pixelOf(const glm::dvec2& place_px) { return glm::ivec2(glm::floor(place_px)); }
 
-// The pixels of a row whose centres lie between two that parted by at most gap_px pixels, and that neither covers.
+// The pixels of a row whose centres lie between two pixels that separated by at most gap_px, and that neither
+// covers.
 void putBetween(Arrivals& arrivals, const Moved& here, const Moved& right, int row, int gap_px) {
     const double reach = right.place_px.x - here.place_px.x;
     if (!(reach > 1.0 && reach <= gap_px + 1.0)) { return; }
@@ -38,7 +39,8 @@ void putBetween(Arrivals& arrivals, const Moved& here, const Moved& right, int r
     }
 }
 
-// The pixels whose centres lie in the parallelogram of three neighbours that did not part far and kept their orientation.
+// The pixels whose centres lie in the parallelogram of three neighbours that did not separate far and kept
+// their orientation.
 void putWithin(Arrivals& arrivals, const Moved& here, const Moved& right, const Moved& below, int gap_px) {
     const glm::dmat2 sides(right.place_px - here.place_px, below.place_px - here.place_px);
     const glm::dvec2 low = glm::min(glm::dvec2(0.0), sides[0]) + glm::min(glm::dvec2(0.0), sides[1]);
@@ -60,7 +62,7 @@ void putWithin(Arrivals& arrivals, const Moved& here, const Moved& right, const 
     }
 }
 
-// A pixel of this spread or more blends what stands in front with what lies behind.
+// A pixel with at least this spread blends what is in front with what is behind.
 constexpr std::uint32_t kMixedCode = 21;
 
 // The greatest inverse depth of a pixel and its two neighbours in the row.
@@ -74,7 +76,7 @@ double frontBeside(const Picture& dominant, int x, int y, const StereoSettings& 
     return nearest;
 }
 
-// Around a pixel that is sampled: the cubic kernel reads two pixels to each side, and its place is up to one off.
+// Around a sampled pixel: the cubic kernel reads two pixels to each side, and its place is up to one off.
 constexpr int kHiddenMarginPx = 3;
 
 // True if everything around a pixel of the source was rendered.
@@ -96,7 +98,7 @@ std::vector<Arrival> reproject(const Picture& dominant, const EyePair& eyes, con
     const glm::ivec2 size(dominant.size_px);
     const bool keeps_rows = change.keepsRows();
     Arrivals arrivals{size, std::vector<Arrival>(dominant.rgba.size())};
-    // Where a pixel goes; nowhere if its depth is not one or it ends up behind the target.
+    // Where a pixel goes; nowhere if its depth is invalid or it ends up behind the target.
     const auto moved = [&](int x, int y) -> std::optional<Moved> {
         if (x >= size.x || y >= size.y || !isWellInside(settings.source_hidden, {x, y}, size)) { return std::nullopt; }
         const auto pixel = movingPixel(dominant, static_cast<std::size_t>(y * size.x + x), settings);
@@ -110,7 +112,7 @@ std::vector<Arrival> reproject(const Picture& dominant, const EyePair& eyes, con
         for (int x = 0; x < size.x; ++x) {
             const auto here = moved(x, y);
             if (!here) { continue; }
-            if (settings.forward) {  // only pixels move, and each is remembered
+            if (settings.forward) {  // only pixels move, and their sources are stored
                 const auto source = static_cast<std::size_t>(y * size.x + x);
                 const std::uint32_t parity = (x % 2 == 1 ? 1u : 0u) + (y % 2 == 1 ? 2u : 0u);
                 arrivals.put(pixelOf(here->place_px), {Arrival::kLanded, here->inverse_depth, parity, source});

@@ -7,7 +7,8 @@
 namespace binosplat::reference {
 namespace {
 
-// Catmull and Rom's kernel: the cubic through samples at whole distances whose slope there is that of the neighbours' chord.
+// Catmull and Rom's kernel: the cubic through samples at whole distances, whose slope there is that of the
+// neighbours' chord.
 double kernel(double distance) {
     const double d = std::abs(distance);
     if (d < 1.0) { return 1.0 + d * d * (1.5 * d - 2.5); }
@@ -58,7 +59,7 @@ std::vector<glm::dvec4> copyColours(const Picture& dominant, std::span<const Arr
         const TileKind kind = kinds[y / kTileSize * columns + x / kTileSize];
         if (kind == TileKind::kHidden) { colours[i] = glm::dvec4(background, 0.0); }
         if (kind != TileKind::kNone) { continue; }
-        // One past the nearest at or before the pixel, and the nearest at or after it.
+        // One beyond the nearest at or before the pixel, and the nearest at or after it.
         std::size_t past_left = i + 1, right = i;
         while (past_left > begin && !arrived(past_left - 1)) { --past_left; }
         while (right < end && !arrived(right)) { ++right; }

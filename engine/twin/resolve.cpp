@@ -7,19 +7,20 @@
 namespace binosplat::reference {
 namespace {
 
-// A pixel that nothing reached, between the reached pixels `left` and `right` of its row; -1: there is none.
+// A pixel that nothing reached, between the reached pixels `left` and `right` of its row; -1: none.
 Resolved resolveUncovered(std::span<const Arrival> row, int x, int left, int right, double disparity_px, const StereoSettings& settings) {
     const bool inside = left >= 0 && right >= 0;
     const int run = right - left - 1;
     const PixelClass pixel_class = inside && run <= settings.gap_px ? PixelClass::kGap : PixelClass::kHole;
     const auto depthAt = [&](int column) { return row[static_cast<std::size_t>(column)].inverse_depth; };
-    // A slanted surface: neighbours part no further than the run is long. The paper interpolates in any case.
+    // A slanted surface: neighbours separate by no more than the run is long. The paper always interpolates.
     const bool slants = pixel_class == PixelClass::kGap && std::abs(depthAt(right) - depthAt(left)) * disparity_px <= run + 1.0;
     if (slants || (settings.forward && inside)) {
         const double share = static_cast<double>(x - left) / (right - left);
         return {pixel_class, static_cast<std::uint32_t>(x), (1.0 - share) * depthAt(left) + share * depthAt(right), 0};
     }
-    // Disoccluded content lies behind: the farther neighbour is repeated, the left one of equals, as the two sides of a wall are.
+    // Uncovered content is behind: the farther neighbour is repeated, or the left one of equals, such as the
+    // two sides of a wall.
     if (left < 0 && right < 0) { return {pixel_class, static_cast<std::uint32_t>(x), 0.0, 0}; }
     const bool is_left = right < 0 || (left >= 0 && roundedDepth(depthAt(left)) <= roundedDepth(depthAt(right)));
     const int farther = is_left ? left : right;

@@ -1,4 +1,4 @@
-// select: the tiles whose errors are mended at the least cost.
+// select: the tiles whose errors cost least to render away.
 #include "engine/twin/past.h"
 
 #include <functional>
@@ -8,7 +8,8 @@ namespace binosplat::reference {
 
 namespace {
 
-// The price at which the budget ends, and what is left for it; none: the budget is enough for all.
+// The price at which the budget ends, and what is left of the budget there; empty: the budget is enough for
+// all.
 struct BudgetEnd {
     std::optional<std::uint32_t> last;
     std::uint64_t left;
@@ -36,7 +37,7 @@ void select(std::vector<TileKind>& kinds, std::span<const std::optional<std::uin
     for (std::size_t tile = 0; tile < prices.size(); ++tile) {
         if (!prices[tile] || (last && *prices[tile] < *last)) { continue; }
         if (last && *prices[tile] == *last) {
-            if (*whole[tile] != *last) { continue; }  // it would have been paid for before
+            if (*whole[tile] != *last) { continue; }  // it would have been chosen before
             goes_on = goes_on && costs[tile] <= left;
             if (!goes_on) { continue; }
             left -= costs[tile];

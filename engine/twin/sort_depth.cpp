@@ -1,4 +1,5 @@
-// sort_depth: front to back, ties by index: a radix sort of the depths' bits, stable over splats that come in ascending.
+// sort_depth: front to back, ties by index: a radix sort of the depths' bits, stable over splats that come in
+// ascending order.
 #include "engine/parallel.h"
 #include "engine/twin/reference.h"
 
@@ -15,7 +16,8 @@ struct Key {
     std::uint32_t splat;
 };
 
-// Unsigned integers in the order of the numbers: all bits of negative ones are flipped, the sign bit of the others.
+// Unsigned integers in the order of the numbers: all bits of negative ones are flipped, and the sign bit of
+// the others.
 std::uint64_t orderedBits(double depth) {
     const auto bits = std::bit_cast<std::uint64_t>(depth + 0.0);  // -0 becomes +0
     const std::uint64_t sign = std::uint64_t{1} << 63;

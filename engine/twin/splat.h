@@ -1,4 +1,5 @@
-// The equations several passes share: a splat in camera space, its pixel rows, and where the ray of a pixel meets it.
+// The equations that several passes share: a splat in camera space, its pixel rows, and where the ray of a
+// pixel meets it.
 #pragma once
 
 #include "engine/twin/reference.h"
@@ -15,11 +16,12 @@ inline constexpr double kMaxAlpha = 0.99;
 inline constexpr double kMinTransmittance = 1e-4;
 // sigma = sqrt(2)/2 px, so rho2 = |offset|^2 / sigma^2 = 2 |offset|^2.
 inline constexpr double kLowPassFactor = 2.0;
-// 3DGS's low-pass: variance in px^2 that is added on the screen.
+// 3DGS's low-pass: the variance in px^2 that is added on the screen.
 inline constexpr double kScreenVariance = 0.3;
 // A 3D Gaussian's depth at a pixel stays within this ratio of its centre's.
 inline constexpr double kDepthReach = 2.0;
-// Below this sine between the line of sight and the plane, the plane holds the eye as far as float64 can tell.
+// Below this sine between the line of sight and the plane, the plane holds the eye as far as float64 can
+// tell.
 inline constexpr double kMinPlaneSine = 1e-14;
 
 inline bool isFinite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
@@ -28,7 +30,7 @@ inline glm::uvec2 tileGrid(glm::uvec2 size_px) {
     return {(size_px.x + kTileSize - 1) / kTileSize, (size_px.y + kTileSize - 1) / kTileSize};
 }
 
-// An eye's contribution to every splat.
+// What an eye contributes to every splat.
 struct EyeFrame {
     explicit EyeFrame(const Eye& eye)
         : camera_from_world(glm::mat3_cast(glm::conjugate(eye.world_from_camera.orientation))),
@@ -41,7 +43,7 @@ struct EyeFrame {
     glm::dvec3 position_world;
     Intrinsics intrinsics;
     glm::dvec2 size_px;
-    double own_pixel_px;  // the pixel whose low-pass splats have
+    double own_pixel_px;  // the pixel size for which splats have their low-pass
 };
 
 // The disc u a + v b + c in camera space, u^2 + v^2 < cut; or a 3D Gaussian about c with the axes a, b and w.
@@ -51,12 +53,13 @@ struct CameraSplat {
     glm::dvec3 w;
 };
 
-// A 3D Gaussian on the screen: Sigma2 = J Sigma J^T + kScreenVariance, with J the projection's derivative at the centre, x/z and y/z held
-// within the picture enlarged by 0.3 of its half width and height on each side.
+// A 3D Gaussian on the screen: Sigma2 = J Sigma J^T + kScreenVariance, with J the projection's derivative at
+// the centre, and x/z and y/z held within the picture enlarged by 0.3 of its half width and height on each
+// side.
 struct ScreenGaussian {
     double xx, xy, yy, det;
     double sharp_det;       // without the low-pass
-    glm::dvec2 with_depth;  // the covariance of 1/z, to first order, and the place on the screen: -(J Sigma) e_z / z^2
+    glm::dvec2 with_depth;  // the covariance of 1/z, to first order, with the place on the screen: -(J Sigma) e_z / z^2
 };
 
 inline ScreenGaussian screenGaussian(const CameraSplat& splat, const EyeFrame& eye) {
@@ -74,20 +77,21 @@ inline ScreenGaussian screenGaussian(const CameraSplat& splat, const EyeFrame& e
     g.xy = a.x * a.y + b.x * b.y + w.x * w.y;
     g.yy = sharp_yy + variance;
     g.with_depth = -(splat.a.z * a + splat.b.z * b + splat.w.z * w) / (splat.c.z * splat.c.z);
-    // xx yy - xy^2 as a sum of squares (Cauchy and Binet): of a needle the difference would keep no digit.
+    // xx yy - xy^2 as a sum of squares (Cauchy and Binet): for a needle the difference would not keep a
+    // digit.
     const double ab = cross(a, b), aw = cross(a, w), bw = cross(b, w);
     g.sharp_det = ab * ab + aw * aw + bw * bw;
     g.det = g.sharp_det + variance * (sharp_xx + sharp_yy) + variance * variance;
     return g;
 }
 
-// Nothing for a splat that can show nowhere: opacity at or below 1/255, or an attribute that is not finite.
+// Empty for a splat that is visible nowhere: opacity at or below 1/255, or an attribute that is not finite.
 inline std::optional<CameraSplat> toCamera(const Scene& scene, std::size_t splat, const EyeFrame& eye) {
     const double cut = 2.0 * std::log(255.0 * static_cast<double>(scene.opacities[splat]));
     if (!(cut > 0.0) || !std::isfinite(cut)) { return std::nullopt; }
     const glm::dvec3 from_eye = glm::dvec3(scene.positions[splat]) - eye.position_world;
     const glm::quat& stored = scene.rotations[splat];
-    // A quaternion of length zero becomes NaN here and the splat invisible.
+    // A quaternion of length zero becomes NaN here, and the splat invisible.
     const glm::dmat3 disc = glm::mat3_cast(glm::dquat(stored.w, stored.x, stored.y, stored.z) /
                                            std::sqrt(static_cast<double>(stored.w) * stored.w + static_cast<double>(stored.x) * stored.x +
                                                      static_cast<double>(stored.y) * stored.y + static_cast<double>(stored.z) * stored.z));
@@ -99,14 +103,15 @@ inline std::optional<CameraSplat> toCamera(const Scene& scene, std::size_t splat
     return result;
 }
 
-// Pixel rows about an origin: (u, v, 1) . u / (u, v, 1) . w is the pixel x, less origin.x, of a point on the disc; with v its y.
+// Pixel rows about an origin: (u, v, 1) . u / (u, v, 1) . w is the pixel x, relative to origin.x, of a point
+// on the disc; with v its y.
 struct PixelRows {
     glm::dvec3 u, v, w;
     glm::dvec2 origin_px;
 };
 
-// About the projected centre, where digits are best kept, unless it is absent or so far out that the pixels themselves would
-// lose digits; then about the middle of the image.
+// About the projected centre, where digits are kept best, unless it is absent or so far out that the pixels
+// themselves would lose digits; then about the middle of the image.
 inline PixelRows pixelRows(const ProjectedSplat& splat, glm::uvec2 size_px) {
     const glm::dvec2 size(size_px), middle = 0.5 * size;
     const glm::dvec2 away = glm::abs(splat.reference_px - middle);
@@ -168,8 +173,8 @@ struct Hit {
     double rho, depth;
 };
 
-// False if the ray misses. A hit of the disc nearer than near (or behind the eye, or not finite) counts as none, which leaves
-// the low-pass where there is one. Every comparison is written to fail for NaN.
+// False if the ray misses. A hit of the disc that is nearer than near (or behind the eye, or not finite) does
+// not count, which leaves the low-pass if there is one. Every comparison is written to fail for NaN.
 inline bool meet(const RayPlane& plane, const glm::dvec2& pixel, Hit& hit) {
     bool met = false;
     hit = {plane.cut, 0.0};

@@ -10,7 +10,7 @@ constexpr double kSearchStepPx = 8.0;
 constexpr int kMostSearched = 48;
 
 struct BlockFromPast {
-    bool whole;                                      // it comes from a block of the past
+    bool whole;                                      // it comes from a block of the history
     glm::dvec2 source_px;                            // where its middle comes from
     std::vector<std::optional<MovingPixel>> pixels;  // row by row
     glm::dvec2 mean_move_px;
@@ -18,8 +18,8 @@ struct BlockFromPast {
     std::uint32_t spread = 0;  // the greatest code
 };
 
-// The inverse depth of the nearest content that comes to lie at a place from beyond its neighbours; 0: none in front of `known`.
-// `moves_px`: how far it moves per unit of inverse depth.
+// The inverse depth of the nearest content that comes to lie at a place from beyond its neighbours; 0: none
+// in front of `known`. `moves_px`: how far it moves per unit of inverse depth.
 double nearestOnTheWay(const PastView& view, const glm::dvec2& wanted_px, double moves_px, double known, double near) {
     const int steps = static_cast<int>(std::min(moves_px / near / kSearchStepPx, double{kMostSearched}));
     double nearest = 0.0;
@@ -78,11 +78,11 @@ BlockFromPast findBlock(const PastView& view, const glm::ivec2& first, double ne
     const glm::dvec2 disparity = glm::abs(view.past_from_now.disparity(middle_px));
     const double moves_px = std::max(disparity.x, disparity.y);
     block.nearest = std::max(block.nearest, nearestOnTheWay(view, middle_px, moves_px, block.nearest, near));
-    // What is found there must belong there: it comes to lie where it was looked for.
+    // What is found there must belong there: it must land where it was searched for.
     double mean = 0.0;
     for (const auto& pixel : block.pixels) { mean += (pixel ? pixel->inverse_depth : 0.0) / double(kPastBlock.x * kPastBlock.y); }
     block.whole = block.whole && moves_px * std::abs(mean - guess) <= kAgreesPx;
-    // Stretched along neither axis, and of about one depth.
+    // Not stretched along either axis, and of about one depth.
     const auto stretch = [&](int axis) {
         glm::dvec2 half(0.0);
         half[axis] = 0.5 * kPastBlock[axis];
@@ -94,12 +94,12 @@ BlockFromPast findBlock(const PastView& view, const glm::ivec2& first, double ne
     return block;
 }
 
-// If anything moves, a block does not lose less than this, so that every tile gets its turn.
+// If anything moves, a block loses at least this much, so that every tile gets its turn.
 double leastLossOf(const BlockFromPast& block) {
     return kPastBlock.x * kPastBlock.y * (block.mean_move_px != glm::dvec2(0.0) ? kLeastGrowth : 0.0);
 }
 
-// For a block that comes whole: of all its pixels, estimated from two of them. Those between may be worse.
+// For a whole block: over all its pixels, estimated from two of them. Those in between may be worse.
 Loss lossOf(const PastView& view, const BlockFromPast& block, const glm::ivec2& first) {
     const double spread = kOwnSpread * spreadOf(block.spread) * block.nearest + 0.5 * (block.nearest - block.farthest);
     const glm::dvec2 off_px = view.uncertainMove(glm::dvec2(first), spread), t = block.mean_move_px - glm::floor(block.mean_move_px);
@@ -156,7 +156,8 @@ private:
         const BlockFromPast block = findBlock(view_, first, near_);
         PastTile& tile = warped_.picture.tiles[tile_index];
         const std::size_t quarter = quarterOf(first);
-        // The past's errors carry over as squares, and how fast they grow as it is: means over where the quarter's blocks come from.
+        // The history's errors carry over as squares, and their growth unchanged: as means over where the
+        // quarter's blocks come from.
         if (view_.isInside(block.source_px)) {
             const std::size_t from = quarterOf(glm::ivec2(block.source_px));
             const PastTile& before = tileOf(past_, block.source_px);
@@ -219,8 +220,9 @@ glm::dvec4 sampleSmoothly(const PastView& view, const glm::dvec2& place_px) {
     return glm::max(sum, glm::dvec4(0.0));
 }
 
-// The squared error expected of a pixel of a block: what alternates in sign from pixel to pixel with an amplitude d has fifth differences
-// of 32 d, all of which is lost halfway between two pixels; and how the picture changes over what its place may be off by.
+// The expected squared error of a pixel of a block. A signal that alternates in sign from pixel to pixel with
+// an amplitude d has fifth differences of 32 d, all of which is lost halfway between two pixels; to this is
+// added how the picture changes over the uncertainty of the place.
 Loss lossAt(const PastView& view, const glm::ivec2& wanted, const glm::dvec2& t, const glm::dvec2& off_px) {
     constexpr std::array<double, 6> kFifthDifference{-1, 5, -10, 10, -5, 1};
     const glm::ivec2 at = glm::clamp(wanted, glm::ivec2(0), view.last);

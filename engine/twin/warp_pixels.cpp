@@ -1,4 +1,4 @@
-// warp_pixels: pixels of an eye's picture that are searched for in the past one by one.
+// warp_pixels: pixels of an eye's picture that are searched for in the history one by one.
 #include "engine/twin/past_view.h"
 
 namespace binosplat::reference {
@@ -14,7 +14,7 @@ struct Found {
     bool agrees = false;
 };
 
-// How wide a pixel of the past is at a place: wider than one if the view has turned towards it.
+// How wide a pixel of the history is at a place: wider than a pixel if the view has turned towards it.
 glm::dvec2 widthOfPixel(const PastView& view, const glm::dvec2& wanted_px) {
     const auto changeAlong = [&](const glm::dvec2& half) {
         return view.place(wanted_px + half, 0.0).place_px - view.place(wanted_px - half, 0.0).place_px;
@@ -65,7 +65,8 @@ struct Sample {
     double lost;                        // squared
 };
 
-// What alternates in sign from pixel to pixel with an amplitude d has third differences of 8 d, and all of it is lost halfway between two.
+// A signal that alternates in sign from pixel to pixel with an amplitude d has third differences of 8 d, and
+// all of it is lost halfway between two.
 Sample sampleAround(const PastView& view, const glm::dvec2& place_px) {
     const glm::dvec2 at = glm::clamp(place_px, glm::dvec2(0.5), glm::dvec2(view.last) + 0.5) - 0.5;
     const glm::ivec2 base(glm::floor(at)), nearest(glm::floor(at + 0.5));
@@ -100,7 +101,7 @@ PixelFromPast makePixel(const PastView& view, const glm::dvec2& wanted_px, doubl
     const Found from_near = search(view, wanted_px, near, agrees_px), from_far = search(view, wanted_px, far, agrees_px);
     const bool takes_near = from_near.agrees && (!from_far.agrees || from_near.seen.inverse_depth >= from_far.seen.inverse_depth);
     Found found = takes_near ? from_near : from_far;
-    // A pixel that blends two depths moves with what stands in front of it.
+    // A pixel that blends two depths moves with what is in front of it.
     if (found.agrees && !is_flat) {
         const EyeChange::Moved place = view.place(wanted_px, frontAround(view, found.place_px));
         if (place.in_front && view.isInside(place.place_px)) {
@@ -113,7 +114,7 @@ PixelFromPast makePixel(const PastView& view, const glm::dvec2& wanted_px, doubl
     glm::dvec2 off_px = view.uncertainMove(wanted_px, spread);
     const bool nothing = !found.seen.pixel || !view.isInside(found.place_px);
     const double unseen = found.agrees ? 0.0 : nothing ? kUnseenError : kUncoveredError;
-    // Beside what was hidden a pixel is taken as it is.
+    // Beside hidden pixels a pixel is taken as it is.
     const glm::dvec2 middle_px = glm::floor(found.place_px) + 0.5;
     if (view.reachesHidden(glm::ivec2(middle_px), glm::ivec2(middle_px))) {
         off_px = glm::abs(off_px) + glm::abs(found.place_px - middle_px);

@@ -1,4 +1,5 @@
-// weigh: the tiles that the source does not see, those that nobody sees, and those that cost less to render than to warp.
+// weigh: the tiles that the source does not see, those that are never seen, and those that cost less to
+// render than to reproject.
 #include "engine/twin/eye_change.h"
 #include "engine/twin/splat.h"
 
@@ -7,9 +8,9 @@
 namespace binosplat::reference {
 namespace {
 
-// A tile costs this many pairs besides its own, and counts for no more than its word has room for.
+// A tile costs this many pairs besides its own, and counts for at most what its word can hold.
 constexpr std::uint64_t kTilePairs = 16, kMaxTileCost = (1u << 21) - 1;
-// Warping has a cost even if no tile is warped: that of warping all tiles, divided by this.
+// Reprojecting has a cost even if no tile is reprojected: that of reprojecting all tiles, divided by this.
 constexpr std::uint64_t kMoveSharedPart = 2;
 
 // The pixel in the middle of a tile; of an even row, since odd ones may have no depths.
@@ -19,7 +20,8 @@ glm::uvec2 middleOf(std::size_t tile, glm::uvec2 size_px) {
     return glm::min(at * unsigned{kTileSize} + unsigned{kTileSize / 2}, size_px - 1u) & glm::uvec2(~0u, ~1u);
 }
 
-// The source tile that the middle of a target tile comes from, assuming that it is as deep as what the source has there.
+// The source tile from which the middle of a target tile comes, if it is as deep as what the source has
+// there.
 std::size_t sourceTile(const Picture& dominant, const EyeChange& source_from_target, std::size_t tile, const StereoSettings& settings) {
     const glm::uvec2 size_px = dominant.size_px;
     const auto pixel = movingAtMiddle(dominant, tile, settings);
@@ -58,7 +60,7 @@ Weighed weigh(const Picture& dominant, std::span<const TileRange> dominant_range
             weighed.saved_cost += pairs - settings.move_cost;
         }
     }
-    // The savings must cover the cost of warping that does not depend on the tiles, and the budget for mending.
+    // The savings must cover the part of the cost that does not depend on tiles, and the budget for patching.
     const auto mending = static_cast<std::uint64_t>(settings.budget * static_cast<double>(weighed.picture_cost));
     weighed.moves = weighed.saved_cost > mending + settings.move_cost * shown / kMoveSharedPart;
     if (!weighed.moves) { std::ranges::replace(weighed.kinds, TileKind::kNone, TileKind::kCheap); }
