@@ -24,8 +24,8 @@ glm::vec3 signsOf(std::uint32_t bits) {
 glm::dmat3 matrixOf(std::uint32_t bits) {
     const glm::dvec3 signs(signsOf(bits));
     const glm::dvec3 right(signs.x, 0.0, 0.0), down(0.0, signs.y, 0.0), forward(0.0, 0.0, signs.z);
-    return (bits & kVerticalZ) != 0 ? glm::dmat3(right, forward, down)
-                                    : glm::dmat3(right, down, forward);  // the columns say where x, y, z lead
+    // The columns say where x, y, z lead.
+    return (bits & kVerticalZ) != 0 ? glm::dmat3(right, forward, down) : glm::dmat3(right, down, forward);
 }
 
 }  // namespace

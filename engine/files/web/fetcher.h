@@ -23,8 +23,8 @@ struct FetchSettings {
     Milliseconds most_pause{20000};  // the longest that a server may ask for
     Milliseconds patience{20000};    // with a server that sends next to nothing
     std::size_t at_once = 8;
-    std::function<bool(const std::string& ip)> is_private =
-        isPrivateAddress;  // by a server's address; redirects from public ones must not lead there
+    // By a server's address; redirects from public servers must not lead there.
+    std::function<bool(const std::string& ip)> is_private = isPrivateAddress;
 };
 
 struct FetchRequest {
