@@ -1,4 +1,4 @@
-// mark_changed: where parts of the scene came, went or faded, an eye's past is wrong by more than its warp: the quarters of tiles in
+// mark_changed: where parts of the scene came, went or faded, an eye's history is wrong by more than its warp: the quarters of tiles in
 // which they are seen take on an error, so that price finds them worth rendering. A thread per tile.
 #version 460
 #extension GL_GOOGLE_include_directive : require

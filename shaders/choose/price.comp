@@ -13,7 +13,7 @@
 layout(local_size_x = kWarpGroup) in;
 layout(push_constant, scalar) uniform Push { PricePass pass; };
 layout(constant_id = 0) const bool kFoveated = false;
-layout(constant_id = 1) const bool kPast = false;  // errors are those that the past has left in its tiles
+layout(constant_id = 1) const bool kPast = false;  // errors are those that the history has left in its tiles
 #include "lib/target.glsl"
 
 const uint kBinsPerThread = kPriceBins / kWarpGroup;
@@ -24,7 +24,7 @@ const float kMaskingGradient = 0.05, kUnmaskedBound = 0.6;
 // 16 bins per octave, the greatest quotients last: exponent and four bits of the mantissa.
 uint binOf(float error_per_pair) { return min(max(floatBitsToUint(error_per_pair) >> 19, 104u << 4) - (104u << 4), kNewBin - 1); }
 
-// What rendering a tile is worth in a picture that is made from a past: its expected squared error, times the frames that it has waited. An
+// What rendering a tile is worth in a picture that is made from a history: its expected squared error, times the frames that it has waited. An
 // error that grows by the frame loses its area under that growth when it is mended (a Whittle index), and so every tile gets its turn.
 uint errorOfPast(PastTile tile) {
     const float squares = 3 * float(kCellSize * kCellSize) * dot(tile.errors, tile.errors);
@@ -93,7 +93,7 @@ uint priceOf(uint tile, uvec2 size_tiles) {
     const uint bin = binOf(worth / float(cost));
     uint seen_bin = binOf(share * worth / float(cost));
     // The list counts errors as if all were seen whole, so that what a pair must be worth does not fall with what is not seen. Not so with
-    // a past: errors that are not seen and not rendered grow from frame to frame, and would leave nothing to those that are seen.
+    // a history: errors that are not seen and not rendered grow from frame to frame, and would leave nothing to those that are seen.
     if (kPast && FIRST.warp.error_bound > 0) { seen_bin = binUnderBound(seen_bin, its, share); }
     const uint listed_bin = kPast ? seen_bin : bin;
     if (!kPast || !unnoticed) { atomicAdd(pass.price_bins.at[listed_bin], cost); }

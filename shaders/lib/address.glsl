@@ -1,7 +1,7 @@
 #ifndef BINOSPLAT_SHADERS_LIB_ADDRESS_GLSL
 #define BINOSPLAT_SHADERS_LIB_ADDRESS_GLSL
 
-// Of an address: that it is not null.
+// True if an address is not null.
 bool isThere(uvec2 address) { return any(notEqual(address, uvec2(0))); }
 
 #endif

@@ -1,15 +1,16 @@
-// The blocks of kCullBlock splats that cull and compact go over, a workgroup each: all of a scene's, or with kInPages its visible pages
-// (see cull_pages). Wants `pass` to be a CullPass or a CompactPass; needs lib/list.glsl.
+// The blocks of kCullBlock splats that cull and compact process, a workgroup each: all of a scene's, or with
+// kInPages its visible pages (see cull_pages). Needs `pass` to be a CullPass or a CompactPass, and
+// lib/list.glsl.
 
 uint blockCount() { return kInPages ? pass.visible_pages.at[0].count : groupsOver(pass.splat_count, kCullBlock); }
 
-// The page that is a block of the list. Of many pages each run is listed where all of its pages would lie, and behind the pages are the numbers
-// of visible ones before each run (cull_pages).
+// The page that is a block of the list. If there are many pages, each run is listed where all of its pages
+// would be, followed by the numbers of visible pages before each run (cull_pages).
 uint pageOfBlock(uint block) {
     const uint pages = groupsOver(pass.splat_count, kPageSplats), groups = groupsOver(pages, kGroupSize);
     const uint length = sumRunLength(groups, kMostPageGroupsInOneRun);
     if (length >= groups) { return pass.page_list.at[block]; }
-    uint first = 0, before = 0;  // of the block's run, which is the last that begins no later
+    uint first = 0, before = 0;  // of the block's run, the last one that begins no later
     for (uint run = 1; run < groupsOver(groups, length); ++run) {
         const uint begin = pass.page_list.at[pages + run];
         if (begin <= block) {
@@ -20,7 +21,8 @@ uint pageOfBlock(uint block) {
     return pass.page_list.at[first + (block - before)];
 }
 
-// The first splat of the block; if there is no such block (the last row of a dispatch may have more workgroups), one past all splats.
+// The first splat of the block; if there is no such block (the last row of a dispatch may have more
+// workgroups), the number of all splats.
 uint firstOfBlock(uint block) {
     if (!kInPages) { return min(block, groupsOver(pass.splat_count, kCullBlock)) * kCullBlock; }
     return block < pass.visible_pages.at[0].count ? pageOfBlock(block) * kCullBlock : pass.splat_count;

@@ -1,8 +1,9 @@
-// A coarse tile: 8x8 samples, evenly from the first pixel's middle to the last one's, and the 16x16 pixels that Catmull and Rom's cubic makes
-// of them. For rasterize, each cell of whose workgroup has such a tile: once its splats are blended their shared memory holds the samples.
+// A coarse tile: 8x8 samples, evenly from the first pixel's middle to the last one's, and the 16x16 pixels
+// that Catmull and Rom's cubic makes of them. For rasterize, where each cell of a workgroup has such a tile:
+// once its splats are blended, their shared memory holds the samples.
 
 shared uint cell_details[kCellsPerTile];  // second differences, squared and summed, in kErrorSteps
-shared uint sharp_cells;                  // whose tile needs all of its pixels: a bit each
+shared uint sharp_cells;                  // cells whose tile needs all of its pixels: a bit each
 shared uint most_pairs;                   // of a cell's tile
 
 const int kLastSample = int(kCellSize) - 1, kHalfTile = int(kTileSize) / 2;
@@ -35,7 +36,8 @@ uint sampleWord(uint cell, ivec2 at) {
     return cell < 2 ? words.x : words.y;
 }
 
-// Its squared second differences along both axes; none across the tile's border, for which six samples of eight stand.
+// Its squared second differences along both axes; there are none across the tile's border, so six samples of
+// eight stand for all.
 float detailAt(uint cell, ivec2 at) {
     const vec3 here = sampleAt(cell, at).rgb;
     float squares = 0;
@@ -50,8 +52,8 @@ float detailAt(uint cell, ivec2 at) {
     return min(squares * (float(kCellSize) / float(kCellSize - 2)), kMaxPixelError);
 }
 
-// The weights of four samples for a pixel of the tile's first half, and the first of these. Before the outermost sample the parabola
-// through it and the next two goes on.
+// The weights of four samples for a pixel of the tile's first half, and the first of these samples. Outside
+// the outermost sample, the parabola through it and the next two continues.
 vec4 cubicAt(int pixel, out int first) {
     const float place = float(pixel) / kSamplesApart;
     const int before = int(place);
@@ -64,7 +66,8 @@ vec4 cubicAt(int pixel, out int first) {
 // The second half is the first one in reverse.
 int mirrored(int i, int last, bool is_second) { return is_second ? last - i : i; }
 
-// A column of half of the tile's pixels, from the border on, and the sampled rows that the next of them is made from.
+// A column of half of the tile's pixels, from the border on, and the sampled rows from which the next of them
+// is made.
 struct Column {
     uint cell;
     bool is_right, is_lower;

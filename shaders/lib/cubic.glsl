@@ -14,7 +14,7 @@ struct Sample {
     float squared_gradient;  // of the picture, summed over channels
 };
 
-// What alternates in sign from pixel to pixel is lost halfway between them, and in part on the way there.
+// What alternates in sign from pixel to pixel is lost halfway between them, and partly on the way there.
 vec3 lostBetween(float t, vec3 third_difference) { return 0.5 * t * (1 - t) * third_difference; }
 
 // Rectified pixels keep their row, where the vertical kernel is exactly 1.

@@ -1,4 +1,5 @@
-// The eye that a workgroup works for, loaded into shared memory once, so that not every thread fetches its forty words.
+// The eye for which a workgroup works, loaded into shared memory once so that not every thread fetches its
+// forty words.
 
 shared EyeView group_eye;
 

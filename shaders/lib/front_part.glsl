@@ -1,5 +1,6 @@
-// The bounds on the screen of a disc that reaches through the near plane: of its part beyond that plane, which is convex, so
-// that they are taken where its outline is tangent to the axes or at the ends of the chord that the near plane cuts.
+// The bounds on the screen of a disc that reaches through the near plane. They are those of its part beyond
+// that plane, which is convex: they lie where its outline is tangent to the axes, or at the ends of the chord
+// that the near plane cuts.
 
 // `slack`: how far off the point may be, by the rounding of its sum.
 void widenBy(inout vec4 bounds, EyeView eye, vec3 p, float slack) {
@@ -44,7 +45,7 @@ vec4 frontPartBounds(CameraSplat splat, EyeView eye, float radius) {
     if (steepness > 0 && abs(along) <= radius) {
         const vec2 direction = climb / steepness;
         const float half_chord = sqrt(radius * radius - along * along);
-        // The chord's ends lie on the near plane, whatever their sum says.
+        // The chord's ends are on the near plane, whatever their sum says.
         const vec2 across = half_chord * vec2(-direction.y, direction.x);
         widenBy(bounds, eye, vec3(pointOf(splat, along * direction + across).xy, eye.near), slack);
         widenBy(bounds, eye, vec3(pointOf(splat, along * direction - across).xy, eye.near), slack);

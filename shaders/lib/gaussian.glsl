@@ -9,7 +9,7 @@ struct ScreenGaussian {
     float xx, xy, yy;  // Sigma2, px^2
     float root_det;    // of Sigma2
     float root_sharp;  // of Sigma2 without the low-pass
-    vec2 with_depth;   // the covariance of 1/z and the place on the screen, px
+    vec2 with_depth;   // the covariance of 1/z with the place on the screen, px
 };
 
 // Without squares of large numbers.
@@ -30,7 +30,7 @@ ScreenGaussian screenGaussian(CameraSplat splat, EyeView eye) {
     const vec2 u = scales.x * px_per_unit * (splat.t_u.xy - slope * splat.t_u.z);
     const vec2 v = scales.y * px_per_unit * (splat.t_v.xy - slope * splat.t_v.z);
     const vec2 w = scales.z * px_per_unit * (t_w.xy - slope * t_w.z);
-    // u x v and the like: the area that two axes span, seen along the line of sight.
+    // The area that two axes span, seen along the line of sight: u x v and the like.
     const vec3 along = vec3(dot(splat.t_u, vec3(slope, 1)), dot(splat.t_v, vec3(slope, 1)), dot(t_w, vec3(slope, 1)));
     const vec3 areas = vec3(scales.y * px_per_unit.x, scales.x * px_per_unit.x, scales.x * px_per_unit.x) *
                        (vec3(scales.z, scales.z, scales.y) * px_per_unit.y) * along;
@@ -50,7 +50,8 @@ ScreenGaussian screenGaussian(CameraSplat splat, EyeView eye) {
 // What the low-pass leaves of an opacity that was trained with it (Yu et al. 2024, section 5.2).
 float dimmedOpacity(float opacity, ScreenGaussian g) { return opacity * min(g.root_sharp / g.root_det, 1); }
 
-// The geometry of ProjectedSplat; see there. `has_reference`: the centre lies beyond the near plane, and the splat is seen at all.
+// The geometry of ProjectedSplat; see there. `has_reference`: the centre is beyond the near plane, and the
+// splat is visible at all.
 ProjectedSplat projectGaussian(CameraSplat splat, EyeView eye, bool dimmed, out bool has_reference) {
     const vec3 c = splat.centre;
     has_reference = c.z > eye.near;
@@ -61,8 +62,9 @@ ProjectedSplat projectGaussian(CameraSplat splat, EyeView eye, bool dimmed, out 
     // rho = d^T Sigma2^-1 d = u^2 + v^2, where v does not depend on dx.
     const float a = sqrt(g.yy) / g.root_det;
     p.plane_from_pixel = vec3(a, -(g.xy / g.yy) * a, 1 / sqrt(g.yy));
-    // The mean of 1/z along a ray, which to first order is where the Gaussian is greatest there: the covariance with the place on the screen
-    // over that of the place, Sigma2. The low-pass keeps it finite where a sheet is seen edge-on.
+    // The mean of 1/z along a ray, which to first order is where the Gaussian is greatest there: its
+    // covariance with the place on the screen over the variance of the place, Sigma2. The low-pass keeps it
+    // finite for a sheet seen edge-on.
     const float along_u = p.plane_from_pixel.x * g.with_depth.x + p.plane_from_pixel.y * g.with_depth.y;
     p.perspective = along_u * p.plane_from_pixel.xy + vec2(0, p.plane_from_pixel.z * p.plane_from_pixel.z * g.with_depth.y);
     p.opacity = packOpacity(dimmed ? dimmedOpacity(splat.opacity, g) : splat.opacity, has_reference);

@@ -15,8 +15,8 @@
 // Dispatches of many groups are folded into rows.
 uint groupIndex() { return gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x; }
 
-// Even numbers first, then the odd ones: pictures are often full below and empty above, and a device that deals out workgroups in runs
-// then gets runs of similar work.
+// Even numbers first, then the odd ones: pictures are often full below and empty above, and a device that
+// hands out workgroups in runs then gets runs of similar work.
 uint spread(uint i, uint count) {
     const uint even = (count + 1) / 2;
     return i < even ? 2 * i : 2 * (i - even) + 1;
@@ -25,10 +25,11 @@ uint spread(uint i, uint count) {
 // Lanes are counted, since gl_SubgroupSize may state more than a subgroup holds. In uniform control flow only.
 uint laneCount() { return subgroupBallotBitCount(subgroupBallot(true)); }
 
-// The thread's place in the order that the scans below sum in: by subgroup and lane, which the invocation index need not follow.
+// The thread's place in the order in which the scans below sum: by subgroup and lane, which the invocation
+// index need not follow.
 uint threadIndex() { return gl_SubgroupID * laneCount() + gl_SubgroupInvocationID; }
 
-// One value per subgroup, of at least four lanes, and one for all.
+// One value for each subgroup, of at least four lanes, and one for all.
 shared uint subgroup_sums[kGroupSize / 4 + 1];
 
 // The sum of `value` over the threads before this one; `total` is the sum over all. Every thread must call it.

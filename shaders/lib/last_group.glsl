@@ -1,24 +1,27 @@
-// The workgroup that finishes last takes the next step of an algorithm, which then needs no command of its own. Nobody waits for
-// anybody, so that workgroups may run in any order, one at a time if need be. For shaders that include lib/group.glsl.
+// The workgroup that finishes last takes the next step of an algorithm, which then needs no command of its
+// own. Workgroups never wait for each other, so they may run in any order, even one at a time. For shaders
+// that include lib/group.glsl.
 
 shared uint group_is_last;
 
-// True if all other workgroups of the dispatch are done; `list` counts them and is back at 0 afterwards. In uniform control flow, by
-// every workgroup, once.
+// True if all other workgroups of the dispatch are done; `list` counts them and is back at 0 afterwards. To
+// be called in uniform control flow, once by every workgroup.
 bool isLastGroup(ListStates list);
-// The same for the `groups` workgroups of one run, of which the list counts 128 / bits; `groups` is less than 2^bits.
+// The same for the `groups` workgroups of one run; the list counts 128 / bits runs, and `groups` is less than
+// 2^bits.
 bool isLastOfRun(ListStates list, uint run, uint groups, uint bits);
 
-// What the others wrote can then be read, if it is read and written through a `coherent` array. In the words of Vulkan's memory model
-// each memoryBarrierBuffer releases and acquires for the whole device; two of them synchronize where a barrier() lies between them, or the
-// two atomicAdds. So a thread's writes are handed to its thread 0, from there to thread 0 of the last workgroup, and on to its threads.
-// Hands what the workgroup wrote to its thread 0.
+// What the others wrote can then be read, if it is written and read through a `coherent` array. In the words
+// of Vulkan's memory model each memoryBarrierBuffer releases and acquires for the whole device; two of them
+// synchronize if a barrier() lies between them, or the two atomicAdds. So a thread's writes are handed to its
+// thread 0, from there to thread 0 of the last workgroup, and on to its threads. Hands what the workgroup
+// wrote to its thread 0.
 void beginLast() {
     memoryBarrierBuffer();
     barrier();
 }
 
-// And what others wrote from there to all of its threads.
+// And what others wrote, from there to all of its threads.
 bool endLast() {
     barrier();
     memoryBarrierBuffer();

@@ -1,4 +1,4 @@
-// What rasterize leaves to pictures that are made from its own: how far off a tile was, and how fast its error grew.
+// What rasterize leaves for pictures made from its own: how far off a tile was, and how fast its error grew.
 
 #include "lib/past_tile.glsl"
 
@@ -15,13 +15,13 @@ vec4 amplitudeOf(vec4 sums) { return sqrt(sums / (kErrorSteps * 3 * kCellSize * 
 
 uint inSquareSteps(float squares) { return uint(min(squares, kMostSquares) * kSquareSteps + 0.5); }
 
-// Writes what a picture that is made from this one must know of the tile; `sums` is what its quarters turned out to have had, and
-// `lost` the amplitude that it lacks.
+// Writes what a picture that is made from this one must know about the tile. `sums`: the errors that its
+// quarters turned out to have had; `lost`: the amplitude that a coarse tile lacks.
 void leaveTile(uint tile, uint cost, vec4 sums, float lost) {
     const vec4 amplitude = isMade() ? amplitudeOf(sums) : vec4(0);
     PastTiles past_tiles = PastTiles(TARGET.past_tiles);
     const uint age = isMade() ? past_tiles.at[tile].age : 0;  // 0: nothing was there
-    // What was wrong because nobody had seen it says nothing of later frames.
+    // An error of a tile that had never been seen says nothing about later frames.
     const vec4 expected = age > 0 ? amplitudeOf(vec4(past_tiles.at[tile].grown)) : vec4(1);
     vec4 counts = mix(vec4(1), vec4(0), greaterThanEqual(expected, vec4(kUnseenGrowth)));
     [[unroll]] for (uint q = 0; q < 4; ++q) {
@@ -35,7 +35,7 @@ void leaveTile(uint tile, uint cost, vec4 sums, float lost) {
     past_tiles.at[tile] = PastTile(cost, 0, growth, vec4(0), uvec4(0), lost, 0, 0);
 }
 
-// True if it is going to be measured what pixels twice as wide would lose of the tile, once it is rendered.
+// True if this frame measures what the tile would lose with pixels twice as wide, once it is rendered.
 bool isMeasured(uint tile) {
     const bool measured = kMeasures && !is_wider && TARGET.is_made != 0 && tile % kMeasuredParts == TARGET.measured;
     if (measured && gl_LocalInvocationIndex == 0) { frames_waited = clamp(PastTiles(TARGET.past_tiles).at[tile].age, 1, kMostWaited); }

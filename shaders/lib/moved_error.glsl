@@ -1,6 +1,7 @@
-// The expected error of a pixel that is warped. For resample.
+// The expected error of a pixel that is reprojected. For resample.
 
-// How uncertain a pixel's inverse depth is, as a variance: the pixel blends several, and may belong to those of its neighbours.
+// The uncertainty of a pixel's inverse depth, as a variance: the pixel blends several depths, and may have
+// one of its neighbours'.
 float uncertaintyOf(uint row, uint x, uint width, Resolved resolved) {
     const float own = kSpreadWeight * resolved.inverse_depth;
     float step = 0;
@@ -12,8 +13,8 @@ float uncertaintyOf(uint row, uint x, uint width, Resolved resolved) {
     return resolved.variance_share * (own * own) + step * step;
 }
 
-// The expected squared error of a hole's pixel, which repeats what lies `repeated_px` away: what is hidden is expected to differ from that
-// as much as what is seen equally far on the other side.
+// The expected squared error of a hole's pixel, which repeats what is `repeated_px` away: hidden content is
+// expected to differ from that as much as the content seen equally far on the other side does.
 float holeError(WarpView warp, vec2 source_px, int repeated_px) {
     const ivec2 last = ivec2(warp.size_px) - 1;
     const ivec2 source = ivec2(floor(clamp(source_px, vec2(-1e6), vec2(1e6))));

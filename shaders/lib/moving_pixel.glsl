@@ -15,16 +15,16 @@ const uint kSpreadBits = 0x1fu;
 uint movingPixel(float inverse_depth, uint landed, uint spread) { return ((((floatBitsToUint(inverse_depth) + 16) >> 5) + 1) << 6) | landed | spread; }
 float inverseDepthOf(uint moving) { return uintBitsToFloat(((moving >> 6) - 1) << 5); }
 
-// A pixel is moved back from the middle of the one that it arrived in, and so comes out as far off as it had landed from that middle: by
-// less than a pixel. Only one of the pixels around that place has its parity.
+// A pixel is moved back from the middle of the pixel in which it arrived, and so comes out as far off as it
+// had landed from that middle: by less than a pixel. Only one of the pixels around that place has its parity.
 uint parityOf(uvec2 pixel) { return (pixel.x & 1) | (pixel.y & 1) << 1; }
 ivec2 pixelOfParity(vec2 place_px, uint moving) {
     const vec2 parity = vec2(moving & 1, moving >> 1 & 1);
     return ivec2(2 * round(0.5 * (place_px - 0.5 - parity)) + parity);
 }
 
-// Half octaves of the spread are octaves of its square: no more than an exponent. `variance_share`: of the inverse depth, as a share of its
-// square. NaN counts as none.
+// Half octaves of the spread are octaves of its square, which the exponent gives. `variance_share`: variance
+// of the inverse depth, as a share of its square. NaN counts as none.
 uint spreadCode(float variance_share) {
     const int octave = int(floatBitsToUint(variance_share * 1.41421356) >> 23) - 127;  // the nearest
     return isPositive(variance_share) ? uint(clamp(octave - int(2 * kLeastSpreadLog2) + 1, 0, int(kSpreadCodes))) : 0;

@@ -1,4 +1,5 @@
-// Rows that are made after those above and below them: sampled at the places of the one above, or their mean. For resample.
+// Rows that are made after those above and below them: sampled at the places of the row above, or as the mean
+// of both. For resample.
 
 // Where a pixel was sampled, for the one below it in an odd row; stored where the colour of that one is going to be.
 //
@@ -21,7 +22,8 @@ void keepPlace(WarpView warp, uvec2 at, Resolved resolved, float place_px) {
     if (keepsDepths()) { placeWords().at[word + 1] = floatBitsToUint(resolved.inverse_depth); }
 }
 
-// Writes a pixel of an odd row. A neighbour is repeated as the row above shows it, by whose depths it was found.
+// Writes a pixel of an odd row. A neighbour is repeated as the row above shows it, since its depths found the
+// neighbour.
 float sampleBelow(WarpView warp, uvec2 at, out uint pixel_class) {
     const uint word = placeAt(warp, at), place = placeWords().at[word];
     pixel_class = place & 3;
@@ -31,13 +33,14 @@ float sampleBelow(WarpView warp, uvec2 at, out uint pixel_class) {
     return 0;
 }
 
-// True if the row may be the mean of those above and below: both are there, in the same tiles, and tile_errors says in which.
+// True if the row may be the mean of those above and below: both exist, in the same tiles, and tile_errors
+// says in which.
 bool mayBeMean(WarpView warp, uint y) {
     const bool between = (y & 1) == 1 && (y + 1) % kTileSize != 0 && y + 1 < warp.size_px.y;
     return !predictsErrors() && between && isThere(uvec2(pass.tile_errors));
 }
 
-// The rows above and below this one are even ones, which were there before any odd one was begun.
+// The rows above and below this one are even ones, finished before any odd row is begun.
 void putMeans(uint y, uint width, uint tiles) {
     for (uint item = gl_LocalInvocationIndex; item < mean_count * kTileSize; item += kWarpGroup) {
         const uint tile = moved_tiles[kMostTiles - 1 - item / kTileSize], x = tile * kTileSize + item % kTileSize;

@@ -70,17 +70,19 @@ vec2 boundsBetweenRows(Outline o, float y0, float y1) {
     return result;
 }
 
-// The units of `size` pixels whose pixel centres lie between the bounds: first and end, clipped to [0, count).
+// The units of `size` pixels whose pixel centres lie between the bounds: first and end, clipped to [0,
+// count).
 ivec2 unitsBetween(vec2 bounds_px, uint size, uint count) {
     precise const vec2 padded = vec2(bounds_px.x - kOutlinePadding, bounds_px.y + kOutlinePadding) - 0.5;
     const float first_pixel = ceil(padded.x), last_pixel = floor(padded.y);
     if (!(first_pixel <= last_pixel)) { return ivec2(0, 0); }
     precise const vec2 units = vec2(floor(first_pixel / float(size)), floor(last_pixel / float(size)) + 1);
     const vec2 clipped = clamp(units, vec2(0), vec2(count));
-    return clamp(ivec2(clipped), ivec2(0), ivec2(count));  // also of NaN, of which the first may make anything
+    return clamp(ivec2(clipped), ivec2(0), ivec2(count));  // also for NaN, of which the first may make anything
 }
 
-// The tiles of a row that a splat meets, within its box of tiles; of a disc that reaches the eye's plane all of the box's.
+// The tiles of a row that a splat meets, within its box of tiles; all of the box's for a disc that reaches
+// the eye's plane.
 ivec2 tilesInRow(Outline o, uint row, ivec4 tile_box) {
     if (!o.ellipse) { return tile_box.xz; }
     const float first_row = float(row * kTileSize) + 0.5;

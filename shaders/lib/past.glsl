@@ -1,13 +1,15 @@
-// For shaders that make a picture from a past one, block by block or pixel by pixel, and say what kind of pictures these are: kHalfColours,
-// kHiddenTiles, kByAddress; after their push constants, lib/tile_mask.glsl, lib/picture.glsl, lib/moving_pixel.glsl, lib/move_pixel.glsl.
+// For shaders that make a picture from an earlier one, block by block or pixel by pixel, and define what kind
+// of pictures these are: kHalfColours, kHiddenTiles, kByAddress; after their push constants,
+// lib/tile_mask.glsl, lib/picture.glsl, lib/moving_pixel.glsl and lib/move_pixel.glsl.
 
 const uvec2 kBlock = uvec2(kPastColumns, kPastRows);
 
 bool isInPast(PastView view, vec2 place_px) { return all(greaterThanEqual(place_px, vec2(0))) && all(lessThan(place_px, vec2(view.past_size_px))); }
 
-// With kByAddress eight bytes in one access, and sixteen in two, as if they were addresses: llvmpipe goes from lane to lane once per number of
-// a vector, however wide it is. A 64-bit integer would do as well, but not every device has these. glslang gives an address the alignment of
-// what it points to. Not on GPUs, whose compilers may take an address for a multiple of that alignment, which pixels are not.
+// With kByAddress, eight bytes are one access and sixteen bytes two, as if they were addresses: llvmpipe goes
+// from lane to lane once per number of a vector, however wide it is. A 64-bit integer would do as well, but
+// not every device has these. glslang gives an address the alignment of what it points to. Not for GPUs,
+// whose compilers may take an address for a multiple of that alignment, which pixels are not.
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer Eights { HalfColours at[]; };
 struct Sixteen {
     FloatColours low;
@@ -26,17 +28,18 @@ void putSixteen(uvec2 address, uint i, uvec4 words) {
     }
 }
 
-// What the past shows at a place.
+// What the history shows at a place.
 struct Seen {
     uint word;  // lib/moving_pixel.glsl
-    float inverse_depth;  // as the picture that is made sees it
-    vec2 off_px;          // where that pixel's middle comes to lie, relative to `wanted_px`
+    float inverse_depth;  // as seen in the picture that is being made
+    vec2 off_px;          // where that pixel's middle lands, relative to `wanted_px`
 };
 
 bool isHiddenInPast(PastView view, uvec2 at) {
     return kHiddenTiles && isThere(uvec2(pass.past_shown)) && !isInMask(pass.past_shown, view.past_size_tiles, at / kTileSize);
 }
-// True if taps about pixels of a box, less than a tile wide, are hidden ones: these show nothing, which would leak.
+// True if taps around the pixels of a box, less than a tile wide, include hidden ones, whose background would
+// leak in.
 bool reachesHidden(PastView view, ivec2 first, ivec2 last) {
     if (!kHiddenTiles) { return false; }
     const ivec2 end = ivec2(view.past_size_px) - 1;
@@ -58,7 +61,7 @@ Seen look(PastView view, vec2 place_px, vec2 wanted_px) {
     return Seen(moves.z > 0 ? word : 0, inverse_depth / max(moves.z, 1e-6), (middle_px - wanted_px) + moves.xy);
 }
 
-// How far a place in the past moves per unit of inverse depth.
+// How far a place in the history moves per unit of inverse depth.
 vec2 disparity(PastView view, vec2 pixel_px) { return view.past_from_now.shift.xy - pixel_px * view.past_from_now.shift.z; }
 
 // How far the place may be off because of its depth's spread; at most kMaxSpread.

@@ -1,6 +1,7 @@
-// A pixel of the source on its way to where the target sees it: reproject, and resample where it moves pixels itself. For shaders that know
-// pass.moving and pass.shown_mask, include lib/warp.glsl, lib/moving_pixel.glsl and lib/unseen.glsl, and say whether parts
-// of the source were not rendered, whether colours are copied, and where pixels arrive.
+// A pixel of the source on its way to where the target sees it: for reproject, and for resample if it moves
+// pixels itself. For shaders that know pass.moving and pass.shown_mask, include lib/warp.glsl,
+// lib/moving_pixel.glsl and lib/unseen.glsl, and define whether parts of the source were not rendered,
+// whether colours are copied, and where pixels arrive.
 
 bool hidesTiles();
 bool copiesColours();
@@ -8,21 +9,23 @@ void put(WarpView warp, ivec2 at, uint arrival);
 
 struct Moved {
     vec2 place_px;
-    vec2 move_px;  // from where it was; what differs by little is had from this with all its digits
+    vec2 move_px;  // relative to where it was; keeps all digits of small differences
     float inverse_depth;
     uint spread;
     bool valid;
 };
 
-// True if the pixel or one within kHiddenMargin of it lies in a hidden tile; corners suffice, since tiles are larger than that.
+// True if the pixel or one within kHiddenMargin of it is in a hidden tile; testing corners is enough, since
+// tiles are larger than that.
 bool isNearHidden(WarpView warp, uvec2 pixel) {
     const vec2 low = vec2(pixel) - kHiddenMargin, high = vec2(pixel) + kHiddenMargin;
     return isHiddenAt(warp, pass.shown_mask, low) || isHiddenAt(warp, pass.shown_mask, high) ||
            isHiddenAt(warp, pass.shown_mask, vec2(low.x, high.y)) || isHiddenAt(warp, pass.shown_mask, vec2(high.x, low.y));
 }
 
-// A pixel of the source as the target sees it. One that blends two depths goes with what stands in front: with the nearest of itself and its
-// neighbours in the row. The rows above and below may not be there, or be colours of the target already.
+// A pixel of the source as the target sees it. One that blends two depths moves with what is in front: with
+// the nearest of itself and its neighbours in the row. The rows above and below may not exist, or may already
+// be colours of the target.
 Moved moveSource(WarpView warp, uvec2 pixel) {
     const uint at = pixel.y * warp.row_words + pixel.x, moving = pass.moving.at[at];
     uint front = moving;
@@ -37,7 +40,7 @@ Moved moveSource(WarpView warp, uvec2 pixel) {
     return Moved(vec2(pixel) + 0.5 + move.xy, move.xy, inverse_depth / move.z, spread, seen && moving != 0 && move.z > 0);
 }
 
-// Too far out to reach the picture even where the surface is stretched.
+// Too far out to reach the picture even if the surface is stretched.
 bool isOut(WarpView warp, Moved pixel) {
     const float reach_px = float(warp.gap_px + 2);
     return any(lessThan(pixel.place_px, vec2(-reach_px))) || any(greaterThan(pixel.place_px, vec2(warp.size_px) + reach_px));

@@ -1,4 +1,5 @@
-// For resample: the pixels that arrived in a row of the target, in shared memory if they fit: from memory, or from the source's row.
+// For resample: the pixels that arrived in a row of the target, in shared memory if they fit. They come from
+// memory, or from the source's row.
 
 uint arrivalAt(uint row, uint x) { return kSharedRow == 0 ? pass.moving.at[row + x] : row_arrivals[x]; }
 
@@ -53,7 +54,7 @@ void loadRow(uint row, uint width) {
     } while (x < width);
 }
 
-// The nearest pixel to the left, or right, of `x` that something reached; -1: there is none.
+// The nearest pixel to the left, or right, of `x` that something reached; -1: none.
 int arrivedBefore(uint x) {
     int word = int(x / 32);
     uint bits = arrived_bits[word] & ((1u << (x & 31)) - 1);
@@ -68,7 +69,7 @@ int arrivedAfter(uint x, uint width) {
     return bits == 0 ? -1 : word * 32 + findLSB(bits);
 }
 
-// Where a pixel's colour is taken from: the source's place of the pixel in `column` of its row, at this depth.
+// Where a pixel's colour comes from: the source's place of the pixel in `column` of its row, at this depth.
 struct Resolved {
     uint column;
     uint pixel_class;

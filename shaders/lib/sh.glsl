@@ -14,7 +14,8 @@ vec3 shCoefficient(Uints sh, uint first_word, uint k) {
     return vec3(low.y, unpackHalf2x16(sh.at[word + 1]));
 }
 
-// max(0, 0.5 + SH(d)) for a unit direction from the eye to the splat. Of placed scenes, some may have fewer bands than others.
+// max(0, 0.5 + SH(d)) for a unit direction from the eye to the splat. Some placed scenes may have fewer bands
+// than others.
 vec3 shColour(SceneChunks chunks, SplatPlace at, vec3 direction) {
     const vec3 d = directionInScene(chunks, at.chunk, direction);
     const uint bands = kPlaced ? chunks.at[at.chunk].sh_degree : kShDegree;

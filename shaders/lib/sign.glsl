@@ -1,4 +1,5 @@
-// The sign of a float by its bits: NaN has none. A compiler may assume that there is no NaN, and turn comparisons round that rely on it.
+// The sign of a float by its bits: NaN has none. A compiler may assume that there are no NaNs, and reverse
+// comparisons that rely on them.
 
 const uint kInfinityBits = 0x7f800000u;
 

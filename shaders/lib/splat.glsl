@@ -28,13 +28,14 @@ void tangents(vec4 q, out vec3 t_u, out vec3 t_v) {
     t_v = vec3(2 * (q.x * q.y - q.w * q.z), 1 - 2 * (q.x * q.x + q.z * q.z), 2 * (q.y * q.z + q.w * q.x));
 }
 
-// Where a splat of the scene lies. A chunk's addresses are read one by one: some compilers do not survive a copy of all of them.
+// Where a splat of the scene is. A chunk's addresses are read one by one: some compilers do not survive a
+// copy of all of them.
 struct SplatPlace {
     uint chunk, in_chunk;
 };
 SplatPlace placeOfSplat(uint i, uint chunk_bits) { return SplatPlace(i >> chunk_bits, i & ((1u << chunk_bits) - 1)); }
 
-// Of a chunk's scene among others, where there are any.
+// The placement of a chunk's scene among others, if there are any.
 vec3 placed(SceneChunks chunks, uint chunk, vec3 position) {
     if (!kPlaced) { return position; }
     Placements placements = Placements(chunks.at[chunk].placement);
@@ -79,8 +80,8 @@ CameraSplat loadWorldSplat(SceneChunks chunks, SplatPlace at) {
     return splat;
 }
 
-// From one place in the world, in two floats, to another. Both may lie close together and far from the origin: in this order the first
-// difference is exact where it is small compared with its terms.
+// From one place in the world, in two floats, to another. Both may be close together and far from the origin:
+// in this order the first difference is exact if it is small compared with its terms.
 vec3 fromPlace(vec3 from, vec3 from_low, vec3 position) {
     precise const vec3 difference = (position - from) - from_low;
     return difference;
@@ -96,19 +97,20 @@ CameraSplat cameraFromWorld(EyeView eye, CameraSplat splat) {
 
 CameraSplat loadCameraSplat(SceneChunks chunks, SplatPlace at, EyeView eye) { return cameraFromWorld(eye, loadWorldSplat(chunks, at)); }
 
-// rho at which alpha falls to 1/255; not positive for a splat that is never seen.
+// rho at which alpha falls to 1/255; not positive for a splat that is never visible.
 float cutOf(float opacity) { return opacity >= kMinAlpha ? (log2(opacity) + kLog2Of255) / kLog2PerRho : 0; }
 
 // Opacity as -log2, so that alpha = exp2(-(this + kLog2PerRho rho)), with the sign as a flag.
 float packOpacity(float opacity, bool has_reference) {
-    const float negative_log2 = abs(log2(max(opacity, 1e-37)));  // an opacity is at most 1, and no more than dimmed to 0
+    const float negative_log2 = abs(log2(max(opacity, 1e-37)));  // an opacity is at most 1, and dimmed at most to 0
     return has_reference ? negative_log2 : uintBitsToFloat(floatBitsToUint(negative_log2) | 0x80000000u);
 }
 bool hasReference(ProjectedSplat splat) { return (floatBitsToUint(splat.opacity) & 0x80000000u) == 0; }
 float negativeLog2Opacity(ProjectedSplat splat) { return abs(splat.opacity); }
 
-// The remainder that single precision drops from reference_px, x and y in eight bits each: in units of half its last place. Without it the
-// edge of a splat of a few pixels would be off by 1e-4 of its alpha in a picture of 768 pixels, that of a disc seen edge-on by far more.
+// The remainder of reference_px that single precision drops, x and y in eight bits each, in units of half its
+// last place. Without it the edge of a splat of a few pixels would be off by 1e-4 of its alpha in a picture
+// of 768 pixels, and that of a disc seen edge-on by far more.
 vec2 halfLastPlace(vec2 value) { return uintBitsToFloat(floatBitsToUint(value) & 0x7f800000u) * 5.9604645e-8; }
 uint packRest(vec2 reference_px, vec2 rest_px) { return packSnorm4x8(vec4(0, 0, rest_px / max(halfLastPlace(reference_px), vec2(1e-30)))); }
 vec2 restOfReference(ProjectedSplat splat) { return unpackSnorm4x8(splat.colour.y).zw * halfLastPlace(splat.reference_px); }
@@ -120,7 +122,7 @@ uvec2 packColour(vec3 colour) {
 }
 vec3 unpackColour(uvec2 packed) { return vec3(unpackHalf2x16(packed.x), unpackHalf2x16(packed.y).x); }
 
-// The geometry of ProjectedSplat; see there. `has_reference`: the centre lies beyond the near plane.
+// The geometry of ProjectedSplat; see there. `has_reference`: the centre is beyond the near plane.
 ProjectedSplat projectGeometry(CameraSplat splat, EyeView eye, out bool has_reference) {
     const vec3 c = splat.centre;
     has_reference = c.z > eye.near;
@@ -158,7 +160,7 @@ ProjectedSplat projectGeometry(CameraSplat splat, EyeView eye, out bool has_refe
     return p;
 }
 
-// The projected centre to about 32 bits, from `position` in the world; of a splat that has a reference.
+// The projected centre to about 32 bits, from `position` in the world, for a splat that has a reference.
 void placeExactly(inout ProjectedSplat p, vec3 position, EyeView eye) {
     const vec2 x = addExact(exactSum(position.x, -eye.position.x), vec2(-eye.position_low.x, 0));
     const vec2 y = addExact(exactSum(position.y, -eye.position.y), vec2(-eye.position_low.y, 0));

@@ -1,14 +1,16 @@
-// Sums up what each workgroup counted. For workgroups of kGroupSize; after lib/group.glsl, lib/last_group.glsl and lib/list.glsl. The last
-// workgroup does so; many counts in two steps, by runs of them (sumRunLength), each by the last workgroup of its run.
+// Sums what each workgroup counted. For workgroups of kGroupSize; after lib/group.glsl, lib/last_group.glsl
+// and lib/list.glsl. The last workgroup does it. If there are many counts it takes two steps, by runs of
+// counts (sumRunLength), each summed by the last workgroup of its run.
 
 const uint kSumsPerThread = 8;
 
-// Replaces the values from `step_begin` to `end` by the sums of those before them and returns the sum of all; 0xffffffff if that is more than
-// kMaxItems. By all threads of one workgroup.
+// Replaces the values from `step_begin` to `end` by the sums of those before them and returns the sum of all;
+// 0xffffffff if that is more than kMaxItems. To be called by all threads of one workgroup.
 uint sumRange(CoherentUints sums, uint step_begin, uint end) {
     const uint thread = threadIndex();
     uint before_step = 0;
-    // The total may not fit into 32 bits: each thread's part of it has 33, the highest for "that much or more".
+    // The total may not fit into 32 bits: each thread's part of it has 33, the highest one for "that much or
+    // more".
     uint own = 0, own_carry = 0;
     [[dont_unroll]] do {
         const uint first = step_begin + thread * kSumsPerThread;
@@ -30,7 +32,8 @@ uint sumRange(CoherentUints sums, uint step_begin, uint end) {
         before_step += of_step;
         step_begin += kGroupSize * kSumsPerThread;
     } while (step_begin < end);
-    // By halves the sum over the threads fits. That of the lower ones follows, since it is known modulo 2^32.
+    // Split into halves, the sum over the threads fits. The sum of the lower halves follows, since it is
+    // known modulo 2^32.
     uint upper_halves;
     scanGroup((own >> 16) + (own_carry << 16), upper_halves);
     const uint lower_halves = before_step - (upper_halves << 16);
@@ -38,18 +41,20 @@ uint sumRange(CoherentUints sums, uint step_begin, uint end) {
     return fits ? before_step : 0xffffffffu;
 }
 
-// Makes `result` a list as long as the sum of the first `count` values, empty if that is more than `capacity`. By all threads of one workgroup.
+// Makes `result` a list as long as the sum of the first `count` values, empty if that is more than
+// `capacity`. To be called by all threads of one workgroup.
 void sumUpAtOnce(CoherentUints sums, uint count, ListStates result, uint capacity) {
     const uint total = sumRange(sums, 0, count);
     if (gl_LocalInvocationIndex == 0) { result.at[0] = makeList(total, capacity); }
 }
 
-// The same in as many steps as `count` asks for. Every workgroup calls it, once, when its count is written; `group` is its place among `count`, or beyond if it has none.
-// What is left before each count, and in kSumRuns words behind them all, is for sumBefore.
+// The same in as many steps as `count` requires. Every workgroup calls it once, when its count is written;
+// `group` is its place among `count`, or beyond if it has none. What is left before each count, and in
+// kSumRuns words after them all, is for sumBefore.
 void sumUp(CoherentUints sums, uint group, uint count, ListStates result, uint capacity) {
     const uint length = sumRunLength(count, kMostInOneRun);
     bool of_all = length >= count;
-    [[dont_unroll]] do {  // compilers would make code for each call of sumRange
+    [[dont_unroll]] do {  // compilers would generate code for each call of sumRange
         uint begin = 0, end = count;
         if (!of_all) {
             begin = group / length * length;

@@ -1,4 +1,4 @@
-// The tiles on the screen that hold all of a splat: x0, y0, x1, y1, half open.
+// The tiles on the screen that contain all of a splat: x0, y0, x1, y1, half open.
 
 ivec4 tilesWithin(vec4 bounds_px, uvec2 size_tiles) {
     const ivec2 x_tiles = unitsBetween(bounds_px.xz, kTileSize, size_tiles.x);

@@ -1,4 +1,5 @@
-// Lets one header be read by both C++ and GLSL: vector types of equal layout (GLSL's `scalar`) and typed device addresses.
+// Lets C++ and GLSL read the same header: vector types of equal layout (GLSL's `scalar`) and typed device
+// addresses.
 #ifndef BINOSPLAT_SHADERS_SHARED_LANGUAGE_H
 #define BINOSPLAT_SHADERS_SHARED_LANGUAGE_H
 
@@ -57,14 +58,16 @@ struct DeviceAddress {
 #define BINOSPLAT_END_SHARED
 // In a shader `name.at[i]` is element i.
 #define BINOSPLAT_ARRAY_OF(Element, Name) BINOSPLAT_ALIGNED_ARRAY_OF(Element, 4, Name)
-// Elements begin at multiples of `align` bytes, so that one access loads a whole element even on devices that require alignment.
+// Elements begin at multiples of `align` bytes, so that one access loads a whole element even on devices that
+// require alignment.
 #define BINOSPLAT_ALIGNED_ARRAY_OF(Element, align, Name) \
     layout(buffer_reference, scalar, buffer_reference_align = align) buffer Name { Element at[]; }
 // For arrays in which workgroups read what others of the same dispatch have written; see lib/last_group.glsl.
 #define BINOSPLAT_COHERENT_ARRAY_OF(Element, Name) \
     layout(buffer_reference, scalar, buffer_reference_align = 4) coherent buffer Name { Element at[]; }
-// The address, stored in memory, of an array aligned to less than eight bytes; Name(it) is the array. A number, because glslang would give
-// the load of an address the array's alignment, too, where Vulkan requires eight. Other arrays keep addresses: a 64-bit load is cheaper.
+// The address, stored in memory, of an array aligned to less than eight bytes; Name(it) is the array. A
+// number, because glslang would also give the load of an address the array's alignment, where Vulkan requires
+// eight. Other arrays keep addresses: a 64-bit load is cheaper.
 #define BINOSPLAT_STORED(Name) uvec2
 #define BINOSPLAT_CONSTANT const
 

@@ -1,4 +1,5 @@
-// The passes of a frame, in frame order: for each the struct of its push constants, i.e. what it reads and writes.
+// The passes of a frame, in frame order: for each the struct of its push constants, that is what it reads and
+// writes.
 #ifndef BINOSPLAT_SHADERS_SHARED_PASSES_H
 #define BINOSPLAT_SHADERS_SHARED_PASSES_H
 
@@ -33,8 +34,8 @@ struct CullPass {
     uint first_eye;
     uint eye_count;
     uint capacity;          // of the list
-    uint at_once;           // how many targets are rendered from it at the same time
-    Uints first_tile_mask;  // where only the chosen tiles of each eye count: lib/tile_mask.glsl
+    uint at_once;           // how many targets are rendered from it at once
+    Uints first_tile_mask;  // if only the chosen tiles of each eye count: lib/tile_mask.glsl
     Uints last_tile_mask;
 };
 
@@ -72,7 +73,7 @@ struct ProjectPass {
     uint capacity;      // of the pairs
 };
 
-// bin and bin_large: a (tile, splat) pair for each tile a splat meets, front to back.
+// bin and bin_large: a (tile, splat) pair for each tile that a splat meets, front to back.
 struct BinPass {
     EyeViews eyes;
     ProjectedSplats splats;
@@ -90,8 +91,8 @@ struct BinPass {
     uint all_tiles;     // of all targets
 };
 
-// tile_ranges: where each tile's pairs lie once sorted by tile. Under a mask also which tiles have any; the others become
-// background.
+// tile_ranges: where each tile's pairs are once sorted by tile. Under a mask also which tiles have any; the
+// others become background.
 struct TileRangesPass {
     EyeViews eyes;
     Uints tiles;
@@ -110,12 +111,13 @@ struct RasterizePass {
     UVec2s ranges;
     TargetStates targets;
     vec3 background;
-    uint depth_choice;  // the depth that a pixel is warped by: kDepthInverse, or one of those that D tells
+    uint depth_choice;  // the depth by which a pixel is reprojected: kDepthInverse, or one of those that D gives
     uint is_light;      // 1: colours and background are light, to be encoded once they are blended
 };
 
-// contribute: how much of an eye's picture each splat makes up and, against a picture that is wanted in its place, which way the splat's
-// colour, opacity and size should go. Only where scenes are thinned out (engine/levels).
+// contribute: how much each splat contributes to an eye's picture and, compared with a wanted picture, in
+// which direction the splat's colour, opacity and size should change. Only for thinning out scenes
+// (engine/levels).
 struct ContributePass {
     EyeViews eyes;
     ProjectedSplats splats;
@@ -128,11 +130,12 @@ struct ContributePass {
     uint eye;
 };
 
-// weigh: predicted: which tiles are cheaper to render than to warp, and whether warping anything pays.
+// weigh: predicted: which tiles are cheaper to render than to reproject, and whether reprojecting anything
+// pays.
 struct WeighPass {
     WarpViews warp;
     UVec2s ranges;      // of the source's pairs
-    Uints moving;       // null: the source's pixels cannot be warped
+    Uints moving;       // null: the source's pixels cannot be reprojected
     Uints tile_kinds;   // out, except where it is kTileHidden
     Uints tile_costs;   // out: in pairs
     Uints tile_errors;  // out: zeros
@@ -172,12 +175,13 @@ struct ReprojectPass {
     Uints shown_mask;  // if the source has hidden tiles: the shown ones
 };
 
-// resample: every pixel that is not rendered is sampled at its place in the source; tiles get their expected error.
+// resample: every pixel that is not rendered is sampled at its place in the source; tiles get their expected
+// error.
 struct ResamplePass {
     WarpViews warp;
     FloatColours source;
     HalfColours half_source;
-    Uints moving;         // the source's pixels or, if reproject ran, the arrivals that it left
+    Uints moving;         // the source's pixels or, if reproject ran, its arrivals
     FloatColours target;  // out; `moving` may lie in the same row
     HalfColours half_target;
     Floats depths;  // out where asked for, otherwise null: D, alpha over the inverse depth with which the place was found
@@ -189,14 +193,14 @@ struct ResamplePass {
     vec3 background;      // of hidden tiles
     uint first_row;       // 1: the odd rows, if rows are two apart
     uint copies_colours;  // 1: they are copied, not sampled
-    uint groups_holes;    // 1: holes are going to be grouped: of their pixels `target` gets ComponentPixel
+    uint groups_holes;    // 1: holes will be grouped: `target` gets a ComponentPixel for each of their pixels
 };
 
-// warp_past and warp_pixels: an eye's picture warped from the one that it showed before, and each tile's error so far. With half-float
-// colours these are their addresses, too.
+// warp_past and warp_pixels: an eye's picture warped from the one that it showed before, and each tile's
+// error so far. With half-float colours these are their addresses, too.
 struct WarpPastPass {
     PastViews view;
-    FloatColours source;  // the past
+    FloatColours source;  // the history
     Uints source_words;   // its pixels' depths: lib/moving_pixel.glsl
     PastTiles source_tiles;
     FloatColours target;  // out
@@ -206,12 +210,12 @@ struct WarpPastPass {
     Uints tile_mask;      // out: zeros
     Uints price_bins;     // out: zeros
     Uints shown_mask;     // if parts are hidden: the shown tiles; otherwise null
-    Uints past_shown;     // the same of the past
+    Uints past_shown;     // the same of the history
     PastBlocks blocks;    // from warp_past to warp_pixels: the blocks whose pixels are made one by one
     PastBlockLists block_list;
 };
 
-// newcomers: predicted: splats that only the target sees, by the tiles they stand in.
+// newcomers: predicted: splats that only the target sees, by the tiles that hold them.
 struct NewcomersPass {
     SceneChunks chunks;
     EyeViews eyes;
@@ -238,7 +242,7 @@ struct ComponentsPass {
     uint box_capacity;
 };
 
-// mark_changed: where parts of the scene came, went or faded, a past is wrong.
+// mark_changed: where parts of the scene came, went or faded, a history is wrong.
 struct MarkChangedPass {
     PastTiles tiles;  // in and out, of the picture being made
     ChangedRects rects;
@@ -246,12 +250,12 @@ struct MarkChangedPass {
     uint count;  // of rects, at least 1
 };
 
-// price: predicted: what it costs to mend each tile's error, and how much there is at each price.
+// price: predicted: the cost of rendering each tile's error away, and how much there is at each price.
 struct PricePass {
     TargetStates targets;
     ListStates chosen;         // of the first target: counts finished workgroups
-    CoherentUints price_bins;  // cost of the tiles in each bin, without a past by errors as if seen whole; greatest error per pair last
-    uint most_cost;            // under a bound, in pairs: what lists have room for
+    CoherentUints price_bins;  // cost of the tiles in each bin, without a history by errors as if seen whole; greatest error per pair last
+    uint most_cost;            // under a bound, in pairs: the lists' capacity
 };
 
 // select: the tiles to render, as a list and as a mask.
@@ -284,7 +288,7 @@ struct SortScatterPass {
     uint digits;
 };
 
-// present: an eye's picture in the format that the headset takes.
+// present: an eye's picture in the headset's format.
 struct PresentPass {
     FloatColours colours;
     HalfColours half_colours;
@@ -294,14 +298,14 @@ struct PresentPass {
     Uints pixel_classes;   // for the tint, or null
     Uints pixels;          // out: 8 bits a channel; with `over` also in, what is behind the splats
     Floats device_depths;  // out where wanted, otherwise null: depth_scale / depth + depth_offset
-    Floats mesh_depths;    // of what is in `pixels`, likewise, or null: splats behind it do not show; may be device_depths
+    Floats mesh_depths;    // likewise, of the content of `pixels`, or null: splats behind it do not show; may be device_depths
     uvec2 size_px;
     float depth_scale;
     float depth_offset;
     uint blue_first;   // 1: BGRA in place of RGBA
-    uint linear;       // 1: the image is not an sRGB one: its bytes count as light
-    uint see_through;  // 1: output alpha, for what the headset shows behind it
-    uint over;         // 1: blended over what is in `pixels`; then the picture has no background
+    uint linear;       // 1: the image is not sRGB: its bytes count as light
+    uint see_through;  // 1: write alpha, for what the headset shows behind the picture
+    uint over;         // 1: blended over the content of `pixels`; then the picture has no background
     uint is_cut;       // 1: splats were tested one by one as they were blended, and pixels are not
     uint kept_bits;    // of each word of pixels: stay as they are, for a picture of both eyes
 };

@@ -18,7 +18,7 @@ BINOSPLAT_ALIGNED_ARRAY_OF(vec4, 16, Vec4s);
 BINOSPLAT_ALIGNED_ARRAY_OF(vec4, 16, FloatColours);
 BINOSPLAT_ALIGNED_ARRAY_OF(uvec2, 8, HalfColours);
 
-// Where a scene lies among others: scale (x, y, z) p + position, with the columns of a rotation.
+// A scene's place among others: scale (x, y, z) p + position, with the columns of a rotation.
 struct Placement {
     vec3 x;
     vec3 y;
@@ -44,12 +44,13 @@ struct SceneChunk {
 };
 BINOSPLAT_ALIGNED_ARRAY_OF(SceneChunk, 8, SceneChunks);
 
-// A chunk of kPageSplats in a scene whose chunks come and go; the box, in world space, encloses all that can be seen of it.
+// A chunk of kPageSplats in a scene whose chunks come and go; the box, in world space, encloses everything
+// visible of it.
 struct ScenePage {
     vec3 low;
-    float reach;  // how far any one splat extends from its centre, at most
+    float reach;  // how far any of its splats extends from its centre, at most
     vec3 high;
-    uint count;  // of splats that can be seen; 0: none
+    uint count;  // of its visible splats; 0: none
 };
 BINOSPLAT_ALIGNED_ARRAY_OF(ScenePage, 16, ScenePages);
 
@@ -72,7 +73,8 @@ struct EyeView {
     vec3 position_low;
     vec2 focal_px_low;
     vec2 principal_px_low;
-    // kLowPass and kScreenVariance for a pixel of the eye's own picture, which may have more pixels than this one.
+    // kLowPass and kScreenVariance for a pixel of the eye's own picture, which may have more pixels than this
+    // one.
     float low_pass;
     float screen_variance;
 };
@@ -108,12 +110,12 @@ struct DispatchSize {
     uint x, y, z;
 };
 
-// A list whose length only the GPU knows: what was needed, what fits (0 if it does not fit: the frame is void and is done
-// again with more room), and the dispatches over it.
+// A list whose length only the GPU knows: what was needed, what fits (0 if it does not fit: the frame is void
+// and is done again with more capacity), and the dispatches over it.
 struct ListState {
     uint needed;  // 0xffffffff: more than kMaxItems
     uint count;
-    uint groups_done;             // of a dispatch under way, see lib/last_group.glsl; otherwise 0
+    uint groups_done;             // during a dispatch, see lib/last_group.glsl; otherwise 0
     uvec4 run_groups_done;        // the same for each run of the dispatch: kMaxSortRuns of a sort's, a byte each, or kSumRuns
     DispatchSize per_item;        // workgroups of kGroupSize
     DispatchSize per_block;       // workgroups of kListBlock
@@ -143,15 +145,16 @@ struct WarpView {
     uint margin_px;        // paper: margin around what needs rendering
     uint edge_samples;     // paper: N, samples along each edge
     uint tight_edges;      // 1: bounds of what near content uncovers as well
-    uint move_cost;        // predicted: the cost of warping a tile, in pairs; tiles of at most so many pairs are rendered
+    uint move_cost;        // predicted: the cost of reprojecting a tile, in pairs; tiles with at most that many pairs are rendered
     float budget;          // predicted: the share of an eye's work that is spent on tiles with an error
-    float hole_error;      // predicted: the weight of a hole's expected difference
+    float hole_error;      // predicted: the weight of a hole's expected error
     float newcomer_error;  // predicted: the weight of full coverage by splats that the source does not see
-    float error_bound;     // with a past: tiles a quarter of which is expected to be off by more amplitude come first; 0: none do
+    float error_bound;     // with a history: tiles a quarter of which is expected to be off by more amplitude come first; 0: none do
 };
 BINOSPLAT_ARRAY_OF(WarpView, WarpViews);
 
-// How places in a picture map to the one that it is made from, and back: what the same eye showed before, or the other eye's.
+// How places in a picture map to the one from which it is made, and back: what the same eye showed before, or
+// the other eye's picture.
 struct PastView {
     PixelMap past_from_now;
     PixelMap now_from_past;
@@ -160,26 +163,26 @@ struct PastView {
     uvec2 past_size_px;
     uvec2 past_size_tiles;
     float nearest;    // inverse depth of the near plane
-    vec3 background;  // of what is hidden
+    vec3 background;  // of hidden tiles
 };
 BINOSPLAT_ARRAY_OF(PastView, PastViews);
 
-// What later pictures must know of a tile of the one they are made from.
+// What later pictures must know about a tile of the picture from which they are made.
 struct PastTile {
     uint cost;  // in pairs, when it was last rendered
-    uint age;   // frames since then
+    uint age;   // frames since it was rendered
     // By quarters, row by row:
     vec4 growth;  // of the error's amplitude per frame, as measured then
     vec4 errors;  // the amplitude of the expected error (root of the mean square over pixels and channels)
-    uvec4 grown;  // until tiles are chosen: squared errors that the quarters are expected to take on in this frame, summed, in kErrorSteps
-    float lost;   // of a coarse tile: the amplitude of what it lacks, which its eye did not see then
-    uint unseen;  // by quarters, eight bits each: pixels that the past did not see
+    uvec4 grown;  // until tiles are chosen: squared errors that this frame is expected to add to the quarters, summed, in kErrorSteps
+    float lost;   // for a coarse tile: the amplitude that it lacks, which its eye did not see then
+    uint unseen;  // by quarters, eight bits each: pixels that the history did not see
     uint squared_gradient;  // until tiles are chosen: summed over pixels and channels, in kErrorSteps
 };
 BINOSPLAT_ARRAY_OF(PastTile, PastTiles);
 
-// Where a changed part of the scene is seen in a picture: pixels from begin to end (exclusive), and the amplitude of the error to
-// expect there if the picture is warped from its past.
+// Where a changed part of the scene is seen in a picture: pixels from begin to end (exclusive), and the
+// amplitude of the expected error if the picture is warped from its history.
 struct ChangedRect {
     uvec2 begin_px;
     uvec2 end_px;
@@ -187,7 +190,7 @@ struct ChangedRect {
 };
 BINOSPLAT_ARRAY_OF(ChangedRect, ChangedRects);
 
-// A block of a picture whose pixels are warped from the past one by one.
+// A block of a picture whose pixels are warped from the history one by one.
 struct PastBlock {
     uint place;           // row << 16 | column, in blocks
     vec2 inverse_depths;  // the least and the greatest in and around it
@@ -199,8 +202,8 @@ struct PastBlockList {
 };
 BINOSPLAT_ARRAY_OF(PastBlockList, PastBlockLists);
 
-// A hole's pixel while holes are grouped: it lies where its colour would (of float colours, in its first half), since all holes are
-// rendered.
+// A hole's pixel while holes are grouped: it is stored in place of its colour (the first half of a float
+// colour), since all holes are rendered.
 struct ComponentPixel {
     uint parent;     // a pixel of the same component, or the pixel itself: the root
     uint component;  // of a root
@@ -221,15 +224,16 @@ struct WarpCounters {
     uint moved_tiles;    // before any is chosen for its error
     uint picture_cost;   // of all tiles that are shown, in pairs: the work of rendering an eye
     uint shown_tiles;    // that no lens hides
-    uint saved_cost;     // by warping tiles, as far as known before the choice
+    uint saved_cost;     // by reprojecting tiles, as far as known before the choice
     uint chosen_cost;    // of what is rendered
     uint moves;          // 1: something is warped
-    uint pays;           // 1: warping pays, or would have paid in a frame that could not
-    uint last_bin;       // of the price list: the one in which the budget ends
+    uint pays;           // 1: reprojecting pays, or would have paid in a frame that could not
+    uint last_bin;       // of the price list: where the budget ends
     uint left_for_last;  // of the budget; all ones: it does not end
-    uint waiting_tiles;  // above a bound, but the budget is not enough for them
-    // With a past, squared errors of tiles, summed in kSquareSteps: as expected of those that are not rendered, as expected of those that
-    // are and as found, and what pixels twice as wide would lose on measured ones, times the frames that each has waited.
+    uint waiting_tiles;  // above a bound, with too little budget for them
+    // With a history, squared errors of tiles, summed in kSquareSteps: as expected of those that are not
+    // rendered, as expected of those that are and as found, and what pixels twice as wide would lose on
+    // measured ones, times the frames that each has waited.
     uint left_squares;
     uint expected_squares;
     uint found_squares;
@@ -245,7 +249,7 @@ BINOSPLAT_ARRAY_OF(WarpCounters, WarpCounterss);
 // Where an eye looks, and the geometry of its pixels.
 struct EyeGaze {
     vec3 direction;     // in the eye's axes, of length 1
-    float clear_rad;    // within this angle of it nothing is taken away
+    float clear_rad;    // within this angle of it everything is kept
     float pixel_cycle;  // the angle of two pixels, in radians
     vec2 focal_px;
     vec2 principal_px;
@@ -257,31 +261,32 @@ struct PixelBox {
 };
 BINOSPLAT_ARRAY_OF(PixelBox, PixelBoxes);
 
-// Counters that belong to no list: for the report, and for dispatches. And where the eye looks, if that decides on coarse tiles.
+// Counters that belong to no list: for the report, and for dispatches. And where the eye looks, if that
+// decides on coarse tiles.
 struct EyeCounters {
     uint pairs;                  // of tile and splat
     uint large_splats;           // splats that bin left to bin_large
     uint full_tiles;             // under a mask: tiles with pairs
-    uint coarse_tiles;           // tiles with pairs that are coarse, or are tried so
+    uint coarse_tiles;           // coarse tiles with pairs, including those that are only tried as coarse
     DispatchSize per_full_tile;  // of the first of several targets that are rendered at once: for all
-    uint coarse_kept;            // of these, the ones that stay so
+    uint coarse_kept;            // those of them that stay coarse
     uint coarse_pairs;           // that are blended as samples
     uint sharp_pairs;            // where tiles may be coarse: those that are blended in full
-    uint may_be_coarse;          // 1: what the eye does not see sharply is
+    uint may_be_coarse;          // 1: what the eye does not see sharply may be coarse
     EyeGaze gaze;
 };
 BINOSPLAT_ARRAY_OF(EyeCounters, EyeCounterss);
 
-// A picture in progress: its lists, and where it lies. A pass over several targets has the first one's address, and its z-th workgroups
-// work for the z-th. Addresses are null where there is no such thing.
+// A picture in progress: its lists, and where it is. A pass over several targets has the first one's address,
+// and its z-th workgroups work for the z-th. Addresses are null if there is no such thing.
 struct TargetState {
-    BINOSPLAT_STORED(FloatColours) colours;  // of half floats this is their address, too
+    BINOSPLAT_STORED(FloatColours) colours;  // for half floats this is their address, too
     BINOSPLAT_STORED(Floats) depths;         // D = sum w z
     BINOSPLAT_STORED(Floats) mesh_depths;    // where meshes cut through the splats: depth_scale / z + depth_offset
     BINOSPLAT_STORED(Vec2s) moments;         // I = sum w/z and J = sum w/z^2
     BINOSPLAT_STORED(Uints) moving;          // if the picture is going to be warped: lib/moving_pixel.glsl
     BINOSPLAT_STORED(Uints) arrivals;        // where these will arrive in the other eye
-    BINOSPLAT_STORED(PastTiles) past_tiles;  // if it is going to be a past
+    BINOSPLAT_STORED(PastTiles) past_tiles;  // if it is going to be a history
     BINOSPLAT_STORED(Uints) tile_mask;       // lib/tile_mask.glsl: the tiles that are rendered; null: all
     BINOSPLAT_STORED(Uints) tile_list;       // the same, in no order, if passes chose them
     BINOSPLAT_STORED(Uints) full_tiles;      // if tiles are chosen or may be coarse: those with pairs, coarse ones from the end backwards
@@ -294,7 +299,7 @@ struct TargetState {
     EyeCounters counters;
     WarpView warp;  // if it is made from another
     WarpCounters warp_counters;
-    PastView past;  // if it is made from its own past
+    PastView past;  // if it is made from its own history
     PastBlockList past_blocks;
     ListState chosen_tiles;    // if it is made from either: those that are rendered. Of the first target: per_item is for all
     ListState chosen_visible;  // its visible splats, or none if there is no such tile
@@ -304,7 +309,7 @@ struct TargetState {
     float depth_scale;         // of mesh_depths
     float depth_offset;
     uint unused;   // a multiple of eight bytes in both languages
-    uint is_made;  // 1: every tile shows a picture warped from a past, which stays where lists have no room
+    uint is_made;  // 1: every tile shows a picture warped from a history, which stays where lists have no room
     float area;    // of a pixel, in pixels of the eye's own picture: the weight of an error in it
 };
 BINOSPLAT_ALIGNED_ARRAY_OF(TargetState, 8, TargetStates);

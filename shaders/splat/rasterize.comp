@@ -23,7 +23,7 @@ layout(constant_id = 4) const uint kSplatKind = kDiscs;  // dimmed or not makes 
 layout(local_size_x_id = 5) in;  // kCellsPerTile * kThreadsPerCell
 layout(constant_id = 6) const bool kEvenRows = false;  // an odd row is going to be warped like the even one above it
 layout(constant_id = 7) const bool kMasked = false;    // only the tiles of its target's list
-layout(constant_id = 8) const bool kPast = false;      // the picture is going to be a past
+layout(constant_id = 8) const bool kPast = false;      // the picture is going to be a history
 layout(constant_id = 9) const bool kCoarse = false;    // some tiles of the list may be coarse
 layout(constant_id = 10) const bool kCut = false;      // splats show only where they are nearer than a mesh
 

@@ -44,7 +44,7 @@ bool findPairs(uint tile) {
     return begin < end;
 }
 
-// True if the picture is going to be a past.
+// True if the picture is going to be a history.
 bool leavesPast() { return isThere(TARGET.past_tiles); }
 
 uvec2 sizeTiles() { return pass.eyes.at[gl_WorkGroupID.z].size_tiles; }
@@ -91,7 +91,7 @@ void main() [[subgroup_uniform_control_flow]] {
     }
     if (gl_LocalInvocationIndex == 0) { empty_count = 0; }
     barrier();
-    // If pairs had no room, what the past made stays.
+    // If pairs had no room, what the history made stays.
     const bool is_void = TARGET.is_made != 0 && (pass.pairs.at[0].needed != pass.pairs.at[0].count || pass.visible.at[0].needed != pass.visible.at[0].count);
     const bool of_list = isThere(TARGET.tile_list);
     const bool listed = item < (of_list ? TARGET.chosen_tiles.count : tiles) && !is_void;

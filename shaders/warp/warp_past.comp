@@ -1,7 +1,7 @@
 // warp_past: warps the picture that an eye showed before, and predicts each tile's error. A workgroup makes 128x16 pixels, a thread a
-// block of 4x8. Where a block's places in the past lie as its pixels do, shifted and a little rotated, its thread goes over the source
+// block of 4x8. Where a block's places in the history lie as its pixels do, shifted and a little rotated, its thread goes over the source
 // pixels row by row and resamples first along the row, then along columns, so that each is read once. Other blocks, where depths differ or
-// the past ends, are listed for warp_pixels: few workgroups have many of them, and the rest would wait for these.
+// the history ends, are listed for warp_pixels: few workgroups have many of them, and the rest would wait for these.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -28,11 +28,11 @@ const int kColumns = int(kPastColumns), kRows = int(kPastRows);
 
 shared uint listed_count, listed_first;  // this workgroup's part of the list of blocks
 shared uint cell_grown[kRegionCells.x * kRegionCells.y];    // squared errors expected of this step, summed, in kErrorSteps
-// Of where the blocks of a cell come from, summed in kCarriedSteps: the squares of the past's errors, and how fast they grow.
+// Of where the blocks of a cell come from, summed in kCarriedSteps: the squares of the history's errors, and how fast they grow.
 shared uint tile_squared_gradient[kPastTiles];
 shared uint cell_carried[kRegionCells.x * kRegionCells.y], cell_growth[kRegionCells.x * kRegionCells.y];
 
-// The offsets from a block's pixels to their places in the past: at its middle, by column and by row.
+// The offsets from a block's pixels to their places in the history: at its middle, by column and by row.
 struct BlockMoves {
     vec2 mean;
     vec2 across, down;  // how that changes from column to column and from row to row

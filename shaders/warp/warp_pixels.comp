@@ -1,7 +1,7 @@
 // warp_pixels: the pixels of an eye's picture that warp_past has left out, one thread per pixel.
 //
 // A place is found backwards, by a fixed point (Bowles et al. 2012, Iterative Image Warping): the depth at a place says where the place is.
-// Such a search always finds something, so a place counts only if the past's pixel there, moved forwards, meets the pixel that it is
+// Such a search always finds something, so a place counts only if the history's pixel there, moved forwards, meets the pixel that it is
 // wanted for. The search starts from the nearest and from the farthest depth around; of the two results the nearer counts.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -25,7 +25,7 @@ layout(push_constant, scalar) uniform Push { WarpPastPass pass; };
 
 const uint kBlockPixels = kPastColumns * kPastRows;
 
-// How wide a pixel of the past is at a place: wider than one if the view has turned towards it.
+// How wide a pixel of the history is at a place: wider than one if the view has turned towards it.
 vec2 widthOfPixel(PastView view, vec2 wanted_px) {
     const PixelMap map = view.past_from_now;
     const vec3 place = movePixelAnywhere(map, wanted_px, 0);
@@ -34,7 +34,7 @@ vec2 widthOfPixel(PastView view, vec2 wanted_px) {
     return vec2(abs(down.x) + abs(down.y), abs(across.x) + abs(across.y)) / abs(across.x * down.y - across.y * down.x);
 }
 
-// Searches, from a first guess, where the past shows what is wanted; true if found.
+// Searches, from a first guess, where the history shows what is wanted; true if found.
 bool search(PastView view, vec2 wanted_px, float guess, vec2 agrees, out Seen seen, out vec2 place_px) {
     float inverse_depth = guess;
     bool found = false, inside = true;
@@ -104,7 +104,7 @@ Sample sampleSmoothly(vec2 place_px, ivec2 size, vec2 direction) {
                   dot(across, across) + dot(down, down));
 }
 
-// Makes one pixel; returns its expected squared error, of which `unseen` is for that the past did not see it.
+// Makes one pixel; returns its expected squared error, of which `unseen` is for that the history did not see it.
 float makePixel(PastView view, uvec2 pixel, vec2 depths, out float unseen, out float squared_gradient) {
     const vec2 wanted_px = vec2(pixel) + 0.5;
     Seen from_near, from_far;
