@@ -51,12 +51,12 @@ constexpr ProfileBindings kProfiles[] = {
     {"oppo/mr_controller_oppo", "XR_OPPO_controller_interaction", kTrigger, kSqueeze, kStick, nullptr, kPress, kUpperButtons, kLowerButtons,
      kHaptic},
     {"huawei/controller", "XR_HUAWEI_controller_interaction", kTrigger, nullptr, kPad, kPadPress, nullptr, kBack, kNone, kHaptic},
-    // Which buttons a person finds there is the runtime's business.
+    // The runtime decides which buttons a person finds there.
     {"khr/generic_controller", "XR_KHR_generic_controller", kTrigger, kSqueeze, kStick, nullptr, kPress, kSecondary, kPrimary, kHaptic},
     // The registry does not have it yet: by the table of Valve's OpenXR utilities for Unity.
     {"valve/frame_controller_valve", "XR_VALVE_frame_controller_interaction", kTrigger, kSqueeze, kStick, nullptr, kPress, kFrameMenus,
      kFrameLower, kHaptic},
-    // A pen, held like one: its middle button is pressed more or less, its tip is for surfaces.
+    // A pen, held like one: its middle button senses how hard it is pressed; its tip is for surfaces.
     {"logitech/mx_ink_stylus_logitech", "XR_LOGITECH_mx_ink_stylus_interaction", "input/cluster_middle_logitech/force",
      "input/cluster_back_logitech/click", nullptr, nullptr, nullptr, kPenFront, kNone, kHaptic},
     // Bare hands: pinching while pointing clicks, a fist grabs.

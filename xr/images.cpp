@@ -10,7 +10,7 @@ namespace {
 using Layout = vk::ImageLayout;
 constexpr auto kColour = vk::ImageAspectFlagBits::eColor;
 
-// Waits for all before it, and all after it waits.
+// Waits for everything before it, and makes everything after it wait.
 void changeLayout(const vk::raii::CommandBuffer& commands, vk::Image image, Layout from, Layout to, std::uint32_t level = 0) {
     const auto all = vk::AccessFlagBits::eMemoryRead | vk::AccessFlagBits::eMemoryWrite;
     const auto stage = vk::PipelineStageFlagBits::eAllCommands;

@@ -46,7 +46,7 @@ std::vector<const char*> wantedExtensions(const InstanceOptions& options) {
     }
     if (options.foveated_inset) {
         wanted.push_back(XR_VARJO_QUAD_VIEWS_EXTENSION_NAME);
-        // Where it lies tells where the eyes look.
+        // The inset's place tells where the eyes look.
         if (options.eye_tracking) { wanted.push_back(XR_VARJO_FOVEATED_RENDERING_EXTENSION_NAME); }
     }
     if (options.visibility_mask) { wanted.push_back(XR_KHR_VISIBILITY_MASK_EXTENSION_NAME); }

@@ -21,7 +21,8 @@ struct LayerEye {
     glm::uvec2 part_px{0, 0};  // of the images, from their top left corner
 };
 
-// A flat picture, visible from its -z side and blended over what lies behind; its colours are premultiplied by alpha.
+// A flat picture, visible from its -z side and blended over what is behind it; its colours are premultiplied
+// by alpha.
 struct LayerQuad {
     Pose pose;  // room axes, or the head's if follows_head
     glm::dvec2 size_m{0.0};
@@ -33,20 +34,20 @@ struct LayerQuad {
 
 class Layers {
 public:
-    // Of the quads only the first `most_quads` are taken: a frame can do without.
+    // Only the first `most_quads` of the quads are shown: a frame can do without the rest.
     explicit Layers(const Session& session, std::size_t most_quads = SIZE_MAX) : session_(session), most_quads_(most_quads) {}
     Layers(const Layers&) = delete;
     Layers& operator=(const Layers&) = delete;
 
     // If `see_through`, the room shows as far as the pictures' alpha lets it; their colours are premultiplied by alpha.
     void addEyes(const std::array<LayerEye, 2>& eyes, bool see_through) { addViews(eyes, see_through); }
-    // The same in a session with insets, which follow after the eyes.
+    // The same in a session with insets, which come after the eyes.
     void addEyesAndInsets(const std::array<LayerEye, 4>& eyes_and_insets, bool see_through) { addViews(eyes_and_insets, see_through); }
     // A panel centred at `room_from_panel`, facing along its -z, size_m wide and high. Its picture is blended over what lies behind; its
     // colours are premultiplied by alpha.
     void addPanel(const Pose& room_from_panel, const glm::dvec2& size_m, const Swapchain& swapchain);
     void addQuad(const LayerQuad& quad);
-    // All quads that were to be added, panels apart.
+    // All quads that were added, not counting panels.
     [[nodiscard]] const std::vector<const char*>& quadNames() const { return quad_names_; }
 
     // For Session::endFrame; valid as long as this and the swapchains.

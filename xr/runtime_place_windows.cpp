@@ -5,7 +5,7 @@
 
 namespace binosplat::xr {
 
-// Also set by --simulate; left out of account by the loader in a program that runs as administrator.
+// Also set by --simulate; the loader ignores it in a program that runs as administrator.
 static bool isChoiceIgnored() { return !environment("XR_RUNTIME_JSON").empty() && runsAsAdministrator(); }
 
 std::string runtimeHint() {

@@ -141,7 +141,7 @@ void Session::pollEvents() {
                 told_for_ = 0;
                 break;
             case XR_TYPE_EVENT_DATA_EVENTS_LOST: {
-                // Asks for all that they may have told of and that can be asked for.
+                // Asks again for everything that lost events may have reported and that can be asked for.
                 for (const std::uint32_t eye : {0u, 1u}) { hidden_meshes_.read(eye); }
                 told_for_ = 0;
                 const std::uint32_t count = reinterpret_cast<const XrEventDataEventsLost&>(event).lostEventCount;

@@ -9,9 +9,10 @@
 namespace binosplat::xr {
 namespace {
 
-constexpr float kHalfIpdMetres = 0.0315f;  // while the headset does not say where its eyes are
+constexpr float kHalfIpdMetres = 0.0315f;  // until the headset says where its eyes are
 
-// The head without its tilt, in our axes; one that looks straight up or down keeps the heading of its right-hand side.
+// The head without its tilt, in our axes; one that looks straight up or down keeps the heading of its
+// right-hand side.
 Pose upright(const Pose& head) {
     const glm::dvec3 forward = head.orientation * glm::dvec3(0.0, 0.0, 1.0), right = head.orientation * glm::dvec3(1.0, 0.0, 0.0);
     const bool is_level = std::hypot(forward.x, forward.z) > 0.1;
@@ -19,7 +20,7 @@ Pose upright(const Pose& head) {
     return {glm::angleAxis(heading, glm::dvec3(0.0, 1.0, 0.0)), head.position};
 }
 
-// The middle between the eyes.
+// The midpoint between the eyes.
 Pose headOf(const std::array<EyeView, 2>& eyes) {
     const Pose left = fromXr(eyes[kLeft].pose), right = fromXr(eyes[kRight].pose);
     return {glm::slerp(left.orientation, right.orientation, 0.5), 0.5 * (left.position + right.position)};

@@ -1,4 +1,4 @@
-// Presence, or what tells of it.
+// Presence, or signs of it.
 #include "xr/wearing.h"
 
 #include <algorithm>
@@ -8,9 +8,10 @@ namespace binosplat::xr {
 
 namespace {
 
-// Even a head that looks at one thing moves so far in a second or two; a headset on a desk, as far as its tracking errs, does not.
+// Even a head that looks at one thing moves this far in a second or two; a headset on a desk does not, within
+// its tracking error.
 constexpr double kMovedMetres = 0.02, kMovedRadians = 0.05;
-// A headset that lay still for so long is not worn yet when it moves, but so long after it began to.
+// A headset that has been still for this long is not yet worn when it moves, but this much later.
 constexpr double kDeskSeconds = 3.0, kLiftSeconds = 2.0;
 
 double angleBetween(const glm::dquat& a, const glm::dquat& b) { return 2.0 * std::acos(std::min(std::abs(glm::dot(a, b)), 1.0)); }

@@ -1,4 +1,4 @@
-// When somebody begins to wear the headset: at the start it may lie on a desk.
+// When somebody begins to wear the headset: at the start it may be lying on a desk.
 #pragma once
 
 #include "engine/geometry.h"
@@ -9,7 +9,8 @@ namespace binosplat::xr {
 
 class Wearing {
 public:
-    // How far a head is from the room's origin, which is looked along its z: farther than a wearer notices.
+    // How far a head must be from the room's origin, or turned from its z: farther than a wearer would not
+    // notice.
     static constexpr double kElsewhereMetres = 0.1, kElsewhereRadians = 0.17;
 
     // What the runtime says, if it can tell.
@@ -17,8 +18,9 @@ public:
     // The room's origin has moved.
     void forgetPlace() { first_.reset(); }
     [[nodiscard]] bool hasBegun() const { return has_begun_; }
-    // Once a frame, with the head's pose in the room. True once: when the program has the input and somebody wears the headset. Where the
-    // runtime cannot tell, heads are known by their moving: at once, or a while after a headset has lain still.
+    // Call once a frame, with the head's pose in the room. True once: when the program has the input and
+    // somebody wears the headset. If the runtime cannot tell, movement shows a head: at once, or a while
+    // after a headset has been still.
     bool begins(bool is_focused, const Pose& room_from_head, double step_seconds);
 
     [[nodiscard]] static bool isElsewhere(const Pose& room_from_head);
