@@ -1,4 +1,4 @@
-// Distinguishes an address on the web from the name of a file.
+// Tells a web address from the name of a file.
 #pragma once
 
 #include "engine/error.h"
@@ -9,7 +9,7 @@
 
 namespace binosplat {
 
-// True for a prefix in small letters, which `source` may have in either case.
+// True for a prefix in small letters; `source` may have it in either case.
 inline bool beginsWith(std::string_view source, std::string_view prefix) {
     return source.size() >= prefix.size() && std::ranges::equal(source.substr(0, prefix.size()), prefix, [](char a, char b) {
                return (a >= 'A' && a <= 'Z' ? static_cast<char>(a - 'A' + 'a') : a) == b;
@@ -18,10 +18,11 @@ inline bool beginsWith(std::string_view source, std::string_view prefix) {
 
 inline bool isPlainHttp(std::string_view source) { return beginsWith(source, "http://"); }
 
-// http:// or https:// and more, in letters of either case. Whether the rest is an address turns out when it is requested.
+// http:// or https:// followed by more, in letters of either case. Whether the rest is an address is known
+// when it is requested.
 inline bool isAddress(std::string_view source) { return isPlainHttp(source) || beginsWith(source, "https://"); }
 
-// Throws Error for an address that names a user, perhaps with a password, which the message leaves out.
+// Throws Error for an address that names a user, perhaps with a password; the message leaves both out.
 inline void requireNoUser(std::string_view source) {
     if (!isAddress(source)) { return; }
     const std::size_t host = source.find("//") + 2;

@@ -1,4 +1,4 @@
-// How much may be written to a disk, looked at again now and then: others write to it, too.
+// How much may be written to a disk, checked again now and then, since others write to it, too.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,8 @@ namespace binosplat {
 
 // The smaller of 1 GiB and 5 % of a disk stays free for other programs.
 std::uint64_t roomOn(const std::filesystem::space_info& disk);
-// The same for the disk of a folder; where that is memory, of what of it is free, too. None if the folder cannot be looked at.
+// The same for the disk of a folder; if that is in memory, also the same share of free memory. Empty if the
+// folder cannot be examined.
 std::uint64_t roomIn(const std::filesystem::path& folder);
 
 class DiskRoom {
@@ -18,9 +19,9 @@ public:
 
     explicit DiskRoom(std::filesystem::path folder, Measure measure = roomIn);
 
-    // How much may be written in all, as of the last look.
+    // How much may be written in all, as of the last check.
     [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
-    // True if there is room for `more` bytes behind those that were `written`. Looks again once 16 MiB were since the last time.
+    // True if there is space for `more` bytes after the `written` ones. Checks again after every 16 MiB.
     [[nodiscard]] bool holds(std::uint64_t written, std::uint64_t more);
 
 private:

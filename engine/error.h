@@ -1,5 +1,5 @@
-// The world's errors (a file, a driver, a config): one exception class, thrown by `check` and `fail`, caught once in `main`.
-// Programming errors are asserts; expected outcomes are std::optional or an enum.
+// Errors from outside (a file, a driver, a config): one exception class, thrown by `check` and `fail`, caught
+// once in `main`. Programming errors are asserts; expected outcomes are std::optional or an enum.
 #pragma once
 
 #include <fmt/format.h>
@@ -13,7 +13,7 @@ namespace binosplat {
 // The exit codes of the program.
 enum class ExitCode : int {
     kDone = 0,
-    kBadInput = 1,  // a file, a value or the disk is at fault; one line said which
+    kBadInput = 1,  // a file, a value or the disk is at fault; one line says which
     kUsage = 2,     // the command line was not understood
     kNoDevice = 3,  // no usable GPU, OpenXR runtime or headset
 };

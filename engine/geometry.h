@@ -35,7 +35,7 @@ struct Intrinsics {
     double fx = 1.0, fy = 1.0, cx = 0.5, cy = 0.5;
 };
 
-// Signed angles from the optical axis as OpenXR gives them: left and down are negative for a usual eye.
+// Signed angles from the optical axis, as in OpenXR: usually left and down are negative.
 struct ViewAngles {
     double left_rad, right_rad, up_rad, down_rad;
 };
@@ -49,16 +49,17 @@ struct Eye {
     Pose world_from_camera;
     Intrinsics intrinsics;
     glm::uvec2 size_px{0, 0};
-    // How wide a pixel of the eye's own picture is in this one, which may have fewer: splats keep the low-pass of the former.
+    // How wide a pixel of the eye's own picture is in this one, which may have fewer pixels: splats keep the
+    // low-pass of the former.
     double own_pixel_px = 1.0;
 };
 
-// True of what is before the eye and within its picture; a point in camera space.
+// True for a point, in camera space, that is in front of the eye and within its picture.
 bool isInPicture(const Eye& eye, const glm::dvec3& point_camera);
 
 enum Side : int { kLeft = 0, kRight = 1 };
 
-// The middle between all eyes; for one eye exactly its own place.
+// The mean of all eyes' places; for one eye exactly its own place.
 glm::dvec3 middleOf(std::span<const Eye> eyes);
 
 // Left eye at -ipd/2 and right eye at +ipd/2 along the x axis of `middle`, otherwise alike.

@@ -1,4 +1,4 @@
-// Git LFS leaves a text of three lines in place of a large file that was not fetched.
+// In place of a large file that was not fetched, Git LFS leaves a text of three lines.
 #pragma once
 
 #include "engine/error.h"
@@ -8,7 +8,7 @@
 
 namespace binosplat {
 
-// A pointer is shorter than this (by its specification) and begins so.
+// A pointer is shorter than this (by its specification) and begins with this.
 inline constexpr std::size_t kLongestLfsPointer = 1024;
 inline constexpr std::string_view kLfsPointerStart = "version https://git-lfs.github.com/spec/";
 

@@ -1,4 +1,5 @@
-// Work over blocks on a few threads, and a stable counting sort on top of it. Results never depend on the number of threads.
+// Runs work over blocks on a few threads, with a stable counting sort on top. Results never depend on the
+// number of threads.
 #pragma once
 
 #include <algorithm>
@@ -14,8 +15,8 @@
 
 namespace binosplat {
 
-// Calls work(begin, end) for the blocks [0, block), [block, 2 block), ... of [0, count), each once, in no fixed order.
-// The first exception is thrown again on the calling thread.
+// Calls work(begin, end) for the blocks [0, block), [block, 2 block), ... of [0, count), each once, in no
+// fixed order. The first exception is rethrown on the calling thread.
 template <typename Work>
 void forBlocks(std::size_t count, std::size_t block, int threads, const Work& work) {
     const std::size_t block_count = (count + block - 1) / block;

@@ -1,4 +1,5 @@
-// A file being written beside its target: it replaces the target in one step when it is complete, and is removed otherwise.
+// A file being written beside its target: it replaces the target in one step when it is complete, and is
+// removed otherwise.
 #pragma once
 
 #include "engine/platform.h"
@@ -10,7 +11,7 @@ namespace binosplat {
 
 class PartFile {
 public:
-    // Throws Error if `target` cannot be written or is no place for a file.
+    // Throws Error if `target` cannot be written or cannot be a file.
     explicit PartFile(const std::string& target);
     ~PartFile();
     PartFile(const PartFile&) = delete;

@@ -19,7 +19,7 @@ struct FileCloser {
 };
 using File = std::unique_ptr<std::FILE, FileCloser>;
 
-// The running program's file; empty where the system does not tell.
+// The running program's file; empty if the system does not tell.
 std::filesystem::path programFile();
 
 // A variable of the environment; empty if it is not set. Values are UTF-8.
@@ -31,7 +31,8 @@ std::filesystem::path userHomeFolder();
 // Where paths begin: /, or the drives.
 std::vector<std::filesystem::path> fileSystemRoots();
 
-// Where programs keep what they can make again, and what the user has chosen; empty if the user has no such place.
+// Where programs keep what they can make again, and what the user has chosen; empty if the user has no such
+// folder.
 std::filesystem::path userCacheFolder();
 std::filesystem::path userConfigFolder();
 
@@ -42,48 +43,52 @@ std::vector<std::string> programArguments(int count, const char* const* argument
 
 // True if it was started by a click, in a console of its own that ends with it.
 bool isStartedByClick();
-// A line for standard error, which is also shown in a window if a click started the program.
+// Writes a line to standard error, and also shows it in a window if a click started the program.
 void tellUser(const std::string& line);
 
-// With rights over the whole machine, so that it may not go by what its user's environment says.
+// True if the program has rights over the whole machine, and must not trust its user's environment.
 bool runsAsAdministrator();
 
-// Has SIGTERM raised where the system tells the program in other ways than by signals to end: a console that is closed, a user who logs
-// off. The system then waits for the program, for some seconds.
+// Raises SIGTERM if the system tells the program to end in other ways than by signals: a console that is
+// closed, a user who logs off. The system then waits for the program for some seconds.
 void watchForEnd();
 
-// Advice for machines where Vulkan finds no device.
+// Advice for machines on which Vulkan finds no device.
 extern const char* const kVulkanHint;
 
 // True if there may be a window.
 bool hasDisplay();
-// Where the system keeps fonts of Latin, Greek and Cyrillic letters, and fonts of all others; the best first. They need not exist.
+// Where the system keeps fonts of Latin, Greek and Cyrillic letters, and fonts of all others; the best first.
+// They need not exist.
 std::vector<std::filesystem::path> systemFonts();
 std::vector<std::filesystem::path> furtherSystemFonts();
 
 std::uint64_t processId();
-// How long the calling thread has worked: what it waited does not count.
+// The calling thread's processor time.
 double threadSeconds();
 
-// From here on a write beyond the limit of file sizes fails like one to a full disk, and does not end the program.
+// From here on, a write beyond the limit of file sizes fails like one to a full disk, instead of ending the
+// program.
 void letLongWritesFail();
 
 // Runs a program, found as a shell finds it, with its output in the new file `log`; returns true if its exit status was 0. Throws Error
 // if it cannot be started.
 bool runProgram(const std::vector<std::string>& words, const std::filesystem::path& log);
 
-// Opens a file on a disk for reading, and never waits for one: of anything else (a pipe, a device, a folder) null and the reason in a
-// few words.
+// Opens a file on a disk for reading, without ever waiting. For anything else (a pipe, a device, a folder)
+// returns null and the reason in a few words.
 File openRegularFile(const std::filesystem::path& path, std::string& reason);
 
-// Makes a file that was not there, for writing. Null, with the reason in errno (EEXIST), if anything has that name, also a link to nowhere.
+// Makes a new file for writing. Null, with the reason in errno (EEXIST), if anything has that name, even a
+// dangling link.
 File createFile(const std::filesystem::path& path);
 
-// Makes a folder in `parent` that was not there and that others cannot enter, named `prefix` and something random. Empty, with the reason
-// in errno, if that cannot be done.
+// Makes a new folder in `parent` that others cannot enter, named `prefix` plus something random. Empty, with
+// the reason in errno, if that fails.
 std::filesystem::path createFolder(const std::filesystem::path& parent, const std::string& prefix);
 
-// Where files of a folder are kept in memory (tmpfs): all memory there is, and how much of it can be had. None for a disk.
+// If a folder's files are kept in memory (tmpfs): the total memory, and how much of it is available. Empty
+// for a disk.
 std::optional<std::filesystem::space_info> memoryBehind(const std::filesystem::path& folder);
 
 // A stamp that changes when a file is written to.
@@ -92,14 +97,15 @@ struct FileStamp {
     std::int64_t changed_s = 0, changed_ns = 0;
     bool operator==(const FileStamp&) const = default;
 };
-// None, with the reason in errno, if the system does not tell.
+// Empty, with the reason in errno, if the system does not tell.
 std::optional<FileStamp> stampOf(std::FILE* file);
 
-// Bytes from anywhere in a file, wherever it is being read; fewer at its end. None, with the reason in errno, if reading fails. May be
-// called by several threads.
+// Bytes from anywhere in a file, wherever it is being read; fewer at its end. Empty, with the reason in
+// errno, if reading fails. Any thread may call it.
 std::optional<std::size_t> readAt(std::FILE* file, std::uint64_t offset, std::span<std::byte> target);
 
-// Advice that fresh memory will be used as a whole: large pages, where there are any, save a third of the time of filling it.
+// Advises the system that fresh memory will be used whole: large pages, if available, save a third of the
+// time of filling it.
 void preferLargePages(void* begin, std::size_t bytes);
 
 }  // namespace binosplat

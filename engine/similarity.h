@@ -14,10 +14,10 @@ struct Similarity {
 };
 
 glm::dvec3 transform(const Similarity& target_from_source, const glm::dvec3& point_source);
-// The pose of something that sits at `pose` in the source.
+// The pose of something that is at `pose` in the source.
 Pose transform(const Similarity& target_from_source, const Pose& pose);
 Similarity inverse(const Similarity& target_from_source);
-// a_from_c out of a_from_b and b_from_c.
+// a_from_c from a_from_b and b_from_c.
 Similarity compose(const Similarity& a_from_b, const Similarity& b_from_c);
 
 }  // namespace binosplat

@@ -8,14 +8,14 @@
 
 namespace binosplat {
 
-// What lies in a folder, each entry once; empty if it cannot be read. Unlike a bare directory_iterator it always ends: where a path is too
-// long, the one of MinGW's library may give the same entry again and again.
+// A folder's entries, each once; empty if it cannot be read. Unlike a bare directory_iterator it always ends:
+// if a path is too long, that of MinGW's library may give the same entry again and again.
 std::vector<std::filesystem::path> entriesOf(const std::filesystem::path& folder);
 
-// Removes a folder and all within, as far as possible; links are not followed. Always ends, too.
+// Removes a folder and its content, as far as possible, without following links. Always ends, too.
 void removeFolder(const std::filesystem::path& folder) noexcept;
 
-// Made in the system's folder for temporary files, and gone with its owner.
+// Made in the system's folder for temporary files, and removed with its owner.
 class TemporaryFolder {
 public:
     // Its name begins with `prefix`. Throws Error if it cannot be made; `purpose` is for the message.
@@ -29,7 +29,7 @@ public:
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 
 private:
-    std::filesystem::path path_;  // empty: it has another owner
+    std::filesystem::path path_;  // empty: moved to another owner
 };
 
 }  // namespace binosplat

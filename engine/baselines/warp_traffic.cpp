@@ -16,10 +16,10 @@ Traffic warpTraffic(const WarpFacts& facts) {
     const bool components = paper && facts.settings.center_rois;
     const double pixels = double{1} * facts.size_px.x * facts.size_px.y, tiles = pixels / kPixelsOfTile;
     const double colour = facts.half_floats ? sizeof(gpu::uvec2) : sizeof(gpu::vec4);
-    // Of odd rows that are warped like even ones, nothing is read or written before they are resampled.
+    // For odd rows that are warped like even ones, nothing is read or written before they are resampled.
     const double rows = facts.even_rows ? 0.5 : 1.0, moving = rows * kWord, arrival = rows * kWord;
     const double depth = facts.target_depth ? sizeof(float) : 0.0, pixel_class = 0.25;
-    // Only predicted leaves tiles out before it warps anything.
+    // Only predicted leaves tiles out before it reprojects anything.
     const double moved = !predict ? 1.0 : facts.counters.moves == 0 ? 0.0 : facts.counters.moved_tiles / tiles;
     const double any_moved = moved > 0.0 ? 1.0 : 0.0;
 
@@ -49,7 +49,8 @@ Traffic warpTraffic(const WarpFacts& facts) {
         traffic.emplace_back("price", perTile(4));  // kinds, costs, errors; prices
     }
     if (paper || predict) {
-        // kinds (in and out), prices, costs; the list and the mask. And a workgroup sums up the prices of half of the tiles, at most.
+        // kinds (in and out), prices, costs; the list and the mask. A workgroup also sums the prices of at
+        // most half of the tiles.
         traffic.emplace_back("select", perTile(6) + (predict ? perTile(1) * tiles / (2 * gpu::kWarpGroup) : 0.0));
     }
     double sum = 0.0;

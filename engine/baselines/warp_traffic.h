@@ -1,4 +1,4 @@
-// The memory traffic of making the target, beyond that of the tiles that are rendered for it.
+// The memory traffic of making the target, except for the tiles that are rendered for it.
 #pragma once
 
 #include "engine/passes/stereo_settings.h"
@@ -10,17 +10,17 @@
 
 namespace binosplat {
 
-// Bytes that a pass reads and writes, per pixel of an eye, in frame order. What several threads read counts once, since neighbours read it
-// from a cache; what is read and written back counts twice.
+// Bytes that a pass reads and writes, per pixel of an eye, in frame order. What several threads read counts
+// once, since neighbours read it from a cache; what is read and written back counts twice.
 using Traffic = std::vector<std::pair<std::string, double>>;
 
-// The facts about a frame that its traffic depends on.
+// The facts about a frame on which its traffic depends.
 struct WarpFacts {
     StereoSettings settings;
     bool may_move = true;          // the source came with what warping needs
     bool moves_rows = false;       // resample also does what reproject does otherwise
     bool even_rows = false;        // odd rows are warped like even ones
-    bool sums_even_rows = false;   // and so the source writes nothing for odd rows
+    bool sums_even_rows = false;   // so the source writes nothing for odd rows
     bool half_floats = false;      // what pictures consist of
     bool target_depth = false;     // its D is kept
     bool classes = false;          // of pixels are kept

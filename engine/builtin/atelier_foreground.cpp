@@ -46,7 +46,7 @@ void addScreenPanel(Draft& draft, const glm::vec2& from, const glm::vec2& to) {
     }
 }
 
-// A tall plant in a clay pot: stems with long narrow leaves, some of which reach before the eye.
+// A tall plant in a clay pot: stems with long narrow leaves, some of which reach in front of the eye.
 void addPlant(Draft& draft) {
     const glm::vec3 foot(0.76f, 0.0f, 1.17f);
     addRevolution(

@@ -61,7 +61,8 @@ void addArmchair(Draft& draft) {
     }
 }
 
-// One row of books from z0 to z1 standing on height `shelf`; some lean space is left at the end.
+// One row of books from z0 to z1 standing at the height `shelf`; a little space for leaning is left at the
+// end.
 void addBooks(Draft& draft, float shelf, float z0, float z1, std::uint32_t seed) {
     const glm::vec3 covers[] = {{0.36f, 0.06f, 0.05f}, {0.06f, 0.12f, 0.24f}, {0.09f, 0.20f, 0.12f},
                                 {0.56f, 0.42f, 0.20f}, {0.68f, 0.63f, 0.52f}, {0.22f, 0.09f, 0.16f},
@@ -80,7 +81,7 @@ void addBooks(Draft& draft, float shelf, float z0, float z1, std::uint32_t seed)
                 1.0f - glm::smoothstep(0.012f, 0.03f, std::abs(up - band)) * glm::smoothstep(0.01f, 0.02f, std::abs(up - 0.93f));
             return Material{glm::mix(cover, glm::vec3(0.62f, 0.48f, 0.20f), 0.8f * gilt), glm::vec3(0.0f), 0.97f};
         };
-        // Spine and top are what one sees; the sides stand against each other, and the back at the wall is left out.
+        // Only spine and top are made: the sides touch each other, and the back is against the wall.
         const glm::vec3 low(-2.95f, shelf - height, z), high(-2.95f + 2.0f * depth, shelf, z + 0.96f * thick),
             away(0.0f, -1.5f, 0.5f * (low.z + high.z));
         const glm::vec3 x(high.x - low.x, 0.0f, 0.0f), y(0.0f, height, 0.0f), along(0.0f, 0.0f, high.z - low.z);

@@ -9,9 +9,10 @@ namespace binosplat::builtin {
 namespace {
 
 const glm::vec3 kHaze(0.62f, 0.74f, 0.86f);
-const glm::vec3 kEye(0.0f, -1.5f, 1.0f);  // what the window is seen from, about
+const glm::vec3 kEye(0.0f, -1.5f, 1.0f);  // about where the window is seen from
 
-// The far side of a room needs splats by the angle it fills, not by its area: so many per square metre of window, seen from 4 m.
+// The far side of a room needs splats by the angle it fills, not by its area: this many per square metre of
+// window, seen from 4 m.
 float detailFor(float seen_from_m, float window_detail) { return window_detail * 16.0f / (seen_from_m * seen_from_m); }
 
 // Height of a ridge above the eye's level, at an angle from straight ahead.
@@ -21,7 +22,7 @@ float ridgeHeight(float angle, float distance, std::uint32_t seed) {
 }
 
 struct Ridge {
-    float distance, lift;  // metres; lift: the share of the distance the ridge is raised by
+    float distance, lift;  // metres; lift: the share of the distance by which the ridge is raised
     glm::vec3 colour;
     std::uint32_t seed;
 };

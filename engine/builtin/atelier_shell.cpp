@@ -149,7 +149,8 @@ void addWindow(Draft& draft, const Room& room) {
                false);
     }
     addBox(draft, {{middle.x, low.y - 0.04f, z - 0.02f}, {half.x, 0.04f, 0.02f}, 0.0f}, paint, 3.0f, false);
-    // Bars between the panes, and the frame round them, 10 cm behind the wall's face. Their shadows are in sunThroughWindow.
+    // Bars between the panes, and the frame round them, 10 cm behind the wall's face. Their shadows are in
+    // sunThroughWindow.
     for (int i = 0; i <= static_cast<int>(room.window_panes.x); ++i) {
         const float x = low.x + 2.0f * half.x * static_cast<float>(i) / room.window_panes.x;
         addBox(draft, {{x, middle.y, z + 0.10f}, {0.03f, half.y, 0.022f}, 0.0f}, paint, 4.0f, false);
@@ -195,8 +196,9 @@ void addCurtains(Draft& draft, const Room& room) {
            plain({0.20f, 0.13f, 0.07f}), 6.0f);
 }
 
-// A dark hull of few large splats a metre outside the walls, so that the two or three percent which shine through a wall do not
-// depend on the sky behind it. So far out, no splat of it comes before one of the wall; nothing of it is seen through the window.
+// A dark hull of few large splats a metre outside the walls, so that the two or three percent that shine
+// through a wall do not depend on the sky behind it. So far out, none of its splats is in front of a wall's;
+// it cannot be seen through the window.
 void addHull(Draft& draft, const Room& room) {
     const glm::vec3 low = room.min - 1.0f, high(room.max.x + 1.0f, room.max.y + 1.0f, room.max.z - 0.5f), size = high - low;
     const glm::vec3 x(size.x, 0.0f, 0.0f), y(0.0f, size.y, 0.0f), z(0.0f, 0.0f, size.z);

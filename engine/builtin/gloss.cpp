@@ -70,7 +70,7 @@ std::array<glm::vec3, 16> projectGloss(const glm::vec3& point, const glm::vec3& 
     static const Quadrature kQuadrature = makeQuadrature();
     const glm::vec3 to_window = glm::normalize(window - point), to_lamp = glm::normalize(lamp - point), up(0.0f, -1.0f, 0.0f);
     const glm::vec3 to_skylight =
-        glm::normalize(glm::vec3(-0.75f, -0.75f, -0.6f));  // a second bright spot, behind the viewer's left shoulder
+        glm::normalize(glm::vec3(-0.75f, -0.75f, -0.6f));  // a second bright spot, behind the user's left shoulder
     std::array<glm::vec3, 16> sh{};
     for (std::size_t i = 0; i < kQuadrature.directions.size(); ++i) {
         const glm::vec3 mirrored = glm::reflect(kQuadrature.directions[i], normal);

@@ -1,4 +1,5 @@
-// Ray casting against a few dozen boxes and ellipsoids; the sample patterns are fixed, so the result is smooth in the point.
+// Casts rays against a few dozen boxes and ellipsoids; the sample patterns are fixed, so the result is smooth
+// in the point.
 #include "engine/builtin/lighting.h"
 
 #include "engine/builtin/noise.h"
@@ -40,18 +41,20 @@ float hitDistance(const Occluder& occluder, const glm::vec3& origin, const glm::
     return enter < leave && enter > 0.0f ? enter : kFar;
 }
 
-// The occluders that rays within a cone can meet, by their bounding spheres. Most points see few of them in any one direction.
+// The occluders that rays within a cone can meet, by their bounding spheres. From most points there are few
+// of them in any one direction.
 using Nearby = std::vector<const Occluder*>;
 
 Nearby selectInCone(const std::vector<Occluder>& occluders, const glm::vec3& origin, const glm::vec3& axis, float cosine) {
     const float sine = std::sqrt(std::max(0.0f, 1.0f - cosine * cosine));
     Nearby nearby;
     for (const Occluder& occluder : occluders) {
-        // The sphere fills the angle asin(radius / distance); it is out if the angle to its centre is larger than both together.
+        // The sphere fills the angle asin(radius / distance); it is outside if the angle to its centre is
+        // larger than both together.
         const glm::vec3 to_centre = occluder.centre - origin;
         const float distance = glm::length(to_centre), share = std::min(1.0f, occluder.bounding_radius / std::max(distance, 1e-6f));
         const float limit = cosine * std::sqrt(1.0f - share * share) - sine * share;
-        // Past half a turn the sum of the two angles has no larger cosine to compare with.
+        // Beyond half a turn the sum of the two angles has no larger cosine to compare with.
         const bool everywhere = share >= 1.0f || (cosine < 0.0f && -cosine > std::sqrt(1.0f - share * share));
         if (everywhere || glm::dot(to_centre, axis) >= distance * limit) { nearby.push_back(&occluder); }
     }
@@ -68,7 +71,7 @@ bool isBlocked(const Nearby& occluders, const glm::vec3& origin, const glm::vec3
                        [&](const Occluder* occluder) { return hitDistance(*occluder, origin, direction) < limit; });
 }
 
-// Bounced light from the room's own surfaces, by the wall a ray ends on.
+// Bounced light from the room's own surfaces, by the wall on which a ray ends.
 glm::vec3 bounceColour(const Room& room, const glm::vec3& end) {
     const float depth = (end.z - room.min.z) / (room.max.z - room.min.z);  // brighter towards the window
     const float level = 0.18f + 0.15f * depth;
@@ -119,7 +122,8 @@ glm::vec3 gatherWindow(const Room& room, const std::vector<Occluder>& all_occlud
     return sum;
 }
 
-// One bounce: cosine-distributed rays; what is near is itself in the dark, which is what darkens corners and contacts.
+// One bounce of cosine-distributed rays. Near surfaces are dark themselves, which darkens corners and
+// contacts.
 glm::vec3 gatherBounce(const Room& room, const std::vector<Occluder>& all_occluders, const glm::vec3& point, const glm::vec3& normal) {
     constexpr int kRays = 48;
     const Nearby occluders = selectInCone(all_occluders, point, normal, 0.0f);

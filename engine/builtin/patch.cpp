@@ -1,5 +1,6 @@
-// Placement, light grids and colours of splats on patches. Patches are independent, and so are chunks of a patch's splats: threads take
-// them in any order and write to places known beforehand, so the scene does not depend on their number.
+// Placement, light grids and colours of splats on patches. Patches are independent, and so are chunks of a
+// patch's splats: threads take them in any order and write to places known beforehand, so the scene does not
+// depend on the number of threads.
 #include "engine/builtin/patch.h"
 
 #include "engine/builtin/builtin.h"
@@ -133,7 +134,8 @@ private:
     void writeSplat(Scene& scene, std::uint64_t target, std::uint64_t i, std::size_t row) const {
         const glm::vec2 cell(1.0f / static_cast<float>(rows_.starts[row + 1] - rows_.starts[row]),
                              1.0f / static_cast<float>(rows_.starts.size() - 1));
-        // Every other row is shifted by half a splat, and each splat a little by chance: even, but without a visible grid.
+        // Every other row is shifted by half a splat, and each splat a little by chance: even, but without a
+        // visible grid.
         const std::uint32_t chance = hash(static_cast<std::uint32_t>(i), seed_);
         const glm::vec2 jitter(unitFloat(chance) - 0.5f, unitFloat(hash(chance)) - 0.5f);
         const glm::vec2 place(static_cast<float>(i - rows_.starts[row]) + 0.5f + (row % 2 == 0 ? 0.2f : -0.2f),
@@ -199,7 +201,7 @@ private:
     int subsamples_;
 };
 
-// Runs work(0 .. count - 1) on all cores; only the calling thread reports.
+// Runs work(0 .. count - 1) on all cores; only the calling thread reports progress.
 template <typename Work>
 void forAll(std::size_t count, const Work& work, const Progress& progress, double from, double to) {
     const auto caller = std::this_thread::get_id();

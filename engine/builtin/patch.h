@@ -17,8 +17,8 @@ struct Material {
 };
 using MaterialAt = std::function<Material(const glm::vec3& point, const glm::vec2& uv)>;
 
-// A surface over the unit square. Splats lie in rows along u; their number per row follows the row's length, and their scales follow
-// the spacing on both axes, so a patch is closed at any count, stretched or not.
+// A surface over the unit square. Splats lie in rows along u; their number per row follows the row's length,
+// and their scales follow the spacing along both axes, so a patch has no gaps at any count, stretched or not.
 struct Patch {
     std::function<glm::vec3(const glm::vec2& uv)> point;
     MaterialAt material;

@@ -41,11 +41,11 @@ std::vector<BuiltinInfo> listBuiltins();
 // True if `source` has the prefix "builtin:".
 bool isBuiltin(const std::string& source);
 
-// The recommended view; `name` with or without the prefix. Empty for names that are not there.
+// The recommended view; `name` with or without the prefix. Empty for unknown names.
 std::optional<View> builtinView(const std::string& name);
 
-// Makes builtin:NAME with exactly `splats` splats (0: its default). The same on every run, whatever the number of threads. Throws Error for
-// a name or a count it does not have.
+// Makes builtin:NAME with exactly `splats` splats (0: its default). The same on every run, whatever the
+// number of threads. Throws Error for an unknown name or an impossible count.
 Scene makeBuiltin(const std::string& source, std::uint64_t splats = 0, const Progress& progress = {});
 
 }  // namespace binosplat

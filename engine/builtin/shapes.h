@@ -13,14 +13,15 @@ namespace binosplat::builtin {
 // A material of one colour.
 MaterialAt plain(const glm::vec3& albedo, float opacity = 0.97f);
 
-// The parallelogram origin + u a + v b, seen from the side that a x b points away from or to: `towards` is a point in front of it.
+// The parallelogram origin + u a + v b, seen from the side of `towards`, a point in front of it, whichever
+// way a x b points.
 struct Quad {
     glm::vec3 origin, a, b, towards;
 };
 void addQuad(Draft& draft, const Quad& quad, const MaterialAt& material, float detail);
 
-// The same without the rectangles `holes` (min u, min v, max u, max v in the quad's unit square): surfaces that lie on it would otherwise
-// be mixed with it, since splats are sorted by their centres.
+// The same without the rectangles `holes` (min u, min v, max u, max v in the quad's unit square): surfaces
+// that lie on it would otherwise mix with it, since splats are sorted by their centres.
 void addQuadAround(Draft& draft, const Quad& quad, std::span<const glm::vec4> holes, const MaterialAt& material, float detail);
 
 // A box turned by yaw about the vertical, and an occluder like it.

@@ -1,4 +1,4 @@
-// Planes are rated by what lies in them and stands on them, seen along their normal.
+// Planes are rated by what is in them and what stands on them, seen along their normal.
 #include "engine/places/floor_choice.h"
 
 #include <algorithm>
@@ -11,28 +11,28 @@ namespace binosplat {
 namespace {
 
 constexpr std::size_t kMostForRating = 8192;
-constexpr int kPlanCells = 24;                // of the longest side of what lies on a plane
+constexpr int kPlanCells = 24;                // of the longest side of a plane's content
 constexpr int kFewInCell = 4;                 // may be floaters
-constexpr std::size_t kFewStanding = 100;     // say nothing about where things stand
+constexpr std::size_t kFewStanding = 100;     // too few to say where things stand
 constexpr double kAboutCosine = 0.70710678;   // 45 degrees: of the usual up
 constexpr double kTiltedCosine = 0.93969262;  // 20 degrees: beyond, it must look like a floor
 constexpr double kOtherCosine = 0.8660254;    // 30 degrees: another direction
 constexpr double kFacingCosine = 0.9;
-constexpr double kCeiling = 0.5;  // counts less than a floor
+constexpr double kCeiling = 0.5;  // compared with a floor
 constexpr double kBetterThanOthers = 2.0;
 constexpr double kLeastCovered = 0.5, kLeastFacing = 0.4;
-constexpr double kReachesFar = 1.2;  // beyond what stands on it: ground, no wall
+constexpr double kReachesFar = 1.2;  // beyond what stands on it: ground, not a wall
 constexpr double kHoversFrom = 0.1;  // of the size
-constexpr double kRelief = 0.4;      // of the breadth: walls seen from the front have nothing that stands out farther
+constexpr double kRelief = 0.4;      // of the breadth: on walls seen from the front nothing stands out farther
 
 struct Rating {
-    double covered = 0.0;  // of what is seen along the normal, the share with splats of the plane
-    double facing = 0.0;   // of the plane's splats the share that faces along its normal
-    double reach = 0.0;    // how far from its middle nine tenths of the plane's splats lie, in terms of the others'
-    double low = 0.5;      // of what stands away from the rim, the share in the lower half of the height
+    double covered = 0.0;  // the share, of what is seen along the normal, that has splats of the plane
+    double facing = 0.0;   // the share of the plane's splats that face along its normal
+    double reach = 0.0;    // how far from its middle nine tenths of the plane's splats are, relative to the others'
+    double low = 0.5;      // of what stands away from the rim, the share in the lower half
     double height = 0.0;   // nineteen in twenty of the others are lower
     double breadth = 0.0;  // the side of a square as large as what is seen along the normal
-    bool hovers = true;    // none but floaters stand on it
+    bool hovers = true;    // only floaters stand on it
 };
 
 // Seen along the normal.
@@ -59,7 +59,7 @@ std::vector<Seen> lookAlong(const std::vector<SplatSample>& samples, const Floor
     return seen;
 }
 
-// The values of those that `of` gives one for, at the share; 0 if there are none.
+// The quantile at `share` of the values for which `of` gives one; 0 if there are none.
 template <typename Of>
 double quantileOf(const std::vector<Seen>& seen, double share, const Of& of) {
     std::vector<double> values;

@@ -1,4 +1,4 @@
-// The floor among a scene's planes, and with it the direction that is up.
+// Chooses the floor among a scene's planes, and with it the direction of up.
 #pragma once
 
 #include "engine/scene/floor_plane.h"
@@ -8,20 +8,21 @@
 
 namespace binosplat {
 
-// What is known of up beside the splats.
+// What is known about up besides the splats.
 struct UpHints {
     glm::dvec3 usual{0.0, -1.0, 0.0};                                          // up by convention, unit
-    glm::dvec3 front{0.0, 0.0, -1.0};                                          // the side that scenes are usually seen from, unit
+    glm::dvec3 front{0.0, 0.0, -1.0};                                          // the side from which scenes are usually seen, unit
     enum class Known { kNothing, kAxis, kDirection } known = Known::kNothing;  // up is about `usual`, or about its opposite
-    std::optional<glm::dvec3> seen_from{};                                     // the mean place of the cameras
-    bool is_doubtful = false;                                                  // `usual`: only what looks like a floor bears it out
+    std::optional<glm::dvec3> seen_from{};                                     // the cameras' mean place
+    bool is_doubtful = false;                                                  // `usual` needs confirmation by a floor
 };
 UpHints hintsOf(const Scene& scene);
 
-// The plane that the scene stands on: it holds many splats and lies beneath nearly all, and things stand on it. About the usual up, to 45
-// degrees, the best plane is taken, or a ceiling; in another direction it must be better than all planes that lead elsewhere, face up, not
-// be a wall that things float before, and, where it faces the front, be no wall with a relief. If there are `seen_from`, these are above;
-// and where the usual up is doubtful any floor about it is taken before the others.
+// The plane on which the scene stands: it holds many splats and lies beneath nearly all others, and things
+// stand on it. Around the usual up, to 45 degrees, the best plane is taken, or a ceiling. In another
+// direction it must be better than all planes with other normals, face up, and not be a wall in front of
+// which things float; and if it faces the front, not a wall with a relief. If `seen_from` is set, it must be
+// above the floor; and if the usual up is doubtful, any floor around it is taken before the others.
 std::optional<FloorPlane> chooseFloor(const std::vector<SplatSample>& samples, const UpHints& hints);
 
 }  // namespace binosplat

@@ -1,4 +1,4 @@
-// The lie of a scene's splats: in axes of the wearer's own, right, up and ahead, with the floor apart.
+// The lie of a scene's splats: in axes of the wearer's own (right, up and ahead), with the floor kept apart.
 #pragma once
 
 #include "engine/scene/floor_plane.h"
@@ -22,7 +22,7 @@ struct Axes {
     [[nodiscard]] glm::dvec3 world(double x, double h, double z) const { return x * right + h * up + z * ahead; }
 };
 
-// The front of a scene is where one looks ahead from.
+// The front of a scene is the side from which one looks ahead.
 Axes axesOf(const glm::dvec3& up, bool y_up);
 
 struct Range {
@@ -36,12 +36,12 @@ Range rangeOf(std::vector<double> values, double beyond);
 // The scene's properties that do not depend on the standpoint.
 struct Lie {
     std::vector<Spot> spots;
-    Range x, z;              // nine tenths of all
+    Range x, z;              // of nine tenths of all
     double floor_h, height;  // of the floor, and of nineteen in twenty of the rest above it
     bool has_floor;
 };
 
-// What `of` says of each spot, if it does.
+// The values of `of` over the spots for which it has one.
 template <typename Of>
 std::vector<double> valuesOf(const std::vector<Spot>& spots, const Of& of) {
     std::vector<double> values;
@@ -51,12 +51,13 @@ std::vector<double> valuesOf(const std::vector<Spot>& spots, const Of& of) {
     return values;
 }
 
-// Without what lies far beyond the rest, such as hills and sky: a landscape has more of it than of what one stands in.
+// Without what is far beyond the rest, such as hills and sky: a landscape has more of that than of where one
+// stands.
 std::vector<SplatSample> coreOf(std::vector<SplatSample> samples);
 
 Lie lieOf(const std::vector<SplatSample>& samples, const Axes& axes, const std::optional<FloorPlane>& floor);
 
-// Along the scene's own sides: those about the vertical with the smallest box.
+// Along the scene's own sides: the vertical box with the smallest base.
 Axes alongSides(const std::vector<SplatSample>& samples, const Axes& axes);
 
 }  // namespace binosplat

@@ -1,4 +1,4 @@
-// Places in even sequences, judged by the clearance about them.
+// Places in even sequences, judged by the clearance around them.
 #include "engine/places/standing_views.h"
 
 #include "engine/places/floor_choice.h"
@@ -17,8 +17,8 @@ constexpr std::size_t kMostJudged = 8192;
 constexpr double kFovXDegrees = 60.0, kFaceDegrees = 92.0;         // faces of a cube that overlap
 constexpr double kNarrowestDegrees = 1.0, kWidestDegrees = 100.0;  // of what shows a part
 constexpr double kGoldenAngle = 2.399963229728653;
-constexpr std::array kHeights{1.0, 0.75, 1.1};   // of the eyes, in that of a standing person
-constexpr std::array kDistances{1.0, 0.6, 0.8};  // of shells, in that from which all is seen
+constexpr std::array kHeights{1.0, 0.75, 1.1};   // of the eyes, relative to a standing person's
+constexpr std::array kDistances{1.0, 0.6, 0.8};  // of shells, relative to the distance from which everything is seen
 constexpr double kClear = 0.25, kInner = 0.9;    // in heights of the eyes; of the scene's sides
 constexpr std::size_t kTriedPerPlace = 24;
 constexpr std::size_t kFaces = 6;
@@ -50,7 +50,7 @@ double clearanceAt(const std::vector<SplatSample>& samples, const glm::dvec3& pl
     return findQuantile(distances, 0.002);
 }
 
-// A place within the scene's sides: the clearest of some that are tried, unless the first ones are clear enough.
+// A place within the scene's sides: the clearest of several tries, unless one of the first is clear enough.
 glm::dvec3 findPlace(const Lie& lie, const Axes& axes, const std::vector<SplatSample>& samples, double eye_height, std::size_t place) {
     glm::dvec3 best{0.0};
     double clearest = -1e300;
@@ -108,7 +108,7 @@ std::vector<View> viewsOnto(const glm::dvec3& low, const glm::dvec3& high, std::
     for (std::size_t i = 0; i < count; ++i) {
         View view = places[i * places.size() / count];
         const double distance = glm::distance(view.eye, middle);
-        // From within a part one looks ahead.
+        // Inside a part one looks ahead.
         if (distance > 0.1 * radius) { view.look = middle; }
         const double half = distance > radius ? glm::degrees(std::asin(radius / distance)) : kWidestDegrees;
         view.fov_x_deg = std::clamp(2.0 * half, kNarrowestDegrees, kWidestDegrees);

@@ -1,4 +1,4 @@
-// Views of a scene from where a person could stand, spread out, for judging what of it is seen.
+// Views of a scene from where a person could stand, spread out, for judging what is seen of it.
 #pragma once
 
 #include "engine/geometry.h"
@@ -10,13 +10,14 @@
 
 namespace binosplat {
 
-// `count` of them, by the splats alone. A scene that is entered (judgeStandpoint): from places with free space about a head, at several
-// heights, from each the six faces of a cube, so that every direction is seen. Anything else: from shells about its middle, above its floor
-// if it has one. `first`: how many to leave out of the same sequence, for views unlike others.
+// `count` views, chosen by the splats alone. If the scene is entered (judgeStandpoint), from places with free
+// space around a head, at several heights, each with the six faces of a cube, so that every direction is
+// seen. Otherwise from shells around its middle, above its floor if it has one. `first`: how many of the same
+// sequence to leave out, for views unlike earlier ones.
 std::vector<View> standingViews(const Scene& scene, std::size_t count, std::size_t first = 0);
 
-// A part of a scene between two corners as it is seen from `count` of the eyes' different places, evenly chosen, or from all: as narrow as
-// shows it whole.
+// A part of a scene, between two corners, as seen from `count` of the eyes' different places, evenly chosen,
+// or from all: as narrow as shows it whole.
 std::vector<View> viewsOnto(const glm::dvec3& low, const glm::dvec3& high, std::span<const View> from, std::size_t count);
 
 }  // namespace binosplat

@@ -1,4 +1,4 @@
-// Judged by what lies about a place, in axes of the wearer's own.
+// Judges by what is around a place, in axes of the wearer's own.
 #include "engine/places/standpoint.h"
 
 #include "engine/places/floor_choice.h"
@@ -21,10 +21,10 @@ constexpr double kSurrounded = 0.6;  // of the sectors
 constexpr double kTallest = 1.3;     // of its width: rooms are not taller
 constexpr double kEyeHeightMetres = 1.6;
 constexpr double kLeastRoomHeightMetres = 1.8, kHollow = 0.04;
-constexpr double kMostDense = 0.25;  // about a head, of the density if splats were spread evenly
+constexpr double kMostDense = 0.25;  // around a head, relative to the density of evenly spread splats
 constexpr std::size_t kFewInSector = 4;
-constexpr int kGrid = 15;                           // places to stand that are tried, along either side
-constexpr int kCells = 24;                          // of the longest side, to find what is dense
+constexpr int kGrid = 15;                           // places to stand that are tried, along each side
+constexpr int kCells = 24;                          // of the longest side, to find dense parts
 constexpr double kLookDown = 0.45, kLookUp = 0.25;  // tangents
 
 std::size_t sectorOf(double x, double z) {
@@ -32,8 +32,8 @@ std::size_t sectorOf(double x, double z) {
     return static_cast<std::size_t>(std::clamp(static_cast<int>(turn), 0, kSectors - 1));
 }
 
-// Of the directions about the middle, in how many something stands where the floor ends, or, without a floor, far from the middle; and
-// how many there are.
+// In how many directions around the middle something stands where the floor ends, or, without a floor, far
+// from the middle; and the number of directions.
 int surroundingSectors(const Lie& lie) {
     struct Sector {
         std::vector<double> floor, standing;
@@ -59,7 +59,7 @@ int surroundingSectors(const Lie& lie) {
     return surrounding;
 }
 
-// Of what stands on the floor the share that stands within the outermost quarter.
+// Of what stands on the floor, the share within the outermost quarter.
 double furnishedShare(const Lie& lie) {
     std::size_t inside = 0, all = 0;
     for (const Spot& spot : lie.spots) {
@@ -72,7 +72,7 @@ double furnishedShare(const Lie& lie) {
     return all == 0 ? 0.0 : static_cast<double>(inside) / static_cast<double>(all);
 }
 
-// True if splats far from the middle are larger than those near it, as they are in scenes captured from inside.
+// True if splats far from the middle are larger than those near it, as in scenes captured from inside.
 bool growsOutwards(const Lie& lie) {
     const double radius = 0.5 * std::hypot(lie.x.length(), lie.z.length());
     const auto reachAt = [&](double from, double to) {
@@ -93,7 +93,7 @@ double eyeHeight(const Lie& lie, double metres_per_unit) {
 bool surrounds(const Lie& lie, int sectors, double metres_per_unit) {
     if (sectors < kSurrounded * kSectors || lie.height > kTallest * std::max(lie.x.length(), lie.z.length())) { return false; }
     if (!lie.has_floor) { return growsOutwards(lie); }
-    // An empty room and a box look alike but for their size.
+    // An empty room and a box differ only in size.
     return furnishedShare(lie) >= kHollow || lie.height * metres_per_unit >= kLeastRoomHeightMetres;
 }
 
@@ -139,15 +139,15 @@ std::optional<glm::dvec3> findDensest(const Lie& lie) {
     return glm::dvec3(lie.x.low + (found[0] + 0.5) * side, h.low + (found[1] + 0.5) * side, lie.z.low + (found[2] + 0.5) * side);
 }
 
-// How far it is from there to what is near, two in a thousand left out.
+// The distance from there to what is near, leaving out two in a thousand.
 double clearanceAt(const std::vector<Spot>& spots, double x, double h, double z, std::vector<double>& distances) {
     distances.clear();
     for (const Spot& spot : spots) { distances.push_back(std::hypot(spot.x - x, spot.h - h, spot.z - z) - spot.reach); }
     return findQuantile(distances, 0.002);
 }
 
-// True where a head has free space about it, and something stands at a distance on most sides: within something solid splats are as dense
-// as anywhere.
+// True if a head has free space around it, and something stands at a distance on most sides: within something
+// solid, splats are as dense as anywhere.
 bool hasRoom(const Lie& lie, const std::vector<Spot>& spots, const glm::dvec3& head, double radius) {
     std::array<std::vector<double>, kSectors> sectors;
     double near = 0.0;
@@ -167,7 +167,7 @@ struct Place {
     double clearance = 0.0;
 };
 
-// The best place inside, if there is one with room about it.
+// The best place inside, if there is one with space around it.
 std::optional<Place> findPlaceInside(const Lie& lie, double eye_height) {
     const std::optional<glm::dvec3> densest = findDensest(lie);
     if (!densest) { return std::nullopt; }
@@ -211,7 +211,7 @@ std::string explainUp(const StandpointWish& wish, const UpHints& hints, const st
     return fmt::format("{}, as no floor was found", whose);
 }
 
-// From in front, level, or a little from above what stands on a floor.
+// From in front, level, or a little from above if things stand on a floor.
 Standpoint standOutside(const Lie& lie, const Axes& axes, double fov_x_deg) {
     std::vector<Spot> object;
     std::ranges::copy_if(lie.spots, std::back_inserter(object), [](const Spot& spot) { return !spot.is_floor; });
@@ -221,8 +221,9 @@ Standpoint standOutside(const Lie& lie, const Axes& axes, double fov_x_deg) {
         return rangeOf(valuesOf(object, [&](const Spot& spot) { return std::optional(spot.*axis); }), 0.05);
     };
     const Range x = along(&Spot::x), h = along(&Spot::h), z = along(&Spot::z);
-    // A sphere about the common box fills the picture's width; about a point it holds the usual splat, and half a unit at least.
-    // Where splats lie evenly the tenth that is left out at its ends makes it a ninth longer.
+    // A sphere around the common box fills the picture's width; around a point it holds a usual splat, and at
+    // least half a unit. If splats are spread evenly, the tenth left out at the ends makes the box a ninth
+    // longer.
     double radius = 0.5 / 0.9 * glm::length(glm::dvec3(x.length(), h.length(), z.length()));
     std::vector<double> reaches = valuesOf(object, [](const Spot& spot) { return std::optional(spot.reach); });
     const double usual = 0.5 * findQuantile(reaches, 0.5);

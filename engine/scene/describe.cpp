@@ -1,4 +1,4 @@
-// Counting over a scene.
+// Counts over a scene.
 #include "engine/scene/describe.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// A scene in numbers: for `info`, the report and the choice of passes to leave out.
+// A scene in numbers: for `info`, for the report, and for choosing which passes to leave out.
 #pragma once
 
 #include "engine/scene/scene.h"
@@ -12,7 +12,7 @@ namespace binosplat {
 
 struct SceneSummary {
     std::uint64_t splats = 0;
-    glm::vec3 min_position{0.0f}, max_position{0.0f};  // of the centres; zero for an empty scene
+    glm::vec3 min_position{0.0f}, max_position{0.0f};  // of the centres; zero if the scene is empty
     int sh_degree = 0;
     bool gaussian_3d = false;                                         // otherwise all splats are discs
     std::array<std::uint64_t, kMaxShDegree + 1> splats_using_band{};  // splats with a non-zero coefficient in each SH band
@@ -24,10 +24,10 @@ struct SceneSummary {
 };
 inline constexpr std::array<double, 5> kSummaryQuantiles{0.0, 0.05, 0.5, 0.95, 1.0};
 
-// `notes` adds what loading already left out.
+// `notes` adds what loading has already left out.
 SceneSummary describeScene(const Scene& scene, const LoadNotes* notes = nullptr);
 
-// "1.5,20,-3": with four digits, or as many as tell thousandths of `size`.
+// "1.5,20,-3": with four digits, or enough for thousandths of `size`.
 std::string describePlace(const glm::dvec3& place, double size);
 
 // Bytes of the scene's arrays on the host.

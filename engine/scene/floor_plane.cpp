@@ -1,4 +1,5 @@
-// Planes through one splat along its face and through three splats are tried, and the best ones are fitted to the splats near them.
+// Tries planes through one splat along its face and planes through three splats, and fits the best ones to
+// the splats near them.
 #include "engine/scene/floor_plane.h"
 
 #include <algorithm>
@@ -12,8 +13,8 @@ namespace binosplat {
 namespace {
 
 constexpr int kTries = 1500;                // of either kind
-constexpr std::size_t kFewForFloor = 256;   // fewer make no floor
-constexpr std::size_t kMostAtFirst = 2048;  // samples that a try is judged by
+constexpr std::size_t kFewForFloor = 256;   // fewer do not make a floor
+constexpr std::size_t kMostAtFirst = 2048;  // samples by which a try is judged
 constexpr std::size_t kKept = 12;           // tries that are fitted
 constexpr double kAlikeCosine = 0.9962;     // 5 degrees
 constexpr double kThickness = 0.01;         // of the size, to each side
@@ -27,7 +28,7 @@ struct Plane {
     std::size_t inliers = 0;
 };
 
-// Of the box with nine tenths of the samples along each axis: its diagonal; and the middle of all.
+// The diagonal of the box with nine tenths of the samples along each axis; and the middle of all samples.
 double sizeOf(const std::vector<SplatSample>& samples, glm::dvec3& middle) {
     glm::dvec3 sides(0.0);
     std::vector<double> values(samples.size());
@@ -48,7 +49,8 @@ std::size_t countIn(const std::vector<SplatSample>& samples, std::size_t step, c
     return count;
 }
 
-// The direction in which points with this covariance spread least: what two steps of (trace - covariance)^n leave of `near`.
+// The direction in which points with this covariance spread least: two steps of (trace - covariance)^n leave
+// it of `near`.
 glm::dvec3 leastSpread(const glm::dmat3& covariance, const glm::dvec3& near) {
     const double trace = covariance[0][0] + covariance[1][1] + covariance[2][2];
     if (!(trace > 0.0)) { return near; }
@@ -61,7 +63,8 @@ glm::dvec3 leastSpread(const glm::dmat3& covariance, const glm::dvec3& near) {
     return glm::length(found) > 1e-9 ? glm::normalize(found) : near;
 }
 
-// To the splats near it, farther ones first: where walls begin at the floor those near the plane alone are all of the floor.
+// Fits to the splats near the plane, farther ones first: where walls begin at the floor, the splats nearest
+// to the plane are all the floor's.
 Plane fit(const std::vector<SplatSample>& samples, Plane plane, double thickness) {
     for (const double near :
          {2.0 * thickness, thickness, thickness, 0.5 * thickness, 0.5 * thickness, 0.25 * thickness, 0.25 * thickness}) {
@@ -110,7 +113,8 @@ bool isLike(const Plane& a, const Plane& b, const glm::dvec3& middle, double thi
     return side * glm::dot(a.normal, b.normal) > kAlikeCosine && std::abs(apart) < 2.0 * thickness;
 }
 
-// Those with the most splats, each unlike the others: a table full of things is tried a hundred times before the ground beneath it.
+// Those with the most splats, each unlike the others: a table full of things is tried a hundred times before
+// the ground beneath it.
 std::vector<Plane> bestOf(std::vector<Plane> tried, std::size_t most, const glm::dvec3& middle, double thickness) {
     std::ranges::sort(tried, std::greater<>(), &Plane::inliers);
     std::vector<Plane> kept;
@@ -123,7 +127,7 @@ std::vector<Plane> bestOf(std::vector<Plane> tried, std::size_t most, const glm:
     return kept;
 }
 
-// Empty where splats lie on both sides, or the plane is a strip.
+// Empty if splats are on both sides, or if the plane is a strip.
 std::optional<FloorPlane> asFloor(const std::vector<SplatSample>& samples, const Plane& plane, double size, double thickness) {
     std::size_t above = 0, below = 0;
     glm::dvec3 sum(0.0);
@@ -144,7 +148,7 @@ std::optional<FloorPlane> asFloor(const std::vector<SplatSample>& samples, const
         if (std::abs(glm::dot(sample.centre, plane.normal) - plane.height) >= thickness) { continue; }
         covariance += glm::outerProduct(sample.centre - mean, sample.centre - mean) / static_cast<double>(plane.inliers);
     }
-    // Of the two directions within the plane the one with less spread: what is left of the largest one's share.
+    // The direction within the plane with the smaller spread: what is left of the larger one's share.
     const double trace = covariance[0][0] + covariance[1][1] + covariance[2][2];
     glm::dvec3 longest = glm::dvec3(0.3, 0.5, 0.8);
     for (int i = 0; i < 32; ++i) { longest = glm::normalize(covariance * longest + 1e-300); }
@@ -187,7 +191,8 @@ std::vector<FloorPlane> findPlanes(const std::vector<SplatSample>& samples) {
     glm::dvec3 middle;
     const double size = sizeOf(samples, middle), thickness = kThickness * size;
     if (!(size > 0.0) || !std::isfinite(size)) { return {}; }
-    // Those about each of the axes have their best: elsewhere there may be many more that are better tries, but no floors.
+    // Planes around each of the axes have a best of their own: elsewhere there may be many tries that are
+    // better, but are not floors.
     std::array<std::vector<Plane>, 3> about;
     for (const Plane& plane : tryPlanes(samples, thickness)) {
         const glm::dvec3 along = glm::abs(plane.normal);

@@ -1,4 +1,4 @@
-// Planes that a scene may stand on: many of its splats lie in each, with the rest on one side.
+// Planes on which a scene may stand: many of its splats lie in each, with the rest on one side.
 #pragma once
 
 #include "engine/scene/scene.h"
@@ -9,27 +9,27 @@
 
 namespace binosplat {
 
-// Some of the splats that can be seen, spread evenly over the file.
+// A sample of the visible splats, spread evenly over the file.
 struct SplatSample {
     glm::dvec3 centre, normal;  // normal: along the shortest axis, of either sign
     double reach;               // two standard deviations of the longest axis
 };
 std::vector<SplatSample> sampleSplats(const Scene& scene, std::size_t most);
 
-// The value that a share of `values` lies below, 0 to 1; there is at least one. Reorders them.
+// The value below which a share of `values` lies, 0 to 1; there must be at least one. Reorders them.
 double findQuantile(std::vector<double>& values, double share);
 
 struct FloorPlane {
     glm::dvec3 up;     // unit; the rest of the scene is on this side
     double height;     // dot(up, p) of its points
-    double thickness;  // how far from it a splat may lie and still be of the floor
+    double thickness;  // how far from the plane a splat may be to belong to the floor
     double share;      // of the samples lie in it
-    bool is_ceiling;   // `up` is right, but what was found is above the rest
+    bool is_ceiling;   // `up` is right, but the plane is above the rest
     double behind;     // of the other samples lie beyond it
 };
 
-// All planes, whatever their direction, that hold many of the splats with most of the others on one side, taken as floors. Each is unlike
-// the others; floor_choice.h chooses.
+// All planes, in any direction, that hold many of the splats and have most of the others on one side, taken
+// as floors. Each is unlike the others; floor_choice.h chooses.
 std::vector<FloorPlane> findPlanes(const std::vector<SplatSample>& samples);
 
 }  // namespace binosplat

@@ -7,7 +7,7 @@ namespace binosplat {
 
 namespace {
 
-// Its harmonics with bands of zeros up to that degree.
+// Its harmonics, with bands of zeros up to that degree.
 std::vector<float> widened(const Scene& scene, int degree) {
     const auto from = static_cast<std::size_t>(3 * shCoefficientCount(scene.sh_degree)),
                to = static_cast<std::size_t>(3 * shCoefficientCount(degree));

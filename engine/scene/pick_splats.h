@@ -8,10 +8,11 @@
 
 namespace binosplat {
 
-// Some splats of a scene, in that order, with all that the scene says of itself.
+// Some splats of a scene, in that order, with all the scene's other properties.
 Scene pickSplats(const Scene& scene, std::span<const std::uint32_t> splats);
 
-// Behind the splats of a scene those of another of the same kind, which count from the same place. It gets the higher SH degree of both.
+// Appends the splats of another scene of the same kind, which are relative to the same origin. The result has
+// the higher SH degree of the two.
 void appendSplats(Scene& scene, const Scene& more);
 
 }  // namespace binosplat

@@ -8,7 +8,7 @@ namespace binosplat {
 
 namespace {
 
-// A single-precision file's rotation is one to so much.
+// How closely a single-precision file's rotation is one.
 constexpr double kAlike = 1e-5;
 
 // A unit vector at right angles to a unit vector.
@@ -29,7 +29,7 @@ bool isSimilarity(const glm::dmat3& matrix) {
 }
 
 glm::dmat3 nearestRotation(const glm::dmat3& matrix) {
-    // Newton's iteration (Higham 1986); the scale of a similarity alone would take it some steps.
+    // Newton's iteration (Higham 1986); it would take some steps just for the scale of a similarity.
     glm::dmat3 q = matrix / std::cbrt(std::abs(glm::determinant(matrix)));
     for (int step = 0; step < 60; ++step) {
         const glm::dmat3 next = 0.5 * (q + glm::transpose(glm::inverse(q)));
@@ -42,7 +42,8 @@ glm::dmat3 nearestRotation(const glm::dmat3& matrix) {
 }
 
 Ellipsoid place(const glm::dmat3& matrix, const Ellipsoid& ellipsoid) {
-    // The ellipsoid is the unit ball under the columns of `axes`, and stays so whatever rotation is applied before.
+    // The ellipsoid is the unit ball under the columns of `axes`, and stays the same whatever rotation is
+    // applied first.
     glm::dmat3 axes = matrix * glm::mat3_cast(ellipsoid.rotation);
     for (int i = 0; i < 3; ++i) { axes[i] *= ellipsoid.scales[i]; }
     for (int sweep = 0; sweep < 40; ++sweep) {

@@ -1,4 +1,5 @@
-// Splats under a transform that need not be rigid: a Gaussian stays one, since its covariance is transformed with it.
+// Splats under a transform that need not be rigid: a Gaussian remains one, since its covariance is
+// transformed with it.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -11,10 +12,11 @@ struct Ellipsoid {
     glm::dvec3 scales;    // of the axes, not negative
 };
 
-// True if a matrix is a rotation, with or without a mirror, times one scale for all directions.
+// True if a matrix is a rotation, perhaps mirrored, times one scale for all directions.
 bool isSimilarity(const glm::dmat3& matrix);
 
-// The rotation, with or without a mirror, that is nearest to an invertible matrix: the orthogonal part of its polar decomposition.
+// The rotation, perhaps mirrored, that is nearest to an invertible matrix: the orthogonal part of its polar
+// decomposition.
 glm::dmat3 nearestRotation(const glm::dmat3& matrix);
 
 // The image of an ellipsoid with a unit rotation under `matrix`.

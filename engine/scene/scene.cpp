@@ -1,4 +1,4 @@
-// Changes of a whole scene: fewer bands, another origin, a part of it, discs of Gaussians.
+// Changes to a whole scene: fewer bands, another origin, a part of it, discs from Gaussians.
 #include "engine/scene/scene.h"
 
 #include "engine/scene/pick_splats.h"

@@ -1,5 +1,6 @@
-// The matrix of a band from values in directions all around. A function f of the band, seen in the target's axes, is f(source_from_target
-// d): again one of the band, so its coefficients follow exactly from more values than it has coefficients.
+// The matrix of a band, from values in directions all around. A function f of the band, seen in the target's
+// axes, is f(source_from_target d), which is again in the band. So its coefficients follow exactly from at
+// least as many values as it has coefficients.
 #include "engine/scene/sh_turn.h"
 
 #include "engine/scene/sh_basis.h"

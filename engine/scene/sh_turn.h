@@ -9,7 +9,7 @@ namespace binosplat {
 
 class ShTurn {
 public:
-    // `target_from_source` is a rotation, with or without a mirror.
+    // `target_from_source` is a rotation, perhaps mirrored.
     explicit ShTurn(const glm::dmat3& target_from_source);
 
     // Turns the bands 1 to `sh_degree` of one colour channel in place; `rest` begins with band 1.

@@ -13,7 +13,7 @@ namespace {
 constexpr std::array<double, 3> kRanks{0.05, 0.5, 0.95};
 constexpr std::int64_t kFurthestCell = std::int64_t{1} << 20;  // 21 bits along each axis
 
-// The values at `ranks`, ascending. Reorders `values`, of which there is at least one.
+// The values at `ranks`, ascending. Reorders `values`, which must not be empty.
 std::array<float, 3> findRanks(std::vector<float>& values) {
     std::array<float, 3> found{};
     for (std::size_t i = 0; i < kRanks.size(); ++i) {
@@ -50,7 +50,7 @@ std::uint64_t keyOf(const Cell& cell) {
     return key;
 }
 
-// Which cells are in use, and by how many splats that can be seen.
+// Which cells are in use, and by how many visible splats.
 class Grid {
 public:
     Grid(const Scene& scene, const SceneSurvey& survey) : middle_(survey.middle), side_(kCellShare * survey.size) {

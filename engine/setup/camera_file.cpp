@@ -1,4 +1,4 @@
-// cameras.json as a 3DGS or 2DGS training leaves it; malformed entries are errors that name camera and key.
+// cameras.json as a 3DGS or 2DGS training leaves it; errors in entries name the camera and the key.
 #include "engine/setup/camera_file.h"
 
 #include "engine/error.h"
@@ -92,7 +92,7 @@ std::vector<FileCamera> readCameraFile(const std::filesystem::path& path, const 
     const std::string text = readTextFile(path, "a cameras.json", kMostRecordingBytes);
     Json root;
     try {
-        // Cameras are four levels deep; what is much deeper cannot even be quoted in a message.
+        // Cameras are four levels deep; anything much deeper cannot even be quoted in a message.
         root = Json::parse(text, [&](int depth, Json::parse_event_t, const Json&) {
             check(depth < 64, "{}: nested {} levels deep, must be an array of cameras", file, depth);
             return true;

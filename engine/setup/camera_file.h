@@ -14,9 +14,9 @@ struct FileCamera {
     Eye eye;
 };
 
-// An array of objects: position (camera centre), rotation (3x3, rows, world-from-camera, OpenCV axes), width, height, fx, fy in
-// pixels; optional cx, cy (the middle otherwise) and img_name. Throws Error naming file, camera and key.
-// Positions count from `origin`, that of the scene (Scene::origin).
+// An array of objects: position (camera centre), rotation (3x3, rows, world-from-camera, OpenCV axes), width,
+// height, fx, fy in pixels; optional cx, cy (otherwise the middle) and img_name. Throws Error naming file,
+// camera and key. Positions become relative to `origin`, the scene's (Scene::origin).
 std::vector<FileCamera> readCameraFile(const std::filesystem::path& path, const glm::dvec3& origin);
 
 // The same view with another number of pixels; fx, fy, cx, cy are scaled with it.

@@ -1,4 +1,4 @@
-// Where the files lie that come with the program.
+// Finds the files that come with the program.
 #include "engine/setup/data_folders.h"
 
 namespace binosplat {

@@ -1,4 +1,4 @@
-// The places of the files that come with the program: configs/headsets and the bench plans.
+// Where the files are that come with the program: configs/headsets and the bench plans.
 #pragma once
 
 #include "engine/platform.h"

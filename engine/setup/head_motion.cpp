@@ -11,8 +11,9 @@
 namespace binosplat {
 
 Pose poseFromRecording(const glm::dvec3& position, const glm::dquat& orientation, MotionAxes axes) {
-    // With F the diagonal matrix that takes recorded axes to the camera's, p becomes F p and R becomes F R F. OpenXR's F = (1, -1, -1)
-    // is a half turn about x: it turns the axis of R. Unity's F = (1, -1, 1) is a reflection: it also reverses the sense of R.
+    // F is the diagonal matrix that takes recorded axes to the camera's: p becomes F p and R becomes F R F.
+    // OpenXR's F = (1, -1, -1) is a half turn about x, which turns the axis of R. Unity's F = (1, -1, 1) is a
+    // reflection, which also reverses the sense of R.
     if (axes == MotionAxes::kOpenXr) {
         return {glm::dquat(orientation.w, orientation.x, -orientation.y, -orientation.z), {position.x, -position.y, -position.z}};
     }
@@ -44,7 +45,7 @@ HeadMotion HeadMotion::startingAt(double from_s) const {
 
 std::vector<double> frameTimes(const HeadMotion& motion, const MotionSegment& segment, const std::string& file) {
     constexpr double kMostFrames = 1e6;  // numbers of six digits
-    constexpr double kRounding = 1e-6;   // of a frame: what lies on the beat counts but for what rounding makes of it
+    constexpr double kRounding = 1e-6;   // of a frame: a sample on the beat counts despite rounding
     std::vector<double> times_s;
     if (!segment.rate_hz) {
         for (const HeadSample& sample : motion.samples()) {

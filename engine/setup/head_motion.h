@@ -11,7 +11,7 @@
 
 namespace binosplat {
 
-// The axes a recording was made in; y points up in both, x to the right.
+// The axes of a recording; y points up in both, x to the right.
 enum class MotionAxes {
     kOpenXr,  // right-handed, the wearer looks along -z: OpenXR, WebXR, SteamVR
     kUnity,   // left-handed, the wearer looks along +z: recordings of Unity applications
@@ -30,7 +30,7 @@ public:
     // At least one sample, times strictly increasing from 0.
     explicit HeadMotion(std::vector<HeadSample> samples, std::string note = {});
 
-    // A sentence on what of its file was left out; empty: nothing.
+    // A sentence on what was left out of its file; empty: nothing.
     [[nodiscard]] const std::string& note() const { return note_; }
     [[nodiscard]] const std::vector<HeadSample>& samples() const { return samples_; }
     [[nodiscard]] double duration_s() const { return samples_.back().time_s; }
@@ -39,11 +39,11 @@ public:
     // Rotation with Quaternion Curves", SIGGRAPH 1985, section 3.3). Before the first and after the last sample the head rests.
     [[nodiscard]] Pose poseAt(double time_s) const;
 
-    // The motion from a second on, up to the last sample; its times begin at 0 with the pose there.
+    // The motion from this second to the last sample; its times begin at 0 with the pose there.
     [[nodiscard]] HeadMotion startingAt(double from_s) const;
 
-    // A camera that starts at `world_from_start` and moves relative to there as the head does relative to its first pose, a metre
-    // being `units_per_metre` scene units: world_from_camera at `time_s`.
+    // A camera that starts at `world_from_start` and moves relative to it as the head does relative to its
+    // first pose, with `units_per_metre` scene units to a metre: world_from_camera at `time_s`.
     [[nodiscard]] Pose cameraAt(double time_s, const Pose& world_from_start, double units_per_metre = 1.0) const;
 
 private:
@@ -51,24 +51,24 @@ private:
     std::string note_;
 };
 
-// The part of a recording that is played.
+// The part of a recording to play.
 struct MotionSegment {
     double from_s = 0.0;            // its beginning
-    std::optional<double> seconds;  // its length, the end not included; absent: to the end, that included
-    std::optional<double> rate_hz;  // frames in a second; absent: one for each sample
+    std::optional<double> seconds;  // its length, without its end; absent: up to and including the last sample
+    std::optional<double> rate_hz;  // frames per second; absent: one for each sample
 };
 
-// The times of the frames of a motion that starts at the segment's beginning. Throws Error if there are more than a million; `file` is for
-// messages.
+// The times of a motion's frames, starting at the segment's beginning. Throws Error if there are more than a
+// million; `file` is for messages.
 std::vector<double> frameTimes(const HeadMotion& motion, const MotionSegment& segment, const std::string& file);
 
 // A file as xr/simulated/files/motion_file.h describes it. Throws Error with file and line.
 HeadMotion readHeadMotion(const std::filesystem::path& path, MotionAxes axes);
 
-// The same from a second on. Throws Error if the recording ends before.
+// The same from a later second. Throws Error if the recording ends before it.
 HeadMotion readHeadMotion(const std::filesystem::path& path, MotionAxes axes, const MotionSegment& segment);
 
-// The same of a text in memory; `file` is for messages.
+// The same from text in memory; `file` is for messages.
 HeadMotion parseHeadMotion(std::string_view text, const std::string& file, MotionAxes axes);
 
 }  // namespace binosplat

@@ -24,14 +24,14 @@ struct Headset {
 // line.
 Headset readHeadset(const std::filesystem::path& path);
 
-// The file of a headset: NAME itself if it is a path to a .toml, otherwise configs/headsets/NAME.toml in the first of dataFolders() that
-// has it. Throws Error with the available names.
+// A headset's file: NAME itself if it is a path to a .toml, otherwise configs/headsets/NAME.toml in the first
+// of dataFolders() that has it. Throws Error listing the available names.
 std::filesystem::path findHeadset(const std::string& name);
 
-// Both eyes of a wearer whose mid-eye is at `world_from_middle`.
+// Both eyes of a wearer whose midpoint between the eyes is at `world_from_middle`.
 std::array<Eye, 2> headsetEyes(const Headset& headset, const Pose& world_from_middle, double eye_distance, glm::uvec2 size_px);
 
-// The mid-eye for `mono`: the angles that hold both eyes' views of far things.
+// The eye for `mono`, midway: its angles hold both eyes' views of far things.
 Eye headsetMiddle(const Headset& headset, const Pose& world_from_middle, glm::uvec2 size_px);
 
 }  // namespace binosplat
