@@ -28,7 +28,7 @@ void thinOutScene(const ConvertOptions& options, const SceneTarget& target, Scen
     notes.lines.push_back(fmt::format("{} of {} splats are kept, those that show most", scene.size(), before));
 }
 
-// Of a file, or of all that lies beside it in its folder.
+// Of a file, or of everything beside it in its folder.
 std::uintmax_t bytesWritten(const ConvertOptions& options) {
     if (!options.isStreamed()) { return std::filesystem::file_size(options.out); }
     std::uintmax_t bytes = 0;

@@ -1,4 +1,4 @@
-// First where splats are and what some of them look like, then all of them.
+// First finds out where splats are and what a sample of them looks like, then reads all of them.
 #include "app/convert_levels.h"
 
 #include "app/keep.h"
@@ -20,10 +20,11 @@ namespace binosplat {
 
 namespace {
 
-constexpr std::uint64_t kFewSplats = 50000;  // that no level halves
+constexpr std::uint64_t kFewSplats = 50000;  // no level halves fewer
 constexpr std::uint32_t kMostLevels = 10;
 constexpr std::uint64_t kPartSplats = LevelSettings{}.block_splats;
-constexpr std::uint64_t kSampleSplats = 600'000;  // tell where one could stand as well as all do, and fill a chunk of the usual size
+constexpr std::uint64_t kSampleSplats =
+    600'000;  // a sample that tells where one could stand as well as all splats do, and fills a chunk of the usual size
 
 std::uint32_t levelsFor(std::uint64_t splats) {
     std::uint32_t levels = 1;
@@ -31,7 +32,7 @@ std::uint32_t levelsFor(std::uint64_t splats) {
     return levels;
 }
 
-// Of a PLY file that is to be read in parts; else 0.
+// Of a PLY file that will be read in parts; otherwise 0.
 std::uint64_t countInParts(const ConvertOptions& options) {
     std::error_code unreadable;
     if (options.keep || options.load.lod || isBuiltin(options.scene) || isAddress(options.scene) ||
@@ -51,7 +52,7 @@ Scene pickEvery(const Scene& scene, std::uint64_t step) {
     return pickSplats(scene, some);
 }
 
-// What is said of several parts is said once.
+// Lines about several parts are printed once.
 void keepFirst(std::vector<std::string>& lines) {
     std::set<std::string> said;
     std::erase_if(lines, [&](const std::string& line) { return !said.insert(line).second; });

@@ -11,11 +11,11 @@ namespace binosplat {
 // What became of it.
 struct WrittenLevels {
     std::uint64_t splats = 0;
-    Scene sample;  // some of them, as many as a chunk at most
+    Scene sample;  // a sample, at most as large as a chunk
 };
 
-// `load` gives the scene. A PLY file of more splats than a block of writeSceneLevels has is read in parts instead, twice, unless the
-// options ask for fewer of its splats.
+// `load` gives the scene. A PLY file with more splats than a block of writeSceneLevels is instead read in
+// parts, twice, unless the options ask for fewer of its splats.
 WrittenLevels writeLevels(const ConvertOptions& options, const std::function<Scene()>& load, LoadNotes& notes);
 
 }  // namespace binosplat

@@ -74,7 +74,8 @@ FilmTags filmTags(const RenderOptions& options) {
 
 void writeFilm(const fs::path& folder, const std::string& pattern, const fs::path& film, double rate_hz, const FilmTags& tags) {
     const fs::path log = film.parent_path() / ".ffmpeg";
-    // The colours of high-definition television; near to what a careful eye tells apart; every second pixel's colour, as players ask for.
+    // The colours of high-definition television; a quality near what a careful eye can tell apart; colour at
+    // half resolution, as players expect.
     const bool made = runProgram({kFfmpeg,
                                   "-loglevel",
                                   "error",

@@ -12,11 +12,11 @@ namespace binosplat {
 // Throws Error unless ffmpeg can be run.
 void requireFfmpeg();
 
-// What galleries and players are told of the pictures.
+// What galleries and players are told about the pictures.
 FilmTags filmTags(const RenderOptions& options);
 
-// `film`, an MP4, of the pictures `pattern` in `folder`, in which %06d stands for their numbers from 0 on. Throws Error with what ffmpeg
-// says.
+// Makes `film`, an MP4, from the pictures `pattern` in `folder`, in which %06d stands for their numbers from
+// 0 on. Throws Error with ffmpeg's own message.
 void writeFilm(const std::filesystem::path& folder, const std::string& pattern, const std::filesystem::path& film, double rate_hz,
                const FilmTags& tags);
 

@@ -16,7 +16,7 @@ namespace binosplat {
 
 namespace {
 
-// Some of the cameras, evenly, with no more pixels than other views have.
+// Some of the cameras, evenly chosen, with no more pixels than other views have.
 std::vector<Eye> eyesOfCameras(const std::string& file, const Scene& scene) {
     const std::vector<FileCamera> cameras = readCameraFile(file, scene.origin);
     check(!cameras.empty(), "{}: has no cameras, expected at least one", file);
@@ -31,9 +31,9 @@ std::vector<Eye> eyesOfCameras(const std::string& file, const Scene& scene) {
 }
 
 constexpr int kMostTries = 6;
-constexpr double kAlmost = 0.95;  // of the size is near enough
+constexpr double kAlmost = 0.95;  // of the size: close enough
 
-// So many splats make a file of that size, or somewhat less: found by writing them as they are.
+// How many splats make a file of that size, or slightly less: found by writing them unchanged.
 std::uint64_t countThatFits(const Scene& scene, const ThinOut& thin_out, double bytes, const SceneTarget& target) {
     const TemporaryFolder folder("binosplat-keep", "to see how many splats fit into a file");
     const std::string file = (folder.path() / "some").string() + target.extension;

@@ -12,8 +12,8 @@
 
 namespace binosplat {
 
-// The device, and a scene on it, judged from the options' cameras or from where a person could stand. With progress on the terminal.
-// The options' cameras, some of them, or where a person could stand.
+// The device, and a scene on it, judged from some of the options' cameras or from where a person could stand.
+// With progress on the terminal.
 std::vector<Eye> judgingEyes(const ConvertOptions& options, const Scene& scene);
 
 class JudgedScene {

@@ -129,7 +129,7 @@ std::optional<OpenedScene> openLive(const Context& context, const std::string& s
     settings.antialiased = load.antialiased;
     settings.pictures = purpose == StreamFor::kPictures;
     if (settings.pictures) { settings.look_ahead_rad = kPictureLookAhead; }
-    // Nobody needs to know the sample's level.
+    // The sample's level is of no interest to the user.
     std::erase_if(scene.notes.lines, [](const std::string& line) { return line.find(": level of detail ") != std::string::npos; });
     scene.notes.lines.push_back(fmt::format("{}: streamed, {} leaves, at levels chosen by the view", source, chunks->leaves().size()));
     auto stream = std::make_unique<SceneStream>(context, std::move(chunks), settings);

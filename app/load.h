@@ -1,4 +1,4 @@
-// Loading a scene by the options, from wherever it is.
+// Loads a scene by the options, wherever it is.
 #pragma once
 
 #include "app/options/options.h"
@@ -14,7 +14,8 @@
 
 namespace binosplat {
 
-// A frame's other memory depends on the view and is not known yet: only the level's splats are compared with the limit.
+// A frame's other memory depends on the view and is not known yet: only the level's splats are compared with
+// the limit.
 LevelChoice levelChoice(const LoadOptions& options, std::uint64_t memory_limit_mib);
 
 // Limits the SH degree, flattens 3D Gaussians to discs, or dims them, if the options say so; a file may itself ask for dimming.
@@ -46,9 +47,9 @@ bool mayLive(const std::string& source, const LoadOptions& options);
 // Opens such a source; empty if it should be loaded whole after all.
 std::optional<OpenedScene> openLive(const Context& context, const std::string& source, const RunOptions& run, StreamFor purpose,
                                     const Progress& progress = {});
-// Waits until all is there that the eyes and the time need. Prints what cannot be loaded.
+// Waits until everything that the eyes and the time need has been loaded. Prints what cannot be loaded.
 void settle(LiveScene& scene, std::span<const Eye> eyes, const Progress& progress = {});
-// What is resident of it, for reports.
+// What has been loaded of it, for reports.
 FrameCounters::Streaming streamingOf(const LiveScene& scene);
 
 // For commands that print no notes.

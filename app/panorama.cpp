@@ -21,7 +21,7 @@ Pose upright(const Pose& world_from_head, const glm::dvec3& up) {
     return lookAt(world_from_head.position, world_from_head.position + glm::cross(right, down), up);
 }
 
-// Counts of several frames that make one picture.
+// Adds the counts of several frames that make one picture.
 void add(FrameResult& sum, FrameResult face) {
     if (sum.counters.targets.empty()) {
         sum = std::move(face);

@@ -1,4 +1,4 @@
-// Pictures of all around the head, or of all before it.
+// Pictures of everything around the head, or of everything ahead of it.
 #pragma once
 
 #include "app/options/camera_options.h"
@@ -10,11 +10,12 @@
 
 namespace binosplat {
 
-// What --projection and --size ask for; none if pictures are flat.
+// What --projection and --size ask for; empty if pictures are flat.
 std::optional<Panorama> askedPanorama(const RenderOptions& options);
 
-// The same eyes, upright where the scene's up is known: of where the head turns to only the heading counts, so that horizons are level.
-// Both eyes look ahead and stay where they are whichever column is looked at, as the lenses of cameras for such pictures do.
+// The same eyes, upright if the scene's up is known: only the heading of the head counts, so that horizons
+// are level. Both eyes look ahead and stay at their places whichever column is rendered, like the lenses of
+// cameras for such pictures.
 Cameras panoramaCameras(const Cameras& cameras, const Panorama& panorama);
 
 struct EyePictures {
@@ -22,7 +23,7 @@ struct EyePictures {
     FrameResult result;           // of all faces together
 };
 
-// Of the middle in Mode::kMono, else of both eyes.
+// For the midpoint in Mode::kMono, otherwise for both eyes.
 EyePictures renderPanorama(StereoFrame& frame, LiveScene* live, const FrameSettings& settings, const Cameras& cameras,
                            const Panorama& panorama);
 

@@ -49,14 +49,15 @@ void writePictures(OutputFiles& files, StereoFrame& frame, const FrameSettings& 
     writePicture(files.staging() / "dominant_depth", PictureKind::kFloat, frame.readDominantDepth());
 }
 
-// A device's first frame tells more about its driver than about the passes; the report is about the second, unless it takes long.
+// A device's first frame tells more about its driver than about the passes; the report is about the second,
+// unless that takes long.
 FrameResult renderTimed(StereoFrame& frame, std::span<const Eye> eyes, const FrameSettings& settings) {
     const FrameResult first = frame.render(eyes, settings);
     stopIfInterrupted();
     return first.gpu_total_ms < kLongFrameMs ? frame.render(eyes, settings) : first;
 }
 
-// The options, completed with choices that they left to the file and the memory.
+// The options, completed with the choices that they left to the file and the memory.
 RenderOptions asUsed(RenderOptions options, const Scene& scene, const LoadNotes& notes, const LiveScene* live) {
     LoadOptions& load = options.run.load;
     if (live != nullptr) {
@@ -82,7 +83,7 @@ void warnOfBlindFrames(const PathReport& report, std::span<const glm::vec3> posi
                      describeNearest(first->cameras.middle.world_from_camera, positions, first->cameras.near, first->cameras.origin)));
 }
 
-// Once its frames are published: a film of all, or, if a signal has come, what is to be said of it.
+// Once its frames are published: a film of all, or a message if a signal has come.
 void finishPath(const RenderOptions& options, const HeadPath& path, std::size_t rendered, OutputFiles& files) {
     const std::size_t done = path.first + rendered, all = path.times_s.size();
     try {

@@ -59,7 +59,7 @@ void requireNoOthers(const std::filesystem::path& folder, std::size_t frames, co
     }
 }
 
-// How many of the first frames are there, of all eyes.
+// How many of the first frames exist, for all eyes.
 std::size_t countFinished(const std::filesystem::path& folder, std::size_t frames, const std::vector<std::string_view>& eyes) {
     const auto isThere = [&](std::size_t number, std::string_view eye) {
         std::error_code ignored;
@@ -70,7 +70,7 @@ std::size_t countFinished(const std::filesystem::path& folder, std::size_t frame
     return number;
 }
 
-// Of a path that goes on: its frames are as large as those before.
+// For a path that is resumed: its frames are as large as the existing ones.
 void requireSameSize(const std::filesystem::path& folder, std::size_t number, std::string_view eye, glm::uvec2 size_px) {
     const std::filesystem::path path = folder / (pictureName(number, eye) + extensionOf(PictureKind::kDisplay));
     const glm::uvec2 before_px = readPicture(path).size_px;
@@ -100,7 +100,7 @@ HeadPath readHeadPath(const RenderOptions& options) {
     std::vector<double> times_s = frameTimes(motion, options.segment, options.path);
     const std::vector<std::string_view> eyes = eyeNames(options.run.stereo.mode == Mode::kMono, options.layout);
     requireNoOthers(options.out, times_s.size(), eyes);
-    // The last one is made again if all are there: a film may be missing.
+    // If all frames exist, the last one is rendered again: a film may be missing.
     const std::size_t first = options.resume ? std::min(countFinished(options.out, times_s.size(), eyes), times_s.size() - 1) : 0;
     const double length_s = times_s.back() - times_s.front();
     const double mean_rate_hz = length_s > 0.0 ? static_cast<double>(times_s.size() - 1) / length_s : 1.0;

@@ -13,20 +13,20 @@ namespace {
 
 // Wider pictures would be mostly border.
 constexpr double kMostRad = 1.4;
-// A head that turns goes on for about so many frames; of the margin the axes go ahead by no more than this share.
+// A turning head goes on for about this many frames; the axes move ahead by at most this share of the margin.
 constexpr double kFramesAhead = 20.0, kMostAhead = 0.9;
-// However wide whole tiles are: past axes that are farther off are of no use.
+// However wide whole tiles are: earlier axes that are farther off are of no use.
 constexpr double kMostMargins = 1.5;
-// So that some tiles are hidden in every frame: one for which that begins or ends is waited for.
+// So that some tiles are hidden in every frame: a frame in which hiding begins or ends is waited for.
 constexpr std::uint32_t kLeastBorderTiles = 2;
 // The compositor's filter reads pixels beside the view's edge, and the warp some more beyond.
 constexpr double kBesidePx = 4.0;
-// Where tiles lie on the view's. What the lens hides has a margin of its own for the filter.
+// Where tiles coincide with the view's. What the lens hides has a margin of its own for the filter.
 constexpr double kRoundingPx = 0.02;
 // Angles may jitter by the rounding of their float32.
 constexpr double kSameShare = 1e-4;
 
-// From pixels of one eye to those of another in the same place; only what lies before the latter.
+// From pixels of one eye to those of another at the same place; only what is in front of the latter.
 struct Homography {
     glm::dmat3 matrix;
 
@@ -68,7 +68,7 @@ bool sameLens(const Eye& a, const Eye& b) {
            near(a.intrinsics.fy, b.intrinsics.fy) && near(a.intrinsics.cx, b.intrinsics.cx) && near(a.intrinsics.cy, b.intrinsics.cy);
 }
 
-// The rotation by so many times its angle.
+// The rotation by this many times its angle.
 glm::dquat timesAngle(const glm::dquat& turn, double factor) {
     const glm::dquat shorter = turn.w < 0.0 ? -turn : turn;
     const double angle = glm::angle(shorter);
@@ -96,7 +96,7 @@ private:
     std::vector<std::uint32_t> sums_;
 };
 
-// Also hides the tiles all of which lies where the view's are hidden.
+// Also hides the tiles that are entirely where the view's are hidden.
 void hideWhatTheLensHides(std::vector<std::uint8_t>& hidden, const Eye& view, const Eye& picture,
                           std::span<const std::uint8_t> hidden_in_view) {
     const glm::uvec2 tiles = tilesOf(picture.size_px), view_tiles = tilesOf(view.size_px);
@@ -152,7 +152,8 @@ std::vector<std::uint8_t> hiddenFrom(const Eye& view, const Eye& picture, std::s
     const auto corners = outlineOf(view, picture);
     if (!corners) { return std::vector<std::uint8_t>(hidden.size(), 0); }
     for (std::uint32_t row = 0; row < tiles.y; ++row) {
-        // What of the view, which is convex, lies in the row: its corners there, and where its edges cross the row's borders.
+        // The part of the view, which is convex, within the row: its corners there, and where its edges cross
+        // the row's borders.
         const double top = gpu::kTileSize * row - kBesidePx, bottom = gpu::kTileSize * (row + 1) + kBesidePx;
         double left = 1e9, right = -1e9;
         const auto hold = [&](double x) {
@@ -201,7 +202,7 @@ bool StayingAxes::isFarFrom(const Eye& view) const {
     return std::abs(alike) < std::cos(0.5 * kMostMargins * margin_rad_);
 }
 
-// The views turn on as they did since the last frame.
+// The views go on turning as they did since the last frame.
 void StayingAxes::moveTo(std::span<const Eye> views) {
     const auto axesOf = [](const Eye& eye) { return eye.world_from_camera.orientation; };
     const glm::dquat turn = views_.size() == views.size() ? axesOf(views[0]) * glm::conjugate(axesOf(views_[0])) : glm::dquat(1, 0, 0, 0);

@@ -1,4 +1,5 @@
-// The methods that a bench compares: each a mode with settings of its own, in pictures of the full size or of less.
+// The methods that a bench compares: each a mode with settings of its own, in pictures of full or lower
+// resolution.
 #pragma once
 
 #include "app/options/options.h"
@@ -13,7 +14,7 @@ struct BenchMethod {
     StereoOptions stereo;
     double resolution = 1.0;  // of width and height; scores are those of the pictures scaled up, as a compositor does
 
-    // True if both eyes are as two full renders have them.
+    // True if both eyes equal two full renders.
     [[nodiscard]] bool isExact() const { return rendersBothInFull(stereo.mode) && resolution == 1.0; }
 };
 

@@ -44,7 +44,7 @@ struct HeadEye {
     glm::dvec3 middle;  // between this eye and the other
 };
 
-// The eye after the head turned right about a point `behind` the middle between the eyes.
+// The eye after the head turned right about a point `behind` the midpoint between the eyes.
 HeadEye turnHead(const Cameras& cameras, Side side, double angle_rad, double behind) {
     const Pose& world_from_middle = cameras.middle.world_from_camera;
     const glm::dvec3 neck(0.0, 0.0, -behind);

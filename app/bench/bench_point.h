@@ -26,15 +26,14 @@ public:
     struct Rendered {
         FrameResult result;
         StereoFrame* frame;
-        glm::uvec2 size_px;  // that is asked of a full picture
+        glm::uvec2 size_px;  // for a full picture
 
         // At the full size.
         [[nodiscard]] Image readPicture(int eye) const { return scaleUp(frame->readPicture(eye), size_px); }
     };
-    // `compared`: for pictures that are read and compared, with the origin of each pixel
-    // and counters that cost time; otherwise as in the viewer. `keep_past`: see
-    // FrameSettings. `views`: if the cameras' pictures cover more than is seen, what is seen. `chosen`: in place of the method's
-    // resolution and bound.
+    // `compared`: for pictures that are read and compared, with the origin of each pixel and counters that
+    // cost time; otherwise as in the viewer. `keep_past`: see FrameSettings. `views`: what is seen, if the
+    // cameras' pictures cover more. `chosen`: in place of the method's resolution and bound.
     Rendered render(const Cameras& full_cameras, const CameraOptions& camera, const BenchMethod& method, bool compared = false,
                     bool keep_past = false, const Cameras* views = nullptr, const std::optional<GovernedSettings>& chosen = {});
 

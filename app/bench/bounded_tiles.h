@@ -8,7 +8,8 @@
 
 namespace binosplat {
 
-// So far under its bound a tile is a fault. Nearer to it is none: expected errors are not exact, and a bound is on the quarters of a tile.
+// A tile this far under its bound is a fault. Nearer to it is not: expected errors are not exact, and a bound
+// is on the quarters of a tile.
 inline constexpr double kMuchUnder_db = 2.0;
 
 struct BoundedTiles {
@@ -24,8 +25,9 @@ struct BoundedTiles {
     }
 };
 
-// Of one eye's picture of this size, by rows. `tile_squares`: the mean squared error of each whole tile; `kinds`: what made each tile,
-// those that stick out of the picture too, as StereoFrame::readTileKinds() has it; empty if the eye was rendered in full.
+// For one eye's picture of this size, by rows. `tile_squares`: the mean squared error of each whole tile;
+// `kinds`: what made each tile, including those that stick out of the picture, from
+// StereoFrame::readTileKinds(); empty if the eye was rendered in full.
 BoundedTiles findBoundedTiles(std::span<const float> tile_squares, std::span<const std::uint32_t> kinds, glm::uvec2 size_px,
                               double bound_db);
 

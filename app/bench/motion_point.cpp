@@ -216,7 +216,7 @@ void MotionPoint::play(const Cameras& cameras, std::size_t number, double time_s
             row.pixels_warped = pixelsWarped(rendered.result);
             row.visible = findVisibleErrors(pictures, full.eyes);
             if (lens_) { row.seen = lens_->find(lens_->show(pictures), full.seen); }
-            // Where axes stay, tiles of the view are not the picture's.
+            // If axes stay, tiles of the view are not the picture's.
             if (!sequence.governor && !axes_) { row.bounded = boundedTilesOf(row.visible, *rendered.frame, sequence.method); }
             if (const auto still = still_.find(shared_.stereo.order); still != still_.end()) {
                 const Moved moved = compareMoved(pictures, full.eyes, still->second);

@@ -19,14 +19,14 @@ public:
     // `frame_ms`: what a frame of `temporal` may take, or 0; a governor then chooses its resolution and bound.
     MotionPoint(const Context& context, const GpuScene& scene, const RunOptions& run, const BenchPlan& plan, std::string name,
                 double frame_ms = 0.0);
-    // Chooses again what `timed` chose for the same poses, whatever frames take now.
+    // Repeats what `timed` chose for the same poses, however long frames take now.
     void chooseAs(const MotionPoint& timed);
 
-    // Renders a frame of each method, for none to be the first.
+    // Renders a frame of each method, so that none is the first.
     void warm(const Cameras& cameras);
     // Renders a frame of each method, only to measure it.
     std::vector<FrameResult> time(const Cameras& cameras);
-    // Renders a pose that is not scored, but is the past of one that is.
+    // Renders a pose that is not scored, but is the history of one that is.
     void pass(const Cameras& cameras);
     // For a moving scene, before it moves on: renders the next pose without that motion.
     void rememberStill(const Cameras& cameras);
@@ -39,7 +39,7 @@ private:
         BenchMethod method;
         std::array<Image, 2> error;  // pictures - full renders, of the previous frame
         std::optional<Governor> governor = {};
-        std::vector<GovernedSettings> chosen = {};  // for each pose, as far as the governor has come; or from another run of it
+        std::vector<GovernedSettings> chosen = {};  // for each pose that the governor has reached, or from another run
         std::size_t next = 0;                       // of these
     };
 
@@ -49,7 +49,7 @@ private:
         double pairs = 0.0;
     };
 
-    // The cameras of a pose, and what its pictures cover: the same unless their axes stay.
+    // The cameras of a pose, and what is seen of their pictures: the same unless their axes stay.
     struct Posed {
         const Cameras& views;
         Cameras pictures;

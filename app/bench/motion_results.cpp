@@ -42,10 +42,11 @@ std::vector<double> valuesOf(const std::vector<const MotionFrame*>& frames, Valu
 
 double stageMs(const MotionFrame& frame, const std::string& stage) { return sumOf(frame.stage_ms, stage).value_or(0.0); }
 
-// The number of first frames whose errors do not count if there are more: a method that reuses its past has none, or little, in these.
+// If there are more frames than this, the errors of the first ones do not count: a method that reuses its
+// history has none, or little, in these.
 constexpr std::size_t kSettling = 10;
 
-// The share of all tiles whose PSNR says how bad the worst ones are.
+// The share of all tiles whose PSNR tells how bad the worst ones are.
 constexpr double kWorstTiles = 0.001;
 
 std::vector<const MotionFrame*> steadyFrames(const Sequence& sequence) {
@@ -109,7 +110,8 @@ std::optional<Visible> seenOf(const Sequence& sequence) {
     return visibleOf(sequence, [](const MotionFrame& frame) { return &*frame.seen; });
 }
 
-// Over the steady frames: of the tiles that were not rendered, the share that is far under the bound, and the worst frame's.
+// Over the steady frames: of the tiles that were not rendered, the share that is far under the bound, and the
+// worst frame's share.
 struct UnderBound {
     BoundedTiles tiles;
     double worst_share = 0.0;
@@ -135,7 +137,7 @@ Json statisticsJson(const std::vector<double>& values) {
             {"worst", std::ranges::max(values)}};
 }
 
-// Medians, in the order of the last frame, which has a past if any frame has.
+// Medians, in the order of the last frame, which has a history if any frame has.
 Json passesJson(const Sequence& sequence) {
     Json passes = Json::object();
     for (const auto& [label, ms] : sequence.frames.back()->pass_ms) {

@@ -8,7 +8,7 @@
 
 namespace binosplat {
 
-// How far the head turns, how often, and how far behind the middle between the eyes its neck is.
+// How far the head turns, how often, and how far behind the midpoint between the eyes its neck is.
 constexpr double kTurnDegrees = 0.1, kNeckMetres = 0.1;
 constexpr int kTurns = 20;
 

@@ -1,5 +1,5 @@
-// What a wearer of a named headset notices of two eyes' pictures: through its lenses, where an eye sees less and less towards their
-// borders.
+// What a named headset's wearer notices of two eyes' pictures: through its lenses, where an eye sees less and
+// less towards their borders.
 #pragma once
 
 #include "app/options/camera_options.h"
@@ -10,7 +10,7 @@
 
 namespace binosplat {
 
-// Eyes turn so far from a lens's centre before the head follows: within this, they see everything.
+// Eyes turn this far from a lens's centre before the head follows: within this angle they see everything.
 inline constexpr double kEyesTurn_deg = 15.0;
 
 class SeenThroughLens {
@@ -19,8 +19,9 @@ public:
 
     // Both eyes' pictures as shown, of the cameras' size, through the lenses.
     [[nodiscard]] std::array<Image, 2> show(const std::array<Image, 2>& pictures) const;
-    // Of pictures from show(). An eye is taken to resolve as `price` and `tile_ranges` have it (reference::seenShare), and to look anywhere
-    // within kEyesTurn_deg of its lens's centre, whatever foveation a method has.
+    // For pictures from show(). An eye is assumed to resolve as `price` and `tile_ranges` have it
+    // (reference::seenShare), and to look anywhere within kEyesTurn_deg of its lens's centre, whatever
+    // foveation a method has.
     [[nodiscard]] VisibleErrors find(const std::array<Image, 2>& pictures, const std::array<Image, 2>& full) const {
         return findSeenErrors(pictures, full, sights_);
     }

@@ -97,8 +97,9 @@ bool looksLikeFile(const std::string& word) {
     return word.find_first_of("/\\") != std::string::npos || std::filesystem::path(word).has_extension();
 }
 
-// A scene in place of a command is viewed: a file that was dropped onto the program, or opened with it. Without any word the viewer lists
-// scenes. For any other word CLI11 would only say that a command is missing.
+// A scene in place of a command is viewed: a file that was dropped onto the program, or opened with it.
+// Without any word the viewer lists scenes. For any other word CLI11 would only say that a command is
+// missing.
 std::vector<std::string> withCommand(std::vector<std::string> words) {
     if (words.empty()) { return {"view"}; }
     const std::string word = words.front();

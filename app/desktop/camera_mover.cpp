@@ -27,7 +27,7 @@ void CameraMover::beginDrag(Drag drag, const glm::dvec2& place_px, const glm::dv
 void CameraMover::dragTo(const glm::dvec2& place_px) {
     const glm::dvec2 step_px = place_px - place_px_;
     place_px_ = place_px;
-    // What is in front follows the mouse: from top to bottom it turns by half a turn.
+    // The content in front follows the mouse: from top to bottom it turns by half a turn.
     if (drag_ == Drag::kOrbit) {
         camera_.orbit(under_, std::numbers::pi * step_px.x / height_px_, -std::numbers::pi * step_px.y / height_px_);
     }

@@ -23,16 +23,17 @@ public:
     void glideTo(const OrbitCamera& camera) { way_ = Way{camera_, camera, 0.0}; }
     [[nodiscard]] bool isGliding() const { return way_.has_value(); }
 
-    // A drag begins at `place_px` of a picture, where `under` is seen; `focal_px` is the picture's, `height_px` its height.
+    // A drag begins at `place_px` of a picture, where `under` is seen; `focal_px` and `height_px` are the
+    // picture's.
     enum class Drag { kNone, kOrbit, kPan };
     void beginDrag(Drag drag, const glm::dvec2& place_px, const glm::dvec3& under, double focal_px, double height_px);
     void dragTo(const glm::dvec2& place_px);
     void endDrag() { drag_ = Drag::kNone; }
     [[nodiscard]] bool isDragging() const { return drag_ != Drag::kNone; }
 
-    // Steps of the wheel, away from oneself: towards what is under the pointer.
+    // Steps of the wheel, away from the user: towards what is under the pointer.
     void turnWheel(double steps, const glm::dvec3& under);
-    // What is held, or a way to somewhere, for so long.
+    // Moves by what is held, or along the way to a place, for this long.
     void pass(const HeldMotion& held, double seconds);
 
 private:

@@ -6,8 +6,8 @@
 
 namespace binosplat {
 
-// Runs until the window is closed, Ctrl-C or --frames. Throws Error, with exit code 3 if there is no display, or no device that shows on
-// it.
+// Runs until the window is closed, or until Ctrl-C or --frames. Throws Error, with exit code 3 if there is no
+// display, or no device that can show on it.
 void runDesktop(const ViewOptions& options, const ViewSettings& settings);
 
 }  // namespace binosplat

@@ -12,7 +12,7 @@ namespace binosplat {
 namespace {
 
 constexpr double kDoubleClickSeconds = 0.4, kDoubleClickPx = 6.0;
-// What people orbit around is at most so many distances of the centre away: not a hill behind a window.
+// The point to orbit around is at most this many distances of the centre away: not a hill behind a window.
 constexpr double kFarthestPivot = 8.0;
 
 bool isIn(const WindowPart& part, const glm::dvec2& place_px) {
@@ -42,7 +42,7 @@ void DesktopShell::handle(const DesktopEvent& event) {
         case Kind::kMove:
             pointer_.place_px.reset();
             if (mover_.isDragging()) { mover_.dragTo(event.place_px); }
-            if (glm::distance(event.place_px, pressed_px_) > kDoubleClickPx) { pressed_at_ = {}; }  // no first click of two
+            if (glm::distance(event.place_px, pressed_px_) > kDoubleClickPx) { pressed_at_ = {}; }  // not the first click of two
             break;
         case Kind::kLeave:
             pointer_.place_px.reset();

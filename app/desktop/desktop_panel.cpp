@@ -1,4 +1,4 @@
-// The window's panel and what is asked for there.
+// The window's panel, and the requests made there.
 #include "app/desktop/desktop_shell.h"
 #include "app/desktop/open_dialog.h"
 #include "app/view/placement/placement.h"
@@ -70,7 +70,7 @@ void DesktopShell::follow(const PanelRequests& requests) {
 
 void DesktopShell::openAndSave(const PanelRequests& requests) {
     if (requests.save && scenes_.get() != nullptr) {
-        // Level, for whoever stands there in a headset.
+        // Level, for a wearer who stands there later.
         const OrbitCamera& camera = mover_.camera();
         Similarity level = startPlacement({camera.position(), camera.centre(), camera.up(), 0.0}, options_.run.metres_per_unit);
         level.scale = state_.sceneFromRoom().scale;
@@ -93,7 +93,7 @@ void DesktopShell::openAndSave(const PanelRequests& requests) {
 void DesktopShell::load() {
     files_.read("loading saved settings", [this, scene = scenes_.name()]() -> FileWorker::Done {
         return [this, scene, saved = readSavedSettings(scene)] {
-            if (scene != scenes_.name()) { return; }  // another one came meanwhile
+            if (scene != scenes_.name()) { return; }  // meanwhile another one came
             ViewSettings loaded = state_.settings();
             say(takeSavedSettings(saved, loaded));
             loaded.panel = state_.settings().panel;
@@ -103,7 +103,7 @@ void DesktopShell::load() {
 }
 
 void DesktopShell::openFile() {
-    if (!dialogs_.now().empty()) { return; }  // it is open already
+    if (!dialogs_.now().empty()) { return; }  // it is already open
     dialogs_.read("choosing a file", [this]() -> FileWorker::Done {
         return [this, chosen = askForFile()] {
             if (!chosen.trouble.empty()) { return say(chosen.trouble); }

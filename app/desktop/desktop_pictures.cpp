@@ -10,9 +10,10 @@ namespace binosplat {
 
 namespace {
 
-// Pictures in motion may take that long, and have at least this resolution each way.
+// Pictures in motion may take this long, and have at least this resolution each way.
 constexpr double kMotionMs = 25.0, kCoarsest = 0.25;
-// An sRGB format, so that the presenter writes encoded values; the images that the bytes go to are not decoded either.
+// An sRGB format, so that the presenter writes encoded values; the images that receive the bytes do not
+// decode them either.
 constexpr vk::Format kPresented = vk::Format::eR8G8B8A8Srgb, kBytes = vk::Format::eR8G8B8A8Unorm;
 constexpr std::uint32_t kRed = 0xff;  // of these
 
@@ -22,7 +23,8 @@ void MotionScale::measure(double scale, double gpu_ms) {
     if (!(gpu_ms > 0.0)) { return; }
     const double full_ms = gpu_ms / (scale * scale);
     full_ms_ = full_ms_ == 0.0 ? full_ms : glm::mix(full_ms_, full_ms, 0.3);
-    // In steps of half the pixels: another size waits for the frames under way. And not for a little.
+    // In steps of half the pixels, since another size waits for the frames in flight; and only for a clear
+    // gain.
     const double steps = std::log2(std::max(full_ms_ / kMotionMs, 1.0)), now = -2.0 * std::log2(scale_);
     if (std::abs(steps - now) > 0.75) { scale_ = std::max(std::exp2(-0.5 * std::round(steps)), kCoarsest); }
 }

@@ -13,15 +13,16 @@
 
 namespace binosplat {
 
-// The resolution, each way, of pictures in motion: chosen by what one in full costs, so that they come about as often as displays.
+// The resolution, each way, of pictures in motion: chosen by the cost of a full one, so that they come about
+// as often as displays.
 class MotionScale {
 public:
-    // A picture at a share of the resolution took that long on the device.
+    // A picture at this share of the resolution took this long on the device.
     void measure(double scale, double gpu_ms);
     [[nodiscard]] double scale() const { return scale_; }
 
 private:
-    double full_ms_ = 0.0;  // smoothed; 0: nothing is known yet
+    double full_ms_ = 0.0;  // smoothed; 0: not known yet
     double scale_ = 1.0;
 };
 
@@ -34,15 +35,15 @@ public:
 
     explicit DesktopPictures(const Context& context);
 
-    // Renders these eyes, all of one size. With `waits` the picture is whole when this returns; otherwise it does not wait, and may lack
-    // splats. Throws Error if memory is short.
+    // Renders these eyes, all of the same size. With `waits` the picture is complete when this returns;
+    // otherwise it does not wait, and the picture may lack splats. Throws Error if memory is short.
     void render(StereoFrame& frame, const std::vector<Eye>& eyes, const FrameSettings& settings, const Look& look, bool waits);
-    // Records the parts' pictures, scaled, into a window that was cleared.
+    // Records the parts' pictures, scaled, into a window that has been cleared.
     void compose(Commands& commands, vk::Image window, const std::vector<EyePart>& parts);
 
     // The last frame that the device has finished.
     [[nodiscard]] const FrameResult& lastFrame() const { return last_; }
-    // The eyes that were rendered last; none before that.
+    // The eyes that were rendered last; none before the first.
     [[nodiscard]] const std::vector<Eye>& eyes() const { return eyes_; }
     void forget() { eyes_.clear(), last_ = {}; }
 

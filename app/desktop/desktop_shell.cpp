@@ -16,19 +16,20 @@ namespace binosplat {
 namespace {
 
 constexpr double kRestSeconds = 0.15;     // without a change, before a picture is refined
-constexpr double kIdleSeconds = 0.25;     // how often Ctrl-C is looked for
-constexpr double kLoadingSeconds = 0.05;  // how often what threads bring
+constexpr double kIdleSeconds = 0.25;     // how often to check for Ctrl-C
+constexpr double kLoadingSeconds = 0.05;  // how often to check for results of threads
 constexpr double kGamepadSeconds = 1.0 / 60.0, kNoPictureSeconds = 0.002;
 constexpr double kUsualAngleDeg = 60.0;
-// The panel's size: of its own pixels, on a desktop that does not magnify; and at most of the window's width.
+// The panel's size: in its own pixels, on a desktop without magnification; and at most this share of the
+// window's width.
 constexpr double kPanelScale = 0.7, kPanelShare = 0.6;
-constexpr double kNearShare = 0.05;  // of the distance of the centre: closer than the usual near plane if people go close
+constexpr double kNearShare = 0.05;  // of the distance to the centre: closer than the usual near plane if the camera goes close
 
 double secondsSince(std::chrono::steady_clock::time_point then) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - then).count();
 }
 
-// Kernels for the method that pictures in motion are made by.
+// Kernels for the method of pictures in motion.
 FramesAhead framesAhead(const ViewSettings& settings, glm::uvec2 size_px) {
     StereoOptions stereo = settings.stereo;
     if (!showsTwoEyes(settings.window_stereo)) { stereo.mode = Mode::kMono; }
@@ -146,7 +147,7 @@ WindowSight DesktopShell::windowSight() const {
 DesktopShell::Sight DesktopShell::sightNow() const {
     Sight sight{scenes_.get(), mover_.camera(), partsOf(state_.settings().window_stereo, areaPx()).front().size_px, state_.settings(),
                 moment_};
-    sight.settings.page = {};  // these change nothing of the scene
+    sight.settings.page = {};  // these change nothing in the scene
     sight.settings.panel = {};
     return sight;
 }

@@ -1,4 +1,4 @@
-// The window's loop: what people do, and what they see of it.
+// The window's loop: the user's input, and what the window shows.
 #pragma once
 
 #include "app/desktop/camera_mover.h"
@@ -26,7 +26,7 @@ public:
 
 private:
     using Clock = std::chrono::steady_clock;
-    // All that the scene's picture depends on.
+    // Everything on which the scene's picture depends.
     struct Sight {
         const LoadedScene* scene = nullptr;
         OrbitCamera camera;
@@ -57,7 +57,8 @@ private:
     void handle(const DesktopEvent& event);
     void press(const DesktopEvent& event);
     void pressKey(int key);
-    // What the picture shows at a place of the window or, behind it, the place as far away as the centre.
+    // What the picture shows at a place of the window or, if that is nothing, the place as far away as the
+    // centre.
     [[nodiscard]] std::optional<glm::dvec3> seenAt(const glm::dvec2& place_px);
     [[nodiscard]] glm::dvec3 under(const glm::dvec2& place_px);
     void goToViewpoint(std::size_t index);
@@ -83,20 +84,20 @@ private:
     MotionScale motion_;
     CameraMover mover_;
     std::map<std::string, OrbitCamera> left_;  // by place: where another scene replaced this one
-    std::array<Commands, 2> commands_;         // that compose the window, in turn
+    std::array<Commands, 2> commands_;         // that compose the window, taking turns
     PictureWriter writer_;
 
     PanelPointer pointer_;  // on the panel
     double angle_rad_;      // of view
     Sight drawn_;
     bool is_refined_ = true, is_shown_ = true, leaving_ = false, writes_picture_ = false;
-    int layouts_due_ = 2;  // widgets settle one layout after what was done to them
+    int layouts_due_ = 2;  // widgets settle one layout after input
     std::uint64_t shown_panel_ = 0, scene_frames_ = 0, moment_ = 0;
     std::optional<std::size_t> viewpoint_;  // the last one gone to
     glm::dvec2 pressed_px_{0.0};            // the last press of the left button
     Clock::time_point pressed_at_{}, changed_at_{}, last_step_ = Clock::now();
     SceneNotes notes_;
-    FileWorker dialogs_, files_;  // their threads end before the users of their results
+    FileWorker dialogs_, files_;  // their threads end before the objects that use their results
     ShownScene scenes_;           // last: the loading thread ends first
 };
 

@@ -51,7 +51,7 @@ DesktopWindow::~DesktopWindow() {
     const std::lock_guard lock(context_.queueMutex());
     try {
         context_.device().waitIdle();
-    } catch (const vk::SystemError&) {}  // a lost device draws nothing more
+    } catch (const vk::SystemError&) {}  // a lost device has no work in flight
 }
 
 void DesktopWindow::makePictures() {

@@ -15,12 +15,12 @@ struct GLFWwindow;
 
 namespace binosplat {
 
-// Something that people did, in the order in which they did it. Places are in the window's pixels, from its top left corner.
+// User input, in order. Places are in the window's pixels, from its top left corner.
 struct DesktopEvent {
     enum class Kind { kMove, kPress, kRelease, kWheel, kKey, kDrop, kLeave } kind;
     glm::dvec2 place_px{0.0};
     int code = 0;        // GLFW's number of a key or a button
-    double steps = 0.0;  // of the wheel, away from oneself
+    double steps = 0.0;  // of the wheel, away from the user
     std::string path;    // that was dropped
 };
 
@@ -44,27 +44,28 @@ public:
     // True once after the window was uncovered or has changed its size.
     [[nodiscard]] bool takeDamage();
     [[nodiscard]] glm::uvec2 sizePx() const;
-    // Of its pixels to those that desktops count in.
+    // Ratio of its pixels to those in which desktops count.
     [[nodiscard]] double scale() const;
     void setTitle(const std::string& title);
     void toggleFullScreen();
 
-    // Shows what `draw` records, with the image to draw on, once a picture is free; false if none is, or if the window is minimized. A lost
-    // surface is made anew, once. Throws Error (exit code 3) if the display is gone.
+    // Shows what `draw` records, with the image to draw on, once a picture is free; false if none is, or if
+    // the window is minimized. A lost surface is remade, once. Throws Error (exit code 3) if the display is
+    // gone.
     bool show(const std::function<void(vk::Image window, vk::Semaphore drawn)>& draw);
 
 private:
     void listen();
     void makePictures();
     void add(DesktopEvent event);
-    // A place as GLFW counts, in the window's pixels.
+    // A place in GLFW's units, in the window's pixels.
     [[nodiscard]] glm::dvec2 inPixels(const glm::dvec2& place) const;
 
     const Context& context_;
-    std::unique_ptr<GLFWwindow, void (*)(GLFWwindow*)> window_;  // outlives what is drawn on it
+    std::unique_ptr<GLFWwindow, void (*)(GLFWwindow*)> window_;  // outlives everything drawn on it
     std::unique_ptr<WindowPictures> pictures_;
     std::vector<DesktopEvent> events_;
-    glm::dvec2 cursor_{0.0};  // as GLFW counts
+    glm::dvec2 cursor_{0.0};  // in GLFW's units
     bool is_damaged_ = true;
     glm::ivec4 before_full_screen_{0};  // place and size
 };

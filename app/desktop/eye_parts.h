@@ -1,4 +1,4 @@
-// Which eye's picture stands where in a window, and what it sees.
+// Where each eye's picture is in a window, and what it sees.
 #pragma once
 
 #include "app/desktop/orbit_camera.h"
@@ -18,7 +18,7 @@ struct EyePart {
 };
 
 [[nodiscard]] bool showsTwoEyes(WindowStereo stereo);
-// Parts of equal size that fill an area; one for an anaglyph.
+// Parts of equal size that fill an area; one part for an anaglyph.
 std::vector<EyePart> partsOf(WindowStereo stereo, glm::uvec2 area_px);
 // The part that a pixel of the area is in, if any.
 std::optional<EyePart> partAt(const std::vector<EyePart>& parts, const glm::dvec2& place_px);
@@ -26,14 +26,15 @@ std::optional<EyePart> partAt(const std::vector<EyePart>& parts, const glm::dvec
 // How the eyes look at the scene.
 struct WindowSight {
     WindowStereo stereo = WindowStereo::kMono;
-    double eye_distance = 0.033;  // in parts of the distance of the plane
-    double plane = 1.0;           // what is that far away lies in the plane of the screen, in parts of the distance of the centre
+    double eye_distance = 0.033;  // as a share of the distance to the plane
+    double plane = 1.0;           // the distance to the plane of the screen, as a multiple of the distance to the centre
     double angle_rad = 1.0;       // of view, along a part's longer side
 };
 
-// One eye, or two, [kLeft] and [kRight], of `size_px`. What lies in the plane of the screen is at the same pixel for both.
+// One eye, or two, [kLeft] and [kRight], of `size_px`. Content in the plane of the screen is at the same
+// pixel for both.
 std::vector<Eye> eyesOf(const OrbitCamera& camera, const WindowSight& sight, glm::uvec2 size_px);
-// What an eye sees at a pixel of its picture, `depth` along its axis.
+// The place that an eye sees at a pixel of its picture, `depth` along its axis.
 glm::dvec3 pointAt(const Eye& eye, const glm::dvec2& place_px, double depth);
 
 }  // namespace binosplat

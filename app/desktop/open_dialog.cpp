@@ -1,4 +1,4 @@
-// Other people's programs with a dialog.
+// The desktop's programs with a file dialog.
 #include "app/desktop/open_dialog.h"
 
 #include "engine/error.h"
@@ -27,14 +27,14 @@ ChosenFile askForFile() {
             const TemporaryFolder folder("binosplat-open-", "choosing a file");
             const std::filesystem::path answer = folder.path() / "answer";
             if (!runProgram(dialog, answer)) { return {}; }  // closed
-            // Toolkits may say other things first.
+            // Toolkits may print other things first.
             std::istringstream lines(readTextFile(answer, "the name of a file"));
             ChosenFile chosen;
             for (std::string line; std::getline(lines, line);) {
                 if (!line.empty()) { chosen.file = line; }
             }
             return chosen;
-        } catch (const Error&) {}  // the next one
+        } catch (const Error&) {}  // try the next one
     }
     return {"", "no dialog to choose a file with: install zenity or kdialog, drop the file on the window, or use the page Scenes"};
 }

@@ -6,11 +6,11 @@
 namespace binosplat {
 
 struct ChosenFile {
-    std::string file;     // empty: nobody chose one
+    std::string file;     // empty: cancelled
     std::string trouble;  // why there is no dialog
 };
 
-// Waits until somebody has chosen. By zenity or kdialog, which ask the desktop's portal where there is one.
+// Waits until the user has chosen. Uses zenity or kdialog, which ask the desktop's portal if there is one.
 ChosenFile askForFile();
 
 }  // namespace binosplat

@@ -64,7 +64,7 @@ OrbitCamera OrbitCamera::framing(const glm::dvec3& middle, double radius, double
 
 OrbitCamera OrbitCamera::between(const OrbitCamera& from, const OrbitCamera& to, double share) {
     OrbitCamera camera = to;
-    // As `to` counts headings: viewpoints have level axes of their own.
+    // In the heading of `to`: viewpoints have level axes of their own.
     const glm::dvec3 ahead = glm::conjugate(to.scene_from_level_) * (from.orientation() * kAhead);
     const double heading = std::atan2(ahead.x, ahead.z);
     camera.heading_rad_ = heading + share * std::remainder(to.heading_rad_ - heading, 2.0 * std::numbers::pi);

@@ -22,7 +22,7 @@ Cameras placeCameras(const RunOptions& options, const CameraFiles& files, const 
         return {middle, stereoPair(middle, eye_distance), eye_distance, std::nullopt};
     }
     View view = startView(scene, camera, options.metres_per_unit);
-    // A built-in scene's own angle belongs to its own view; if the eye is placed by options, the usual one is used.
+    // A built-in scene's own angle belongs to its own view; if options place the eye, the usual one is used.
     const bool placed = camera.eye || camera.look;
     view.fov_x_deg = camera.fov_x_deg.value_or(placed ? kDefaultFovXDegrees : view.fov_x_deg);
     const Pose world_from_middle = lookAt(view.eye, view.look, view.up);
@@ -67,7 +67,7 @@ std::array<std::optional<Gaze>, 2> gazesOf(const Cameras& cameras, const StereoO
     if (stereo.foveation_deg == 0.0) { return gazes; }
     const double clear_rad = glm::radians(stereo.foveation_deg);
     if (stereo.mode == Mode::kMono) {
-        // Seen through both lenses: midway between the directions in which they are best.
+        // As seen through both lenses: midway between the directions in which they are sharpest.
         glm::dvec3 middle(0.0);
         for (std::size_t side = 0; side < 2; ++side) {
             middle += cameras.eyes[side].world_from_camera.orientation * glm::normalize(cameras.lens_centres[side]);

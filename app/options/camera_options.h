@@ -31,7 +31,7 @@ struct Cameras {
     // Directions to the lenses' centres, in the eyes' axes.
     std::array<glm::dvec3, 2> lens_centres{glm::dvec3(0.0, 0.0, 1.0), glm::dvec3(0.0, 0.0, 1.0)};
     double near = kUsualNear;  // the resulting --near
-    glm::dvec3 origin{0.0};    // where the eyes count from, in the file: Scene::origin
+    glm::dvec3 origin{0.0};    // the eyes' origin in the file: Scene::origin
 };
 
 // The eyes among the scene's `positions`. Missing options come from the files, then from the scene. Throws Error if the points span no

@@ -10,10 +10,11 @@ namespace binosplat {
 // periphery just ignore it.
 void requirePeriphery(const StereoOptions& stereo);
 
-// In a headset, unless asked otherwise: turning the head swaps no splats, and canted eyes have one order.
+// In a headset, unless the options say otherwise: turning the head swaps no splats, and canted eyes share one
+// order.
 inline constexpr Order kWearersOrder = Order::kDistance;
 
-// The order of splats. Where axes stay, one that does not change when they move.
+// The order of splats. If axes stay, one that does not change when they move.
 Order orderOf(const StereoOptions& stereo, Order usual);
 
 // A frame's settings from the options.

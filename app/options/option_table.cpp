@@ -14,10 +14,12 @@ namespace binosplat {
 namespace {
 
 constexpr std::uint64_t kAny32 = std::numeric_limits<std::uint32_t>::max();
-// A gap is filled pixel by pixel from its two ends; a longer one is not a crack in a surface but a disocclusion.
+// A gap is filled pixel by pixel from its two ends; a longer one is not a crack in a surface but uncovered
+// background.
 constexpr std::uint64_t kMaxGapPx = 64;
 constexpr std::uint64_t kMaxMoveCost = 1'000'000;
-// Colours lie between 0 and a few, and a pixel of a warped tile counts at most for a squared error of 4 (kMaxPixelError).
+// Colours are between 0 and a few, and a pixel of a reprojected tile counts for a squared error of at most 4
+// (kMaxPixelError).
 constexpr double kMaxExpectedError = 8.0;
 constexpr std::uint64_t kMaxMemoryMib = std::uint64_t{1} << 30;
 constexpr std::uint64_t kMaxSplats = std::uint64_t{1} << 31;

@@ -24,7 +24,7 @@ struct CameraOptions {
     std::string cameras_file;
     std::uint32_t view = 0;
     std::string headset;
-    std::optional<double> near;  // absent: as usualNear says of the scene; kUsualNear of the wearer's metres in a headset
+    std::optional<double> near;  // absent: usualNear of the scene; kUsualNear of the wearer's metres in a headset
     glm::dvec3 background{0.0};
 };
 
@@ -53,12 +53,12 @@ inline constexpr double kDefaultIpdMetres = 0.063;
 // How a scene is loaded: its level, and how 3D Gaussians are drawn.
 struct LoadOptions {
     std::optional<std::uint32_t> lod;        // level of detail, 0 the finest; absent: the finest that fits
-    std::uint64_t splat_budget = 0;          // for a scene with levels, chosen for each leaf by the view; 0: as many as there is time for
+    std::uint64_t splat_budget = 0;          // for a scene with levels, chosen for each leaf by the view; 0: as many as time allows
     std::uint64_t most_splats = 0;           // without splat_budget: as many as suit the device; 0: as many as fit; no option
-    std::optional<std::uint32_t> sh_degree;  // the most that is kept; absent: the scene's
+    std::optional<std::uint32_t> sh_degree;  // the highest to keep; absent: the scene's
     bool flatten = false;                    // 3D Gaussians as discs, without their shortest axis
     std::uint64_t cache_limit_mib = 4096;    // on disk, for scenes from the web
-    double scene_rate_hz = 30.0;             // frames of a moving scene a second
+    double scene_rate_hz = 30.0;             // frames per second of a moving scene
     bool scene_blend = false;                // interpolate between two of them if their splats correspond
     bool antialiased = false;                // dim opacities by the low-pass, even if the file does not say so
     bool operator==(const LoadOptions&) const = default;
@@ -77,7 +77,8 @@ struct RunOptions {
 
 // Both eyes' pictures: in files of their own, or in one, the left eye's on the left or above.
 enum class PictureLayout { kSeparate, kSideBySide, kTopBottom };
-// As a window shows it; all that lies ahead of two eyes; all around the middle of them. The last two on a grid of equal angles.
+// As a window shows it; everything ahead of two eyes; everything around the midpoint between them. The last
+// two on a grid of equal angles.
 enum class Projection { kFlat, kVr180, k360 };
 
 struct RenderOptions {
@@ -90,7 +91,7 @@ struct RenderOptions {
     PictureLayout layout = PictureLayout::kSeparate;
     Projection projection = Projection::kFlat;
     bool video = false;   // --video: also a film of the path
-    bool resume = false;  // --resume: go on after the path's frames that are there
+    bool resume = false;  // --resume: continue after the frames that exist
 };
 
 struct BenchOptions {
@@ -139,7 +140,7 @@ struct SceneOptions {
     std::filesystem::path out;
 };
 
-// How much of a scene is kept.
+// How much of a scene to keep.
 struct Keep {
     double amount = 1.0;
     enum Unit { kShare, kSplats, kBytes } unit = kShare;
@@ -149,7 +150,7 @@ struct ConvertOptions {
     std::string scene;
     LoadOptions load;
     std::filesystem::path out;
-    std::optional<glm::dvec4> crop;  // --crop: centre and radius of the sphere that is kept, in scene units
+    std::optional<glm::dvec4> crop;  // --crop: centre and radius of the sphere to keep, in scene units
     std::optional<Keep> keep;        // --keep: those that show most; absent: all splats
     std::string cameras_file;        // --cameras: from which they are judged; empty: from where a person could stand
     std::string device;

@@ -49,8 +49,8 @@ std::optional<StartView> viewAtCamera(const Scene& scene, const SceneCameras& ow
 
 glm::dvec3 along(const FileCamera& camera, const glm::dvec3& axis) { return camera.eye.world_from_camera.orientation * axis; }
 
-// True for cameras that turn about their own up far more than they roll, as before a wall: whoever looks straight down keeps the sight
-// plumb, and is as free to turn about that.
+// True for cameras that turn about their own up far more than they roll, as in front of a wall: a camera that
+// looks straight down keeps its line of sight plumb, and is as free to turn about that.
 bool keepLevel(const std::vector<FileCamera>& cameras, const glm::dvec3& ahead, const glm::dvec3& up) {
     constexpr double kLeastTurn = 0.005, kMoreThanRoll = 2.0;  // radians
     const glm::dvec3 right = glm::normalize(glm::cross(ahead, up));
@@ -68,8 +68,8 @@ bool keepLevel(const std::vector<FileCamera>& cameras, const glm::dvec3& ahead, 
     return turn > kLeastTurn && turn > kMoreThanRoll * roll;
 }
 
-// True for cameras that all look one way, and are as far apart along their own up as befits a drone that looks straight down, or one before
-// a facade: nobody who walks is.
+// True for cameras that all look one way, and are as far apart along their own up as those of a drone that
+// looks straight down, or of one in front of a facade: a walking person's are not.
 bool mayLookDown(const std::vector<FileCamera>& cameras, const glm::dvec3& ahead, const glm::dvec3& up, const Scene& scene) {
     constexpr double kAllOneWay = 0.97, kLeastApart = 0.5;  // of their distance from the scene
     if (!(glm::length(ahead) > kAllOneWay) || keepLevel(cameras, ahead, up)) { return false; }
@@ -106,7 +106,7 @@ std::optional<CamerasUp> upOfCameras(const std::vector<FileCamera>& cameras, con
         ahead += along(camera, {0.0, 0.0, 1.0}) / static_cast<double>(cameras.size());
         place += camera.eye.world_from_camera.position / static_cast<double>(cameras.size());
     }
-    // Those of a drone that look straight down have theirs in every direction, or all along one course.
+    // A drone's cameras that look straight down have their up in every direction, or all along one course.
     if (!(glm::length(up) > 0.5)) {
         const auto floor = upBeneath(scene, place);
         return floor ? std::optional(CamerasUp{*floor, "that of the floor beneath the cameras, which look every way"}) : std::nullopt;

@@ -13,21 +13,22 @@
 
 namespace binosplat {
 
-// The cameras.json with a scene, see findCameraFile.
+// The cameras.json that belongs to a scene, see findCameraFile.
 struct SceneCameras {
     std::filesystem::path file;  // empty: there is none
     std::vector<FileCamera> cameras;
     std::string trouble;  // why it cannot be read
 };
-// Positions count from `origin`, that of the scene.
+// Positions are relative to `origin`, the scene's.
 SceneCameras readSceneCameras(const std::filesystem::path& scene, const glm::dvec3& origin);
 
-// Up as cameras have it, and the reason in a line.
+// The up that cameras suggest, and the reason in a line.
 struct CamerasUp {
     glm::dvec3 up;
     std::string why;
 };
-// The mean up of cameras, or that of the floor beneath them if they look every way or may all look straight down. None: neither is known.
+// The mean up of the cameras, or that of the floor beneath them if they look every way or may all look
+// straight down. Empty if neither is known.
 std::optional<CamerasUp> upOfCameras(const std::vector<FileCamera>& cameras, const Scene& scene);
 
 // The camera's view, upright along `up`: `look` is at the median depth of the scene.

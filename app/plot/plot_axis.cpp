@@ -36,7 +36,8 @@ void PlotAxis::round() {
     }
 }
 
-// From one of 1, 2 or 5 times a power of ten to another: the last below and the first above; a single value gets room on both sides.
+// From one of 1, 2 or 5 times a power of ten to another: the last below and the first above; a single value
+// gets a margin on both sides.
 void PlotAxis::roundLog() {
     const int first = static_cast<int>(std::floor(std::log10(low_))) - 1, last = static_cast<int>(std::ceil(std::log10(high_))) + 1;
     std::vector<double> all;

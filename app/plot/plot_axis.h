@@ -14,7 +14,7 @@ public:
 
     // True if the value has a place: finite, and greater than 0 on a logarithmic axis.
     [[nodiscard]] bool shows(double value) const;
-    // Makes room for a value that the axis shows.
+    // Extends the axis to a value that it can show.
     void include(double value);
     // Call once all values are in.
     void round();

@@ -91,7 +91,7 @@ std::vector<double> sortedTotals(const PathReport& report) {
     return totals;
 }
 
-// The numbers of splats drawn of a streamed scene; empty for others.
+// How many splats of a streamed scene were drawn; empty for others.
 std::string streamedLine(const PathReport& report) {
     const auto of = [](const PathFrame& frame) { return frame.frame.counters.splats_read; };
     if (!report.frames.front().frame.counters.streaming) { return {}; }

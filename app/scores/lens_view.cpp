@@ -32,7 +32,7 @@ glm::dmat3 worldFromGrid(const std::array<Eye, 2>& eyes, const std::array<glm::d
     return {right, glm::cross(forward, right), forward};
 }
 
-// How many pixels of a flat picture there are in a radian there, mean of both directions.
+// How many pixels of a flat picture a radian has there, as the mean of both directions.
 double densityAt(const Intrinsics& lens, const glm::dvec3& direction) {
     const double cosine = glm::normalize(direction).z;
     return std::sqrt(lens.fx * lens.fy / (cosine * cosine * cosine));

@@ -1,4 +1,5 @@
-// Two eyes' pictures as they reach a wearer's eyes through a headset's lenses: no longer flat, every pixel is as wide in angle.
+// Two eyes' pictures as they reach a wearer's eyes through a headset's lenses: no longer flat, with pixels of
+// equal angle.
 #pragma once
 
 #include "engine/geometry.h"
@@ -23,9 +24,9 @@ public:
     // Of the grid, whole tiles.
     [[nodiscard]] glm::uvec2 sizePx() const { return size_px_; }
     [[nodiscard]] double pixelRad() const { return pixel_rad_; }
-    // Towards a place on the grid, in the axes of an eye.
+    // The direction to a place on the grid, in the axes of an eye.
     [[nodiscard]] glm::dvec3 directionAt(const glm::dvec2& place_px, int side) const;
-    // The solid angle of a pixel of the grid: less where pixels lie apart along circles around the middle.
+    // The solid angle of a pixel of the grid: smaller where pixels are apart along circles around the middle.
     [[nodiscard]] double solidAngleAt(const glm::dvec2& place_px) const;
     // By the grid's pixels: the tile of the eye's own picture at their centres, by rows; kNowhere if they are not wholly in it.
     [[nodiscard]] const std::vector<std::uint32_t>& tilesOf(int side) const { return views_[static_cast<std::size_t>(side)].tiles; }

@@ -54,7 +54,7 @@ struct Luma {
     std::vector<float> values;
 };
 
-// One eye's sight, or, without one, that of all that was rendered as it is.
+// One eye's sight or, without one, the whole rendered picture as it is.
 class SeenPixels {
 public:
     SeenPixels(glm::uvec2 size_px, const Sight* sight) : width_(size_px.x), row_tiles_((size_px.x + kTile - 1) / kTile), sight_(sight) {}
@@ -82,7 +82,7 @@ public:
     }
     // Of an error at this pixel.
     [[nodiscard]] double amplitude(std::size_t x, std::size_t y) const { return std::sqrt(shareOfTile(x / kTile, y / kTile)); }
-    // True if different rendered tiles meet between a pixel and the one to its right, or below it.
+    // True if different rendered tiles meet between a pixel and the one to its right, or the one below it.
     [[nodiscard]] bool isBorder(std::size_t x, std::size_t y, bool down) const {
         if (sight_ == nullptr) { return (down ? y : x) % kTile == kTile - 1; }
         const std::size_t at = y * width_ + x;
@@ -170,7 +170,7 @@ double steps(const Luma& picture, const Luma& full, const SeenPixels& seen) {
     return mean;
 }
 
-// By tiles: octaves by which the picture is sharper than its full render; nothing where that has no texture.
+// By tiles: by how many octaves the picture is sharper than its full render; empty if that has no texture.
 std::vector<std::optional<double>> sharpnessOf(const Luma& picture, const Luma& full, const SeenPixels& seen) {
     std::vector<std::optional<double>> sharpness;
     for (std::size_t tile_y = 0; (tile_y + 1) * kTile <= full.height; ++tile_y) {

@@ -1,6 +1,6 @@
-// What a wearer notices of two eyes' pictures that were not rendered in full, and PSNR over all pixels hides: tiles that are plainly
-// wrong, edges that step or blur, a grid of tiles, and sharpness that differs between the eyes. Pictures count as a display shows them:
-// clamped to 0 to 1, and rounded to 8 bits.
+// What a wearer notices of two eyes' pictures that were not rendered in full, and what PSNR over all pixels
+// hides: tiles that are plainly wrong, edges that step or blur, a grid of tiles, and sharpness that differs
+// between the eyes. Pictures are compared as a display shows them: clamped to 0 to 1, and rounded to 8 bits.
 #pragma once
 
 #include "engine/picture/image.h"
@@ -11,7 +11,7 @@
 
 namespace binosplat {
 
-// A tile is bad if its PSNR is under 30 dB: so much shows at a glance.
+// A tile is bad if its PSNR is under 30 dB, which shows at a glance.
 inline constexpr double kBadTileSquare = 1e-3;
 
 struct VisibleErrors {
@@ -36,7 +36,7 @@ Image asShown(const Image& picture);
 // By Side. Throws Error unless a picture has the size of its full render.
 VisibleErrors findVisibleErrors(const std::array<Image, 2>& pictures, const std::array<Image, 2>& full);
 
-// How one eye sees pictures that are not those that were rendered: LensView.
+// How one eye sees pictures that are not the rendered ones: LensView.
 struct Sight {
     std::vector<std::uint32_t> rendered_tiles;  // by pixels: which tile of the rendered picture this is; kNoTile: nothing is shown
     std::vector<double> shares;                 // of each tile of this picture, by rows: how much of the square of an error the eye sees

@@ -46,7 +46,7 @@ struct Case {
 
 std::vector<Case> makeCatalogue();
 
-// An eye on its way: what changes from one frame to the next must not be more than what changes in the twin.
+// A moving eye: what changes from one frame to the next must not exceed what changes in the twin.
 struct Path {
     std::string name;
     std::function<Stage()> make;

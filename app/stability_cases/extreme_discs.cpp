@@ -1,4 +1,4 @@
-// Stiff discs, before a wall and among ordinary ones.
+// Stiff discs, in front of a wall and among ordinary ones.
 #include "app/stability_cases/extreme_scenes.h"
 #include "app/stability_cases/stage_builder.h"
 
@@ -19,7 +19,7 @@ Stage makeDiscs(int count, unsigned seed, const std::function<void(Disc&, Random
     return stage.finish();
 }
 
-// Discs that face the eye and hide each other, deeper from one to the next by this share.
+// Discs that face the eye and hide each other, each deeper than the one before by this share.
 void addHidingDiscs(StageBuilder& stage, double separation) {
     Random random(10);
     for (int i = 0; i < 60; ++i) {

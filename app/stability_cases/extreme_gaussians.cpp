@@ -1,4 +1,4 @@
-// Stiff 3D Gaussians, before a wall and among ordinary ones.
+// Stiff 3D Gaussians, in front of a wall and among ordinary ones.
 #include "app/stability_cases/extreme_scenes.h"
 #include "app/stability_cases/stage_builder.h"
 
@@ -60,7 +60,8 @@ Stage makeLongSheets(double length) {
 Stage makeBeyondNear(double share) {
     const double near = StageBuilder().near;
     return makeGaussians(20, 43, [&](Disc& splat, Random& random, int i) {
-        // Each deeper than the one before, by more than single precision loses: their order is not what is tested.
+        // Each deeper than the one before by more than single precision loses: their order is not what is
+        // tested.
         splat.centre *= near * (1.0 + share * (1.0 + 0.2 * i)) / splat.centre.z;
         splat.scale = {random.between(0.5, 5.0), random.between(0.5, 5.0)};
         splat.thickness = random.between(0.0, 0.5);

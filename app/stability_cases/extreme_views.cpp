@@ -1,4 +1,4 @@
-// Worlds and views that are out of the ordinary, of ordinary discs.
+// Unusual worlds and views, with ordinary discs.
 #include "app/stability_cases/extreme_scenes.h"
 #include "app/stability_cases/stage_builder.h"
 
@@ -30,7 +30,7 @@ Stage makeFarOff(double offset) { return makeRoom(kSizePx, 60.0, glm::dvec3(0.3 
 
 Stage makeTwoPlaces(double distance) {
     StageBuilder stage = makeRoom(kSizePx, 60.0, glm::dvec3(0.3 + distance, -0.2, 0.1 - distance));
-    // Three times as many splats about the world's origin.
+    // Three times as many splats around the world's origin.
     Random random(22);
     const std::size_t elsewhere = 3 * stage.scene.size();
     for (std::size_t i = 0; i < elsewhere; ++i) {

@@ -21,14 +21,14 @@ struct Family {
     double told_to = kInfinity;     // or above this
 };
 
-// Pictures of ordinary scenes agree to 80 dB and more; a threshold that rounding moves a value across costs up to 1/255 of a value
-// where alpha falls to 1/255, and few pixels lie so near to one.
+// Pictures of ordinary scenes agree to 80 dB and more. A threshold across which rounding moves a value costs
+// up to 1/255 of a value where alpha falls to 1/255, and few pixels are so near to one.
 inline constexpr Bound kRounding{65.0, 0.0005};
-// Where a moved pixel's place rounds to the next pixel, or a tile is chosen in place of one that is expected to gain as much, single
-// pixels differ by as much as their neighbours do.
+// If a reprojected pixel's place rounds to the next pixel, or a tile is chosen in place of one that is
+// expected to gain as much, single pixels differ by as much as their neighbours do.
 inline constexpr Bound kPlaces{40.0, 0.01, kInfinity, 0.15};
-// Discs that come through the near plane are bounded by boxes on the device: it takes some for seen that the twin knows to meet no
-// pixel, and so expects errors elsewhere.
+// On the device, discs that come through the near plane are bounded by boxes: it takes some for visible that
+// the twin knows to meet no pixel, and so expects errors elsewhere.
 inline constexpr Bound kPlacesOfCut{40.0, 0.01, kInfinity, 0.35};
 
 std::vector<Family> makeDiscFamilies();

@@ -12,7 +12,7 @@ constexpr double kHalfWay = kStep * (kFrames - 1) / 2.0;
 // A hit that falls to 1/255 one frame earlier here than there.
 constexpr double kOneFlip = 1.0 / 255.0 + 1e-3;
 
-// A disc that the eye meets half way, among others; `along` the way there.
+// A disc that the eye meets half way, among others; `along` is the path to it.
 Stage makeMeeting(Disc disc, const glm::dvec3& meeting, const glm::dvec3& along) {
     StageBuilder stage;
     stage.addWall();
@@ -26,7 +26,7 @@ Stage makeMeeting(Disc disc, const glm::dvec3& meeting, const glm::dvec3& along)
 
 const glm::dvec3 kForward{0.0, 0.0, 1.0}, kDown{0.0, 1.0, 0.0};
 const Disc kFacing{.t_u = {1.0, 0.0, 0.0}, .t_v = {0.0, 1.0, 0.0}, .scale = glm::dvec2(0.3)};
-// Its normal is 80 degrees from the sight: much of it lies beyond the near plane.
+// Its normal is 80 degrees from the line of sight: much of it is beyond the near plane.
 const Disc kTilted{.t_u = {1.0, 0.0, 0.0}, .t_v = {0.0, std::sin(0.17), std::cos(0.17)}, .scale = glm::dvec2(0.6)};
 const Disc kLevel{.t_u = {1.0, 0.0, 0.0}, .t_v = {0.0, 0.0, 1.0}, .scale = glm::dvec2(0.6)};
 
@@ -36,7 +36,8 @@ std::vector<Path> makePaths() {
     const auto path = [](const char* name, const Disc& disc, const glm::dvec3& meeting, const glm::dvec3& direction, const char* reason) {
         return Path{name, [=] { return makeMeeting(disc, meeting, direction); }, kStep * direction, kFrames, kOneFlip, reason};
     };
-    // Half a step beyond the near plane, so that rounding, which differs between devices, decides in no frame what lies before it.
+    // Half a step beyond the near plane, so that rounding, which differs between devices, does not decide in
+    // any frame what is in front of it.
     constexpr double kNear = 0.2 + 0.5 * kStep;
     const glm::dvec3 eye(0.0), near_plane(0.0, 0.0, kNear), ahead(0.0, 0.0, 1.5), beside(0.1, 0.15, kNear);
     return {

@@ -15,7 +15,7 @@ namespace binosplat::stability {
 struct PictureScore {
     Mode mode = Mode::kMono;
     std::string eye;       // "middle", "left" or "right"
-    bool moved = false;    // made from the other eye
+    bool moved = false;    // reprojected from the other eye
     double psnr_db = 0.0;  // infinite where both are equal
     double share_off = 0.0;
     double largest = 0.0;
@@ -29,7 +29,7 @@ struct CaseScore {
     std::vector<PictureScore> pictures;
 
     [[nodiscard]] bool passes() const;
-    // The picture with the greatest error of a mode's.
+    // The picture with the greatest error among a mode's.
     [[nodiscard]] const PictureScore& worstOf(Mode mode) const;
 };
 

@@ -33,7 +33,7 @@ Eyes tremble(const Stage& stage, int frame) { return headAt(stage, glm::dvec3(0.
 // At 90 frames a second.
 Eyes turnFast(const Stage& stage, int frame) { return headAt(stage, glm::dvec3(0.0), frame * std::numbers::pi / 90.0); }
 Eyes passByWall(const Stage& stage, int frame) { return headAt(stage, glm::dvec3(0.005 * frame, 0.0, 0.0)); }
-// By less than the change that drops a past.
+// By less than the change that drops a history.
 Eyes changeAngles(const Stage& stage, int frame) {
     Eyes eyes = walk(stage, frame);
     for (Eye& eye : eyes) { eye.intrinsics = intrinsicsFromFovX((60.0 + 0.5 * (frame % 5)) * std::numbers::pi / 180.0, eye.size_px); }
