@@ -28,7 +28,7 @@ gpu::PixelMap mapPixels(const Eye& target, const Eye& source) {
     } else {
         excess = matrixOf(k) * glm::mat3_cast(target_from_source.orientation) * glm::inverse(matrixOf(l)) - glm::dmat3(1.0);
     }
-    // Eyes side by side differ along x alone, up to the rounding of their positions and axes.
+    // Eyes that are side by side differ only along x, up to the rounding of their positions and axes.
     glm::dvec3 move = target_from_source.position;
     const double rounding = kSamePlace * glm::length(source.world_from_camera.position) + kSameDirection * std::abs(move.x);
     for (int i = 1; i < 3; ++i) {

@@ -6,13 +6,13 @@
 
 namespace binosplat {
 
-// Computed once per frame, from the actual eyes; everything that asks whether two eyes are alike asks here. Rectified eyes have
-// the same depths.
+// Computed once per frame, from the actual eyes; all code that asks whether two eyes are alike asks here.
+// Rectified eyes have the same depths.
 struct EyeRelation {
     gpu::PixelMap target_from_source, source_from_target;
     // Every point has the same depth for both eyes: one depth order serves both. Canted eyes differ.
     bool same_depths = false;
-    // Pixels keep their row as well: the eyes stand side by side and share fy and cy.
+    // Pixels keep their row as well: the eyes are side by side and share fy and cy.
     bool rectified = false;
 };
 

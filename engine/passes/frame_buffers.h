@@ -39,7 +39,7 @@ struct FrameCapacity {
 struct Picture {
     Buffer colours;            // four floats a pixel, or four half floats
     bool half_floats = false;  // which
-    Buffer depths = {};        // D, a float a pixel, if it is wanted and no words tell it
+    Buffer depths = {};        // D, a float a pixel, if it is wanted and not in the words
     // If later pictures are made from this one:
     Buffer words = {};  // a word a pixel, lib/moving_pixel.glsl
     Buffer tiles = {};  // gpu::PastTile
@@ -76,14 +76,15 @@ private:
     Buffer buffer_;
 };
 
-// Where the (tile, splat) pairs of an eye lie: a sort goes from one to the other and back, and its result is in either.
+// Where an eye's (tile, splat) pairs are: a sort goes from one buffer to the other and back, and its result
+// is in either.
 struct PairArrays {
     KeyValues pairs, spare;
     std::uint32_t capacity = 0;
 };
 
-// Four words a pair. Only one of them outlives the sort, the splats by tile. Of an eye that is rendered whole the others lie in its
-// picture, which is empty until then, as far as they fit.
+// Four words a pair. Only one of them outlives the sort: the splats by tile. For an eye that is rendered
+// whole the others are in its picture, which is empty until then, as far as they fit.
 class PairBuffers {
 public:
     static constexpr std::uint64_t kBytesPerPair = 4 * sizeof(gpu::uint);
@@ -93,10 +94,10 @@ public:
 
     // Of pairs of four words.
     [[nodiscard]] std::uint32_t capacity() const { return capacity_; }
-    // The same that an eye with so many pairs needs if the rest lies in `colours`.
+    // The same for an eye with this many pairs if the rest is in `colours`.
     static std::uint32_t capacityBeside(const Buffer& colours, std::uint32_t pairs);
     [[nodiscard]] PairArrays arrays() const;
-    // For as many pairs as there is room for here and in `colours`, where nothing remains after a sort by `key_bits`.
+    // For as many pairs as fit here and in `colours`, where nothing remains after a sort by `key_bits`.
     [[nodiscard]] PairArrays arraysBeside(const Buffer& colours, unsigned key_bits) const;
     [[nodiscard]] std::uint64_t bytes() const { return buffer_.bytes(); }
 
@@ -106,7 +107,7 @@ private:
     Buffer buffer_;
 };
 
-// Everything the passes of one frame work on, except the pictures.
+// Everything on which the passes of one frame work, except the pictures.
 struct FrameBuffers {
     std::uint32_t splat_count = 0;
     Buffer state;       // FrameState
@@ -115,7 +116,7 @@ struct FrameBuffers {
     VisibleBuffers visible;
     PairBuffers pairs;
     Buffer scratch;      // sums of workgroups or histograms of the list at hand
-    Buffer tile_ranges;  // uvec2 a tile of all that are rendered at once; then, if tiles may be coarse, a list of those with pairs
+    Buffer tile_ranges;  // uvec2 a tile for all that are rendered at once; then, if tiles may be coarse, a list of those with pairs
 
     [[nodiscard]] FrameCapacity capacity() const { return {visible.capacity(), pairs.capacity()}; }
     [[nodiscard]] gpu::DeviceAddress<gpu::EyeView> eyes() const { return state.address<gpu::EyeView>(offsetof(FrameState, views)); }
@@ -142,7 +143,7 @@ struct FrameBuffers {
 };
 
 FrameBuffers makeFrameBuffers(const Context& context, std::uint32_t splat_count, bool in_pages = false);
-// Makes room; the lists' contents are lost, and never more than the new size is held.
+// Provides capacity; the lists' contents are lost, and never more than the new size is held.
 void growFrameBuffers(const Context& context, FrameBuffers& buffers, FrameCapacity capacity);
 
 }  // namespace binosplat

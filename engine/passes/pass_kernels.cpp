@@ -36,7 +36,7 @@ KernelTable frameKernels(std::uint32_t threads) {
         };
         for (const Kept& kept : {plain, moving, even_rows, cut}) { add(kept, false); }
         add(plain, true);
-        if (plain.depth) { continue; }  // a past's depths follow from its words
+        if (plain.depth) { continue; }  // a history's depths follow from its words
         add(past, false);
         add(past, true);
         for (const Kept& kept : {plain, past}) { add(kept, true, true); }
@@ -61,7 +61,7 @@ KernelTable warpKernels(const Context& context) {
     return table;
 }
 
-// Of an eye from its past.
+// Of an eye from its history.
 KernelTable pastKernels(bool by_address) {
     KernelTable table = everyVariant<WarpPastKernel>([=](const WarpPastKernel& k) { return k.by_address == by_address; });
     append(table, everyVariant<WarpPixelsKernel>([=](const WarpPixelsKernel& k) { return k.by_address == by_address; }));
@@ -91,11 +91,11 @@ PassKernels::PassKernels(const Context& context, const Sort& sort, std::uint32_t
 PassKernels::PassKernels(const Context& context, std::uint32_t threads_per_cell)
     : PassKernels(context, Sort(context), cellThreads(context, threads_per_cell)) {}
 
-// With coarse tiles there is one kernel for all that a picture may keep.
+// With coarse tiles there is one kernel for everything that a picture may keep.
 RasterizeKernel rasterizeKernel(std::uint32_t threads_per_cell, const Kept& kept, std::uint32_t splat_shape, bool masked, bool coarse) {
     const bool moves_by_depth = kept.moving && kept.depth_choice != gpu::kDepthInverse;
     return {.threads_per_cell = threads_per_cell,
-            .depth = (kept.depth || moves_by_depth || coarse) && !kept.past,  // a past has it from its words
+            .depth = (kept.depth || moves_by_depth || coarse) && !kept.past,  // a history has it from its words
             .moments = kept.moments || kept.moving || kept.past,
             .half_colours = kept.half_floats,
             .splat_kind = splat_shape,

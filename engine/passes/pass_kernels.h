@@ -1,4 +1,5 @@
-// The kernels of all passes but those of display: made when they are first needed, so that no mode pays for another's.
+// The kernels of all passes except those for display: made when they are first needed, so that no mode pays
+// for another's.
 #pragma once
 
 #include "engine/passes/sort.h"
@@ -16,7 +17,7 @@ public:
         return sort_.record(*this, commands, in, spare, histograms, lists, list_bytes, key_bits);
     }
     [[nodiscard]] std::uint32_t threadsPerCell() const { return threads_per_cell_; }
-    // How pixels of a past are loaded (lib/past.glsl): by address on software devices.
+    // How pixels of a history are loaded (lib/past.glsl): by address on software devices.
     [[nodiscard]] bool byAddress() const { return by_address_; }
 
 private:

@@ -1,4 +1,4 @@
-// Recording the passes, in frame order.
+// Records the passes, in frame order.
 #include "engine/passes/passes.h"
 
 #include "engine/srgb.h"
@@ -39,7 +39,7 @@ void recordCullPages(PassKernels& kernels, Commands& commands, const GpuScene& s
                           scene.chunkCount());
 }
 
-// What the passes of pictures that are rendered at once have in common.
+// What the passes share for pictures that are rendered at once.
 struct Recording {
     PassKernels& kernels;
     Commands& commands;

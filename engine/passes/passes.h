@@ -26,13 +26,14 @@ struct Kept {
     bool moments = false;                         // I and J
     bool moving = false;                          // the picture is going to be warped into the other eye
     bool even_rows = false;                       // only its even rows are warped; needs kDepthInverse, and no moments kept
-    gpu::uint depth_choice = gpu::kDepthInverse;  // of a warped pixel; that of a past is always this
+    gpu::uint depth_choice = gpu::kDepthInverse;  // of a warped pixel; that of a history is always this
     bool half_floats = false;                     // colours are stored as half floats
     bool cut = false;                             // splats show only where they are nearer than the target's mesh_depths
     bool past = false;                            // later pictures are going to be made from this one: its words and tiles are kept
 };
 
-// Pictures that a frame renders at once, all of each or some tiles: FrameState::views and targets say where they lie.
+// Pictures that a frame renders at once, whole or some tiles: FrameState::views and targets say where they
+// are.
 struct Targets {
     int first = 0, count = 1;
     int list = 0;                 // of the visible splats
@@ -50,25 +51,25 @@ struct Targets {
 // How many bits distinguish so many tiles, and no tile.
 unsigned tileBits(gpu::uint tiles);
 
-// The eyes of a list of visible splats: it holds what any of the eyes [first, first + count) sees, ordered by the distance from the middle
-// between the eyes, or without one by the depths of `order_eye`.
+// The eyes of a list of visible splats: it holds what any of the eyes [first, first + count) sees, ordered by
+// the distance from the midpoint between the eyes or, without one, by the depths of `order_eye`.
 struct EyesOfList {
     int first = 0;
     int count = 1;
     int order_eye = 0;
     int list = 0;
     std::optional<gpu::Place> middle = {};
-    int shares = 1;                                                 // how many pictures are rendered from it at the same time
+    int shares = 1;                                                 // how many pictures are rendered from it at once
     gpu::DeviceAddress<gpu::uint> first_mask = {}, last_mask = {};  // if only the chosen tiles of each eye count
 };
 
 RasterizeKernel rasterizeKernel(std::uint32_t threads_per_cell, const Kept& kept, std::uint32_t splat_shape, bool masked, bool coarse);
 
-// How many splats are visible: only cull.
+// Only cull: how many splats are visible.
 void recordCull(PassKernels& kernels, Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes,
                 Role role);
-// The list of these, front to back: compact and sort_depth. Also again by the depths of another eye; visibility is then not determined
-// anew.
+// The list of these, front to back: compact and sort_depth. Also again, by the depths of another eye;
+// visibility is then not determined again.
 void recordOrder(PassKernels& kernels, Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes,
                  Role role);
 // The pictures: project to rasterize.

@@ -1,4 +1,4 @@
-// Recording the passes that make an eye from its own past.
+// Records the passes that make an eye from its own history.
 #include "engine/passes/past_passes.h"
 
 #include <algorithm>
@@ -10,7 +10,8 @@ namespace {
 
 constexpr gpu::uint groupsOver(gpu::uint items, gpu::uint group) { return (items + group - 1) / group; }
 
-// Pairs that surely have room, as far as tiles cost what they did when they were rendered last. Lists grow when so much is needed.
+// A number of pairs that surely fits, if tiles cost what they did when they were rendered last. Lists grow
+// when that many are needed.
 gpu::uint mostCost(const FrameCapacity& capacity) { return capacity.pairs - capacity.pairs / 8; }
 
 }  // namespace

@@ -1,8 +1,8 @@
 // An eye's picture warped from the one that it showed before, and the tiles of both eyes that are rendered again.
 //
-//   warp_past    what the past shows, block by block, and the error to expect of each tile
+//   warp_past    what the history shows, block by block, and the error to expect of each tile
 //   warp_pixels  the pixels of other blocks one by one
-//   mark_changed where the scene differs from what the past saw
+//   mark_changed where the scene differs from what the history saw
 //   price        what it costs to mend that, with one budget for all eyes
 //   select       the tiles to render
 #pragma once
@@ -23,20 +23,21 @@ struct PastInputs {
     Role role;
     const Picture& source;
     const Picture& target;
-    gpu::DeviceAddress<gpu::uint> shown, source_shown;  // masks of the tiles that are seen; null: all
-    bool gaze;                                          // it is known where the eye looks; otherwise all tiles count alike
+    gpu::DeviceAddress<gpu::uint> shown, source_shown;  // masks of the shown tiles; null: all
+    bool gaze;                                          // the eye's gaze is known; otherwise all tiles count alike
 };
 
-// The eye `now` and the one whose picture is its past, for the device. `near`: nothing is seen before this, in scene units.
+// The eye `now` and the one whose picture is its history, for the device. `near`: nothing nearer is visible,
+// in scene units.
 gpu::PastView pastViewOf(const Eye& now, const Eye& past, double near, const glm::vec3& background);
 
 // The target's colours, words and tiles.
 void recordFromPast(PassKernels& kernels, Commands& commands, const PastInputs& in);
-// Between the two: marks where the scene changed since the past was made.
+// Between the two: marks where the scene has changed since the history was made.
 void recordChanged(PassKernels& kernels, Commands& commands, const PastInputs& in, gpu::DeviceAddress<gpu::ChangedRect> rects,
                    gpu::uint count);
-// Chooses the tiles of all `eyes`, one target after the other, that are rendered again; `at_once` of them at the same time. The first
-// one's WarpView has the budget, a share of all eyes' work.
+// Chooses the tiles of all `eyes`, one target after the other, that are rendered again; `at_once` of them at
+// the same time. The first one's WarpView has the budget, a share of all eyes' work.
 void recordChoice(PassKernels& kernels, Commands& commands, std::span<const PastInputs> eyes, gpu::uint at_once);
 
 }  // namespace binosplat

@@ -1,4 +1,4 @@
-// Recording `present` and the copies after it.
+// Records `present` and the copies after it.
 #include "engine/passes/present.h"
 
 #include "engine/error.h"
@@ -39,7 +39,7 @@ void Presenter::makeRoom(glm::uvec2 size_px, bool with_depth) {
 
 void Presenter::record(Commands& commands, const PresentedEye& eye, double near) {
     const bool with_depth = eye.depth && (eye.picture->words.bytes() > 0 || eye.picture->depths.bytes() > 0);
-    // Only ever grown before anything of this submission uses them: both eyes have one size.
+    // Only grows before anything in this submission uses them: both eyes have the same size.
     makeRoom(eye.size_px, with_depth);
     gpu::PresentPass pass{};
     pass.colours = eye.picture->colours.address<gpu::vec4>();

@@ -13,8 +13,8 @@ struct PresentedEye {
     const WarpBuffers* tinted_by = nullptr;  // of the affiliated eye, to tint its pixels by how they came about; or null
     vk::Image colour;                        // where the picture goes; 8-bit RGBA or BGRA
     vk::Image depth;                         // where its depth goes, D32: near / depth, 0 where there is nothing; or null
-    bool see_through = false;                // its alpha is output, too, multiplied in as headsets blend: as light
-    std::uint32_t kept_bits = 0;             // of each word: stay as the eye before left them, as for an anaglyph
+    bool see_through = false;                // write its alpha, too, multiplied in as headsets blend: as light
+    std::uint32_t kept_bits = 0;             // of each word: keep the bits that the eye before left, as for an anaglyph
 };
 
 // All kernels of `present`.
@@ -29,16 +29,18 @@ public:
 
     // Makes the kernel for half floats before it is needed.
     void makeKernels();
-    // For pictures of that size, while nothing that was recorded is under way. Throws Error if there is no memory for it.
+    // For pictures of that size, while nothing recorded is in flight. Throws Error if there is no memory for
+    // it.
     void makeRoom(glm::uvec2 size_px, bool with_depth);
-    // Records it, making room first. `near` in scene units.
+    // Records it, allocating memory first. `near` in scene units.
     void record(Commands& commands, const PresentedEye& eye, double near);
-    // Makes its kernels anew, see Context::replacedShaders. Throws Error if one cannot be made, and then keeps the old ones.
+    // Makes its kernels again, see Context::replacedShaders. Throws Error if one cannot be made, and then
+    // keeps the old ones.
     void rebuildKernels() { kernels_.rebuild(); }
     // The bytes of the eye that was recorded last, rows top to bottom, for showing them elsewhere.
     [[nodiscard]] const Buffer& pixels() const { return pixels_; }
-    // The same as a view from the same place with other axes shows them. The matrix takes places in the view, in pixels, to those in the
-    // picture. Makes room first; only the first of a submission may need it.
+    // The same as a view from the same place with other axes shows them. The matrix maps places in the view,
+    // in pixels, to those in the picture. Allocates memory first; only the first of a submission may need to.
     const Buffer& turn(Commands& commands, glm::uvec2 picture_px, glm::uvec2 view_px, const glm::dmat3& picture_from_view);
 
 private:

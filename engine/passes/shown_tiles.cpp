@@ -25,7 +25,7 @@ void ShownTiles::record(Commands& commands) {
     turn_ = 1 - turn_;
     Buffer& mask = masks_[turn_];
     const std::uint64_t bytes = words_.size() * sizeof(gpu::uint);
-    // Frames before the last one are done.
+    // Frames before the last one have finished.
     retired_ = {};
     if (mask.bytes() != bytes) { retired_ = std::exchange(mask, bytes > 0 ? Buffer(context_, "shown tiles", bytes) : Buffer()); }
     if (bytes > 0) { commands.update(mask, words_.data(), bytes); }

@@ -1,5 +1,6 @@
-// The tiles of an eye's picture that anybody sees, for the passes: a visibility mask for binning, and marks for the other eye's pixels.
-// Lenses hide the same ones in all frames; where a picture keeps its axes while the head turns, they change from frame to frame.
+// The shown tiles of an eye's picture, for the passes: a visibility mask for binning, and marks for the other
+// eye's pixels. Lenses hide the same ones in all frames; if a picture keeps its axes while the head turns,
+// they change from frame to frame.
 #pragma once
 
 #include "engine/gpu/commands.h"
@@ -15,7 +16,7 @@ class ShownTiles {
 public:
     explicit ShownTiles(const Context& context) : context_(context) {}
 
-    // A byte a tile, row-major: 1 where nobody will see it; empty: all are shown. Of the next frame.
+    // For the next frame: a byte a tile, row-major, 1 if it is hidden; empty: all are shown.
     void set(std::span<const std::uint8_t> hidden, glm::uvec2 size_tiles);
     // Before the passes of a frame: brings the mask, and keeps that of the frame before.
     void record(Commands& commands);
@@ -34,7 +35,7 @@ private:
     glm::uvec2 size_tiles_{0, 0};
     std::vector<gpu::uint> words_;  // of the mask
     std::array<Buffer, 2> masks_;   // of the last two frames; empty if all tiles are shown
-    Buffer retired_;                // may be in use by a frame under way
+    Buffer retired_;                // may be in use by a frame in flight
     std::size_t turn_ = 0;          // of the last frame that was recorded
 };
 

@@ -1,4 +1,4 @@
-// Recording the radix sort.
+// Records the radix sort.
 #include "engine/passes/sort.h"
 
 #include <algorithm>
@@ -11,8 +11,9 @@ namespace binosplat {
 
 namespace {
 
-// A GPU has many subgroups under way to hide the latency of memory: sixteen, or eight if shared memory, of which each takes 2 KiB for its
-// digits, is less than 48 KiB. A CPU's run one after the other: four of these.
+// A GPU has many subgroups in flight to hide the latency of memory: sixteen, or eight if shared memory, of
+// which each takes 2 KiB for its digits, is less than 48 KiB. A CPU runs its subgroups one after the other:
+// four.
 gpu::uint threadsOf(const Context& context) {
     if (context.isSoftware()) {
         return std::clamp(gpu::kSortSubgroups * context.subgroupSize(), 32u, std::min(8 * context.minSubgroupSize(), 128u));
@@ -48,7 +49,7 @@ KeyValues Sort::record(KernelCache& kernels, Commands& commands, KeyValues in, K
     const auto run_sums = histograms.at(gpu::kMaxDigits), counts = run_sums.at(std::uint64_t{gpu::kMaxSortRuns} * gpu::kMaxDigits);
     const auto list = lists.address<gpu::ListState>(list_bytes);
     const std::uint64_t groups = list_bytes + offsetof(gpu::ListState, per_sort_block);
-    // As few bits a round as will do.
+    // As few bits a round as possible.
     const unsigned rounds = roundsOf(key_bits);
     for (unsigned round = 0, shift = 0; round < rounds; ++round) {
         const unsigned bits = (key_bits - shift + rounds - round - 1) / (rounds - round);

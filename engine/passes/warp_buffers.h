@@ -13,13 +13,14 @@ struct WarpBufferNeeds {
     glm::uvec2 size_px{0, 0};  // of both eyes; 0: no mode that reprojects
     bool classes = false;      // of the target's pixels
     bool half_floats = false;  // what pictures consist of
-    bool past = false;         // the eye's own past is the source
-    std::uint32_t boxes = 0;   // components of holes that get a box of their own, 0 where centre ROIs are off
+    bool past = false;         // the eye's own history is the source
+    std::uint32_t boxes = 0;   // components of holes that get a box of their own, 0 if centre ROIs are off
     bool operator==(const WarpBufferNeeds&) const = default;
 };
 
-// Arrays over the tiles and the price list lie in one buffer, one after the other. Moving pixels and arrivals are aliased with the target
-// eye's colours, row by row, as long as resample can keep a row of arrivals in shared memory; otherwise they lie here.
+// Arrays over the tiles and the price list are in one buffer, one after the other. Moving pixels and arrivals
+// share memory with the target eye's colours, row by row, as long as resample can keep a row of arrivals in
+// shared memory; otherwise they are here.
 class WarpBuffers {
 public:
     WarpBuffers() = default;

@@ -1,4 +1,4 @@
-// What the device is told of making an eye from a picture, and of where the eye looks.
+// What the device is told about making an eye from a picture, and about where the eye looks.
 #include "engine/passes/warp_view.h"
 
 #include "engine/passes/frame_buffers.h"

@@ -1,4 +1,4 @@
-// What the device is told of making an eye from a picture, and of where the eye looks.
+// What the device is told about making an eye from a picture, and about where the eye looks.
 #pragma once
 
 #include "engine/passes/eye_relation.h"
@@ -15,7 +15,7 @@ struct Gaze {
 
 // `settings` and the eyes, for the device. `row_words`: of a row of moving pixels, see WarpBuffers.
 gpu::WarpView warpViewOf(const EyeRelation& relation, glm::uvec2 size_px, gpu::uint row_words, const StereoSettings& settings);
-// Initial counters of a frame: modes that do not weigh warp everything.
+// Initial counters of a frame: modes that do not weigh reproject everything.
 gpu::WarpCounters firstCountersOf(const StereoSettings& settings, glm::uvec2 size_px);
 
 // `gaze` for the device.
