@@ -10,7 +10,7 @@
 namespace binosplat {
 namespace {
 
-// How far the low-pass extends splats, in pixels of the eye's own picture, and a hair.
+// How far the low-pass extends splats, in pixels of the eye's own picture, plus a small margin.
 constexpr double kBorderPx = 3.0;
 
 std::optional<gpu::ChangedRect> rectOf(const SceneChange& change, const Eye& eye, double near) {

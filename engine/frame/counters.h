@@ -13,11 +13,11 @@ namespace binosplat {
 struct TargetCounters {
     std::uint64_t splats_visible = 0;  // in its list
     std::uint64_t tile_pairs = 0;
-    std::uint64_t tiles = 0, tiles_hidden = 0;  // tiles_hidden: those that nobody sees
+    std::uint64_t tiles = 0, tiles_hidden = 0;  // tiles_hidden: those that are never seen
     std::uint64_t pixels = 0, pixel_bytes = 0;
 };
 
-// Of a picture that is made from another.
+// For a picture that is made from another.
 struct WarpedCounters {
     // How its pixels came about, before tiles are rendered again; if that was kept.
     struct Classes {
@@ -31,7 +31,7 @@ struct WarpedCounters {
     std::uint64_t tiles_shown = 0;  // of pictures that are made from others
     std::uint64_t tiles_patched = 0, tiles_edge = 0, tiles_center = 0, tiles_predicted = 0;
     std::optional<Work> work;
-    std::optional<std::uint64_t> tiles_over_bound;  // if errors are bounded: tiles that the budget leaves above the bound
+    std::optional<std::uint64_t> tiles_over_bound;  // if errors are bounded: tiles left above the bound for lack of budget
     std::uint64_t hole_components = 0, splats_newcomers = 0, bytes = 0;
 };
 
@@ -39,12 +39,14 @@ struct FrameCounters {
     std::uint64_t commands = 0, splats_read = 0;
     std::uint64_t scene_bytes = 0, visible_bytes = 0, pair_bytes = 0, scratch_bytes = 0;
     std::vector<TargetCounters> targets;  // one for each eye
-    // Of a scene whose parts come and go: pages that hold splats, and those that cull examined for the list that needed most.
+    // For a scene whose parts come and go: pages that hold splats, and those that cull examined for the list
+    // that needed most.
     struct Pages {
         std::uint64_t resident = 0, seen = 0;
     };
     std::optional<Pages> pages;
-    // If tiles may be coarse: those that are, those that were tried so, and the pairs that were blended as samples and in full.
+    // If tiles may be coarse: those that are, those that were tried as coarse, and the pairs that were
+    // blended as samples and in full.
     struct Coarse {
         std::uint64_t tiles = 0, tiles_tried = 0, pairs = 0, sharp_pairs = 0;
     };
@@ -55,7 +57,7 @@ struct FrameCounters {
         std::uint64_t frames_cut_short = 0, frames_done_again = 0;
     };
     std::optional<Ahead> ahead;
-    // Of a scene that is streamed or moves, from whoever loads it.
+    // For a scene that is streamed or moves, from its loader.
     struct Streaming {
         std::uint64_t splats_resident = 0, chunks_resident = 0, frames_waited_for_loading = 0, scene_frames_late = 0;
     };

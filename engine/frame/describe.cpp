@@ -1,4 +1,4 @@
-// What the device is told of a frame before its passes: FrameState.
+// What the device is told about a frame before its passes: FrameState.
 #include "engine/frame/record.h"
 
 #include "engine/passes/eye_view.h"
@@ -6,7 +6,7 @@
 namespace binosplat {
 namespace {
 
-// Where the target's eye looks; if nobody knows, it sees everything.
+// Where the target's eye looks; if that is unknown, it sees everything.
 gpu::EyeGaze gazeOf(const TargetPlan& target) {
     const std::optional<Gaze>& gaze = target.warp ? target.warp->gaze : target.gaze;
     if (gaze) { return eyeGazeOf(*gaze, target.eye.intrinsics); }

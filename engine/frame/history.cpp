@@ -7,16 +7,17 @@
 namespace binosplat {
 namespace {
 
-// From one frame to the next the contents of lists change by less than their spare room, unless an eye moves or turns farther than this,
-// or its angles change by more than this share. Heads move at up to 3 m/s and turn at up to 400 degrees/s: at 72 frames a second by 4 cm
-// and 5.6 degrees. Snap turns are of 15 degrees and more.
+// From one frame to the next the contents of lists change by less than their spare capacity, unless an eye
+// moves or turns farther than this, or its angles change by more than this share. Heads move at up to 3 m/s
+// and turn at up to 400 degrees/s: at 72 frames a second that is 4 cm and 5.6 degrees. Snap turns are 15
+// degrees and more.
 constexpr double kJumpMetres = 0.2;
 constexpr double kJumpDegrees = 6.0;
 constexpr double kJumpZoom = 0.1;
-// From farther away a past is worse than the other eye would be, which is 6 cm away: docs/tried.md, *Reuse over time*.
-// The share is of the way between the eyes, however large the scene is.
+// From farther away a history is worse than the other eye would be, which is 6 cm away: docs/tried.md, *Reuse
+// over time*. The share is of the distance between the eyes, however large the scene is.
 constexpr double kFarthestPastMetres = 0.05, kFarthestPastShare = 0.8;
-// Beyond this a past is too coarse, or much finer than needed.
+// Beyond this a history is too coarse, or much finer than needed.
 constexpr double kMostZoom = 2.0;
 
 bool moves(const Pose& from, const Pose& to, double farthest) {

@@ -1,4 +1,4 @@
-// What a frame remembers of the ones before it.
+// What a frame remembers about the ones before it.
 #pragma once
 
 #include "engine/frame/settings.h"
@@ -8,7 +8,7 @@
 
 namespace binosplat {
 
-// Frames that are under way together must have this in common.
+// Frames in flight together must have this in common.
 struct FrameShape {
     Mode mode = Mode::kMono;
     int dominant = 0;
@@ -21,12 +21,14 @@ FrameShape shapeOf(std::span<const Eye> eyes, const FrameSettings& settings);
 
 // True if lists for these eyes may differ much from those for `before`.
 bool jumps(std::span<const Eye> before, std::span<const Eye> eyes, double units_per_metre);
-// The farthest that a past may lie from these eyes, in scene units.
+// The farthest that a history may lie from these eyes, in scene units.
 double farthestPast(std::span<const Eye> eyes, double units_per_metre);
-// True if what `past` saw is of use for `eye`: they stand and look alike. Sizes may differ, and angles by less than a factor of two.
+// True if what `past` saw is of use for `eye`: their places and axes are close. Sizes may differ, and angles
+// by less than a factor of two.
 bool canComeFrom(const Eye& past, const Eye& eye, double farthest);
 
-// Whether warping pays: `predicted` does without as long as it did not pay in the last known frame, if that was asked for the same.
+// Whether warping pays: `predicted` does without as long as it did not pay in the last known frame with the
+// same settings.
 class MovingPays {
 public:
     struct Asked {
@@ -39,13 +41,13 @@ public:
 
     [[nodiscard]] static Asked askedBy(std::span<const Eye> eyes, const FrameSettings& settings);
     [[nodiscard]] bool mayMove(const Asked& asked) const { return asked != asked_ || pays_; }
-    // The next frame is asked for like this.
+    // The settings of the next frame.
     void ask(const Asked& asked, bool may_move) {
         asked_ = asked;
         pays_ = may_move;
     }
     [[nodiscard]] const Asked& asked() const { return asked_; }
-    // The result of a frame that was asked for `asked`.
+    // The result of a frame with the settings `asked`.
     void learn(const Asked& asked, bool pays) {
         if (asked == asked_) { pays_ = asked.stereo.choice != TileChoice::kPredicted || pays; }
     }

@@ -1,4 +1,4 @@
-// Frames that somebody else submits.
+// Frames that a program submits.
 #include "engine/frame/stereo_frame.h"
 
 #include <cassert>
@@ -8,7 +8,7 @@ namespace binosplat {
 
 StereoFrame::Lent StereoFrame::lend(std::span<const Eye> eyes, const FrameSettings& settings, const Append& append) {
     finish();
-    // What is freed from here on stays until the frames before have come back.
+    // What is freed from here on stays until the earlier frames have come back.
     const std::uint64_t number = context_.freedBuffers().beginFrame();
     try {
         if (idle_.empty()) { idle_.push_back(std::make_unique<Flight>(context_, Commands::Level::kSecondary)); }
@@ -43,7 +43,7 @@ void StereoFrame::takeBackUnused(std::uint64_t number) {
         idle_.push_back(std::move(found->second));
         lent_.erase(found);
     }
-    pasts_ = {};  // some of what it was to leave is not there
+    pasts_ = {};  // part of what it should have left is missing
     context_.freedBuffers().endFrame(number);
 }
 

@@ -1,4 +1,4 @@
-// Reading the last frame's results on the host.
+// Reads the last frame's results on the host.
 #include "engine/frame/stereo_frame.h"
 
 #include <glm/gtc/packing.hpp>
@@ -88,7 +88,7 @@ std::vector<std::uint32_t> StereoFrame::readTileKinds(int eye) {
 std::vector<std::uint32_t> StereoFrame::readTileKinds() {
     const std::optional<int> warped = plan_.warpedTarget();
     if (warped) { return readTileKinds(*warped); }
-    // Or that of the one eye that is made from the other.
+    // Or that of the single eye that is made from the other.
     const bool of_left = !plan_.targets[kLeft].past.has_value();
     return plan_.eyes == 2 && of_left == plan_.targets[kRight].past.has_value() ? readTileKinds(of_left ? kRight : kLeft)
                                                                                 : std::vector<std::uint32_t>{};

@@ -16,13 +16,13 @@ void keepForWarp(Kept& source, const Warp& warp) {
     const bool predicts = warp.settings.choice == TileChoice::kPredicted;
     source.moving = true;
     source.depth_choice = warp.settings.depth_choice;
-    // Odd rows will be warped like even ones, unless somebody asks for their moments.
+    // Odd rows will be warped like even ones, unless their moments are wanted.
     source.even_rows = predicts && warp.relation.rectified && !source.moments && source.depth_choice == gpu::kDepthInverse;
 }
 
 }  // namespace
 
-// A picture that is nobody's past, nor the spare one.
+// A picture that is neither a history nor the spare one.
 int fourthPicture(const Pasts& pasts) {
     int picture = 0;
     while (picture == pasts.spare || picture == pasts.of_eyes[0]->picture || picture == pasts.of_eyes[1]->picture) { ++picture; }
@@ -47,7 +47,8 @@ bool hasCoarseTiles(const FrameSettings& settings, std::size_t eyes) {
 // The chosen tiles of both eyes, the first in this order first, from one list.
 void renderChosen(FramePlan& plan, const std::array<int, 2>& order, ListPlan list) {
     list.of_chosen = true;
-    // A patch is too little work for a GPU: stage by stage it gets that of both eyes, if they have the same order and tiles.
+    // A patch is too little work for a GPU: if the eyes have the same order and tiles, each stage processes
+    // both eyes.
     if (plan.shares_order && plan.targets[0].eye.size_px == plan.targets[1].eye.size_px) {
         list.eyes.shares = 2;
         plan.makeList(list);
@@ -63,7 +64,7 @@ void renderChosen(FramePlan& plan, const std::array<int, 2>& order, ListPlan lis
     plan.steps.push_back({Step::Kind::kRender, order[1]});
 }
 
-// Both eyes from their pasts; the tiles that are rendered again are chosen before anything is culled.
+// Both eyes from their histories; the tiles that are rendered again are chosen before anything is culled.
 void planTemporal(FramePlan& plan, const FrameSettings& settings, std::span<const Eye> eyes, const Pasts& pasts, const ListPlan& list) {
     const std::array order{plan.dominant, 1 - plan.dominant};
     int picture = pasts.spare;
@@ -72,7 +73,8 @@ void planTemporal(FramePlan& plan, const FrameSettings& settings, std::span<cons
         TargetPlan& target = plan.targets[eye];
         makeFromPast(target, *pasts.of_eyes[eye], settings, eye);
         target.picture = picture;
-        // Free once this target is made; another size needs memory of its own, since this is still read.
+        // Free once this target is made; another size needs memory of its own, since this is still being
+        // read.
         const bool fits = target.past->eye.size_px == eyes[static_cast<std::size_t>(order[1])].size_px;
         picture = fits ? target.past->picture : fourthPicture(pasts);
     }
@@ -84,7 +86,7 @@ void planTemporal(FramePlan& plan, const FrameSettings& settings, std::span<cons
     renderChosen(plan, order, list);
 }
 
-// One eye in full, taking turns, and the other from its past.
+// One eye in full, taking turns, and the other from its history.
 void planAlternate(FramePlan& plan, const Pasts& pasts, const ListPlan& list) {
     const int full = pasts.turn, other = 1 - full;
     TargetPlan &rendered = plan.targets[full], &warped = plan.targets[other];
@@ -130,7 +132,7 @@ Pasts pastsAfter(const FramePlan& plan, const Pasts& before) {
         const TargetPlan& target = plan.targets[e];
         if (target.kept.past) { after.of_eyes[e] = Past{target.eye, target.picture}; }
     }
-    // A picture that was a past is free, once this frame has read it.
+    // A picture that was a history is free, once this frame has read it.
     const auto isFree = [&](int picture) {
         return std::ranges::none_of(after.of_eyes, [&](const auto& past) { return past && past->picture == picture; });
     };
@@ -145,8 +147,9 @@ Pasts pastsAfter(const FramePlan& plan, const Pasts& before) {
 FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bool may_move, const Pasts& pasts) {
     const bool keeps_past = hasPast(settings.mode) && settings.keep_past;
     const bool has_past = keeps_past && pasts.of_eyes[0] && pasts.of_eyes[1];
-    // If none is kept `temporal` falls back to `predicted`; without one, as after a jump, both eyes are exact, since later pictures are
-    // made from them. And if each eye is cheap to render, making one from the other saves a tenth of the time for 15 to 30 dB.
+    // If no history is kept, `temporal` falls back to `predicted`. If there is none, as after a jump, both
+    // eyes are exact, since later pictures are made from them. And if each eye is cheap to render, making one
+    // from the other would save a tenth of the time for 15 to 30 dB.
     const bool coarse = hasCoarseTiles(settings, eyes.size()), predicts = choiceOf(settings.mode) == TileChoice::kPredicted && !keeps_past;
     const Mode mode = predicts                              ? coarse ? Mode::kShared : Mode::kPredicted
                       : hasPast(settings.mode) && !has_past ? Mode::kShared

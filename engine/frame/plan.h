@@ -1,4 +1,5 @@
-// What a frame does, in order: the lists of splats it makes, the pictures it renders, and which of these are made from others.
+// What a frame does, in order: the lists of splats that it makes, the pictures that it renders, and which of
+// these are made from others.
 #pragma once
 
 #include "engine/frame/settings.h"
@@ -11,7 +12,8 @@
 
 namespace binosplat {
 
-// Pictures of a room: two eyes with a past take turns in their pasts, one that is being made, and one more in case sizes change.
+// Pictures of a room: two eyes with a history take turns with theirs, one that is being made, and one more in
+// case sizes change.
 inline constexpr std::size_t kFramePictures = 4;
 
 // A list of visible splats, front to back.
@@ -27,23 +29,24 @@ struct Warp {
     int source = 0;  // of the plan's targets; it is rendered before
     EyeRelation relation;
     StereoSettings settings;
-    bool may_move = true;           // otherwise nothing is warped; only whether warping would pay is found out, for the next frame
-    std::optional<Gaze> gaze = {};  // empty: all of the target counts alike
+    bool may_move = true;           // otherwise nothing is warped, and the frame only finds out whether warping would pay, for the next one
+    std::optional<Gaze> gaze = {};  // empty: the whole target counts alike
 };
 
-// The last picture of an eye that later ones are made from.
+// The last picture of an eye, from which later ones are made.
 struct Past {
     Eye eye;
     int picture = 0;  // of the room's
 };
-// By eye; the room's picture that is made next, which no frame under way reads; and which eye is rendered in full next (kAlternate).
+// By eye; the room's picture to be made next, which no frame in flight reads; and the eye to be rendered in
+// full next (kAlternate).
 struct Pasts {
     std::array<std::optional<Past>, 2> of_eyes = {};
     int spare = 2;
     int turn = 0;
 };
 
-// A picture that comes out of the frame.
+// A picture that the frame makes.
 struct TargetPlan {
     Eye eye;
     Role role = Role::kNone;
@@ -54,10 +57,10 @@ struct TargetPlan {
     TileChoice choice = TileChoice::kAll;        // of the tiles that are rendered
     std::optional<Warp> warp = {};
     std::optional<Past> past = {};  // what it is made from instead: its eye's last picture
-    std::optional<Gaze> gaze = {};  // for the choice among what the past has left, and of coarse tiles
-    int picture = 0;                // the room's picture that it becomes
+    std::optional<Gaze> gaze = {};  // for the choice among what the history has left, and of coarse tiles
+    int picture = 0;                // which of the room's pictures it becomes
     bool keeps_classes = false;
-    bool from_past_later = false;  // frames after this one make it from a past: what that takes is kept
+    bool from_past_later = false;  // frames after this one make it from a history: what they need is kept
     bool coarse = false;           // tiles that the eye does not see sharply may be
 };
 
@@ -65,10 +68,10 @@ struct Step {
     enum class Kind {
         kList,       // makes FramePlan::lists[index]
         kWarp,       // warps pixels into FramePlan::targets[index] and chooses its tiles
-        kPast,       // makes FramePlan::targets[index] from its past
+        kPast,       // makes FramePlan::targets[index] from its history
         kChoose,     // chooses the tiles of all targets that have one
         kRender,     // renders the chosen tiles
-        kRenderAll,  // renders the chosen tiles of all targets at the same time; their list and pairs need room for each
+        kRenderAll,  // renders the chosen tiles of all targets at once; their list and pairs need capacity for each
     };
     Kind kind;
     int index;
@@ -82,7 +85,7 @@ struct FramePlan {
     bool shares_order = false;  // one order of the splats serves all eyes
     double near = 0.2;
     glm::dvec3 background{0.0};
-    double budget = 0.0;          // of the choice among what pasts have left: a share of the work of the targets that have one
+    double budget = 0.0;          // of the choice among what histories have left: a share of the work of the targets that have one
     double error_bound_db = 0.0;  // of that choice: StereoSettings
     std::uint32_t measured_part = gpu::kMeasuredParts;  // FrameSettings
     int dominant = 0;                                   // of the targets
@@ -95,11 +98,11 @@ struct FramePlan {
         steps.push_back({Step::Kind::kList, static_cast<int>(lists.size())});
         lists.push_back(list);
     }
-    // The target that others are made from, or the one that is rendered in full.
+    // The target from which others are made, or the one that is rendered in full.
     [[nodiscard]] int firstTarget() const;
-    // How many pictures are rendered at the same time.
+    // How many pictures are rendered at once.
     [[nodiscard]] int shares() const;
-    // True if nothing is in the target's picture until its pairs are sorted. The frames after a past need their lists in one piece.
+    // True if nothing is in the target's picture until its pairs are sorted. The frames after a history need their lists in one piece.
     [[nodiscard]] bool isSortedInPicture(const TargetPlan& target) const {
         return target.choice == TileChoice::kAll && !keeps_past && !target.coarse;
     }
@@ -107,11 +110,13 @@ struct FramePlan {
     [[nodiscard]] std::optional<int> warpedTarget() const;
 };
 
-// True if tiles may be coarse: that is wanted, and it is known where all eyes look. The references are always in full.
+// True if tiles may be coarse: that is wanted, and all eyes' gazes are known. The references are always in
+// full.
 [[nodiscard]] bool hasCoarseTiles(const FrameSettings& settings, std::size_t eyes);
 
-// The only place that knows what a mode does. Throws Error if eyes that are made from one another have different sizes. `may_move`: warping
-// paid in the frame before, or nobody knows. `pasts`: what the frames before have left; their pictures may have other sizes.
+// The only place that knows what a mode does. Throws Error if eyes that are made from one another have
+// different sizes. `may_move`: warping paid in the frame before, or that is unknown. `pasts`: the histories
+// that earlier frames have left; their pictures may have other sizes.
 FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bool may_move, const Pasts& pasts = {});
 // What such a frame leaves to the next one.
 Pasts pastsAfter(const FramePlan& plan, const Pasts& before);

@@ -1,4 +1,4 @@
-// Recording a plan.
+// Records a plan.
 #pragma once
 
 #include "engine/baselines/warp_passes.h"
@@ -12,7 +12,8 @@ struct FrameRecorder {
     PassKernels& kernels;
     const GpuScene& scene;
     FrameRoom& room;
-    // If the recording is going to be submitted, and so brings the scene's changes: those that the pasts know, see GpuScene.
+    // If the recording is going to be submitted, and so brings the scene's changes: those that the histories
+    // know, see GpuScene.
     std::optional<std::uint64_t> changes_known;
     bool brings_changes = true;
 
@@ -28,7 +29,7 @@ private:
     void begin(Commands& commands, bool times_passes) const;
     // Writes FrameState.
     void describeFrame(Commands& commands, const FramePlan& plan) const;
-    // Tells the device of a target where it lies, and what becomes of it.
+    // Tells the device where a target is, and what becomes of it.
     void describe(const FramePlan& plan, int index, TargetState& state) const;
     void recordWarp(Commands& commands, const FramePlan& plan, int index) const;
     void recordChoice(Commands& commands, const FramePlan& plan) const;
@@ -36,7 +37,7 @@ private:
     [[nodiscard]] MovingWords wordsOf(const FramePlan& plan, int warped) const;
     [[nodiscard]] PastInputs pastOf(const FramePlan& plan, int index) const;
     [[nodiscard]] EyesOfList eyesOf(const ListPlan& list) const;
-    // Of `count` targets at once.
+    // For `count` targets at once.
     void recordPictures(Commands& commands, const FramePlan& plan, int first, int count) const;
 };
 

@@ -52,7 +52,7 @@ void countWarp(const FrameFacts& frame, std::size_t index, FrameResult& result) 
     if (warp.picture_cost > 0) { result.work_rendered = static_cast<double>(warp.chosen_cost) / warp.picture_cost; }
 }
 
-// Of both eyes together, since they share one budget.
+// For both eyes together, since they share one budget.
 void countPast(const FrameFacts& frame, FrameResult& result) {
     WarpedCounters& counters = result.counters.warped.emplace();
     std::uint64_t shown = 0;
@@ -78,7 +78,7 @@ void countPast(const FrameFacts& frame, FrameResult& result) {
     counters.tiles_shown = shown;
     const double all_steps = static_cast<double>(gpu::kSquareSteps * 3 * gpu::kTileSize * gpu::kTileSize) *
                              static_cast<double>(std::max<std::uint64_t>(shown, 1));
-    // Expectations err alike where tiles are rendered, which says by how much.
+    // Expectations for rendered tiles err in the same way, and those errors are known.
     result.warp_error = left / all_steps * (expected > 0.0 ? std::min(found / expected, 1.0) : 1.0);
     result.half_loss = wider / all_steps * gpu::kMeasuredParts;
     result.tiles_rendered = shown > 0 ? static_cast<double>(counters.tiles_patched) / static_cast<double>(shown) : 0.0;
@@ -99,8 +99,8 @@ void countCoarse(const gpu::EyeCounters& eye, FrameCounters& counters) {
 
 bool seesNothing(const FrameCounters& counters) {
     if (std::ranges::any_of(counters.targets, [](const TargetCounters& target) { return target.tile_pairs > 0; })) { return false; }
-    // Pictures that are made from their pasts may need no splat: then their tiles know the cost of making them. An empty tile counts for
-    // kTilePairs.
+    // Pictures that are made from their histories may need no splat: then their tiles know the cost of making them. An empty tile counts
+    // for kTilePairs.
     std::uint64_t tiles = 0;
     for (const TargetCounters& target : counters.targets) { tiles += target.tiles; }
     return !counters.warped || !counters.warped->work || counters.warped->work->full <= gpu::kTilePairs * tiles;

@@ -15,7 +15,7 @@ namespace {
 
 // Components of holes that get a box of their own: 64 KiB.
 constexpr std::uint32_t kHoleBoxes = 4096;
-// Room that is made ahead of what was needed.
+// Capacity beyond what was needed.
 constexpr double kRoomMade = 1.5;
 
 bool isEmptied(const gpu::ListState& list) { return list.needed != list.count; }
@@ -71,7 +71,8 @@ void FrameRoom::recordShown(Commands& commands) {
 void FrameRoom::fitWarps(const FramePlan& plan) {
     std::array<WarpBufferNeeds, kMostTargets> needs;
     for (std::size_t t = 0; t < needs.size() && t < plan.targets.size(); ++t) { needs[t] = needsOf(plan.targets[t]); }
-    // If eyes have changed their roles, one's buffers serve the other; those that nobody needs any more go before anything is made.
+    // If eyes have changed their roles, one's buffers serve the other; buffers that are no longer needed are
+    // freed before anything is made.
     for (std::size_t t = 0; t < needs.size(); ++t) {
         for (std::size_t other = 0; other < needs.size() && warps_[t].needs() != needs[t]; ++other) {
             if (warps_[other].needs() == needs[t] && needs[other] != needs[t]) { std::swap(warps_[t], warps_[other]); }
@@ -118,7 +119,7 @@ void FrameRoom::fitPictures(const FramePlan& plan, const std::array<std::span<co
     for (std::size_t p = 0; p < pictures_.size(); ++p) {
         if (!is_used[p]) { fitPicture(pictures_[p], {0, 0}, {}); }
     }
-    // The pasts of both eyes have room for what either leaves, since they change places.
+    // The histories of both eyes have memory for what either leaves, since they change places.
     bool coarse = false;
     for (const TargetPlan& target : plan.targets) {
         coarse = coarse || target.coarse;
@@ -149,7 +150,8 @@ bool FrameRoom::isSourceVoid(const FramePlan& plan, const FrameState& state) {
 }
 
 double FrameRoom::spareFor(double ahead) const {
-    // Just enough the first time, since a single picture needs no more; with room to spare once the view moves.
+    // Just enough the first time, since a single picture needs no more; with some to spare once the view
+    // moves.
     return ahead > 1.0 ? kRoomMade : first_frame_ ? 1.0 : 1.25;
 }
 
@@ -161,7 +163,7 @@ std::uint32_t FrameRoom::roomForPairs(const FramePlan& plan, const TargetPlan& t
 }
 
 FrameCapacity FrameRoom::roomFor(const FramePlan& plan, const FrameState& state, double ahead, double spare) const {
-    // `roomOf`: of so many; it need not be in proportion.
+    // `roomOf`: the memory for this many; it need not be proportional.
     const auto enough = [&](std::uint32_t needed, std::uint32_t capacity, const auto& roomOf) {
         const auto times = [&](double factor, double step) {
             return static_cast<std::uint32_t>(std::min(std::ceil(needed * factor / step) * step, 2147482624.0));
@@ -170,8 +172,8 @@ FrameCapacity FrameRoom::roomFor(const FramePlan& plan, const FrameState& state,
     };
     const FrameCapacity now = lists_.capacity();
     FrameCapacity wanted = now;
-    // Each picture that is rendered at the same time as others has its own part of the lists of splats; so it will in the next frame, whose
-    // pictures meet no more splats than these.
+    // Each picture that is rendered at the same time as others has its own part of the lists of splats; the
+    // same holds in the next frame, whose pictures meet no more splats than these.
     const auto ofAll = [](std::uint32_t needed, int shares) {
         return std::min(needed, UINT32_MAX / static_cast<std::uint32_t>(shares)) * static_cast<std::uint32_t>(shares);
     };
@@ -183,7 +185,8 @@ FrameCapacity FrameRoom::roomFor(const FramePlan& plan, const FrameState& state,
     for (std::size_t t = 0; t < plan.targets.size(); ++t) {
         const std::uint32_t pairs = state.targets[t].pairs.needed;
         check(pairs != UINT32_MAX, "an eye sees more than {} pairs of tile and splat, fewer splats or pixels are needed", gpu::kMaxItems);
-        // Without the source's pairs every tile seems cheap to render: how many the target needs turns out in the next try.
+        // Without the source's pairs every tile seems cheap to render; how many the target needs is found on
+        // the next try.
         if (plan.targets[t].warp && isSourceVoid(plan, state)) { continue; }
         const auto roomOf = [&](std::uint32_t of) { return roomForPairs(plan, plan.targets[t], of, ahead > 1.0); };
         wanted.pairs = std::max(wanted.pairs, enough(pairs, now.pairs, roomOf));
@@ -226,7 +229,7 @@ bool FrameRoom::growIfItFits(const FramePlan& plan, const FrameState& state) {
 }
 
 void FrameRoom::makeRoomForChosen(const FramePlan& plan, const FrameState& state) {
-    // Of the target's work: all of it, or the share that is cheap to render and the budget.
+    // Of the target's work: all of it, or the share that is cheap to render plus the budget.
     const TargetPlan& target = plan.targets[static_cast<std::size_t>(plan.warpedTarget().value())];
     const std::uint32_t all = std::min(state.targets[static_cast<std::size_t>(plan.firstTarget())].pairs.needed, gpu::kMaxItems);
     FrameCapacity wanted = lists_.capacity();

@@ -1,4 +1,5 @@
-// The device memory of frames: pictures, lists, and what warps work on. As much as the eyes need, which the frames themselves find out.
+// The device memory of frames: pictures, lists, and the buffers of warps. As much as the eyes need, which the
+// frames themselves find out.
 #pragma once
 
 #include "engine/frame/plan.h"
@@ -15,13 +16,14 @@ namespace binosplat {
 
 class FrameRoom {
 public:
-    // Lists of frames that nobody waits for have this much more room than the last known frame needed.
+    // Lists of frames that are not waited for have this many times the capacity that the last known frame
+    // needed.
     static constexpr double kRoomAhead = 1.15;
 
-    // `wait_for_frames`: returns once no frame under way uses this room; called before any of it is freed.
+    // `wait_for_frames`: returns once no frame in flight uses this room; called before any of it is freed.
     FrameRoom(const Context& context, const FrameCapacity& first_capacity, std::function<void()> wait_for_frames);
 
-    // From now on lists hold splats of `scene`.
+    // Lists hold splats of `scene` from now on.
     void show(const GpuScene& scene);
     // As if no frame had been drawn yet.
     void forgetFrames() { first_frame_ = true; }
@@ -35,19 +37,22 @@ public:
 
     // The following are about what a frame drawn by `plan` reported.
 
-    // True if a list had no room at all.
+    // True if a list lacked all capacity.
     [[nodiscard]] static bool isCutShort(const FrameState& state);
-    // True if the lists of the target that others are made from had no room, so that its picture shows nothing.
+    // True if the lists of the target from which others are made lacked capacity, so that its picture shows
+    // nothing.
     [[nodiscard]] static bool isSourceVoid(const FramePlan& plan, const FrameState& state);
-    // True if the lists have room for `ahead` times what was needed.
+    // True if the lists have capacity for `ahead` times what was needed.
     [[nodiscard]] bool hasRoom(const FramePlan& plan, const FrameState& state, double ahead) const;
-    // True if the lists had room; if not, makes room.
+    // True if the lists were long enough; if not, makes them longer.
     bool growIfNeeded(const FramePlan& plan, const FrameState& state);
-    // True if it made room: with some to spare, or if that does not fit, just as much as is needed.
+    // True if it made them longer: with some to spare or, if that does not fit, with just as much as is
+    // needed.
     bool growIfItFits(const FramePlan& plan, const FrameState& state);
-    // Where the source's pairs had no room: a guess, since those of the target depend on them.
+    // If the source's pairs did not fit: a guess, since the target's depend on them.
     void makeRoomForChosen(const FramePlan& plan, const FrameState& state);
-    // For kRoomAhead times what was needed; does without if that does not fit, as long as the lists themselves do.
+    // For kRoomAhead times what was needed; does without if that does not fit, as long as the lists
+    // themselves do.
     void makeRoomAhead(const FramePlan& plan, const FrameState& state);
     [[nodiscard]] bool fitsAhead() const { return room_ahead_fits_; }
     // The frame had room.
@@ -59,9 +64,9 @@ public:
     [[nodiscard]] const Buffer& moments() const { return moments_; }  // I and J of the target that keeps them
     [[nodiscard]] const WarpBuffers& warp(int target) const { return warps_[static_cast<std::size_t>(target)]; }
     [[nodiscard]] const ShownTiles& shown(int target) const { return shown_[static_cast<std::size_t>(target)]; }
-    // For the scene's changes, of all pictures of a frame: made when it is first needed.
+    // For the scene's changes, in all pictures of a frame: made when it is first needed.
     [[nodiscard]] const Buffer& changedRects();
-    // To be called before the passes of a frame.
+    // Call this before the passes of a frame.
     void recordShown(Commands& commands);
 
 private:
@@ -69,11 +74,11 @@ private:
     void growLists(const FrameCapacity& capacity);
     void fitPicture(Picture& picture, glm::uvec2 size_px, const Kept& kept);
     void fitWarps(const FramePlan& plan);
-    // The room in PairBuffers for so many pairs of a target.
+    // The capacity of PairBuffers for this many pairs of a target.
     [[nodiscard]] std::uint32_t roomForPairs(const FramePlan& plan, const TargetPlan& target, std::uint32_t pairs, bool is_ahead) const;
     // False, with the lists as they were, if the device lacks the memory.
     bool tryToGrow(const FrameCapacity& wanted);
-    // Room for `spare` times what was needed, in the lists that must grow.
+    // Capacity for `spare` times what was needed, in the lists that must grow.
     [[nodiscard]] FrameCapacity roomFor(const FramePlan& plan, const FrameState& state, double ahead, double spare) const;
     [[nodiscard]] double spareFor(double ahead) const;
 

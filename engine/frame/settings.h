@@ -1,4 +1,4 @@
-// What a frame is asked for, and what it returns.
+// The settings of a frame, and its result.
 #pragma once
 
 #include "engine/baselines/warp_traffic.h"
@@ -28,7 +28,7 @@ struct FrameSettings {
     Mode mode = Mode::kPredicted;
     Side dominant = kLeft;
     double near = 0.2;             // scene units
-    double units_per_metre = 1.0;  // scene units in a metre of the wearer: for telling a jump of the eyes
+    double units_per_metre = 1.0;  // scene units in a metre of the wearer: to recognize a jump of the eyes
     glm::dvec3 background{0.0};
     Order order = Order::kDepth;  // in all modes; a frame of two eyes has one middle, even if nothing is shared
     StereoSettings stereo;        // how one eye is made from the other; its `choice` follows from the mode
@@ -40,26 +40,27 @@ struct FrameSettings {
     bool keep_both_depths = false;  // D of the affiliated eye, too; where it is not rendered, alpha over its inverse depth
     bool keep_moments = false;      // I and J of the dominant eye, for readInverseDepthMoments
     bool keep_classes = false;      // how each pixel of the affiliated eye came about, for readPixelClasses and the report's counters
-    // By eye, tiles that nobody will see: a byte a tile, row-major, 1 if it is hidden; empty: none is. They become background, cost no
-    // pairs and are left out of the budget, which is a share of the others.
+    // By eye, hidden tiles: a byte a tile, row-major, 1 if it is hidden; empty: none is. They become
+    // background, cost no pairs and do not count for the budget, which is a share of the others.
     std::array<std::span<const std::uint8_t>, 2> hidden_tiles = {};
     // Modes that render every tile (isInFull), by eye: splats show only where they are nearer than this.
     std::array<std::optional<MeshDepths>, 2> mesh_depths = {};
     // Recorded before anything of the frame.
     std::function<void(Commands&)> before = {};
-    // kPredicted, by eye: where it looks; empty: nobody knows. Only what it sees of the affiliated eye's errors counts.
+    // kPredicted, by eye: where it looks; empty: unknown. Only the part of the affiliated eye's errors that
+    // it sees counts.
     std::array<std::optional<Gaze>, 2> gazes = {};
-    // kMono, kPredicted, kAlternate, kTemporal: if it is known where the eyes look (`gazes`), tiles elsewhere are coarse, except where they
-    // would see the difference. Not if moments are kept.
+    // kMono, kPredicted, kAlternate, kTemporal: if the gazes are known (`gazes`), tiles elsewhere are coarse,
+    // unless the eyes would see the difference. Not if moments are kept.
     bool half_periphery = false;
-    // kAlternate, kTemporal: more frames follow, which are made from this one; it may be made from the one before, if that was asked for
-    // with keep_past, too.
+    // kAlternate, kTemporal: more frames follow, and are made from this one; this one may be made from the
+    // one before, if that had keep_past, too.
     bool keep_past = false;
-    bool times_passes = true;  // for FrameResult::gpu_ms: two timestamps a pass instead of two a frame
-    // kTemporal: frames also measure what half of the resolution would lose, on so many parts of their tiles in turn: this is the turn. As
-    // many as there are parts, or more: they do not.
+    bool times_passes = true;  // for FrameResult::gpu_ms: two timestamps per pass instead of two per frame
+    // kTemporal: frames also measure what half of the resolution would lose, taking turns with one part of
+    // their tiles each: this is the turn. If it is the number of parts, or more, they do not.
     std::uint32_t measured_part = gpu::kMeasuredParts;
-    std::uint64_t mark = 0;  // the caller's own; comes back with the result
+    std::uint64_t mark = 0;  // the caller's own; returned with the result
 };
 
 // Of such a mask.
@@ -73,14 +74,14 @@ struct FrameResult {
     double gpu_total_ms = 0.0;  // from the first pass to the last
     FrameCounters counters;
     Traffic stereo_bytes_per_pixel;  // of the passes that make one eye from the other, if the mode has any
-    // Of `temporal`, as mean squares over pixels and channels, of values 0 to 1; 0 if not known: what its tiles that were not rendered are
-    // expected to be off by, and what half of the resolution would lose.
+    // For `temporal`, as mean squares over pixels and channels, for values of 0 to 1; 0 if unknown: the
+    // expected error of its tiles that were not rendered, and what half of the resolution would lose.
     double warp_error = 0.0, half_loss = 0.0;
     double tiles_rendered = 1.0, work_rendered = 1.0;  // shares of the affiliated eye's tiles, and of its work if the mode weighs it
     std::uint64_t peak_gpu_bytes = 0;                  // the most device memory that this program ever held at a time
     std::vector<std::string> left_out;                 // what this scene and mode did not need
-    std::uint64_t mark = 0;                            // of the settings it was asked with
-    bool sees_nothing = false;                         // no splat touches any of its pictures, nor did any touch their pasts
+    std::uint64_t mark = 0;                            // of its settings
+    bool sees_nothing = false;                         // no splat touches any of its pictures, or touched their histories
 };
 
 // Initial values of a frame; the defaults suit every device.

@@ -10,14 +10,15 @@
 namespace binosplat {
 namespace {
 
-// Where the scene changed, tiles are rendered on top of the budget, of which this share is left to the others: as many in these parts of
-// the picture as in the rest, and a few more. If more than the last figure changed, lists that were made for whole pictures may be too
-// short for the patches of both.
+// Where the scene changed, tiles are rendered on top of the budget, and this share of the budget is left for
+// the others: as many in these parts of the picture as elsewhere, and a few more. If more than the last
+// figure changed, lists that were made for whole pictures may be too short for the patches of both.
 constexpr double kBudgetBesideChanges = 0.5, kMoreWhereChanged = 1.2, kMostChanged = 0.4;
-// If more of a picture's tiles than this share come into view, or if some are hidden and were not before, its lists may differ much.
+// If more than this share of a picture's tiles come into view, or if some are newly hidden, its lists may
+// differ much.
 constexpr double kMostHiddenDiffer = 0.1;
 
-// The traits that a past must share with a frame.
+// The traits that a history must share with a frame.
 FrameShape askedApartFromSizes(const FrameSettings& settings) { return shapeOf({}, settings); }
 
 }  // namespace
@@ -82,7 +83,7 @@ void StereoFrame::makeKernels(std::span<const Eye> eyes, const FrameSettings& se
         recorder(true).record(commands, next);
         commands.drop();
     }
-    // Nothing is known of any frame.
+    // Nothing is known about any frame.
     moving_pays_.forget();
     room_.forgetFrames();
 }
@@ -92,7 +93,7 @@ FrameResult StereoFrame::render(std::span<const Eye> eyes, const FrameSettings& 
     prepare(eyes, settings);
     renderUntilComplete(settings, append);
     FrameResult result = take(flight());
-    // A bound lets frames choose what lists have room for.
+    // With a bound, frames decide what lists have capacity for.
     if (plan_.error_bound_db > 0.0) { room_.makeRoomAhead(plan_, state_); }
     return result;
 }
@@ -113,13 +114,13 @@ std::optional<FrameResult> StereoFrame::renderAhead(std::span<const Eye> eyes, c
                                                     vk::Semaphore signals) {
     Flight &before_last = flight(), &last = flights_[1 - turn_];
     std::optional<FrameResult> result = land(before_last);
-    // Lists have room for patches while there is a past, and for whole pictures after it.
+    // Lists have capacity for patches while there is a history, and for whole pictures after it.
     const bool has_past = pasts_.of_eyes[0] && settings.keep_past;
     const bool was_warped = std::ranges::any_of(plan_.targets, [](const TargetPlan& target) { return target.past.has_value(); });
     const bool loses_past =
         has_past && (!pastsFor(eyes, settings).of_eyes[0] || (was_warped && changedShare(eyes, settings) > kMostChanged));
     bool waits = room_.isFirstFrame() || loses_past || isUnlikeLast(eyes, settings) || FrameRoom::isCutShort(state_);
-    // Lists fill up gradually: room is made before it runs short, while nothing uses them.
+    // Lists fill up gradually: they are made longer before they are full, while nothing uses them.
     const bool is_short = result && room_.fitsAhead() && !room_.hasRoom(plan_, stateAhead(), kRoomAhead);
     if (waits || is_short) {
         if (auto newer = land(last)) { result = std::move(newer); }
@@ -161,7 +162,8 @@ std::optional<FrameResult> StereoFrame::land(Flight& flight) {
     splats_known_ = flight.splats_held;
     if (FrameRoom::isCutShort(state_)) {
         ++cut_short_;
-        // Where tiles have no room, the picture made from a past or another picture stays; one that is made from neither has nothing else.
+        // A tile that did not fit keeps what was made from a history or another picture; a picture made from
+        // neither has nothing else.
         const auto isMade = [](const TargetPlan& target) { return target.past.has_value() || target.warp.has_value(); };
         if (!std::ranges::all_of(flight.plan.targets, isMade)) { pasts_ = {}; }
     }
@@ -198,7 +200,7 @@ std::uint64_t StereoFrame::renderAtMostTwice(const FrameSettings& settings, cons
     if (guesses) { room_.makeRoomForChosen(plan_, state_); }
     planAnew(settings);
     renderOnce(settings, append);
-    // Lists that are still short get room the next time.
+    // Lists that are still too short grow the next time.
     if (!room_.growIfItFits(plan_, state_)) { room_.haveFrame(); }
     return 1;
 }
@@ -220,7 +222,7 @@ FrameState StereoFrame::stateAhead() const {
         visible = std::max<std::uint64_t>(visible, state_.visible[l].needed);
         ahead.visible[l].needed = std::min(state_.visible[l].needed, gpu::kMaxItems - more) + more;
     }
-    // Each of them meets about as many tiles as the present ones, of which nobody may have seen any yet.
+    // Each of them meets about as many tiles as the present ones, none of which may have been visible yet.
     constexpr std::uint64_t kLeastTiles = 2;
     for (std::size_t t = 0; t < plan_.targets.size(); ++t) {
         const std::uint64_t pairs = state_.targets[t].pairs.needed, of_more = more * std::max(pairs / visible, kLeastTiles);
@@ -234,7 +236,7 @@ void StereoFrame::makeRoomForVisible() {
     recorder().recordReport(flight().commands, flight().readback);
     flight().commands.submitAndWait();
     state_ = flight().readback.mapped<FrameState>()[0];
-    room_.growIfItFits(plan_, state_);  // nothing is known of pairs yet
+    room_.growIfItFits(plan_, state_);  // nothing is known about pairs yet
 }
 
 Pasts StereoFrame::pastsFor(std::span<const Eye> eyes, const FrameSettings& settings) const {
@@ -259,7 +261,7 @@ double StereoFrame::changedShare(std::span<const Eye> eyes, const FrameSettings&
 
 void StereoFrame::planAnew(const FrameSettings& settings) {
     if (std::ranges::none_of(plan_.targets, [](const TargetPlan& target) { return target.past.has_value(); })) { return; }
-    // The memory that the past was made from is overwritten already.
+    // The memory that the history was made from is overwritten already.
     plan_ = planFrame(settings, eyes_, true);
     room_.fitPictures(plan_, settings.hidden_tiles);
 }

@@ -23,58 +23,65 @@ public:
     StereoFrame(const StereoFrame&) = delete;
     StereoFrame& operator=(const StereoFrame&) = delete;
     ~StereoFrame();
-    // Another frame of the scene that `other` shows, with pictures and pasts of its own. It uses the kernels of `other`, which must outlive
-    // it, and on the same thread.
+    // Another frame of the scene that `other` shows, with pictures and histories of its own. It uses the kernels of `other`, which must
+    // outlive it, and on the same thread.
     static std::unique_ptr<StereoFrame> beside(StereoFrame& other);
 
-    // From now on frames are of `scene`, on the same device. Kernels stay compiled. Waits for frames under way. Throws Error if the device
-    // lacks the memory: then frames are of the scene before.
+    // Frames show `scene` from now on, which is on the same device. Kernels stay compiled. Waits for frames
+    // in flight. Throws Error if the device lacks the memory: then frames show the scene before.
     void show(const GpuScene& scene);
 
-    // Renders one eye (Mode::kMono) or two, [kLeft] and [kRight]. Where a buffer is too small for what the eyes see, it grows and the
-    // frame is done again: the result is never that of a truncated list. Throws Error if the device lacks the memory.
-    // `append` records what becomes of the pictures, in the same submission; it is called again if the frame is done again.
+    // Renders one eye (Mode::kMono) or two, [kLeft] and [kRight]. If a buffer is too small for what the eyes
+    // see, it grows and the frame is done again: the result never comes from a truncated list. Throws Error
+    // if the device lacks the memory. `append` records what becomes of the pictures, in the same submission;
+    // it is called again if the frame is done again.
     FrameResult render(std::span<const Eye> eyes, const FrameSettings& settings, const std::function<void(Commands&)>& append = {});
-    // For showing frame after frame: returns once the frame is on its way to the device, and waits only for the one before the last, whose
-    // result it returns (empty if there is none). So the device draws one frame while the next is prepared. Lists have room for more
-    // than the last frame needed. A frame that still finds too little room shows background once and is counted ("frames_cut_short"),
-    // and the frame after it is waited for. So is a frame that has little in common with the one before: the first one, one of another
-    // size or mode, and one after a jump of the eyes. If a list has no room in a frame that is waited for, the frame is done again,
-    // once, before anybody sees it ("frames_done_again"). What it needs is counted or, if that is not possible, guessed, so that even
-    // then it is seldom cut short.
-    // `signals`, if given, is signalled when the frame is done.
+    // For showing frame after frame: returns once the frame is on its way to the device, and waits only for
+    // the one before the last, whose result it returns (empty if there is none). So the device draws one
+    // frame while the next is prepared. Lists have more capacity than the last frame needed. A frame whose
+    // lists are still too short shows background once and is counted ("frames_cut_short"), and the frame
+    // after it is waited for. So is a frame that has little in common with the one before: the first one, one
+    // of another size or mode, and one after a jump of the eyes. If a list is too short in a frame that is
+    // waited for, the frame is done again, once, before it is shown ("frames_done_again"). What it needs is
+    // counted or, if that is not possible, guessed, so even then it is seldom cut short. `signals`, if given,
+    // is signalled when the frame is done.
     std::optional<FrameResult> renderAhead(std::span<const Eye> eyes, const FrameSettings& settings,
                                            const std::function<void(Commands&)>& append = {}, vk::Semaphore signals = {});
     // A frame for commands that the caller submits, to the device's queue and in the order of recording.
     struct Lent {
         std::uint64_t number;
-        vk::CommandBuffer commands;  // of the second level, for outside of render passes
+        vk::CommandBuffer commands;  // secondary, for outside of render passes
     };
-    // Waits for nothing: lists have room for more than the last frame needed that came back, and a frame that finds too little of it shows
-    // background. Each that is lent comes back once.
+    // Does not wait: lists have more capacity than the last frame that came back needed, and a frame with
+    // lists that are too short shows background. Each lent frame comes back once.
     Lent lend(std::span<const Eye> eyes, const FrameSettings& settings, const std::function<void(Commands&)>& append = {});
-    // The device is done with it.
+    // The device has finished it.
     FrameResult takeBack(std::uint64_t number);
     // Nobody will submit it.
     void takeBackUnused(std::uint64_t number);
-    // From now on somebody else records the scene's changes, and submits them before each frame.
+    // From now on the caller records the scene's changes, and submits them before each frame.
     void leaveChanges() { brings_changes_ = false; }
-    // The next frame is made from no past.
+    // The next frame has no history.
     void forgetPast() { pasts_ = {}; }
 
-    // Makes the images that renderAhead needs for such frames, if they differ from those of the frame before, for which it waits.
-    // Throws Error if the device lacks the memory: then no picture is left, and frames as they were before may still be rendered.
+    // Makes the images that renderAhead needs for such frames, if they differ from those of the frame before,
+    // for which it waits. Throws Error if the device lacks the memory: then no picture is left, and frames as
+    // before may still be rendered.
     void makeRoom(std::span<const Eye> eyes, const FrameSettings& settings);
-    // Waits for all frames under way: after this nothing that they use is in use. The last one's result.
+    // Waits for all frames in flight, after which nothing that they use is in use. Returns the last one's
+    // result.
     std::optional<FrameResult> finish();
-    // Makes all kernels anew, see Context::replacedShaders. Throws Error if one cannot be made; then some are new and some old.
+    // Makes all kernels again, see Context::replacedShaders. Throws Error if one cannot be made; then some
+    // are new and some old.
     void rebuildKernels();
-    // Takes over the kernels of a frame of the same device and options, and keeps those of its own that the other lacks: what was made for
-    // one scene need not be made again for the next. If the other goes on, it makes what it lacks anew.
+    // Takes over the kernels of a frame of the same device and options, and keeps its own that the other
+    // lacks: kernels made for one scene need not be made again for the next. If the other goes on, it makes
+    // what it lacks again.
     void takeKernels(StereoFrame& from);
     // The number of its kernels.
     [[nodiscard]] std::size_t kernelCount() const { return kernels_.size(); }
-    // Makes the kernels of such frames, so that none of these waits for a driver's compiler: records them, but draws nothing.
+    // Makes the kernels of such frames, so that they do not wait for a driver's compiler: records them, but
+    // draws nothing.
     void makeKernels(std::span<const Eye> eyes, const FrameSettings& settings);
 
     // Pictures of the last frame. RGBA as blended (rgb = sum w c + T background, a = sum w).
@@ -83,14 +90,15 @@ public:
     [[nodiscard]] Image readDominantDepth() { return readDepth(plan_.dominant); }
     // The same for any eye, if it was kept.
     [[nodiscard]] Image readDepth(int eye);
-    // The depth, along the eye's axis, of what a pixel shows, D over alpha; reads nothing else. Empty if less than half of the pixel
-    // is covered, or if the depth was not kept.
+    // The depth, along the eye's axis, of what a pixel shows, D over alpha; reads nothing else. Empty if less
+    // than half of the pixel is covered, or if the depth was not kept.
     [[nodiscard]] std::optional<double> depthAt(int eye, glm::uvec2 pixel);
     // I = sum w/z and J = sum w/z^2 of the dominant eye, two channels; if they were kept.
     [[nodiscard]] Image readInverseDepthMoments();
-    // How each tile of the affiliated picture came about (kTileEdge ...; 0: reprojection), row-major; empty if no mode chose.
+    // How each tile of the affiliated picture came about (kTileEdge ...; 0: reprojection), row-major; empty
+    // if the mode chooses none.
     [[nodiscard]] std::vector<std::uint32_t> readTileKinds();
-    // The same for any eye's picture, including one that is made from its own past.
+    // The same for any eye's picture, including one that is made from its own history.
     [[nodiscard]] std::vector<std::uint32_t> readTileKinds(int eye);
     // How each pixel of the affiliated picture outside such tiles came about (kCovered, kGap, kHole), row-major; if they
     // were kept.
@@ -100,7 +108,7 @@ public:
     [[nodiscard]] const Picture& picture(int eye) const { return room_.picture(plan_.targets[static_cast<std::size_t>(eye)].picture); }
     // The buffers with the kinds of an eye's tiles in the last frame; null if it was rendered in full.
     [[nodiscard]] const WarpBuffers* chosenTiles(int eye) const;
-    // Of the target that is made from another; without memory if there is none.
+    // For the target that is made from another; without memory if there is none.
     [[nodiscard]] const WarpBuffers& warpBuffers() const { return room_.warp(plan_.warpedTarget().value_or(0)); }
 
 private:
@@ -108,8 +116,9 @@ private:
     StereoFrame(const Context& context, const GpuScene& scene, const FrameOptions& options, PassKernels* others);
 
     using Append = std::function<void(Commands&)>;
-    // A frame on the device, and what must be remembered to interpret its report. Two take turns. What only the device touches they
-    // share, since every command waits for those before it, even those of the frame before.
+    // A frame on the device, and what must be remembered to interpret its report. Two take turns. They share
+    // what only the device touches, since every command waits for those before it, even those of the frame
+    // before.
     struct Flight {
         explicit Flight(const Context& context, Commands::Level level = Commands::Level::kPrimary)
             : readback(context, "frame state read-back", sizeof(FrameState), MemoryKind::kReadback), commands(context, level) {}
@@ -123,33 +132,34 @@ private:
     };
 
     [[nodiscard]] Flight& flight() { return flights_[turn_]; }
-    // `drops`: the recording is dropped, and so must leave the scene's changes to the next.
+    // `drops`: the recording is dropped, and must leave the scene's changes to the next.
     [[nodiscard]] FrameRecorder recorder(bool drops = false) {
         return {kernels_, *scene_, room_, drops ? std::nullopt : std::optional(changes_known_), brings_changes_};
     }
-    // The pasts that the frames before leave to such a frame.
+    // The histories that earlier frames leave to such a frame.
     [[nodiscard]] Pasts pastsFor(std::span<const Eye> eyes, const FrameSettings& settings) const;
     // The share of both eyes' tiles in which the scene differs from what the last frame shows.
     [[nodiscard]] double changedShare(std::span<const Eye> eyes, const FrameSettings& settings) const;
-    // Plans the frame without a past, even if there is one.
+    // Plans the frame without a history, even if there is one.
     void planAnew(const FrameSettings& settings);
-    // Plans the frame, and makes room for it as far as its needs are known.
+    // Plans the frame, and provides capacity as far as its needs are known.
     void prepare(std::span<const Eye> eyes, const FrameSettings& settings);
     // Records what was prepared.
     void record(Flight& flight, const FrameSettings& settings, const Append& append);
-    // Waits for it; returns its result, if it was under way.
+    // Waits for it; returns its result, if it was in flight.
     std::optional<FrameResult> land(Flight& flight);
     // Reads the frame's report, and learns from it.
     FrameResult take(const Flight& flight);
     void renderOnce(const FrameSettings& settings, const Append& append);
-    // Until the lists had room.
+    // Until the lists are long enough.
     void renderUntilComplete(const FrameSettings& settings, const Append& append);
-    // The same for display: once more at most; returns how often it was done again. What has no room even then shows background, and has
-    // room the next time if the device has that much memory.
+    // The same for display: at most once more; returns how often it was done again. Where lists are too short
+    // even then, background is shown; they are long enough the next time if the device has that much memory.
     std::uint64_t renderAtMostTwice(const FrameSettings& settings, const Append& append);
     // What the last known frame would have reported if it had seen all splats that come with the next changes.
     [[nodiscard]] FrameState stateAhead() const;
-    // Counts the splats that the eyes see, which costs little: without room for them nothing is known of what follows.
+    // Counts the splats that the eyes see, which costs little: if their list is too short, nothing is known
+    // about what follows.
     void makeRoomForVisible();
     // True if the frame has little in common with the one before.
     [[nodiscard]] bool isUnlikeLast(std::span<const Eye> eyes, const FrameSettings& settings) const;
@@ -163,7 +173,7 @@ private:
     FrameRoom room_;
     FramePlan plan_;                  // of the last frame
     Pasts pasts_;                     // that the last frame leaves
-    FrameShape past_shape_;           // of these pasts, apart from sizes
+    FrameShape past_shape_;           // of these histories, apart from sizes
     FrameState state_{};              // the report of the last known frame
     std::uint32_t splats_known_ = 0;  // how many the scene held then
     MovingPays moving_pays_;
