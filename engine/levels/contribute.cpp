@@ -1,4 +1,4 @@
-// Recording `contribute`.
+// Records `contribute`.
 #include "engine/levels/contribute.h"
 
 namespace binosplat {

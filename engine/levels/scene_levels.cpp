@@ -1,4 +1,4 @@
-// Blocks of whole leaves, so that each leaf has all of a level at once.
+// Blocks of whole leaves, so that each leaf gets all of a level at once.
 #include "engine/levels/scene_levels.h"
 
 #include "engine/files/scene_spill.h"
@@ -15,7 +15,8 @@ public:
     LevelMaker(const Context& context, const LevelSettings& settings, StreamedWriter& writer)
         : context_(context), settings_(settings), writer_(writer) {}
 
-    // Writes levels `first` (unless that was written) to `last`, of which `scene` is the former. Gives the latter.
+    // Writes levels `first` (unless it has been written) to `last`; `scene` is level `first`. Returns level
+    // `last`.
     Scene make(const Scene& scene, std::size_t first, std::size_t last, std::vector<Eye> eyes, int steps, const Progress& progress) {
         const auto levels = static_cast<double>(last - first + 1);
         const auto part = [&](std::size_t level, double from, double share) {
@@ -76,7 +77,7 @@ void writeSceneLevels(const Context& context, const SceneParts& parts, const Lev
         (void)maker.make(spill.read(0), 0, last, settings.eyes, kFitSteps, progress);
         return;
     }
-    std::size_t of_blocks = 0;  // the last level that is
+    std::size_t of_blocks = 0;  // the last level made in blocks
     while (of_blocks < last && splats >> of_blocks > settings.block_splats) { ++of_blocks; }
     constexpr double kShareOfBlocks = 0.95;
     for (std::size_t i = 0; i < blocks.count; ++i) {

@@ -1,4 +1,4 @@
-// Choosing by weight, widening, and fitting by the sums of `contribute`.
+// Chooses by weight, widens, and fits by the sums of `contribute`.
 #include "engine/levels/thin_out.h"
 
 #include "engine/files/sog_pack.h"
@@ -14,15 +14,17 @@ namespace binosplat {
 
 namespace {
 
-// Splats that stay are wider by this power of the share that does not.
+// Splats that stay become wider by the share that stays, to this power.
 constexpr double kWidening = -0.125;
-// A step of the fit looks from every fourth eye: all eyes in four steps, each of which goes nearly as far as one from all of them.
+// A step of the fit looks from every fourth eye: all eyes in four steps, each of which goes nearly as far as
+// one from all of them.
 constexpr std::size_t kParts = 4;
-// Of the way to where a splat alone would mend what is missing under it. Colours go all of it: where splats overlap, weights add up to 1 at
-// most. Opacities and sizes share what is missing with these and with each other.
+// How far to go towards the value with which a splat alone would supply what is missing under it. Colours go
+// all the way: where splats overlap, weights add up to at most 1. Opacities and sizes share what is missing
+// with colours and with each other.
 constexpr double kOpacityRate = 0.6, kSizeRate = 0.4;
 constexpr double kMostGrowth = 0.25;   // of a logarithm in a step
-constexpr double kLeastWeight = 0.01;  // in pixels: of what is seen less, little is known
+constexpr double kLeastWeight = 0.01;  // in pixels: of splats that show less, little is known
 constexpr double kLeastHold = 1e-3;
 constexpr float kErrorScale = 64.0f;  // of squares: steps of 2^-26, up to 1/16
 constexpr float kFaintest = 1.25f / 255.0f, kDensest = 0.999f;
@@ -32,13 +34,13 @@ struct SplatSums {
     std::span<const std::int64_t> steps;
     double operator[](std::size_t i) const { return static_cast<double>(steps[i]) / static_cast<double>(gpu::kContributionSteps); }
 
-    // How far a logarithm goes.
+    // How far a logarithm moves.
     [[nodiscard]] double growth(std::size_t pull, std::size_t hold) const {
         return (*this)[pull] / ((*this)[hold] + kLeastHold * ((*this)[gpu::kSumWeight] + 1.0));
     }
 };
 
-// Moves each splat by what its sums say; those that no eye sees stay.
+// Moves each splat by its sums; those that no eye sees stay.
 void takeStep(Scene& scene, std::span<const std::int64_t> sums) {
     const auto width = static_cast<std::size_t>(3 * shCoefficientCount(scene.sh_degree));
     const double constant_band = shBasis({0.0, 0.0, 1.0})[0];
@@ -61,10 +63,10 @@ void takeStep(Scene& scene, std::span<const std::int64_t> sums) {
     }
 }
 
-// What of a splat stays, 0 to 1. What no eye sees has hardly a share.
+// The share of a splat that stays, 0 to 1. A splat that no eye sees has almost none.
 double shareOf(std::int64_t weight, double factor) { return std::min(1.0, factor * (static_cast<double>(weight) + 1.0)); }
 
-// With which all shares add up to `count`, fewer than there are.
+// The factor with which all shares add up to `count`, fewer than there are.
 double factorFor(std::span<const std::int64_t> weights, std::uint64_t count) {
     double low = 1e-18, high = 1.0;  // at 1 all of each stays
     for (int i = 0; i < 100; ++i) {
@@ -123,8 +125,9 @@ ThinOut::ThinOut(const Context& context, const Scene& scene, std::vector<Eye> ey
     weights_.resize(scene.size());
 }
 
-// Along a curve through the scene each splat adds its share, and one stays wherever these add up to another whole: where splats are alike,
-// as many stay everywhere, and none of those that show far more than others goes.
+// Along a curve through the scene each splat adds its share, and one stays wherever these add up to another
+// whole: among splats that are alike an even selection stays, and of those that show far more than others all
+// do.
 std::vector<std::uint32_t> ThinOut::choose(std::uint64_t count) const {
     const std::vector<std::uint32_t> order = mortonOrder(findSogPlaces(scene_));
     if (count >= order.size()) { return wholeOf(order.size()); }
@@ -182,7 +185,7 @@ double ThinOut::errorOf(const Scene& scene) {
     return values > 0 ? sum / static_cast<double>(values) : 0.0;
 }
 
-// contribute, with the squares of what is wrong in a pixel for what it lacks.
+// contribute, with squared errors in a pixel in place of what it lacks.
 std::vector<SplatError> ThinOut::splatErrorsOf(const Scene& scene, const Progress& progress) {
     const GpuScene shown(context_, scene);
     meter_.show(shown, true);

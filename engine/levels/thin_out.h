@@ -15,28 +15,30 @@ inline constexpr std::size_t kJudgingViews = 48;
 inline constexpr gpu::uint kJudgingSidePx = 256;
 inline constexpr int kFitSteps = 16;
 
-// Where a person could stand (standingViews): `count` eyes, after the `first` of them.
+// Where a person could stand (standingViews): `count` eyes, leaving out the first `first`.
 std::vector<Eye> standingEyes(const Scene& scene, std::size_t count = kJudgingViews, std::size_t first = 0,
                               gpu::uint side_px = kJudgingSidePx);
 
-// A part of a scene as it is seen from `count` of the places where these eyes stand (viewsOnto).
+// A part of a scene as seen from `count` of the places of these eyes (viewsOnto).
 std::vector<Eye> eyesOnto(const Scene& part, std::span<const Eye> from, std::size_t count, gpu::uint side_px);
 
 class ThinOut {
 public:
-    // Renders `scene`, which outlives this, from all eyes, which `progress` is told of. `near` is in scene units. `steps`: of a fit, each
-    // from every fourth eye.
+    // Renders `scene`, which must outlive this, from all eyes, and reports to `progress`. `near` is in scene
+    // units. `steps`: of a fit, each from every fourth eye.
     ThinOut(const Context& context, const Scene& scene, std::vector<Eye> eyes, double near, const Progress& progress = {},
             int steps = kFitSteps);
 
-    // The indices of `count` splats, more of those whose blending weights over all pixels of all eyes have greater sums; ascending.
+    // The indices of `count` splats, favouring those with the greater sums of blending weights over all
+    // pixels of all eyes; ascending.
     [[nodiscard]] std::vector<std::uint32_t> choose(std::uint64_t count) const;
-    // The scene with these splats alone, wider, and fitted so that the eyes see what the whole scene shows them: in colour, opacity and
-    // size. The same on every run on one device.
+    // The scene with only these splats, wider, and fitted so that the eyes see what the whole scene shows
+    // them: in colour, opacity and size. The same on every run on one device.
     [[nodiscard]] Scene keep(std::uint64_t count, const Progress& progress = {});
-    // How far what the eyes see of another scene is from what they see of this one: the mean square over pixels and channels.
+    // How far another scene's pictures for these eyes are from this one's: the mean square over pixels and
+    // channels.
     [[nodiscard]] double errorOf(const Scene& scene);
-    // The same for each splat of the other scene, which has some, where it shows.
+    // The same for each splat of the other scene, which must have some, where it shows.
     [[nodiscard]] std::vector<SplatError> splatErrorsOf(const Scene& scene, const Progress& progress = {});
 
 private:
