@@ -1,4 +1,4 @@
-// One file after the other, with all its parts that are wished for.
+// One file after the other, with all its requested parts.
 #include "engine/stream/chunk_loader.h"
 
 #include "engine/error.h"
@@ -20,9 +20,9 @@ struct Cancelled {};
 
 // This many files are requested before their turn.
 constexpr std::size_t kFilesAhead = 8;
-// After this long a server that fails to answer again is news.
+// After this long, it is reported again that a server does not answer.
 constexpr std::chrono::seconds kForgotten(10);
-// Parts that are read together, before checking which of the others are still wished for.
+// Parts that are read together, before checking which of the others are still wanted.
 constexpr std::size_t kPartsAtOnce = 8;
 
 }  // namespace
@@ -248,12 +248,12 @@ const ChunkLoader::Decoded& ChunkLoader::decode(std::size_t file) {
     SogSplats splats = source_->open(file);
     splats.expect();
     splats.requirePlausibleCount();
-    // Room first: the kept files are not needed for the next one.
+    // Frees memory first: the kept files are not needed for the next one.
     while (!decoded_.empty() && decoded_.size() >= settings_.kept_files) { decoded_.pop_back(); }
     SogPictures pictures = splats.decode(settings_.threads);
     decoded_.push_front({file, std::move(splats), std::move(pictures)});
     pause_ = settings_.first_pause;
-    // Files that were requested ahead may still fail as those before did.
+    // Files that were requested ahead may still fail as earlier ones did.
     if (++came_since_ > kFilesAhead || Clock::now() - failed_at_ > kForgotten) { said_gone_ = false; }
     const std::lock_guard lock(mutex_);
     troubles_[file].is_said = false;
@@ -282,7 +282,7 @@ void ChunkLoader::load(std::size_t file, const std::vector<LeafLevel>& wishes) {
         work_.seconds += std::chrono::duration<double>(now - std::exchange(began, now)).count();
     };
     for (std::size_t first = 0; first < wishes.size();) {
-        // Those that are still wished for.
+        // Those that are still wanted.
         std::vector<LeafLevel> batch;
         {
             std::unique_lock lock(mutex_);

@@ -30,14 +30,15 @@ struct LoadedPart {
 
 struct LoaderSettings {
     int threads = 2;                              // that decode at a time
-    std::uint64_t waiting_splats = 1 << 20;       // decoded and not taken yet: at this many, decoding waits for room
-    std::size_t kept_files = 2;                   // decoded, for whoever wants more of them
-    std::chrono::milliseconds first_pause{1000};  // before a file of the web is tried again, then doubled each time
+    std::uint64_t waiting_splats = 1 << 20;       // decoded and not taken yet: beyond this, decoding waits
+    std::size_t kept_files = 2;                   // decoded, in case more of them is wanted
+    std::chrono::milliseconds first_pause{1000};  // before a file from the web is tried again, then doubled each time
     std::chrono::milliseconds most_pause{30000};
     std::function<void(LoadedPart&)> finish = {};  // further work on a part, on the loader's threads
 };
 
-// The splats that were read, and how long that took: fetching and decoding files; waiting for room or for requests does not count.
+// The splats that were read, and how long that took: fetching and decoding files, not waiting for space or
+// for requests.
 struct LoaderWork {
     std::uint64_t splats = 0;
     double seconds = 0.0;
@@ -53,12 +54,13 @@ public:
 
     [[nodiscard]] const ChunkSource& source() const { return *source_; }
 
-    // From now on these are wished for, and nothing else; they must not include what was taken already. `finer` is begun when nothing of
-    // `coarsest` is left to load.
+    // From now on only these are wanted; they must not include what has been taken already. `finer` is begun
+    // when nothing of `coarsest` is left to load.
     void want(std::vector<LeafLevel> coarsest, std::vector<LeafLevel> finer);
-    // The parts that are loaded, in the order of the wishes.
+    // The parts that are loaded, in the order in which they were requested.
     [[nodiscard]] std::vector<LoadedPart> take();
-    // The same for callers that must not wait, not even while the loader looks through its lists: then false and empty.
+    // The same for callers that must not wait, even while the loader searches its lists: then false and
+    // empty.
     [[nodiscard]] bool tryWant(const std::vector<LeafLevel>& coarsest, const std::vector<LeafLevel>& finer);
     [[nodiscard]] std::vector<LoadedPart> tryTake();
     [[nodiscard]] std::optional<std::vector<bool>> tryBrokenFiles() const;
@@ -67,9 +69,9 @@ public:
     [[nodiscard]] std::optional<LoaderWork> tryWork() const;
     // One sentence for each file that is broken or missing, and one each time that a server does not answer; each only once.
     [[nodiscard]] std::vector<std::string> takeLines();
-    // By file: true if it cannot be had now. Wishes in such files are not loaded.
+    // By file: true if it cannot be loaded now. Requests for such files are not loaded.
     [[nodiscard]] std::vector<bool> brokenFiles() const;
-    // True if every wish was taken or cannot be had.
+    // True if everything requested was taken or cannot be loaded.
     [[nodiscard]] bool isDone() const;
     // Waits until there is something to take, a file is broken, or all is done; false if the time is up first.
     bool waitForNews(std::chrono::milliseconds most) const;
@@ -84,7 +86,7 @@ private:
     struct Trouble {
         bool broken = false;
         bool is_said = false;                    // until the file comes
-        std::optional<Clock::time_point> again;  // of the web: when it is tried again
+        std::optional<Clock::time_point> again;  // from the web: when it is tried again
     };
 
     void run();
@@ -93,7 +95,7 @@ private:
     [[nodiscard]] std::vector<LoadedPart> takeDone();
     [[nodiscard]] std::vector<bool> listBroken() const;
     [[nodiscard]] const LodRange& rangeOf(LeafLevel at) const { return source_->leaves()[at.leaf].levels[at.level]; }
-    // The file of the first wish that can be loaded.
+    // The file of the first request that can be loaded.
     [[nodiscard]] std::optional<std::size_t> nextFile() const;
     [[nodiscard]] std::vector<LeafLevel> wishesIn(std::size_t file) const;
     [[nodiscard]] std::vector<std::size_t> filesAhead() const;

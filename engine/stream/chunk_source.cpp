@@ -12,14 +12,15 @@ namespace binosplat {
 
 namespace {
 
-// Around whatever there is.
+// Around everything there is.
 constexpr float kEverywhere = 1e6f;
 
 }  // namespace
 
 bool isStreamedScene(const std::string& source) {
     if (isBuiltin(source)) { return false; }
-    // The content of an address is known only once it is fetched; only those that say so are taken for one.
+    // The content of an address is only known once it is fetched; only one whose name says so is taken for a
+    // streamed scene.
     if (isAddress(source)) { return source.substr(0, source.find_first_of("?#")).ends_with("/lod-meta.json"); }
     std::error_code unreadable;
     if (std::filesystem::is_directory(source, unreadable)) { return isStreamedSogFolder(source); }

@@ -19,8 +19,9 @@ bool isStreamedScene(const std::string& source);
 // For one thread at a time.
 class ChunkSource {
 public:
-    // `waiting` is called now and then while an address is waited for, as in WebFiles. Throws Error if lod-meta.json cannot be had, if it
-    // or the environment is broken, and in a build that cannot decode WebP.
+    // `waiting` is called now and then while waiting for an address, as in WebFiles. Throws Error if
+    // lod-meta.json cannot be loaded, if it or the environment is broken, and in a build that cannot decode
+    // WebP.
     ChunkSource(const std::string& source, const WebSettings& web, const Progress& waiting = {});
 
     [[nodiscard]] const std::string& name() const { return name_; }
@@ -30,7 +31,7 @@ public:
     [[nodiscard]] std::uint64_t environmentSplats() const { return environment_splats_; }
     [[nodiscard]] std::size_t fileCount() const { return chunks_->environmentIndex() + 1; }
     [[nodiscard]] bool isFromWeb() const { return web_ != nullptr; }
-    // See WebFiles; 0 and empty for what lies on the disk.
+    // See WebFiles; 0 and empty for scenes on the disk.
     [[nodiscard]] std::uint64_t failedFetches() const { return web_ ? web_->failedCount() : 0; }
     [[nodiscard]] std::string stale() const { return web_ ? web_->stale() : std::string(); }
 
@@ -38,7 +39,7 @@ public:
     void callWhileWaiting(Progress call) { while_waiting_ = std::move(call); }
     // The LodRange::file of each chunk that will be opened soon.
     void expect(std::span<const std::size_t> files) { chunks_->expect(files); }
-    // Throws Error if it cannot be had or is broken.
+    // Throws Error if it cannot be loaded or is broken.
     [[nodiscard]] SogSplats open(std::size_t file) { return chunks_->open(file); }
     void requireRange(std::size_t file, SplatRange range, const SogSplats& splats) const { chunks_->requireRange(file, range, splats); }
 
@@ -46,7 +47,7 @@ private:
     std::string name_;
     Progress while_waiting_;
     std::unique_ptr<WebFiles> web_;
-    std::unique_ptr<InputFile> meta_file_;  // of the web; its name and files are those of the chunks
+    std::unique_ptr<InputFile> meta_file_;  // from the web; its name and files are those of the chunks
     std::unique_ptr<StreamedChunks> chunks_;
     std::vector<LodLeaf> leaves_;
     std::uint64_t environment_splats_ = 0;

@@ -11,7 +11,7 @@ namespace binosplat {
 
 namespace {
 
-// A step that was taken the time before counts this much more, and one that was not this much less.
+// A step that was chosen the time before counts this much more, and one that was not this much less.
 constexpr double kKept = 1.25;
 
 struct Sphere {
@@ -24,13 +24,13 @@ Sphere around(const LodLeaf& leaf) {
     return {0.5 * (low + high), 0.5 * glm::length(high - low)};
 }
 
-// The angle between a sphere and the edge of an eye's view; 0 if some of it may be seen.
+// The angle between a sphere and the edge of an eye's view; 0 if part of it may be visible.
 double angleOutside(const Sphere& sphere, const Eye& eye, const Pose& camera_from_world) {
     const glm::dvec3 c = transform(camera_from_world, sphere.centre);
     const double distance = glm::length(c);
     if (distance <= sphere.radius) { return 0.0; }
     const double from_axis = std::acos(std::clamp(c.z / distance, -1.0, 1.0));
-    // Where the edge lies in that direction: at the nearer of the picture's two sides that way.
+    // Where the edge is in that direction: at the nearer of the picture's two sides.
     const Intrinsics& k = eye.intrinsics;
     const double across = std::hypot(c.x, c.y);
     const double least = 1e-3;  // an axis outside of the picture
@@ -57,7 +57,8 @@ void LevelChooser::addSteps(std::uint32_t leaf, double area_px, double weight, c
     const std::vector<LodRange>& levels = leaves_[leaf].levels;
     const std::vector<float>& errors = leaves_[leaf].errors;
     const std::uint32_t before = choices_.levels[leaf];
-    // From the finest on, the levels that have fewer splats than all finer ones; the others help nobody. Then the other way round.
+    // From the finest on, the levels that have fewer splats than all finer ones; the others are useless. Then
+    // the other way round.
     const std::size_t first = steps_.size();
     for (std::uint32_t level = 0; level < levels.size(); ++level) {
         const std::uint64_t splats = levels[level].splats.count;
@@ -131,7 +132,8 @@ const LevelChoices& LevelChooser::choose(std::span<const Eye> eyes, const Choice
         choices_.pages += step.pages;
         if (step.order < 2) { (step.order == 0 ? choices_.coarsest : choices_.finer).push_back({step.leaf, step.level}); }
     }
-    // The leaves that gain most by their first step are refined first; of the levels that they pass only the last is loaded.
+    // The leaves that gain most by their first step are refined first; of the levels that they pass, only the
+    // last is loaded.
     for (LeafLevel& one : choices_.finer) { one.level = choices_.levels[one.leaf]; }
     return choices_;
 }

@@ -28,22 +28,22 @@ struct ChoiceSettings {
     std::uint64_t splats = 0;  // at most
     std::uint64_t pages = 0;   // at most, of page_splats; each level of a leaf begins a page of its own
     std::uint32_t page_splats = 512;
-    double finest_px = 0.5;        // splats need not lie closer on the screen
-    double look_ahead_rad = 0.35;  // beyond the edge of the view a step is worth e times less for each of these
+    double finest_px = 0.5;        // splats need not be closer on the screen
+    double look_ahead_rad = 0.35;  // beyond the edge of the view, the worth of a step falls by a factor of e for each of these
     double nearest = 0.2;          // nothing is nearer to an eye, scene units
     bool operator==(const ChoiceSettings&) const = default;
 };
 
 struct LevelChoices {
     static constexpr std::uint32_t kNone = ~std::uint32_t{0};
-    // By leaf the place of its level in LodLeaf::levels, kNone where not even the coarsest has room.
+    // By leaf, the place of its level in LodLeaf::levels; kNone if not even the coarsest fits.
     std::vector<std::uint32_t> levels;
     // The levels to load, in order: the coarsest level of every leaf, then the finer ones that leaves are to show.
     std::vector<LeafLevel> coarsest, finer;
     std::uint64_t splats = 0, pages = 0;  // of `levels`
 };
 
-// The levels to choose from: all but those in files that cannot be had, unless they are loaded already.
+// The levels to choose from: all except those in files that cannot be loaded, unless they are loaded already.
 struct LevelsThere {
     std::vector<bool> broken;           // by file; may be shorter than there are files
     std::vector<std::uint64_t> loaded;  // by leaf, a bit for each of LodLeaf::levels; may be shorter than there are leaves
@@ -60,8 +60,8 @@ public:
     // `leaves` outlives this.
     explicit LevelChooser(std::span<const LodLeaf> leaves) : leaves_(leaves) {}
 
-    // For eyes of one head. A level that was chosen the time before is worth a quarter more, and one that was not a fifth less, so that
-    // small motions change nothing. The same for the same calls.
+    // For the eyes of one head. A level that was chosen the time before is worth a quarter more, and one that
+    // was not a fifth less, so that small motions change nothing. The same calls always give the same levels.
     const LevelChoices& choose(std::span<const Eye> eyes, const ChoiceSettings& settings, const LevelsThere& there = {});
 
 private:

@@ -1,4 +1,4 @@
-// Chooses levels beside the frames, for the eyes that were told last.
+// Chooses levels beside the frames, for the latest eyes.
 #pragma once
 
 #include "engine/stream/level_chooser.h"
@@ -25,7 +25,8 @@ public:
     LevelPlanner& operator=(const LevelPlanner&) = delete;
     ~LevelPlanner();
 
-    // Replaces a question that was not begun yet. False if the planner is just looking: ask again. Never waits.
+    // Replaces a question that has not been begun yet. False if the planner is reading it right now: ask
+    // again. Never waits.
     [[nodiscard]] bool ask(const LevelQuestion& question);
     // The latest answer, once. Never waits.
     [[nodiscard]] std::optional<LevelChoices> take();

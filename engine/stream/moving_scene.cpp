@@ -12,9 +12,9 @@
 namespace binosplat {
 namespace {
 
-// A time that should begin a frame may fall a little before it.
+// A time that should begin a frame may fall slightly before it.
 constexpr double kHairFrames = 1e-4;
-// A time that advances by more than that, or goes back, was set.
+// A time that advances by more than this, or goes back, was set.
 constexpr double kMostStepSeconds = 0.5;
 // For frames with more splats than the sizes of files suggest.
 constexpr double kSpareRoom = 1.25;
@@ -96,7 +96,7 @@ std::optional<MovingScene::Question> MovingScene::questionFor(Moment moment) con
     if (!question.first) { return std::nullopt; }
     if (!isBetween(moment)) { return question; }
     question.second = loader_->tryGet(sceneAfter(moment.frame));
-    // Frames that cannot be had are not waited for.
+    // Frames that cannot be loaded are not waited for.
     if (!question.second && !loader_->isSurelyBroken(sceneAfter(moment.frame))) { return std::nullopt; }
     return question;
 }
@@ -161,7 +161,7 @@ void MovingScene::take(Step&& step) {
     }
     shown_.resize((step.frame.splats + gpu::kPageSplats - 1) / gpu::kPageSplats);
     parts_.resize(shown_.size());
-    // The lowest places that are free are those of these pages: splats stay in their order.
+    // The lowest free places are those of these pages: splats keep their order.
     for (std::size_t i = 0; i < step.frame.now.size(); ++i) {
         const std::uint32_t page = step.frame.pages[i];
         shown_[page] = std::move(step.frame.now[i]);
@@ -187,7 +187,7 @@ void MovingScene::update(std::span<const Eye> /*eyes*/, double /*step_seconds*/)
 
     const auto frames = static_cast<double>(series_.size());
     const auto placeOf = [](Moment moment) { return static_cast<double>(moment.frame) + static_cast<double>(moment.share); };
-    // How far one lies behind another, the shorter way around the loop.
+    // How far one is behind another, the shorter way around the loop.
     const auto behind = [&](Moment moment, Moment other) {
         const double distance = placeOf(other) - placeOf(moment);
         return distance - frames * std::round(distance / frames);
@@ -204,7 +204,7 @@ void MovingScene::update(std::span<const Eye> /*eyes*/, double /*step_seconds*/)
     if (!settings_.blend && following.frame == now.frame && (moment_.frame == now.frame || is_broken)) {
         following.frame = (now.frame + 1) % series_.size();
     }
-    // A step to later than that was meant for another pace.
+    // A step to a later time than that was meant for another pace.
     if (next_ && behind(following, next_->moment) > kHairFrames) { next_.reset(); }
     if (!next_ && !is_asked_ && !(following == moment_)) { ask(following); }
 }

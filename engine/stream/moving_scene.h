@@ -1,4 +1,4 @@
-// A scene that moves, as frames see it: the scene frame of the time, or an interpolation between two.
+// A scene that moves, as frames see it: the scene frame for the time, or an interpolation between two.
 #pragma once
 
 #include "engine/files/scene_series.h"
@@ -20,7 +20,7 @@
 namespace binosplat {
 
 struct MovingSettings {
-    double rate_hz = 30.0;           // scene frames a second
+    double rate_hz = 30.0;           // scene frames per second
     bool blend = false;              // interpolate between two frames, if their splats correspond
     std::uint64_t memory_bytes = 0;  // of the host, for frames that are read ahead; 0: as SeriesLoader has it
     int threads = 1;                 // that read
@@ -30,7 +30,8 @@ struct MovingSettings {
 
 class MovingScene final : public LiveScene {
 public:
-    // Reads the first frame; see notes(). Throws Error if it cannot be had, or the device has no memory for it.
+    // Reads the first frame; see notes(). Throws Error if it cannot be loaded, or the device lacks memory for
+    // it.
     MovingScene(const Context& context, SceneSeries series, MovingSettings settings, const Progress& progress = {});
     ~MovingScene() override;
 
@@ -43,7 +44,7 @@ public:
     [[nodiscard]] double rateHz() const { return settings_.rate_hz; }
     // The frame of the time, 0 .. size() - 1.
     [[nodiscard]] std::size_t frameAt(double time_s) const { return momentAt(time_s).frame; }
-    // The first frame, for finding out how a scene lies; once.
+    // The first frame, for finding out how a scene lies; can be taken once.
     [[nodiscard]] Scene takeFirst() { return std::move(first_); }
     [[nodiscard]] const LoadNotes& notes() const { return notes_; }
 

@@ -12,7 +12,7 @@
 namespace binosplat {
 namespace {
 
-// For some seconds of ten scenes in motion: pictures older than these are of no more use.
+// Enough for some seconds of ten scenes in motion: pictures older than these are no longer of use.
 constexpr std::size_t kMostChangesRemembered = 4096;
 constexpr float kFar = std::numeric_limits<float>::infinity();
 
@@ -32,7 +32,7 @@ gpu::ScenePage placedBox(const Similarity& target_from_source, const gpu::SceneP
     const glm::dvec3 middle = transform(target_from_source, 0.5 * (low + high));
     const glm::dmat3 sizes(glm::abs(turn[0]), glm::abs(turn[1]), glm::abs(turn[2]));
     const glm::dvec3 reach = target_from_source.scale * (sizes * half);
-    // What the device rounds as it places splats.
+    // The device's rounding as it places splats.
     const glm::dvec3 rounding = 1e-6 * (glm::abs(middle) + reach);
     return {.low = gpu::vec3(middle - reach - rounding),
             .reach = std::nextafter(static_cast<float>(target_from_source.scale * page.reach), kFar),
@@ -40,7 +40,7 @@ gpu::ScenePage placedBox(const Similarity& target_from_source, const gpu::SceneP
             .count = page.count};
 }
 
-// As positions of the scene become those of all.
+// From positions of the scene to those of all.
 Similarity allFrom(const PlacedScene& placed, const glm::dvec3& origin) {
     Similarity all = placed.world_from_scene;
     all.position = transform(placed.world_from_scene, placed.origin) - origin;

@@ -1,4 +1,5 @@
-// Several scenes on the device as one, each where it is placed: their splats stay where they are, and pages of all are listed together.
+// Several placed scenes on the device as one: their splats stay where they are in memory, and the pages of
+// all are listed together.
 #pragma once
 
 #include "engine/gpu/gpu_scene.h"
@@ -11,22 +12,22 @@ namespace binosplat {
 
 struct PlacedScene {
     const GpuScene* scene = nullptr;  // with a table; it may be in several places
-    glm::dvec3 origin{0.0};           // that its positions count from
+    glm::dvec3 origin{0.0};           // of its positions
     Similarity world_from_scene = {};
     bool is_shown = true;
 };
 
 class PlacedScenes {
 public:
-    // The scenes, which must outlive it; where they are, place() may change. Throws Error unless all are discs, or all Gaussians of one
-    // kind, and the colours of all are encoded alike.
+    // The scenes must outlive it; place() may change where they are. Throws Error unless all are discs, or
+    // all Gaussians of one kind, and the colours of all are encoded alike.
     PlacedScenes(const Context& context, std::span<const PlacedScene> scenes);
     PlacedScenes(const PlacedScenes&) = delete;
     PlacedScenes& operator=(const PlacedScenes&) = delete;
 
     // The scene that frames render. Changes of the scenes themselves must be recorded before its own.
     [[nodiscard]] const GpuScene& scene() const { return scene_; }
-    // That its positions count from, in the world.
+    // The origin of its positions, in the world.
     [[nodiscard]] const glm::dvec3& origin() const { return origin_; }
     // True if it is of these scenes, in this order.
     [[nodiscard]] bool isOf(std::span<const PlacedScene> scenes) const;
@@ -38,7 +39,7 @@ private:
     struct Part {
         std::size_t first_page = 0;
         std::uint64_t changes_known = 0;
-        gpu::ScenePage bounds;  // of all of it, as frames see it; of no count: nowhere
+        gpu::ScenePage bounds;  // of the whole page, as frames see it; with count 0: nowhere
         bool is_dirty = true;
     };
 

@@ -16,7 +16,7 @@ namespace {
 
 // The bytes of a page's entries in the device's tables.
 constexpr std::uint64_t kEntryBytes = sizeof(gpu::SceneChunk) + sizeof(gpu::ScenePage);
-// For some seconds, while a scene is loaded: pictures older than these are of no more use.
+// Enough for some seconds while a scene is loaded: pictures older than these are no longer of use.
 constexpr std::size_t kMostChangesKept = 65536;
 
 // Parts of one copy, merged if they follow one another on both sides.

@@ -10,8 +10,9 @@
 
 namespace binosplat {
 
-// Nothing here waits for the device. Memory that a frame under way still reads is overwritten by a copy in a later submission to the same
-// queue, which every command of the earlier one precedes (Commands); and the memory that copies read belongs to their recording.
+// Nothing here waits for the device. Memory that a frame in flight still reads is overwritten by a copy in a
+// later submission to the same queue, after every command of the earlier one (Commands); and the memory from
+// which copies read belongs to their recording.
 class ResidentScene {
 public:
     // A part that was added, until it is removed; numbers are reused.
@@ -37,12 +38,13 @@ public:
 
     // The following are for the thread that records frames, between them. A new page takes the lowest free place.
 
-    // What a part that comes or goes notes as changed for pictures from before: all around it, or nothing, if the caller knows better and
-    // notes it.
+    // What a part that comes or goes marks as changed for earlier pictures: everything around it, or nothing,
+    // if the caller marks it more precisely.
     enum class Note { kAll, kNone };
 
-    // Splats that the next frames copy, in the order in which they were added, and that are seen from the first frame on that has all of
-    // the part. Nothing if there are not enough free pages: then `pages` is unchanged. `fade`: see setFade.
+    // Splats that the next frames copy, in the order in which they were added, and that are visible from the
+    // first frame on that has the whole part. Empty if there are not enough free pages: then `pages` is
+    // unchanged. `fade`: see setFade.
     std::optional<Part> add(PackedPages&& pages, float fade = 1.0f, Note note = Note::kAll);
     // Invisible from the next frame on; its pages are free at once.
     void remove(Part part, Note note = Note::kAll);
@@ -50,7 +52,7 @@ public:
     void note(const SceneChange& change) { scene_.changes_noted_.push_back(change); }
     // Multiplies the opacity of its splats from the next frame on, 0 to 1. At 0 it costs nothing.
     void setFade(Part part, float fade);
-    // True if frames that are recorded from now on find all of it in place.
+    // True if frames recorded from now on find all of it in place.
     [[nodiscard]] bool isInPlace(Part part) const { return parts_[part].pages_to_copy == 0; }
     [[nodiscard]] bool hasChanges() const { return !waiting_.empty() || !changed_.empty(); }
 

@@ -170,7 +170,7 @@ bool correspond(const SceneFrame& from, const SceneFrame& to, const SceneTraits&
         moved.push_back(glm::distance(centreOf(from, splat), centreOf(to, splat)));
         apart.push_back(glm::distance(centreOf(from, splat), centreOf(from, other)));
     }
-    // All but a few: a splat that turns up elsewhere is seen to fly there.
+    // All but a few: a splat that turns up elsewhere would be seen flying there.
     const auto at = [](std::vector<float>& values, double share) {
         const auto place = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
         std::ranges::nth_element(values, place);

@@ -1,4 +1,4 @@
-// The splats of a moving scene at one time, and how to come from them to those of another.
+// The splats of a moving scene at one time, and how to get from them to those of another time.
 #pragma once
 
 #include "engine/gpu/gpu_scene.h"
@@ -18,8 +18,8 @@ SceneFrame makeSceneFrame(const Scene& scene, const SceneTraits& traits);
 std::uint64_t splatsIn(const SceneFrame& frame);
 std::uint64_t bytesIn(const SceneFrame& frame);
 
-// True if splat i of one is splat i of the other, a little further on: there are as many, and most are nearer to each other than
-// kNearbyShare of the distance between two of one frame.
+// True if splat i of one is splat i of the other, slightly moved: there are as many, and most are nearer to
+// each other than kNearbyShare of the distance between two splats of one frame.
 inline constexpr double kNearbyShare = 0.1;
 bool correspond(const SceneFrame& from, const SceneFrame& to, const SceneTraits& traits);
 
@@ -32,8 +32,8 @@ struct FrameStep {
 };
 inline constexpr int kBoxesAside = 12;
 inline constexpr std::size_t kMostBoxes = std::size_t{kBoxesAside} * kBoxesAside * kBoxesAside;
-// To a frame or, if `next` corresponds to it, to what lies `share` of the way from it to that one: every value linearly, and rotations
-// along the shorter of two ways, of unit length.
+// To a frame or, if `next` corresponds to it, to the interpolation `share` of the way from it to that one:
+// every value linearly, and rotations along the shorter of two ways, with unit length.
 FrameStep stepBetween(const SceneFrame& from, const SceneFrame& to, const SceneTraits& traits, const SceneFrame* next = nullptr,
                       float share = 0.0f);
 

@@ -1,4 +1,4 @@
-// From eyes to wishes, and from the loader to the device.
+// From eyes to requests, and from the loader to the device.
 #include "engine/stream/scene_stream.h"
 
 #include "engine/error.h"
@@ -13,7 +13,7 @@ namespace binosplat {
 namespace {
 
 constexpr std::uint64_t kPageSplats = gpu::kPageSplats;
-// Splats uploaded in one frame: of a headset, or if nobody waits for the next one, as on a software device.
+// Splats uploaded in one frame: for a headset, or if the next frame is not urgent, as on a software device.
 constexpr std::uint64_t kBytesAFrame = std::uint64_t{8} << 20, kBytesAPicture = std::uint64_t{128} << 20;
 constexpr std::chrono::milliseconds kLook(50);
 
@@ -75,8 +75,8 @@ SceneStream::SceneStream(const Context& context, std::unique_ptr<ChunkSource> so
     : context_(context), settings_(std::move(settings)) {
     const std::span<const LodLeaf> tree = source->leaves();
     const SceneTraits traits = traitsOf(*source, settings_);
-    // Never more room than the finest level of all leaves takes or, if a budget is given, than that takes. A share of the pages is
-    // for exchanges, at least as many as the largest part has.
+    // Never more memory than the finest level of all leaves takes or, if a budget is given, than that takes.
+    // A share of the pages is for exchanges, at least enough for the largest part.
     std::uint64_t most_pages = 0, largest = 1;
     for (const LodLeaf& leaf : tree) {
         std::uint64_t pages = 0;
@@ -130,7 +130,7 @@ void SceneStream::wish(bool coarsest_only) {
                          [&](LeafLevel at) { return leaves_->isEmpty(at.leaf) || chosen_.levels[at.leaf] == at.level; });
     if (!coarsest_only) {
         finer = chosen_.finer;
-        // Leaves that are to have fewer splats make room for the others.
+        // Leaves that are to have fewer splats make space for the others.
         std::ranges::stable_partition(finer, [&](LeafLevel at) { return leaves_->isTooFine(at.leaf); });
     }
     has_wishes_ = !loader_->tryWant(missing(coarsest), missing(finer));
@@ -146,7 +146,7 @@ void SceneStream::takeLoaded(bool at_once) {
         for (std::size_t i = 0; i < held_.size();) {
             if (take(held_[i])) {
                 held_.erase(held_.begin() + static_cast<std::ptrdiff_t>(i));
-                i = at_once ? 0 : i;  // it may have made room for an earlier one
+                i = at_once ? 0 : i;  // it may have made space for an earlier one
             } else {
                 ++i;
             }
@@ -188,7 +188,7 @@ void SceneStream::ask(std::span<const Eye> eyes) {
     if (planner_->ask(question)) { asked_ = std::move(question); }
 }
 
-// The rest comes with the next frame, which so learns where it is.
+// The rest comes with the next frame, which then knows where it is.
 void SceneStream::flushIfMuch() {
     const ResidentScene& resident = leaves_->resident();
     const std::uint64_t waiting = resident.splatsAdded() - std::min(resident.splatsAdded(), resident.splatsShown());

@@ -1,4 +1,5 @@
-// A streamed scene as frames see it: what the eyes ask for comes while frames go on, within a budget of splats and of memory.
+// A streamed scene as frames see it: what the eyes need comes while frames go on, within a budget of splats
+// and of memory.
 #pragma once
 
 #include "engine/stream/level_planner.h"
@@ -13,8 +14,8 @@
 namespace binosplat {
 
 struct StreamSettings {
-    std::uint64_t splat_budget = 0;  // of the levels that are shown, together; 0: as many as the memory takes
-    std::uint64_t memory_bytes = 0;  // of the device, for splats; 0: half of what it has or, if less is allowed, two fifths of that
+    std::uint64_t splat_budget = 0;  // of the shown levels together; 0: as many as fit the memory
+    std::uint64_t memory_bytes = 0;  // device memory for splats; 0: half of what the device has or, if less is allowed, two fifths of that
     double fade_seconds = 0.2;       // that each half of an exchange takes
     double look_ahead_rad = 0.35;    // see ChoiceSettings
     bool pictures = false;           // frames may take their time
@@ -26,8 +27,8 @@ struct StreamSettings {
 
 class SceneStream final : public LiveScene {
 public:
-    // Takes the device memory, and begins to load when it is told where the eyes are. Throws Error if that memory is not to be had, or
-    // no chunk of the coarsest level can be opened.
+    // Takes the device memory, and begins to load when it is told where the eyes are. Throws Error if there
+    // is not enough memory, or no chunk of the coarsest level can be opened.
     SceneStream(const Context& context, std::unique_ptr<ChunkSource> source, StreamSettings settings);
 
     [[nodiscard]] const std::string& name() const override { return source().name(); }
@@ -52,10 +53,10 @@ public:
     [[nodiscard]] std::vector<std::string> tryTakeLines() override { return loader_->tryTakeLines(); }
 
 private:
-    // The chosen levels that are not there, to be wished for.
+    // The chosen levels that are not loaded, to be requested.
     [[nodiscard]] std::vector<LeafLevel> missing(const std::vector<LeafLevel>& chosen) const;
     void wish(bool coarsest_only = false);
-    // Adds the parts that found no room before, and those loaded since.
+    // Adds the parts that did not fit before, and those loaded since.
     void takeLoaded(bool at_once);
     void ask(std::span<const Eye> eyes);
     void settleChosen(std::span<const Eye> eyes, bool coarsest_only, const Progress& progress);
@@ -68,7 +69,7 @@ private:
     std::unique_ptr<ChunkLoader> loader_;
     std::unique_ptr<ShownLeaves> leaves_;
     LevelChoices chosen_;
-    std::deque<LoadedPart> held_;  // parts that found no room yet
+    std::deque<LoadedPart> held_;  // parts that do not fit yet
     bool has_wishes_ = false;      // that the loader has not been told
     // For settle, and for update.
     std::unique_ptr<LevelChooser> chooser_;

@@ -1,4 +1,4 @@
-// Which frame is read next, and which one makes room for it.
+// Which frame is read next, and which one is dropped for it.
 #include "engine/stream/series_loader.h"
 
 #include "engine/error.h"

@@ -19,7 +19,7 @@ namespace binosplat {
 
 class SeriesLoader {
 public:
-    // A scene's frame. It stays where it is while it is held, on any thread; the loader outlives that.
+    // A frame of the scene. It stays in place while it is held, on any thread; the loader outlives that.
     struct Frame {
         SceneFrame splats;
         mutable std::atomic<int> holders = 0;  // more of them only with the mutex held, fewer at any time
@@ -42,16 +42,16 @@ public:
     // Waits for what is being read.
     ~SeriesLoader();
 
-    // The scenes that will be needed, the next one first; of those read before that nobody holds, the one needed last makes room. Never
-    // waits: false if the loader is just looking through its lists, ask again.
+    // The scenes that will be needed, the next one first; of those read earlier that are not held, the one
+    // needed last is dropped. Never waits: false if the loader is searching its lists right now, ask again.
     [[nodiscard]] bool tryWant(const std::vector<std::size_t>& scenes);
-    // Null if it is not there now. Never waits.
+    // Null if it is not loaded now. Never waits.
     [[nodiscard]] Held tryGet(std::size_t scene) const;
-    // True if it cannot be had. Never waits; perhaps later.
+    // True if it cannot be loaded. Never waits; perhaps later.
     [[nodiscard]] bool isSurelyBroken(std::size_t scene) const;
-    // Waits until it is there. Throws Error if it cannot be had.
+    // Waits until it is loaded. Throws Error if it cannot be.
     [[nodiscard]] Held get(std::size_t scene);
-    // One sentence for each scene that cannot be had, once.
+    // One sentence for each scene that cannot be loaded, once.
     [[nodiscard]] std::vector<std::string> takeLines();
     [[nodiscard]] std::vector<std::string> tryTakeLines();
     [[nodiscard]] std::uint64_t bytesKept() const;
@@ -63,7 +63,7 @@ private:
     };
 
     void run();
-    // With the mutex held. What to read next, once there is room.
+    // With the mutex held. What to read next, once there is memory.
     [[nodiscard]] std::optional<std::size_t> next();
     [[nodiscard]] std::size_t orderOf(std::size_t scene) const;
     [[nodiscard]] Held hold(std::size_t scene) const;

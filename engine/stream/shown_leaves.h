@@ -22,25 +22,27 @@ public:
     // Copies everything that was added to the device, and waits for that. Frames do not learn where it was.
     void flush(const Context& context);
 
-    // The level that each leaf is to show, as LevelChoices::levels. Until it is there a leaf goes on showing what it shows.
+    // The level that each leaf is to show, as LevelChoices::levels. Until it is loaded a leaf goes on showing
+    // what it shows.
     void want(const std::vector<std::uint32_t>& levels);
-    // Takes a part that is wanted, or the first of its leaf; others are dropped. False if there is no room for it now: the part is then
-    // unchanged.
+    // Takes a part that is wanted, or the first of its leaf; others are dropped. False if it does not fit
+    // now: the part is then unchanged.
     [[nodiscard]] bool add(LoadedPart& part);
     // A step of all exchanges, as a share of a fade; at 1 or more they end at once.
     void step(float share);
-    // Ends all exchanges, and counts what is on its way to the device as there: for callers that bring it there before the next frame.
+    // Ends all exchanges, and counts parts on their way to the device as arrived: for callers that bring them
+    // there before the next frame.
     void exchangeAtOnce();
 
     [[nodiscard]] bool has(LeafLevel at) const;
     [[nodiscard]] bool isEmpty(std::uint32_t leaf) const { return leaves_[leaf].empty(); }
-    // True if fewer splats are wanted of the leaf than are there.
+    // True if fewer splats of the leaf are wanted than there are.
     [[nodiscard]] bool isTooFine(std::uint32_t leaf) const;
     // For LevelsThere.
     [[nodiscard]] std::vector<std::uint64_t> loadedLevels() const;
     [[nodiscard]] std::uint32_t partCount() const { return part_count_; }
     [[nodiscard]] bool isExchanging() const { return !changing_.empty(); }
-    // Splats of the wanted levels, and how many of these are there.
+    // Splats of the wanted levels, and how many of these are on the device.
     [[nodiscard]] std::uint64_t splatsWanted() const { return splats_wanted_; }
     [[nodiscard]] std::uint64_t splatsThere() const;
 
@@ -51,7 +53,7 @@ private:
         float fade;
     };
     [[nodiscard]] std::uint64_t splatsOf(std::uint32_t leaf, std::uint32_t level) const { return tree_[leaf].levels[level].splats.count; }
-    // The part that a leaf ends with as things are; end() if it is to have none.
+    // The part that a leaf ends with as things are; end() if there will be none.
     [[nodiscard]] std::vector<Shown>::iterator goalOf(std::uint32_t leaf);
     void remove(std::uint32_t leaf, std::vector<Shown>::iterator shown);
     // False: there is nothing left to change in this leaf.
