@@ -16,7 +16,7 @@ glm::uvec2 scaledSize(const xr::Instance& instance, glm::uvec2 recommended_px, d
     return glm::clamp(glm::uvec2(wanted), glm::uvec2(16), instance.maxSizePx());
 }
 
-// Of the pictures of both eyes, where axes stay.
+// For the pictures of both eyes, if axes stay.
 glm::uvec2 coverPx(const FrameViews& views, glm::uvec2 view_px) {
     glm::uvec2 size_px(0);
     for (const xr::EyeView& eye : views.eyes) {

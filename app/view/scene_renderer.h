@@ -25,7 +25,7 @@ struct FrameViews {
     Pose room_from_head;
     std::optional<std::array<xr::EyeView, 2>> insets;  // from the same places, if the headset takes insets
     std::array<std::optional<Gaze>, 2> gazes;          // by Side: where the eyes look, if it matters
-    std::array<xr::EyeView, 2> pictures;               // what the frame's pictures are of, as the runtime is told
+    std::array<xr::EyeView, 2> pictures;               // what the frame's pictures show, as the runtime is told
 };
 
 class SceneRenderer {
@@ -35,8 +35,9 @@ public:
 
     // The size of what an eye sees, as the wearer wants it; with insets, of the context.
     [[nodiscard]] glm::uvec2 sizePx(const ViewSettings& settings) const { return sizePx(settings.resolution_scale); }
-    // Makes the headset's images as large as the wearer wants, or larger where axes stay, and applies the governor to the wearer's
-    // settings, within them. Throws Error if images of another size fail; then they keep their size.
+    // Makes the headset's images as large as the wearer wants, or larger if axes stay, and applies the
+    // governor to the wearer's settings, within them. Throws Error if images of another size fail; then they
+    // keep their size.
     void govern(ConnectedHeadset& headset, const ViewSettings& settings, const FrameViews& views);
     // The runtime refuses depth after all; false: depth was off already.
     bool dropDepth(ConnectedHeadset& headset);
@@ -54,7 +55,7 @@ public:
     [[nodiscard]] bool seesThrough(const ViewSettings& settings) const { return settings.passthrough && instance_.canSeeThrough(); }
     // The last frame that the device has finished. No counters before a scene's first frame.
     [[nodiscard]] const FrameResult& lastFrame() const { return last_; }
-    // Of the pictures that were prepared, and of what their eyes see of them.
+    // For the prepared pictures, and for what their eyes see of them.
     [[nodiscard]] const std::vector<Eye>& pictures() const { return eyes_; }
     [[nodiscard]] const std::vector<Eye>& views() const { return seen_; }
     // Another scene is shown: counters and costs of the previous one do not apply.
@@ -64,7 +65,8 @@ public:
         splat_budget_.reset();
     }
     [[nodiscard]] const std::string& governorSentence() const { return governor_.sentence(); }
-    // For each frame that is going to be shown, before the panel. Says why if a frame was late: once, until none was for a second.
+    // For each frame that will be shown, before the panel. Says why if a frame was late: once, until none has
+    // been for a second.
     void meetDisplay(const xr::Session& session);
     // How many frames reach the wearer, and their resolution.
     [[nodiscard]] ShownRate rate() const;
@@ -117,7 +119,7 @@ private:
     glm::uvec2 view_px_{0, 0};  // of what an eye sees in this frame
     ImagesAsked images_asked_;
     bool stays_ = false;
-    std::string why_not_;  // do axes not stay, as last said
+    std::string why_not_;  // why axes do not stay, as last reported
     StayingAxes axes_{glm::radians(kAxesMarginDegrees)};
     FrameSettings inset_frame_;  // prepared, for insets
     std::vector<Eye> inset_eyes_;

@@ -28,7 +28,7 @@ namespace binosplat {
 namespace {
 
 constexpr std::chrono::milliseconds kBetweenLooks(200);
-// A headset that has not answered by then is not awaited, if the scene can be shown in a window.
+// A headset that has not answered by then is not waited for, if the scene can be shown in a window.
 constexpr std::chrono::seconds kLongestWait(2);
 
 ViewSettings startSettings(const ViewOptions& options, const DeviceDefaults& device = {}) {
@@ -55,7 +55,7 @@ void waitForHeadset(const std::string& runtime, std::unique_ptr<WaitingWindow>& 
     if (window->wait(kBetweenLooks)) { throw Interrupted{SIGINT, {}}; }
 }
 
-// What suits the device, where the user has said nothing.
+// Settings that suit the device, where the user has not chosen.
 ViewSettings suitDevice(ViewOptions& options, const Context& context) {
     const auto properties = context.physicalDevice().getProperties();
     DeviceDefaults device =
@@ -99,8 +99,8 @@ void showScene(ViewOptions options, xr::Instance& instance) {
     context.requireNoValidationMessages();
 }
 
-// Where the scene can be shown in a window, a runtime is asked in a thread of its own: one that hangs is left to itself until the program
-// ends.
+// If the scene can be shown in a window, a runtime is asked in a thread of its own: one that hangs is left
+// alone until the program ends.
 std::unique_ptr<xr::Instance> askRuntime(xr::InstanceOptions options) {
     options.wait_for_headset = [begin = std::chrono::steady_clock::now()](const std::string& runtime) {
         stopIfInterrupted();

@@ -42,9 +42,9 @@ private:
     void drawFrame();
     // Keeps the window alive while no frame is drawn for the headset.
     void drawWindowAlone(const std::string& why);
-    // Shows the next scene, once it is there.
+    // Shows the next scene, once it is loaded.
     void takeScene();
-    // Optional: if the window cannot be drawn on, a line says why.
+    // Optional: if drawing in the window fails, a line says why.
     void openWindow(EventWindow& window);
     // Moves the room's origin to the head, once its pose is known or on request.
     void settle();
@@ -57,7 +57,7 @@ private:
     void recordProbe(Commands& commands);
     // Chooses hands, rays and other things in the room for this frame.
     void chooseThings(const WearerNow& wearer, const FrameViews& views);
-    // Reports errors of a scene that loads while it is shown, and once that all of it is there.
+    // Reports errors of a scene that loads while it is shown, and once that everything in view is loaded.
     void sayLive(LoadedScene& scene);
     void showFrame(const FrameViews& views);
     // Without hands and rays, or without depth, if the runtime refuses these.
@@ -97,7 +97,7 @@ private:
     xr::Instance& instance_;
     const Context& context_;
     ViewState state_;
-    ViewSettings drawn_;  // of this frame: restricted to kernels that are there
+    ViewSettings drawn_;  // of this frame: restricted to kernels that are ready
     FrameLog log_;
     HeadsetConnection connection_;
     SceneRenderer renderer_;
@@ -108,7 +108,7 @@ private:
     WearerControls controls_;
     Vignette vignette_;
     Fade fade_;
-    std::string message_;           // to be shown before the eyes
+    std::string message_;           // to be shown in front of the eyes
     double message_seconds_ = 0.0;  // that are left of the one shown
     bool is_new_view_ = false;      // another scene or another origin of the room, in this frame
     GazeFollower gaze_;
@@ -118,7 +118,7 @@ private:
     PictureWriter pictures_;
     bool picture_asked_ = false;  // for the next frame
     std::uint64_t frames_of_scene_ = 0;
-    bool said_there_ = false;               // that all of the first view of a streamed scene is there
+    bool said_there_ = false;               // everything in the first view of a streamed scene is loaded, and that was reported
     std::optional<std::size_t> viewpoint_;  // the last one gone to
     Pose room_from_head_;                   // as last known
     bool recentre_asked_ = false, leaving_ = false, waits_for_kernels_ = false;

@@ -1,4 +1,4 @@
-// The viewer's panel and its window: what they show, and what is asked for there.
+// The viewer's panel and its window: what they show, and the requests made there.
 #include "app/view/viewer.h"
 
 #include "engine/error.h"

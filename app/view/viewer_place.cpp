@@ -1,4 +1,4 @@
-// The wearer's place in the scene, and what the viewer keeps of it.
+// The wearer's place in the scene, and what the viewer stores about it.
 #include "app/view/placement/placement.h"
 #include "app/view/scenes/viewpoints.h"
 #include "app/view/viewer.h"
@@ -9,7 +9,7 @@ namespace binosplat {
 
 namespace {
 
-// If the scene has no known floor: its distance below the eyes of somebody who stands.
+// If the scene has no known floor: its distance below a standing person's eyes.
 constexpr double kUsualEyesMetres = 1.6;
 // A scene that was seen for less than a third of a second was only passed on the way.
 constexpr std::uint64_t kLeastFramesSeen = 30;

@@ -46,7 +46,7 @@ void FileWorker::run() {
     }
 }
 
-// Except the task under way.
+// Except the task in progress.
 void FileWorker::dropReading() {
     if (tasks_.empty()) { return; }
     const auto second = tasks_.begin() + 1;

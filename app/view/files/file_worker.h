@@ -30,7 +30,7 @@ public:
     void read(std::string what, Work work) { ask({std::move(what), std::move(work), false}); }
     // Like read(), but done even if the program ends.
     void write(std::string what, Work work) { ask({std::move(what), std::move(work), true}); }
-    // The task under way, in words; empty: none.
+    // The task in progress, in words; empty: none.
     [[nodiscard]] std::string now() const;
 
     // Between frames: calls the Done functions of finished tasks. Does not wait.

@@ -12,8 +12,9 @@ namespace binosplat {
 
 namespace {
 
-// A tenth of the period is left free, since we cannot know what the compositor and the machine do besides. Settings that are still
-// unproven, and calm changes, must need even less; so must a change after one that was not enough.
+// A tenth of the period is left free, since we cannot know what else the compositor and the machine do.
+// Settings that are still unproven, and calm changes, must need even less; so must a change after one that
+// was not enough.
 constexpr double kTarget = 0.9, kCalmly = 0.85, kAgain = 0.7;
 // A smaller rise of the budget is not worth a change; if a smaller share of it is spent, it does not determine the frame time.
 constexpr double kLeastRise = 1.1, kSpent = 0.75;
@@ -22,24 +23,24 @@ constexpr double kPowerDown = 1.2, kPowerUp = 2.0;
 constexpr int kSettlingFrames = 1;
 constexpr std::size_t kOverAtOnce = 3, kOverAgain = 2, kCalmFrames = 8;
 constexpr std::size_t kWindow = MissedDisplays::kWindow, kOftenOver = MissedDisplays::kOftenOver, kOftenOf = MissedDisplays::kOftenOf;
-// As many frames as half a second has, where these are fewer than kWindow.
+// As many frames as there are in half a second, if these are fewer than kWindow.
 constexpr std::size_t kFewestFrames = 12;
 constexpr double kWindowSeconds = 0.5;
 constexpr double kBetweenChangesSeconds = 1.0, kProvenSeconds = 3.0, kFirstWaitSeconds = 10.0, kLongestWaitSeconds = 300.0;
-// If the least settings miss as many displays as the best ones did, others cause the misses. The pacing may react to frame times only after
-// some frames.
+// If the lowest settings miss as many displays as the best ones did, others cause the misses. Pacing may
+// react to frame times only after some frames.
 constexpr std::size_t kBlameFrames = 20;
 constexpr const char* kOthersMiss = "displays are missed whatever is drawn";
 constexpr double kSameLost = 0.25;
 
-// What a step must better the picture by, in terms of its squared error.
+// By what factor a step must improve the picture, in terms of its squared error.
 constexpr double kBetter = 0.8, kMoreDb = 2.0;
-// For a picture that is so much better, frames may take nearly all that they may take.
+// For a picture that is this much better, frames may use nearly all of their time.
 constexpr double kMuchBetter = 0.5, kBoldly = 0.89;
 
 struct Limits {
-    double budget, scale;  // the least ones
-    double bound_db;       // the most
+    double budget, scale;  // the lowest
+    double bound_db;       // the highest
 };
 
 Limits limitsOf(Quality quality) {
@@ -48,10 +49,11 @@ Limits limitsOf(Quality quality) {
                                            : Limits{0.05, 0.4, 27.0};
 }
 
-// The cost of a frame regardless of the budget, in units of the cost of all work: by docs/results/motion.md `temporal` takes 0.22 of
-// `two-pass` for culling, sorting and warping, and 0.28 for 0.21 of the work; `predicted` the dominant eye and the warp.
+// The cost of a frame regardless of the budget, in units of the cost of all work: by docs/results/motion.md
+// `temporal` takes 0.22 of `two-pass` for culling, sorting and warping, and 0.28 for 0.21 of the work;
+// `predicted` the dominant eye and the reprojection.
 double fixedWork(Mode mode) { return mode == Mode::kTemporal ? 0.17 : 1.0; }
-// The share of fixedWork that is counted on when raising.
+// The share of fixedWork that is assumed when raising.
 constexpr double kFixedUpwards = 0.5;
 
 double medianOf(const std::deque<double>& values, std::size_t newest) {

@@ -12,16 +12,16 @@
 
 namespace binosplat {
 
-// The bound of the errors that are left to be seen (34, 30, 27 dB), and how little work and resolution may become. kOff: nothing is
-// governed, the settings stay as the wearer made them.
+// The bound of the errors that are left visible (34, 30, 27 dB), and how little work and resolution may
+// become. kOff: nothing is governed, and the settings stay as the wearer made them.
 enum class Quality { kOff, kSharp, kBalanced, kFast };
 inline constexpr const char* kQualityNames[] = {"off", "sharp", "balanced", "fast"};
 
-// The settings that are chosen.
+// The chosen settings.
 struct GovernedSettings {
     double budget = 0.0;            // for modes that have one, see hasBudget: the share of work that is rendered again
     double resolution_scale = 1.0;  // each way
-    double error_bound_db = 0.0;    // of `temporal`, which has it in place of a lower budget; 0: none
+    double error_bound_db = 0.0;    // for `temporal`, in place of a lower budget; 0: none
     bool operator==(const GovernedSettings&) const = default;
 };
 
@@ -30,7 +30,8 @@ struct GovernedFrame {
     double gpu_ms = 0.0;     // 0: the device does not measure it
     double period_ms = 0.0;  // the runtime's time for a frame
     bool is_old = false;     // drawn with earlier settings: it says nothing about the present ones, but time has passed
-    // Periods beyond its own that passed before the frame was displayed, by the runtime's times: independent of the device's.
+    // Periods beyond its own that passed before the frame was displayed, by the runtime's times: independent
+    // of the device's.
     double lost_periods = 0.0;
     double work = 1.0;                         // the share that was rendered again: less than the budget if there was less to re-render
     double warp_error = 0.0, half_loss = 0.0;  // see KnobFrame
@@ -44,7 +45,7 @@ public:
     // From the next frame on. Another wish or quality starts over with the wearer's own settings: the resolution never exceeds them, while
     // the budget may rise to all work.
     void wish(Quality quality, Mode mode, const GovernedSettings& own);
-    // From the next frame on another scene is shown: the measurements do not apply to it.
+    // From the next frame on, another scene is shown: the measurements do not apply to it.
     void forget();
     // Takes the last frame's cost. The settings change at most three times while adapting to a new load, and then at most once a
     // second.
@@ -53,13 +54,13 @@ public:
     [[nodiscard]] const GovernedSettings& settings() const { return settings_; }
     // What it does and why, for people; empty if it does nothing.
     [[nodiscard]] const std::string& sentence() const { return sentence_; }
-    // True if not even the least settings fit.
+    // True if not even the lowest settings fit.
     [[nodiscard]] bool isBeaten() const { return beaten_; }
 
 private:
     void clearRecent();
     [[nodiscard]] std::size_t countOver(std::size_t of_last) const;
-    // The time for a frame: the period, or as much of it as others leave.
+    // The time for a frame: the period, or the share of it that others leave.
     [[nodiscard]] double roomMs() const { return misses_.share() * period_ms_; }
     // True if giving up quality has gained nothing: then it is given back, and misses are ignored for a while.
     [[nodiscard]] bool missesWhateverIsDrawn() const;
@@ -71,9 +72,9 @@ private:
     [[nodiscard]] GovernedSettings lowered(double ratio, double work) const;
     // The reverse; the budget rises only if it is spent.
     [[nodiscard]] GovernedSettings raised(double ratio) const;
-    // `temporal`: resolution and bound as the model would have them, for frames of at most so long.
+    // `temporal`: the resolution and bound that the model chooses for frames of at most this time.
     [[nodiscard]] GovernedSettings bestWithin(double most_ms) const;
-    // True if they are worth a change: clearly less is off, or both knobs are higher.
+    // True if they are worth a change: clearly less error, or both knobs higher.
     [[nodiscard]] bool isBetter(const GovernedSettings& to) const;
     [[nodiscard]] bool turnsKnobs() const { return mode_ == Mode::kTemporal && quality_ != Quality::kOff; }
     [[nodiscard]] Knobs knobs() const { return {settings_.resolution_scale, settings_.error_bound_db}; }

@@ -10,26 +10,27 @@ namespace binosplat {
 
 namespace {
 
-// The work that a bound takes grows by 4 to 12 % a dB: a higher one may cost the most, a lower one save the least. Errors fall so much a
-// dB.
+// The work that a bound takes grows by 4 to 12 % per dB: a higher bound may cost the most, a lower one save
+// the least. Errors fall by this much per dB.
 constexpr double kWorkUpPerDb = 0.1, kWorkDownPerDb = 0.05, kErrorDbPerDb = 0.6, kMostWorkPerDb = 0.2;
-// Before anything is measured: a picture of a room, and what `temporal` is off by within a bound.
+// Before anything is measured: an indoor picture, and the error of `temporal` within a bound.
 constexpr double kUsualLoss = 1e-4, kUsualBelowBoundDb = 14.0;
-// A guess at the shares of a frame's time. Few visits cannot tell all four apart, and leave the others near it.
+// A guess at the shares of a frame's time. A few visits cannot tell all four apart, and leave the others near
+// this guess.
 constexpr std::array<double, 4> kUsualShares{0.1, 0.15, 0.45, 0.5};
 constexpr double kTrustInUsual = 0.0005;
 constexpr std::size_t kMostVisits = 8, kMostFrames = 9;
 // By half in four seconds.
 constexpr double kLeastWeight = 0.05, kForgottenPerSecond = 0.84;
-constexpr int kFitRounds = 24;  // from the frame before's on
+constexpr int kFitRounds = 24;  // starting from the frame before's
 constexpr double kSmoothing = 0.15, kLossSmoothing = 0.05;
-// The head may move again as it did lately: work and errors fall slowly, by half in ten seconds at 90 Hz.
+// The head may soon move again as it did: work and errors fall slowly, by half in ten seconds at 90 Hz.
 constexpr double kFading = 0.99923;
 // All visits take longer, or all less, when the scene or the device's clock has changed.
 constexpr double kChangedTime = 0.12;
 constexpr std::size_t kSeenForChange = 3, kLastingChange = 12;
 
-// The lower one of two in the middle: what disturbs a frame makes it slower.
+// The lower of the two middle ones: disturbances make frames slower.
 double lowerMedianOf(std::deque<double> values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
     std::ranges::nth_element(values, middle);
@@ -84,7 +85,7 @@ void KnobModel::add(const Knobs& knobs, const KnobFrame& frame) {
     if (visits_.size() > 1 && now.all_ms.size() == kSeenForChange) { learnWork(visits_[visits_.size() - 2], now); }
     work_ = follow(work_, frame.work);
     if (frame.warp_error > 0.0) { warp_error_ = follow(warp_error_, frame.warp_error); }
-    // Once losses are measured, a frame without one had none on its few tiles.
+    // Once losses are measured, a frame without one had no loss on its few tiles.
     if (frame.half_loss > 0.0 || losses_ > 0) {
         loss_ += std::max(1.0 / ++losses_, kLossSmoothing) * (lossOf(frame.half_loss, knobs.scale) - loss_);
     }
@@ -140,8 +141,8 @@ void KnobModel::noteChange(const KnobFrame& frame) {
     changed_ = 0;
 }
 
-// Shares of at least 0 that fit the visits' times, relatively, and stay near the usual ones where the visits do not say: coordinate
-// descent.
+// Shares of at least 0 that fit the visits' times, relatively, and stay near the usual ones where the visits
+// leave them open: coordinate descent.
 void KnobModel::fit() {
     const Visit& now = visits_.back();
     Terms usual = kUsualShares;

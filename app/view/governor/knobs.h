@@ -11,7 +11,7 @@ namespace binosplat {
 
 struct Knobs {
     double scale = 1.0;     // of the resolution, each way
-    double bound_db = 0.0;  // every tile expected to be off by more is rendered
+    double bound_db = 0.0;  // every tile with a greater expected error is rendered
     bool operator==(const Knobs&) const = default;
 };
 
@@ -19,9 +19,9 @@ struct Knobs {
 struct KnobFrame {
     double ms = 0.0;
     double seconds = 0.0;     // since the one before
-    double work = 0.0;        // the share of both eyes' pairs that was rendered
-    double warp_error = 0.0;  // of the tiles that were not, as expected; 0 if not known
-    double half_loss = 0.0;   // what half of the resolution would lose, as measured on a few tiles; 0 if not known
+    double work = 0.0;        // the rendered share of both eyes' pairs
+    double warp_error = 0.0;  // the expected error of the tiles that were not rendered; 0 if unknown
+    double half_loss = 0.0;   // what half of the resolution would lose, as measured on a few tiles; 0 if unknown
 };
 
 // The limits of a choice: resolution in tenths of `whole`, bounds in whole dB.
@@ -31,17 +31,18 @@ struct KnobLimits {
 
 class KnobModel {
 public:
-    // A lower bound is for those who have no resolution left to give.
+    // A lower bound is used only when the resolution cannot go any lower.
     static constexpr double kLeastBoundDb = 26.0, kLastBoundDb = 20.0;
 
     void forget() { *this = {}; }
     void add(const Knobs& knobs, const KnobFrame& frame);
 
     [[nodiscard]] bool knows() const { return !visits_.empty(); }
-    // What a frame with such knobs is expected to take and to be off by, while the head moves as it did lately.
+    // The expected time and error of a frame with such knobs, while the head moves as it did recently.
     [[nodiscard]] double expectedMs(const Knobs& knobs) const;
     [[nodiscard]] double expectedError(const Knobs& knobs) const;
-    // Of the knobs within the limits whose frames take at most so long, those of the least error; if there are none, the quickest.
+    // Among the knobs within the limits whose frames take at most this long, those with the least error; if
+    // there are none, the quickest.
     [[nodiscard]] Knobs best(double most_ms, const KnobLimits& limits) const;
 
 private:
@@ -52,26 +53,27 @@ private:
         Knobs knobs;
         std::deque<double> all_ms = {}, all_work = {};  // newest last
         double ms = 0.0, work = 0.0;
-        double weight = 1.0;  // what is long ago counts for less
+        double weight = 1.0;  // old visits count for less
     };
     [[nodiscard]] double workAt(double bound_db) const;
     [[nodiscard]] static Terms termsOf(double scale, double work);
     [[nodiscard]] static double sumOf(const Terms& terms, const Terms& shares);
     void enter(const Knobs& knobs);
     void learnWork(const Visit& before, const Visit& now);
-    // Takes all visits for slower, or quicker, where frames at the same knobs and work are for long, or still are with other knobs.
+    // Takes all visits for slower, or quicker, if frames at the same knobs and work are for a long time, or
+    // still are with other knobs.
     void noteChange(const KnobFrame& frame);
     void scaleTimes(double ratio, std::size_t visits);
     void fit();
 
     std::vector<Visit> visits_;  // the present one last
-    double work_ = 0.0;          // of the present bound, while the head moves
+    double work_ = 0.0;          // at the present bound, while the head moves
     double work_per_db_ = 0.0;   // its growth, when the bound was changed last
     double warp_error_ = 0.0;    // likewise
     double loss_ = 0.0;          // of the resolution r: loss_ * (1/r^3 - 1)
-    int losses_ = 0;             // that were measured
+    int losses_ = 0;             // number of measurements
     Terms shares_{};             // as fitted to the visits
-    std::size_t changed_ = 0;    // frames in a row that took so many times as long as expected
+    std::size_t changed_ = 0;    // frames in a row that took that many times as long as expected
     double changed_ratio_ = 1.0;
     double doubted_ratio_ = 1.0;  // before the knobs were turned; 1: none
     Terms shares_before_{};

@@ -1,5 +1,6 @@
-// The frames that a wearer got in the last second, by the times at which the runtime displays them, and how many of them came late. Pure:
-// no clock. A frame is late by the period at its time: runtimes may state longer ones where frames are late.
+// The frames that a wearer got in the last second, by the times at which the runtime displays them, and how
+// many of them were late. Pure: no clock. A frame is late by the period at its time: runtimes may state
+// longer ones when frames are late.
 #pragma once
 
 #include <fmt/format.h>
@@ -20,7 +21,7 @@ public:
         const std::int64_t step_ns = frames_.empty() ? 0 : display_time_ns - frames_.back().time_ns;
         const bool is_known = follows && step_ns > 0 && step_ns <= kPauseNs;
         if (!is_known) { frames_.clear(); }
-        // Where the rate changes, the step may be of either.
+        // When the rate changes, the step may be either.
         const double longest_ms = kLatePeriods * std::max(period_ms, std::exchange(period_ms_, period_ms));
         frames_.push_back({display_time_ns, is_known && 1e-6 * static_cast<double>(step_ns) > longest_ms});
         // The last second's, and the one before these.

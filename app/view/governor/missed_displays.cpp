@@ -1,4 +1,4 @@
-// Counting missed displays, and the room that they leave.
+// Counts missed displays, and the share of time that they leave.
 #include "app/view/governor/missed_displays.h"
 
 #include <algorithm>
@@ -13,7 +13,8 @@ namespace {
 // A single late frame may have any cause, however late it is: it counts as one period. If periods are irregular, early frames make up for
 // late ones, so that the sum stays below one.
 constexpr double kMostLostByOne = 1.0, kLostSlack = 0.5;
-// If displays are missed, there is less room than was used; after a while without a miss, the room grows each second.
+// If displays are missed, there is less time than was used; after a while without a miss, the share grows
+// each second.
 constexpr double kLowerShare = 0.85, kRaisedPerSecond = 1.1, kFirstHoldSeconds = 10.0, kLongestHoldSeconds = 300.0;
 constexpr double kFirstUnheededSeconds = 60.0, kLongestUnheededSeconds = 600.0;
 
@@ -58,7 +59,7 @@ bool MissedDisplays::areLost(std::size_t lost, std::size_t of_last) const {
 void MissedDisplays::lowerShare(double now_ms, double period_ms) {
     if (share_ * period_ms < now_ms) { return; }  // the share is already lower
     share_ = kLowerShare * now_ms / period_ms;
-    // If room was given back too early, it is given back later the next time.
+    // If time was given back too early, it is given back later the next time.
     hold_s_ = is_raised_ ? std::min(2.0 * hold_s_, kLongestHoldSeconds) : std::max(hold_s_, kFirstHoldSeconds);
     is_raised_ = false;
 }

@@ -1,4 +1,5 @@
-// Displays that were missed, and the room that they show others to leave: the compositor, another program. Pure, like the governor.
+// Displays that were missed, and the share of time that others leave according to them: the compositor,
+// another program. Pure, like the governor.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +14,7 @@ public:
 
     // The settings have changed: earlier misses do not apply to them.
     void clearRecent() { recent_.clear(); }
-    // Also forgets how much room others leave.
+    // Also forgets how much time others leave.
     void forget();
     // A frame that was displayed `lost_periods` late, at `now_s`. Later calls refer to this time.
     void add(double lost_periods, double now_s);
@@ -28,7 +29,7 @@ public:
 
     // The share of the period that others leave: lowered by misses, raised again little by little.
     [[nodiscard]] double share() const { return share_; }
-    // Frames that take `now_ms` miss displays: there is less room than was thought.
+    // Frames that take `now_ms` miss displays: there is less time than was assumed.
     void lowerShare(double now_ms, double period_ms);
     // Call whenever displays are missed: raiseShare() does nothing for a while afterwards.
     void hold() { held_until_s_ = now_s_ + hold_s_; }

@@ -21,7 +21,7 @@ bool SplatBudget::measure(double gpu_ms, double period_ms, std::uint64_t shown) 
     frames_ = 0;
     const std::uint64_t before = splats_, least = std::min(kLeast, most_);
     if (share > kTooLong) { splats_ = std::max(least, std::min(splats_, std::max(shown, least)) / 8 * 7); }
-    // No more than twice the view's needs, so that taking it back has an effect.
+    // At most twice the view's needs, so that lowering it has an effect.
     if (share < kToSpare && splats_ / 2 <= shown) { splats_ = std::min(most_, splats_ / 8 * 9); }
     return splats_ != before;
 }

@@ -12,7 +12,7 @@ namespace binosplat {
 
 namespace {
 
-// How often to look whether an unplugged headset is there again.
+// How often to look whether an unplugged headset is back.
 constexpr std::chrono::milliseconds kBetweenSearches(200), kPause(5);
 // How often, and how far apart, to ask again for a session that a headset refuses just after it was plugged in.
 constexpr int kMostFailures = 10;

@@ -25,7 +25,8 @@ public:
     [[nodiscard]] vk::Format format() const { return format_; }
 
     void showedFrame() { losses_.forget(); }
-    // Drops the session once the device is idle. Throws Error (exit code 3) if too many were lost before one showed a frame.
+    // Drops the session once the device is idle. Throws Error (exit code 3) if too many were lost before one
+    // showed a frame.
     void lose(const std::string& why);
 
     enum class Search {
@@ -45,7 +46,7 @@ private:
     Losses losses_;     // since a frame was shown
     int failures_ = 0;  // in a row, to begin the next session
     std::string why_lost_;
-    bool is_gone_ = false;  // the headset is gone, and that was said
+    bool is_gone_ = false;  // the headset is gone, and that has been reported
     std::chrono::steady_clock::time_point next_search_{};
 };
 

@@ -19,12 +19,13 @@ namespace binosplat {
 
 namespace {
 
-// Recordings that may be under way: those before are done.
+// Recordings that may be in flight: earlier ones are done.
 constexpr int kFramesInFlight = 2;
 // More than any page of the panel draws.
 constexpr int kMostVertices = 1 << 16, kMostIndices = 3 * kMostVertices / 2;
 
-// Draws nothing, of so many vertices that later frames find buffers that are large enough: one for each of the two in flight.
+// Draws nothing, with enough vertices that later frames find buffers that are large enough: one for each of
+// the two in flight.
 void makeBuffersAhead(vk::CommandBuffer commands) {
     ImDrawList list(ImGui::GetDrawListSharedData());
     list.VtxBuffer.resize(kMostVertices, ImDrawVert());

@@ -32,8 +32,8 @@ public:
     Canvas& operator=(const Canvas&) = delete;
     ~Canvas();
 
-    // Letters wanted before begin() are shown as boxes until takeLetters(), between frames, has brought them. What frames before use lives
-    // until they are done.
+    // Letters wanted before begin() are shown as boxes until takeLetters(), between frames, has brought them.
+    // What earlier frames use is kept until they are done.
     [[nodiscard]] PanelFont& font() const { return *font_; }
     void takeLetters();
     // Widgets are drawn between this and end() or giveUp().
@@ -81,7 +81,7 @@ private:
     vk::raii::RenderPass render_pass_{nullptr};
     vk::raii::Framebuffer framebuffer_{nullptr};
     vk::raii::DescriptorPool descriptors_{nullptr};
-    std::vector<std::pair<void*, vk::raii::DescriptorPool>> old_;  // backends that frames under way may use
+    std::vector<std::pair<void*, vk::raii::DescriptorPool>> old_;  // backends that frames in flight may use
     bool has_letters_ = false, is_uploading_ = false;              // the backend; its letters may not be there yet
     int records_ = 0;                                              // since they were uploaded
 };

@@ -1,4 +1,4 @@
-// HarfBuzz chooses and places the signs, FreeType draws them.
+// HarfBuzz chooses and places the glyphs, FreeType draws them.
 #include "app/view/panel/formed_words.h"
 
 #include "app/view/panel/unique_of.h"
@@ -17,7 +17,7 @@ namespace {
 constexpr float kUnits = 64.0f;  // of a pixel, in both libraries
 constexpr unsigned kDotsPerInch = 72;
 
-// A sign of a font, and its x and y and advance in units.
+// A glyph of a font, and its x, y and advance in units.
 using PlacedSign = std::array<std::int64_t, 4>;
 
 class FormingFont {
@@ -33,7 +33,7 @@ public:
         font_.reset(hb_font_create(tables.get()));
     }
 
-    // In units, for lines as high as from the font's ascent to its descent, like ImGui's; 0: no font.
+    // In units, for lines as high as from the font's ascent to its descent, as in ImGui; 0: not a font.
     [[nodiscard]] int em(float line_px) const {
         const int line_units = face_ ? face_->ascender - face_->descender : 0;
         return line_units <= 0 ? 0
@@ -45,7 +45,7 @@ public:
         if (font_) { hb_font_set_scale(font_.get(), em, em); }
     }
 
-    // From left to right; empty if the font lacks a sign.
+    // From left to right; empty if the font lacks a glyph.
     [[nodiscard]] std::vector<PlacedSign> form(const std::u32string& word) const {
         if (!font_) { return {}; }
         const UniqueOf<hb_buffer_t, hb_buffer_destroy> buffer(hb_buffer_create());

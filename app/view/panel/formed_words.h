@@ -1,4 +1,4 @@
-// Words of scripts in which letters change with those beside them, as a font forms them.
+// Words in scripts whose letters change with their neighbours, as a font forms them.
 #pragma once
 
 #include "app/view/panel/system_fonts.h"
@@ -23,17 +23,17 @@ struct LoadedFont {
 struct FormedSign {
     glm::uvec2 size_px;                   // of its picture, whose pixels are half as wide as the panel's
     std::vector<unsigned char> coverage;  // row by row
-    glm::vec2 low_px;                     // the picture's upper left corner, from where the sign begins on the base line; y down
+    glm::vec2 low_px;                     // the picture's upper left corner, relative to the glyph's start on the base line; y down
     float advance_px;
 };
 
 struct FormedWords {
-    std::map<std::u32string, std::vector<std::size_t>> words;  // their signs from left to right
+    std::map<std::u32string, std::vector<std::size_t>> words;  // their glyphs from left to right
     std::vector<FormedSign> signs;
 };
 
-// Forms each word with the first font that has all of it; words that none has are left out. At most `most_signs` different signs. The first
-// font's lines are `line_px` high.
+// Forms each word with the first font that has all of it; words that no font has are left out. At most
+// `most_signs` different glyphs. The first font's lines are `line_px` high.
 FormedWords formWords(const std::set<std::u32string>& words, std::span<const LoadedFont> fonts, float line_px, std::size_t most_signs);
 
 }  // namespace binosplat

@@ -72,7 +72,7 @@ private:
     glm::ivec2 size_px_{0};
 };
 
-// At blanks, as far as they fit; what does not fit into two lines is left out.
+// Breaks at blanks; what does not fit into two lines is left out.
 std::vector<std::string> linesOf(const std::string& shown, float width_px) {
     const ImFont& font = *ImGui::GetIO().Fonts->Fonts[0];
     std::vector<std::string> lines;
@@ -84,7 +84,7 @@ std::vector<std::string> linesOf(const std::string& shown, float width_px) {
     return lines;
 }
 
-// How much of a plate with round corners covers a place, which counts from its middle.
+// How much of a plate with round corners covers a place, relative to its middle.
 double plateAt(const glm::dvec2& place, const glm::dvec2& half) {
     const glm::dvec2 beyond = glm::max(glm::abs(place) - half + kRoundPx, glm::dvec2(0.0));
     return std::clamp(kRoundPx + 0.5 - glm::length(beyond), 0.0, 1.0);

@@ -32,7 +32,7 @@ struct ShownPlace {
 struct ShownRate {
     double met_hz = 0.0, display_hz = 0.0;  // frames that the wearer got in the last second, and displays; 0: not known yet
     int late = 0;                           // of these frames
-    double resolution = 1.0;                // each way, of what the headset recommends
+    double resolution = 1.0;                // each way, relative to the headset's recommendation
     std::optional<double> budget;           // the most that is rendered again, if the method has a budget
     std::optional<double> bound_db;         // in place of it: the errors that are left
     bool is_beaten = false;                 // the rate cannot be held even with the least settings
@@ -57,7 +57,7 @@ struct PanelStatus {
     std::string scene;
     std::string state;                                       // why the headset shows nothing; empty: it shows something
     bool has_scene = false;                                  // there is something to see
-    std::optional<double> loading;                           // share done, while a scene is on its way
+    std::optional<double> loading;                           // share done, while a scene is loading
     const FrameResult* frame = nullptr;                      // the last one; null before the first
     std::vector<float> frame_ms;                             // wall-clock time from frame to frame, oldest first
     std::string governor;                                    // what the governor does about the frame rate, and why

@@ -7,7 +7,7 @@ namespace binosplat {
 
 // For wearers: sharpness and smoothness, place, size of the scene, and ways to move.
 void drawViewPage(PanelWidgets& widgets, ViewSettings& settings, const PanelStatus& status, PanelRequests& requests);
-// The same for whoever sits before a window.
+// The same for a window.
 void drawWindowPage(PanelWidgets& widgets, ViewSettings& settings, const PanelStatus& status, PanelRequests& requests);
 // Choice of scene and viewpoint.
 void drawScenesPage(PanelWidgets& widgets, SceneChooser& chooser, const PanelStatus& status, PanelRequests& requests);

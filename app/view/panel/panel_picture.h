@@ -20,7 +20,8 @@ public:
 
     // A frame was drawn just now.
     void keepFrameTime();
-    // Shows the last frame's times, updated only now and then, since nobody can read numbers that change with every frame.
+    // Shows the last frame's times, updated only now and then, since numbers that change with every frame
+    // cannot be read.
     void showTimes(const FrameResult& last, const std::string& governor, double step_seconds);
     // Has letters, pictures and the current list of scenes read from files beside the frames.
     void askFor(FileWorker& files, const ViewSettings& settings);

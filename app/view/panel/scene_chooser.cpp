@@ -46,7 +46,7 @@ void SceneChooser::goUp() {
 
 void SceneChooser::refresh(const std::string& scene) {
     if (isNew()) { return showFolder(folderOf(scene)); }
-    want();  // the old list stays until the new one is there
+    want();  // the old list stays until the new one is loaded
 }
 
 void SceneChooser::turn(int pages) {

@@ -27,23 +27,23 @@ class SceneChooser {
 public:
     static constexpr std::size_t kRows = 6;
 
-    // Looks into a folder, or kBuiltinFolder.
+    // Opens a folder, or kBuiltinFolder.
     void showFolder(const std::string& folder);
     void showRecent() { showAnother(true, "Recent scenes"); }
     void goUp();
-    // Looks again where it looked last; the first time in the folder of `scene`.
+    // Opens what it opened last again; the first time, the folder of `scene`.
     void refresh(const std::string& scene);
-    // True if nothing was looked at yet.
+    // True if nothing has been opened yet.
     [[nodiscard]] bool isNew() const { return !wish_.recent && wish_.folder.empty(); }
     // Turns `pages` pages of kRows entries on or, below 0, back.
     void turn(int pages);
-    // Looks into an entry that is a folder; returns the place of a scene to load, otherwise empty.
+    // Opens an entry that is a folder; returns the place of a scene to load, otherwise empty.
     [[nodiscard]] std::string open(const SceneEntry& entry);
 
     // The list that it wants, once; answer with show().
     [[nodiscard]] std::optional<SceneListWish> takeWish();
     void show(SceneList list, const SceneListWish& wish);
-    // True until the list is there.
+    // True until the list is loaded.
     [[nodiscard]] bool isReading() const { return is_reading_; }
 
     [[nodiscard]] const SceneList& list() const { return list_; }
@@ -56,7 +56,7 @@ private:
     void want();
 
     SceneList list_;
-    SceneListWish wish_;  // the latest; its folder is the one looked into last, if any
+    SceneListWish wish_;  // the latest; its folder is the one opened last, if any
     bool is_reading_ = false, is_wish_new_ = false;
     std::size_t page_ = 0;
 };

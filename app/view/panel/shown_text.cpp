@@ -28,7 +28,7 @@ bool isOfWord(char32_t letter) {
     return std::ranges::any_of(kScripts, [&](const auto& range) { return letter >= range.first && letter <= range.second; });
 }
 
-// Also signs that join letters, keep them apart or choose between their forms.
+// Also characters that join letters, keep them apart or choose between their forms.
 bool isWithinWord(char32_t letter) {
     return isOfWord(letter) || letter == 0x200c || letter == 0x200d || (letter >= 0x0300 && letter <= 0x036f) ||
            (letter >= 0xfe00 && letter <= 0xfe0f);

@@ -8,10 +8,11 @@
 
 namespace binosplat {
 
-// Private-use letters, which stand for signs that a font has formed: ImGui draws only letters.
+// Private-use letters, which stand for glyphs that a font has formed: ImGui draws only letters.
 inline constexpr char32_t kFirstPrivate = 0xe000, kLastPrivate = 0xf8ff;
 
-// Words of scripts in which letters change with those beside them, and the private letters that stand for them, from left to right.
+// Words in scripts whose letters change with their neighbours, and the private letters that stand for them,
+// from left to right.
 using WordForms = std::map<std::u32string, std::u32string>;
 
 // Any text as UTF-8 from left to right, as ImGui draws it: control characters and private letters become boxes, words of Hebrew and Arabic

@@ -14,8 +14,8 @@ struct SystemFont {
     int number = 0;
 };
 
-// A short list of fonts that together have all of these letters (Unicode) that any font has, the user's preferred ones first. Reads only
-// the system's index of fonts, not the fonts.
+// A short list of fonts that together have all of these letters (Unicode) that any font has, the user's
+// preferred ones first. Reads only the system's index of fonts, not the fonts.
 std::vector<SystemFont> fontsWith(const std::set<std::uint32_t>& letters);
 
 }  // namespace binosplat

@@ -78,7 +78,7 @@ Similarity heldBy(const Similarity& scene_from_room, const std::array<glm::dvec3
     double growth = has_size ? glm::length(span_from) / glm::length(span_to) : 1.0;
     const double turn = areApart(level(span_from), level(span_to)) ? headingOf(span_from) - headingOf(span_to) : 0.0;
     growth = std::clamp(scene_from_room.scale * growth, kLeastScale, kMostScale) / scene_from_room.scale;
-    // From the new room to the old one: `to` must lie where `from` lay.
+    // From the new room to the old one: `to` must be where `from` was.
     const glm::dquat old_from_new = tilted && has_size ? turnBetween(span_to, span_from) : turnAboutDown(turn);
     const glm::dvec3 middle_from = 0.5 * (from[0] + from[1]), middle_to = 0.5 * (to[0] + to[1]);
     return compose(scene_from_room, {old_from_new, middle_from - growth * (old_from_new * middle_to), growth});

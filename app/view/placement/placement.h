@@ -8,8 +8,8 @@ namespace binosplat {
 
 // The room's origin where the view's eye is, upright, looking that way. A room metre is 1 / metres_per_unit scene units.
 Similarity startPlacement(const View& view, double metres_per_unit);
-// The factor by which a scene is enlarged, so that what the view looks at is at least half a metre away: closer, the eyes would have to
-// squint, and what is before the near plane is not drawn.
+// The factor by which a scene is enlarged, so that what the view looks at is at least half a metre away:
+// closer, the eyes would have to squint, and what is nearer than the near plane is not drawn.
 double growthToSee(const View& view, double metres_per_unit);
 
 // These move the wearer through the scene: each returns the scene_from_room that follows `scene_from_room`. By `step_m` in the

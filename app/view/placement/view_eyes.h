@@ -15,7 +15,7 @@ std::array<xr::EyeView, 2> withoutNoise(std::array<xr::EyeView, 2> views);
 // and microradians, hundredths of a pixel.
 std::array<Pose, 2> roomFromEyes(const std::array<xr::EyeView, 2>& views);
 
-// The middle between the eyes.
+// The midpoint between the eyes.
 Pose roomFromHead(const std::array<Pose, 2>& room_from_eyes);
 
 // An eye as frames take it.

@@ -69,7 +69,7 @@ TexelPicture drawHand(const xr::HandJoints& joints, const Strip& place, const gl
     const glm::dvec3 eye_there = transform(picture_from_room, eye);
     std::array<SeenJoint, XR_HAND_JOINT_COUNT_EXT> seen{};
     for (std::size_t i = 0; i < seen.size(); ++i) {
-        // Through the picture's plane, z = 0; the eye is before it, at negative z.
+        // Through the picture's plane, z = 0; the eye is in front of it, at negative z.
         const glm::dvec3 joint = transform(picture_from_room, joints[i].place);
         const double depth_m = std::max(joint.z - eye_there.z, 0.02), growth = -eye_there.z / depth_m;
         const glm::dvec2 at = glm::dvec2(eye_there) + growth * (glm::dvec2(joint) - glm::dvec2(eye_there));

@@ -15,7 +15,8 @@ constexpr double kRingShare = 0.025;  // of its distance: a degree and a half
 // In front of the eyes: 27 degrees to the left, a little below, within arm's reach.
 const glm::dvec3 kPlaceMetres(-0.45, 0.1, 0.9);
 const glm::dvec3 kUp(0.0, -1.0, 0.0);
-// It hangs 27 degrees to the left: who looks far to the right looks past it, who has turned round has lost it.
+// It hangs 27 degrees to the left: a wearer who looks far to the right looks past it, one who has turned
+// round has lost it.
 constexpr double kUnseenRadians = 1.4, kFarMetres = 3.0, kUnseenSeconds = 1.5;
 
 }  // namespace
@@ -104,7 +105,7 @@ std::vector<Thing> PanelInRoom::rays(const glm::dvec3& eye, std::optional<int> w
         }
         const std::optional<double>& met_m = meets_m[static_cast<std::size_t>(h)];
         if (hand.hit || !met_m) { continue; }
-        // As large to the eye wherever it is.
+        // The same apparent size wherever it is.
         const glm::dvec3 place = transform(*hand.aim, glm::dvec3(0.0, 0.0, *met_m));
         rays.push_back({Sprite::kRing, facing(place, glm::dvec2(kRingShare * glm::distance(place, eye)), eye)});
     }

@@ -19,9 +19,10 @@ public:
     // Follows the hands while the panel is `shown`. Both may point; the one that clicked last is the pointer, as long as it hits the panel.
     // A hand that squeezes while it points carries the panel until it lets go.
     void update(const std::array<xr::Hand, 2>& hands, bool shown);
-    // While it is shown: if the wearer looks elsewhere for long enough, and neither points at it nor carries it, it comes before the eyes.
+    // While it is shown: if the wearer looks elsewhere for long enough, and neither points at it nor carries
+    // it, it moves to in front of the eyes.
     void comeBefore(const Pose& room_from_head, double step_seconds);
-    // Hangs the panel before the eyes, a little to the left, facing them.
+    // Hangs the panel in front of the eyes, a little to the left, facing them.
     void hangBefore(const Pose& room_from_head);
 
     [[nodiscard]] const Pose& roomFromPanel() const { return room_from_panel_; }
@@ -36,8 +37,9 @@ public:
     // True if this hand carries the panel.
     [[nodiscard]] bool isCarriedBy(int hand) const { return carrier_ == hand; }
 
-    // The rays of all pointing hands but `without`, while the panel is shown or the trigger is pulled: up to the panel or, if they miss it,
-    // a short way, fading; a ring shows where they meet the scene, so many metres away.
+    // The rays of all pointing hands except `without`, while the panel is shown or the trigger is pulled: up
+    // to the panel or, if they miss it, a short way, fading; a ring shows where they meet the scene, this
+    // many metres away.
     [[nodiscard]] std::vector<Thing> rays(const glm::dvec3& eye, std::optional<int> without,
                                           const std::array<std::optional<double>, 2>& meets_m = {}) const;
     // Where this hand points, if it has a ray that misses the panel.

@@ -9,7 +9,7 @@ namespace binosplat {
 
 namespace {
 
-// A controller of no particular make: a handle in the fist, and a knob before it.
+// A controller of no particular make: a handle in the fist, and a knob in front of it.
 constexpr double kHandleWidthMetres = 0.035, kHandleBehindMetres = 0.07, kHandleAheadMetres = 0.045, kKnobMetres = 0.055;
 // A message is a little below where one looks, as wide as a newspaper.
 const glm::dvec3 kMessagePlace(0.0, 0.28, 1.0);

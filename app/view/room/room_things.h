@@ -12,12 +12,12 @@ namespace binosplat {
 
 // The things to draw in a frame.
 struct RoomSight {
-    glm::dvec3 eye{0.0};                           // the middle between the wearer's eyes
+    glm::dvec3 eye{0.0};                           // the midpoint between the wearer's eyes
     std::optional<std::array<xr::Hand, 2>> hands;  // absent: not to be drawn
     std::vector<Thing> things;                     // rays and others
     const Arc* arc = nullptr;                      // of a throw; null: none
     std::optional<double> vignette_m;              // its width
-    // A line of text before the head: drawn anew if there is a picture, else as it was.
+    // A line of text in front of the head: drawn anew if there is a picture, otherwise as it was.
     bool has_message = false;
     std::optional<TexelPicture> message;
 };
@@ -43,7 +43,7 @@ public:
     [[nodiscard]] bool areShown() const { return vignette_.has_value() || !quads_.empty(); }
     // The runtime does not show them: from now on nothing is drawn.
     void giveUp();
-    // Add the layers of the last chosen frame: those behind the panel, and those before it.
+    // Add the layers of the last chosen frame: those behind the panel, and those in front of it.
     void addBehindPanel(xr::Layers& layers) const;
     void addBeforePanel(xr::Layers& layers) const;
 

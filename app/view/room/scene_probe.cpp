@@ -16,7 +16,7 @@ namespace {
 constexpr double kNearestMetres = 0.2, kFarthestMetres = 30.0;
 // Of a point: a colour of up to four floats, then a word or a float of depth.
 constexpr std::uint64_t kPointBytes = 32, kDepthByte = 16;
-// What lies so far behind a surface may pass behind it; what is nearer meets it.
+// What is this far behind a surface may pass behind it; what is nearer meets it.
 constexpr double kThickMetres = 0.25, kThickShare = 0.15;
 
 }  // namespace
@@ -42,7 +42,7 @@ glm::dvec3 pointAlong(std::span<const glm::dvec3> way, double share) {
 PathSeen followPath(const std::array<std::optional<double>, kProbePoints>& points_m,
                     const std::array<std::optional<double>, kProbePoints>& seen_m) {
     PathSeen path;
-    std::optional<double> before_m;  // how far the point before lies before what is seen there
+    std::optional<double> before_m;  // how far the point is in front of what is seen there
     for (std::size_t i = 0; i < kProbePoints; ++i) {
         if (!points_m[i] || !seen_m[i]) {
             before_m.reset();

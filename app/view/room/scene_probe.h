@@ -1,4 +1,5 @@
-// Where paths in the room meet the scene, by the depth of its pictures: three frames late, so that nobody waits for it.
+// Where paths in the room meet the scene, by the depth of its pictures: three frames late, so that nothing
+// has to wait.
 #pragma once
 
 #include "engine/gpu/commands.h"
@@ -37,7 +38,7 @@ double probeMetres(double point);
 // The point at a share of the way, of points along it.
 glm::dvec3 pointAlong(std::span<const glm::dvec3> way, double share);
 
-// Of the points' own depths and of what is seen there, in metres; empty: nothing, or out of sight.
+// From the points' own depths and those of what is seen there, in metres; empty: nothing, or out of sight.
 PathSeen followPath(const std::array<std::optional<double>, kProbePoints>& points_m,
                     const std::array<std::optional<double>, kProbePoints>& seen_m);
 

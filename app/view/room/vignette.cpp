@@ -16,7 +16,7 @@ constexpr double kMargin = 1.05;          // for eyes beside the head's middle
 constexpr double kLeastCosine = 0.1;      // for canted eyes, whose corners may look past the head's side
 constexpr double kCorner = 1.4142135624;  // of a square, relative to its half width
 
-// The half width of the square that both eyes see, at a distance of 1 straight before the head.
+// The half width of the square that both eyes see, at a distance of 1 straight ahead of the head.
 double halfWidthSeen(const std::array<xr::EyeView, 2>& views) {
     std::array<Pose, 2> room_from_eyes{xr::fromXr(views[kLeft].pose), xr::fromXr(views[kRight].pose)};
     const glm::dquat head_from_room = glm::conjugate(roomFromHead(room_from_eyes).orientation);

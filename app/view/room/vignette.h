@@ -11,7 +11,8 @@ namespace binosplat {
 // In shares of the picture's half width: clear nearer to the middle than the first, dark beyond the second.
 constexpr double kVignetteClear = 0.55, kVignetteDark = 0.95;
 
-// The width of a square picture straight before the head, `kVignetteMetres` away, that covers what both eyes see.
+// The width of a square picture straight ahead of the head, `kVignetteMetres` away, that covers what both
+// eyes see.
 constexpr double kVignetteMetres = 5.0;
 [[nodiscard]] double coverMetres(const std::array<xr::EyeView, 2>& views);
 

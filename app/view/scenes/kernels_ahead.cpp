@@ -1,4 +1,4 @@
-// Small frames that nobody draws.
+// Small frames that are never drawn.
 #include "app/view/scenes/kernels_ahead.h"
 
 #include "app/options/modes.h"
@@ -12,7 +12,7 @@ namespace binosplat {
 
 namespace {
 
-// The governor's shares of the resolution, each way; where axes stay, pictures are wider.
+// The governor's shares of the resolution, each way; if axes stay, pictures are wider.
 constexpr std::array kShares{1.25, 1.0, 0.8, 0.6, 0.4};
 
 std::array<Eye, 2> smallEyes(std::uint32_t width_px, bool canted) {

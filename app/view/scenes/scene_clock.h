@@ -1,4 +1,4 @@
-// The time of a scene that moves: it plays, rests, and can be moved.
+// The time of a scene that moves: it plays, pauses, and can be moved.
 #pragma once
 
 #include <algorithm>
@@ -25,13 +25,13 @@ public:
 
     void pass(double step_seconds) { time_s_ += plays_ ? step_seconds : 0.0; }
     void togglePlaying() { plays_ = !plays_; }
-    // Steps `frames` on or, below 0, back, around the scene's end, and rests there.
+    // Steps `frames` on or, below 0, back, around the scene's end, and pauses there.
     void step(std::ptrdiff_t frames) {
         plays_ = false;
         const auto count = static_cast<std::ptrdiff_t>(frames_);
         goTo(static_cast<std::size_t>(((static_cast<std::ptrdiff_t>(frame()) + frames) % count + count) % count));
     }
-    // Goes on playing from there, or rests there.
+    // Plays on from there, or stays paused there.
     void goTo(std::size_t frame) { time_s_ = static_cast<double>(std::min(frame, frames_ - 1)) / rate_hz_; }
 
 private:

@@ -38,7 +38,7 @@ SceneList listBuiltinScenes() {
     return list;
 }
 
-// Nothing is asked of them: an empty or distant one may take its time.
+// They are not examined: an empty or distant one may take its time.
 SceneList listDrives(const std::vector<fs::path>& roots) {
     SceneList list{"Drives", {}, {}, {}};
     for (const fs::path& root : roots) {

@@ -1,4 +1,4 @@
-// A folder's contents for somebody looking for a scene: folders and scenes, in natural order.
+// A folder's contents for finding a scene: folders and scenes, in natural order.
 #pragma once
 
 #include "app/view/scenes/seen_scenes.h"
@@ -33,13 +33,13 @@ inline constexpr const char* kBuiltinFolder = "builtin:";
 // The folder that a scene lies in, in full, or kBuiltinFolder.
 std::string folderOf(const std::string& scene);
 
-// Stands for the drives, where paths begin in several places, in place of a folder's path.
+// Stands for the drives, if paths begin in several places, in place of a folder's path.
 inline constexpr const char* kDrives = "drives:";
 
 // Folders first, then scenes; hidden files and files that do not look like scenes are left out.
 SceneList listFolder(const std::string& folder, const std::vector<std::filesystem::path>& roots = fileSystemRoots());
 
-// Adds what is known of the scenes, and puts favourites first.
+// Adds what is known about the scenes, and puts favourites first.
 void describeScenes(SceneList& list);
 
 // These scenes in this order, by their file names; missing ones are marked as such.

@@ -21,7 +21,7 @@ constexpr double kReadingShare = 0.8;
 
 struct Cancelled {};
 
-// The eye of somebody who stands there, with about a headset's view angle.
+// The eye of a standing person, with about a headset's view angle.
 Eye startEye(const View& start) {
     constexpr glm::uvec2 kSizePx(1024, 1024);
     return {lookAt(start.eye, start.look, start.up), intrinsicsFromFovX(glm::radians(100.0), kSizePx), kSizePx};

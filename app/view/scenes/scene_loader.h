@@ -64,8 +64,9 @@ std::pair<std::uint32_t, int> kindOf(const LoadedScene& scene);
 // Loads on a thread of its own.
 class SceneLoader {
 public:
-    // With `ahead` it also makes the kernels for the scene's frames, unless scenes of its kind were shown before. A streamed scene is done
-    // when the coarsest level of all its leaves is there or, if `settled`, all that the start view needs.
+    // With `ahead` it also makes the kernels for the scene's frames, unless scenes of its kind were shown
+    // before. A streamed scene is done when the coarsest level of all its leaves is loaded or, if `settled`,
+    // everything that the start view needs.
     SceneLoader(const Context& context, std::string scene, RunOptions options, std::optional<FramesAhead> ahead = {}, bool settled = false);
     SceneLoader(const SceneLoader&) = delete;
     SceneLoader& operator=(const SceneLoader&) = delete;
@@ -89,7 +90,7 @@ public:
 private:
     void load(const Context& context, const RunOptions& options, bool settled);
     void makeKernels(const Context& context, const RunOptions& options);
-    // Ends, unless other kernels than those that were made are needed.
+    // Ends, unless other kernels are needed than those that were made.
     bool finish();
 
     std::string scene_;

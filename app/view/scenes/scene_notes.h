@@ -1,4 +1,4 @@
-// What is kept of scenes while they are shown: written beside the frames, with the outcome in a line.
+// What is kept about scenes while they are shown: written beside the frames, with the outcome in a line.
 #pragma once
 
 #include "app/view/files/file_worker.h"
@@ -18,7 +18,7 @@ public:
     // Both outlive this.
     SceneNotes(FileWorker& files, Say say) : files_(files), say_(std::move(say)) {}
 
-    // That it was shown. `complaint` was said already.
+    // Records that it was shown. `complaint` has been reported already.
     void remember(const std::string& scene, const std::string& complaint);
     void save(const std::string& scene, const ViewSettings& settings);
     // Marks a favourite, or unmarks it, and then calls `done`.

@@ -1,4 +1,4 @@
-// The scene that is shown, and the one on its way to take its place.
+// The scene that is shown, and the one that is loading to replace it.
 #pragma once
 
 #include "app/terminal/frame_log.h"
@@ -19,7 +19,7 @@ public:
     // Begins to load the scene of the options. `context`, `options` and `log` outlive this. With `ahead` scenes come with their kernels.
     ShownScene(const Context& context, const ViewOptions& options, const FrameLog& log, std::optional<FramesAhead> ahead = {});
 
-    // Null until the first scene is there.
+    // Null until the first scene is loaded.
     [[nodiscard]] LoadedScene* get() const { return scene_.get(); }
     // The frame of whatever scene is shown, once there is one; and another one, made at the first call, for the insets of a headset that
     // has them. Throws Error if the device lacks the memory.
@@ -28,9 +28,10 @@ public:
     void dropInsets() { insets_.reset(); }
     // Makes their kernels anew, see StereoFrame.
     void rebuildKernels();
-    // The scene's name or, until it is there, that of the requested one.
+    // The scene's name or, until it is loaded, that of the requested one.
     [[nodiscard]] const std::string& name() const { return scene_ ? scene_->name : asked_; }
-    // Share done of the next scene or, if none is on its way, of the visible part of a streamed one; empty if all of that is there.
+    // The share done of the next scene or, if none is loading, of the visible part of a streamed one; empty
+    // if all of that is loaded.
     [[nodiscard]] std::optional<double> loading() const;
     // True if a thread still loads or compiles anything, wanted or given up.
     [[nodiscard]] bool isLoading() const;
@@ -42,10 +43,10 @@ public:
     // The wearer's settings of frames. The next scene comes with kernels for them; for the current one they are made beside the frames,
     // unless the options have the scene loaded first, so that runs are repeatable.
     void expect(const StereoOptions& stereo, glm::uvec2 size_px, bool tint);
-    // `settings`, with the method replaced by one that can be drawn until its kernels are there.
+    // `settings`, with the method replaced by one that can be drawn until its kernels are ready.
     [[nodiscard]] ViewSettings drawable(ViewSettings settings) const;
 
-    // Begins to load another scene; the current one stays until that is there.
+    // Begins to load another scene; the current one stays until that is loaded.
     void begin(const std::string& scene);
     // The same for the scene `step` further on in the folder of the last requested one, once `files` has found it.
     void beginBeside(int step, FileWorker& files);

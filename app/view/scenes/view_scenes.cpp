@@ -26,7 +26,8 @@ bool looksMoving(const fs::path& folder) {
     });
 }
 
-// One scene, as findOnlyScene finds it, but by its name: nothing is opened. What lies in further folders could not be reached.
+// A single scene, as findOnlyScene finds it, but by its name: nothing is opened. Scenes in nested folders
+// could not be reached.
 bool holdsOneScene(const fs::path& folder) {
     int files = 0, scenes = 0;
     std::error_code error, ignored;

@@ -1,4 +1,4 @@
-// Chosen from what drivers say of themselves.
+// Chosen by what drivers report.
 #include "app/view/settings/device_defaults.h"
 
 #include "app/view/governor/splat_budget.h"
@@ -13,7 +13,8 @@ namespace binosplat {
 namespace {
 
 constexpr std::uint64_t kGibibyte = std::uint64_t{1} << 30, kSmallBelow = 8 * kGibibyte;
-// Of a million splats, 96 MB of scene and 60 to 120 of lists, a gibibyte takes one, and the rest of the memory is everybody else's.
+// A million splats take 96 MB for the scene and 60 to 120 for lists, so a gibibyte holds one million; the
+// rest of the memory belongs to everyone else.
 constexpr std::uint64_t kSplatsPerGibibyte = 1'000'000;
 
 }  // namespace

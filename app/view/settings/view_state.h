@@ -27,7 +27,7 @@ public:
     // Of the scene that is shown, see Scene: placements among settings are in its file's coordinates.
     void countFrom(const glm::dvec3& origin) { origin_ = origin; }
     void place(const Similarity& scene_from_room) { scene_from_room_ = scene_from_room; }
-    // A placement that was asked for before there was a scene; once.
+    // A placement that was requested before there was a scene; once.
     [[nodiscard]] std::optional<Similarity> takeAsked() { return inScene(std::exchange(asked_, {})); }
     // Also sets the placement, if there is one among them.
     void set(ViewSettings settings) {
@@ -40,7 +40,7 @@ public:
     void keepFitting(const ViewSettings& drawn) { fitting_ = drawn; }
     // Changes since then; empty if there are none, or if nothing was drawn yet.
     [[nodiscard]] std::string changeSinceFitting() const { return fitting_ ? describeChange(*fitting_, settings_) : ""; }
-    // Back to the settings that fit; only if changeSinceFitting() is not empty.
+    // Returns to the settings that fit; only if changeSinceFitting() is not empty.
     void goBack() { settings_ = *fitting_; }
 
     // Changes since the last call, see describeChange.

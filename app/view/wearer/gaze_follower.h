@@ -1,4 +1,4 @@
-// Where the eyes look in a frame: by the headset's eye tracker, or else at the middle of their lenses.
+// Where the eyes look in a frame: by the headset's eye tracker, or otherwise at the middle of their lenses.
 #pragma once
 
 #include "engine/frame/stereo_frame.h"

@@ -13,7 +13,7 @@ constexpr double kWalkMetresPerSecond = 1.5, kRiseMetresPerSecond = 0.8;
 constexpr double kTurnRadians = 0.5235987755982988;  // 30 degrees
 constexpr double kTurnRadiansPerSecond = 1.5707963267948966;
 
-// Thumbs that push ahead also push aside a little: only the larger part counts.
+// Thumbs that push forwards also push aside a little: only the larger part counts.
 glm::dvec2 dominantAxis(const glm::dvec2& stick) {
     return std::abs(stick.x) > std::abs(stick.y) ? glm::dvec2(stick.x, 0.0) : glm::dvec2(0.0, stick.y);
 }
@@ -48,7 +48,7 @@ void Turn::update(const WearerNow& now, const PanelInRoom& panel, ViewState& sta
     if (std::abs(turn) > kStickPushed && !turned_) {
         state.place(turnedBy(state.sceneFromRoom(), std::copysign(kTurnRadians, turn), now.room_from_head.position));
         turned_ = true;
-    } else if (std::abs(stick.x) < kStickRests) {  // however far the stick is pushed ahead
+    } else if (std::abs(stick.x) < kStickRests) {  // however far the stick is pushed forwards
         turned_ = false;
     }
 }

@@ -7,7 +7,7 @@
 
 namespace binosplat {
 
-// The tools, and the buttons. Menu shows the panel before the eyes, or hides it.
+// The tools, and the buttons. Menu shows the panel in front of the eyes, or hides it.
 class WearerControls {
 public:
     WearerControls();

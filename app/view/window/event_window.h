@@ -1,4 +1,5 @@
-// The window as the main thread has it: GLFW and its events, which may hold that thread up for as long as somebody drags the window.
+// The main thread's part of the window: GLFW and its events, which may hold that thread up for as long as
+// somebody drags the window.
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -33,7 +34,7 @@ private:
     WindowSystem() = default;
 };
 
-// What the window is like, and what happened to it since it was last asked. Keys and buttons are GLFW's.
+// The state of the window, and what has happened to it since the last call. Keys and buttons are GLFW's.
 struct WindowEvents {
     std::vector<int> pressed;    // keys, in their order
     std::set<int> down;          // keys, also if they were let go since
@@ -54,15 +55,15 @@ public:
     EventWindow& operator=(const EventWindow&) = delete;
     ~EventWindow();
 
-    // Of the main thread, as are the constructor and the destructor: handles what happens, until end().
+    // For the main thread, like the constructor and the destructor: handles what happens, until end().
     void run();
-    // Once, waiting for so long at most.
+    // Once, waiting at most this long.
     void handle(double most_seconds);
 
-    // Of any thread: what happened since the last call.
+    // For any thread: what has happened since the last call.
     [[nodiscard]] WindowEvents take();
     [[nodiscard]] glm::uvec2 sizePx() const;
-    // To be destroyed before close(). Throws Error if the window cannot be drawn on.
+    // Destroy it before close(). Throws Error if drawing in the window is impossible.
     [[nodiscard]] VkSurfaceKHR surface(const Context& context) const;
     // The window goes away, soon.
     void close();

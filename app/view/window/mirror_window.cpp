@@ -41,7 +41,7 @@ MirrorWindow::~MirrorWindow() {
         const std::lock_guard lock(context_.queueMutex());
         try {
             context_.device().waitIdle();
-        } catch (const vk::SystemError&) {}  // a lost device draws nothing more
+        } catch (const vk::SystemError&) {}  // a lost device has no work in flight
     }
     pictures_.reset();  // before the window
     events_.close();
