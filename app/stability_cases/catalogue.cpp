@@ -31,12 +31,12 @@ std::vector<Case> makeCatalogue() {
     for (const glm::uvec2 size_px : {glm::uvec2(1, 1), glm::uvec2(17, 33), glm::uvec2(1, 700), glm::uvec2(4096, 4096)}) {
         cases.push_back(standAlone(
             fmt::format("image of {}x{}", size_px.x, size_px.y), [size_px] { return makeImage(size_px); },
-            "sizes from one pixel to more than a headset's, odd ones with tiles that are cut"));
+            "from one pixel to more than a headset's, with odd sizes that cut tiles"));
         cases.back().large = size_px.x >= 4096;
     }
     cases.push_back(
-        standAlone("equal depths", makeEqualDepths, "ties are broken by the order of the scene, so that nothing is left to rounding"));
-    cases.push_back(standAlone("empty scene", makeEmpty, "nothing is seen but the background"));
+        standAlone("equal depths", makeEqualDepths, "ties are broken by the order of the scene, so nothing is left to rounding"));
+    cases.push_back(standAlone("empty scene", makeEmpty, "only the background is visible"));
     cases.push_back(standAlone("every tile covered", makeCovered, "a hundred discs meet every tile"));
     cases.push_back(
         standAlone("eye inside a cloud", makeCloud, "discs of all sizes around the eye, through it and through the near plane"));

@@ -41,12 +41,12 @@ std::vector<Path> makePaths() {
     constexpr double kNear = 0.2 + 0.5 * kStep;
     const glm::dvec3 eye(0.0), near_plane(0.0, 0.0, kNear), ahead(0.0, 0.0, 1.5), beside(0.1, 0.15, kNear);
     return {
-        path("through a disc that it faces", kFacing, eye, kForward, "nothing of it lies beyond the near plane"),
+        path("through a disc that it faces", kFacing, eye, kForward, "none of it is beyond the near plane"),
         path("through a tilted disc", kTilted, eye, kForward, "the part beyond the near plane moves on smoothly"),
         path("a facing disc meets the near plane", kFacing, near_plane, kForward,
-             "all of it goes from one frame to the next, in the twin too"),
-        path("a tilted disc's centre meets the near plane", kTilted, beside, kForward, "its low-pass goes, the rest stays"),
-        path("along a disc's plane", kLevel, ahead, kForward, "its plane holds the eye in every frame: the low-pass alone"),
+             "all of it disappears from one frame to the next, in the twin too"),
+        path("a tilted disc's centre meets the near plane", kTilted, beside, kForward, "its low-pass disappears, the rest stays"),
+        path("along a disc's plane", kLevel, ahead, kForward, "its plane holds the eye in every frame: only the low-pass is left"),
         path("through a disc's plane, from above to below", kLevel, ahead, kDown, "edge-on within 2e-5 rad, one side and then the other"),
     };
 }

@@ -113,7 +113,7 @@ std::vector<Sequence> makeSequences() {
          .eyes = walkAndStop,
          .frames = 42,
          .equal_from = 35,
-         .reason = "30 frames after it stopped, and for good, it sees the full render"},
+         .reason = "from 30 frames after it stopped, it always sees the full render"},
         37.0, 44.0);
     add({.name = "a quarter of a pixel to and fro",
          .make = makeSpecks,
@@ -124,7 +124,7 @@ std::vector<Sequence> makeSequences() {
          .drift_db = 1.0,
          .beyond = 0.1,
          .bias = 0.005,
-         .reason = "what is sampled again and again blurs until it is rendered, but neither rings nor drifts"},
+         .reason = "pictures that are sampled again and again blur until they are rendered, but neither ring nor drift"},
         30.0, {});
     add({.name = "the same, nothing rendered again",
          .make = makeSpecks,
@@ -153,15 +153,19 @@ std::vector<Sequence> makeSequences() {
          .make = makeSurround,
          .eyes = turnFast,
          .frames = 46,
-         .reason = "2 degrees a frame: each shows 3 % that the last did not"},
+         .reason = "2 degrees a frame: each frame shows 3 % that the last one did not"},
         27.0, 29.0);
-    add({.name = "needles", .make = makeNeedleRoom, .eyes = walk, .frames = 31, .reason = "thinner than pixels, which have no one depth"},
+    add({.name = "needles",
+         .make = makeNeedleRoom,
+         .eyes = walk,
+         .frames = 31,
+         .reason = "thinner than pixels, which then have no single depth"},
         28.0, 27.0);
     add({.name = "along a wall",
          .make = makeNearWall,
          .eyes = passByWall,
          .frames = 31,
-         .reason = "it goes by at 0.7 pixels a frame, and all of it is as deep"},
+         .reason = "it moves by 0.7 pixels a frame, and has the same depth everywhere"},
         50.0, 54.0);
     add({.name = "a scene that is exchanged",
          .make = makeWholeRoom,
@@ -169,19 +173,19 @@ std::vector<Sequence> makeSequences() {
          .frames = 21,
          .exchanged_at = 10,
          .make_other = makeOtherRoom,
-         .reason = "nothing of the one is seen in the other"},
+         .reason = "nothing of one scene shows in the other"},
         37.0, 43.0);
     add({.name = "angles that change in each frame",
          .make = makeWholeRoom,
          .eyes = changeAngles,
          .frames = 21,
-         .reason = "a past of other angles is one of a smaller or a larger picture"},
+         .reason = "a history with other angles is one of a smaller or larger picture"},
         36.0, 41.0);
     add({.name = "size and angles that change in each frame",
          .make = makeWholeRoom,
          .eyes = changeSize,
          .frames = 21,
-         .reason = "a past of another size is warped like any other"},
+         .reason = "a history of another size is warped like any other"},
         35.0, 41.0);
     return sequences;
 }
