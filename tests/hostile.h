@@ -1,4 +1,4 @@
-// Broken inputs by the thousand: how they are made and what is asked of whoever reads them.
+// Thousands of broken inputs: how they are made, and what is required of their readers.
 #pragma once
 
 #include "tests/suite.h"
@@ -11,7 +11,8 @@
 
 namespace binosplat::test {
 
-// What reading gave: nothing is thrown but Error, whose message is one line, and no small file is short of memory.
+// The result of reading: only Error is thrown, its message is one line, and small files do not run out of
+// memory.
 struct Tally {
     std::size_t inputs = 0, read = 0, refused = 0;
 
@@ -37,10 +38,10 @@ inline constexpr bool kSanitized = __has_feature(address_sanitizer);
 #else
 inline constexpr bool kSanitized = false;
 #endif
-// A sanitizer makes the libraries' start of each file many times slower: of the inputs one in eight is tried then.
+// A sanitizer makes the libraries' start for each file many times slower: then one input in eight is tried.
 inline constexpr std::size_t kStep = kSanitized ? 8 : 1;
 
-// The most memory this process ever held, in MiB; 0 where a sanitizer holds most of it, and on Windows.
+// The most memory that this process ever held, in MiB; 0 if a sanitizer holds most of it, and on Windows.
 inline long peakMebibytes() {
 #ifdef _WIN32
     return 0;

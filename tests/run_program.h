@@ -21,8 +21,8 @@ struct Outcome {
 inline int (*run_in_fork)(const std::string& arguments, const std::string& environment, const std::filesystem::path& folder,
                           const std::filesystem::path& outputs) = nullptr;
 
-// An empty folder to run in, removed with the test. Standard output and error are kept outside of it. On Windows, where there is no POSIX
-// shell, it is a folder and no more.
+// An empty folder to run in, removed with the test. Standard output and error are kept outside of it. On
+// Windows, which has no POSIX shell, it is only a folder.
 struct Workplace {
     std::filesystem::path base = makeBase();
     std::filesystem::path path = base / "work";
@@ -36,7 +36,7 @@ struct Workplace {
     }
 
 #ifndef _WIN32
-    // As the shell does: `arguments` may redirect, `environment` is NAME=VALUE ... in front of the program.
+    // As in the shell: `arguments` may redirect, `environment` is NAME=VALUE ... in front of the program.
     [[nodiscard]] Outcome run(const std::string& arguments, const std::string& environment = "") const {
         if (run_in_fork != nullptr) {
             if (const int status = run_in_fork(arguments, environment, path, base); status != -1) { return outcomeOf(status); }
@@ -44,7 +44,7 @@ struct Workplace {
         return runCommand(environment + " '" BINOSPLAT_PROGRAM "' " + arguments);
     }
 
-    // A run that is expected to end well.
+    // A run that is expected to succeed.
     Outcome go(const std::string& arguments, const std::string& environment = "") const {
         Outcome outcome = run(arguments, environment);
         INFO(arguments << ": " << outcome.errors);
@@ -52,7 +52,7 @@ struct Workplace {
         return outcome;
     }
 
-    // A run that ends with this code and one line of error, which holds `part`.
+    // A run that ends with this code and one line of error, which contains `part`.
     void checkRefused(const std::string& arguments, int exit_code, const std::string& part, const std::string& environment = "") const {
         CAPTURE(environment);
         const Outcome outcome = run(arguments, environment);
@@ -63,7 +63,7 @@ struct Workplace {
         CHECK(outcome.errors.find(part) != std::string::npos);
     }
 
-    // Any command of the shell.
+    // Any shell command.
     [[nodiscard]] Outcome runCommand(const std::string& command) const {
         const std::string out = (base / "output").string(), errors = (base / "errors").string();
         return outcomeOf(std::system(("cd '" + path.string() + "' && { " + command + "; } >'" + out + "' 2>'" + errors + "'").c_str()));
@@ -74,7 +74,7 @@ struct Workplace {
     [[nodiscard]] bool holds(const std::string& name) const { return std::filesystem::exists(path / name); }
     void write(const std::string& name, const std::string& text) const { std::ofstream(path / name, std::ios::binary) << text; }
     [[nodiscard]] std::string bytesOf(const std::string& name) const { return textIn(path / name); }
-    // All that lies in it, by the names from here.
+    // Everything in it, by paths relative to it.
     [[nodiscard]] std::set<std::string> files() const {
         std::set<std::string> names;
         for (const auto& entry : std::filesystem::recursive_directory_iterator(path)) {
@@ -92,7 +92,7 @@ private:
     static std::filesystem::path makeBase() { return createFolder(std::filesystem::temp_directory_path(), "binosplat-test-"); }
 };
 
-// For facts that have one: TEST_CASE_FIXTURE(AtWork, "...").
+// For facts that use one: TEST_CASE_FIXTURE(AtWork, "...").
 struct AtWork {
     const Workplace work;
 };

@@ -58,10 +58,11 @@ namespace binosplat::test {
 
 namespace fs = std::filesystem;
 
-// Facts that take long, and seldom break: TEST_CASE("..." * nightly()). .ci/nightly checks them, .ci/run leaves them out.
+// Facts that take long and seldom break: TEST_CASE("..." * nightly()). .ci/nightly checks them, .ci/run
+// leaves them out.
 struct nightly : doctest::skip {};
 
-// All that is in a file, byte by byte.
+// The whole content of a file, byte by byte.
 inline std::string textIn(const fs::path& file) {
     std::ifstream stream(file, std::ios::binary);
     return {std::istreambuf_iterator<char>(stream), {}};
@@ -72,7 +73,7 @@ inline std::vector<std::string> wordsIn(const std::string& text) {
     return {std::istream_iterator<std::string>(stream), {}};
 }
 
-// JSON with some of its keys as they are to be: equal to what it was if they are so.
+// JSON with some keys set to their expected values: it equals the original if they had them.
 inline nlohmann::json expecting(nlohmann::json json, const nlohmann::json& keys) {
     json.merge_patch(keys);
     return json;
@@ -85,7 +86,7 @@ std::tuple<Values...> these(Values&&... values) {
     return std::tuple<Values...>(std::forward<Values>(values)...);
 }
 
-// What lies in a range is equal to it: CHECK(share == between(0.1, 0.2)).
+// A value in the range equals it: CHECK(share == between(0.1, 0.2)).
 struct Range {
     double low, high;
     bool has_ends;

@@ -14,8 +14,8 @@ PFN_vkVoidFunction fallible(const char* name, PFN_vkVoidFunction next);
 extern "C" {
 // The Nth such call from now on fails with this VkResult, once; 0: none does.
 void binosplat_faults_arm(int number, int result);
-// The name of the call that failed since then; null: there were fewer.
+// The name of the call that has failed since; null: there were fewer calls.
 const char* binosplat_faults_struck();
-// Objects and allocations that are alive, see live.h.
+// Existing objects and allocations, see live.h.
 long long binosplat_faults_live();
 }

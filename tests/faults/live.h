@@ -11,7 +11,7 @@
 
 namespace binosplat::faults {
 
-// The file that a variable of the environment names; null: it is not set.
+// The file that an environment variable names; null: not set.
 inline std::FILE* openNamedBy(const char* variable) {
     const char* const name = std::getenv(variable);
     return name != nullptr ? std::fopen(name, "w") : nullptr;
@@ -28,13 +28,13 @@ PFN_vkVoidFunction asVoid(Function* function) {
     return reinterpret_cast<PFN_vkVoidFunction>(function);
 }
 
-// Whether anybody wants to know.
+// Whether the counts are wanted.
 bool countsLive();
 // A function of the device that makes or destroys something; null: it does neither.
 PFN_vkVoidFunction countingFunction(const char* name);
-// Objects and allocations, now.
+// Objects and allocations at present.
 long long liveObjects();
-// Of a call that the layer makes itself.
+// For a call that the layer makes itself.
 void countMemory(VkDeviceMemory memory, VkDeviceSize bytes);
 void noteSubmission();
 

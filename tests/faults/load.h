@@ -16,7 +16,8 @@ bool hasLoad();
 void beginLoad(double tick_ns);
 // A function of the device that records something of interest; null: it does not.
 PFN_vkVoidFunction loadFunction(const char* name);
-// How many ticks the frame took whose timestamps these are; none if it is no frame, or nobody says.
+// How many ticks the frame with these timestamps took; empty if it is not a frame, or the test says nothing
+// about it.
 std::optional<std::uint64_t> ticksOf(VkQueryPool pool);
 
 }  // namespace binosplat::faults

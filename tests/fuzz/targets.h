@@ -1,4 +1,4 @@
-// The parsers that are fuzzed, by name. The same list is replayed over the kept inputs as an ordinary test.
+// The fuzzed parsers, by name. An ordinary test replays the same list over the kept inputs.
 #pragma once
 
 #include <cstddef>
@@ -13,10 +13,11 @@ struct Target {
     void (*read)(std::span<const std::uint8_t> input);
 };
 
-// All of this build: one may be without SOG.
+// All targets of this build: it may be without SOG.
 std::span<const Target> targets();
 
-// Reads `input` as target `name` does. Ends the process if what is thrown is no Error or its message is not one line.
+// Reads `input` as target `name` does. Ends the process if anything but an Error is thrown, or if its message
+// is not one line.
 void runTarget(const std::string& name, std::span<const std::uint8_t> input);
 
 }  // namespace binosplat::fuzz

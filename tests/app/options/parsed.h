@@ -1,4 +1,4 @@
-// What the program makes of a command line.
+// How the program understands a command line.
 #pragma once
 
 #include "app/options/options.h"

@@ -1,4 +1,4 @@
-// Weights for LPIPS that come from no training, and their files.
+// Weights for LPIPS that no training made, and their files.
 #pragma once
 
 #include "tests/suite.h"
@@ -7,7 +7,8 @@ namespace binosplat::test {
 
 inline constexpr std::size_t kNetworkWeights = 722'496, kHeadWeights = 2'240;
 
-// Of either sign in the network, so large that features stay of one size from layer to layer; heads from 0 to 1.
+// Of either sign in the network, and large enough that features keep their size from layer to layer; heads
+// from 0 to 1.
 inline std::vector<float> makeLpipsWeights(unsigned seed) {
     std::mt19937 random(seed);
     const auto next = [&] { return static_cast<float>(drawUnit(random)); };

@@ -1,13 +1,13 @@
-// A compiler of shaders that takes what nobody changed from the build, where the viewer's own command made it: 19 runs of glslang are
-// seconds of processor time.
+// A shader compiler that takes unchanged shaders from the build, where the viewer would run the real one: 19
+// runs of glslang take seconds of processor time.
 #pragma once
 
 #include "tests/suite.h"
 
 namespace binosplat::test {
 
-// Writes it into `folder`, which is to stand first in PATH. Lines of the shell may follow each shader, whose $name and file, $last, they
-// know.
+// Writes it into `folder`, which must come first in PATH. Shell lines may follow for each shader; they know
+// its $name and file, $last.
 inline void writeCompilerOfChangedShaders(const std::filesystem::path& folder, const std::string& then = "") {
     std::filesystem::create_directory(folder);
     const std::filesystem::path compiler = folder / "glslangValidator";

@@ -1,4 +1,4 @@
-// Somebody who wears the simulated headset and does one thing after the other.
+// A wearer of the simulated headset who does one thing after the other.
 #pragma once
 
 #include "tests/app/view/panel/panel_sketch.h"
@@ -13,7 +13,7 @@ struct Panel {
 };
 inline const glm::dvec2 kPanelMetres(0.468, 0.585);
 
-// Before a head that looks along -z, as docs/simulated_script.md says.
+// In front of a head that looks along -z, as docs/simulated_script.md says.
 inline Panel panelBefore(const glm::dvec3& head = {0.0, 1.6, 0.0}) {
     const glm::dvec3 to_head(0.45, 0.1, 0.9), out = glm::normalize(to_head);
     const glm::dvec3 right = glm::normalize(glm::cross(glm::dvec3(0.0, 1.0, 0.0), out));
@@ -27,7 +27,8 @@ inline Panel panelOf(const ViewRun& run, std::size_t frame) {
 // Beside all widgets of the pages View and Method.
 inline const glm::dvec2 kBeside(0.9, 0.95);
 
-// Poses of hands: one that looks at a place, and one 30 cm before a place of the panel that points straight at it.
+// Poses of hands: one that looks at a place, and one 30 cm in front of a place of the panel that points
+// straight at it.
 inline std::string lookingAt(const glm::dvec3& at, const glm::dvec3& look) {
     return fmt::format("position {} {} {} look {} {} {}", at.x, at.y, at.z, look.x, look.y, look.z);
 }
@@ -59,7 +60,7 @@ public:
         now_s += seconds;
         return *this;
     }
-    // When what is to be looked at begins; nothing else happens for so long.
+    // When the part to be looked at begins; nothing else happens for this long.
     double look(double seconds = 0.1) {
         const double begin_s = now_s;
         now_s += seconds;
@@ -75,7 +76,8 @@ public:
         poses_[who] = pose;
         return wait(seconds + 0.001);
     }
-    // These three go on while time passes: an input such as "right trigger", and a stick or pad such as "left thumbstick".
+    // These three continue while time passes: an input such as "right trigger", and a stick or pad such as
+    // "left thumbstick".
     Acts& hold(const std::string& input, double seconds) {
         text_ += fmt::format("press {} {:.3f} {:.3f}\n", input, now_s, now_s + seconds);
         return *this;
@@ -96,7 +98,7 @@ public:
     Acts& point(const glm::dvec2& share) { return move("controller right", pointingAt(panel, share)).wait(0.03); }
     Acts& click(const glm::dvec2& share, const std::string& input = "right trigger") { return point(share).press(input); }
 
-    // The whole, if the wearer leaves now.
+    // The whole script, if the wearer leaves now.
     [[nodiscard]] std::string script() const { return text_ + fmt::format("at {:.3f} exit\n", now_s); }
 
 private:
@@ -104,8 +106,8 @@ private:
     std::map<std::string, std::string> poses_;
 };
 
-// Both eyes of a frame against what `binosplat render` makes of the fence and the head's logged pose. The wearer stood at `start` in the
-// scene, looking along its z, when the head was at (0, 1.6, 0).
+// Both eyes of a frame, compared with what `binosplat render` makes of the fence and the head's logged pose.
+// The wearer stood at `start` in the scene, looking along its z, when the head was at (0, 1.6, 0).
 inline void checkAgreesWithRender(const Workplace& work, const ViewRun& run, std::size_t frame, const glm::dvec3& start,
                                   const std::string& arguments) {
     CAPTURE(frame);
@@ -127,11 +129,12 @@ inline void checkAgreesWithRender(const Workplace& work, const ViewRun& run, std
     }
 }
 
-// Few splats where any picture will do.
+// Few splats, for when any picture will do.
 inline const std::string kWall = "builtin:slanted-wall --load-first --hide-hands",
                          kOneSplat = "builtin:one-splat --load-first --hide-hands";
 
-// Where the wearer was when *Keep this one* was clicked, in the axes of the only scene of which places were kept.
+// Where the wearer was when *Keep this one* was clicked, in the axes of the only scene for which places were
+// kept.
 struct KeptPlace {
     glm::dvec3 eye, look, up;
 };

@@ -1,4 +1,4 @@
-// Running `binosplat view` in the simulated headset, and reading what its wearer saw and what the runtime noted down.
+// Runs `binosplat view` in the simulated headset, and reads what its wearer saw and what the runtime logged.
 #pragma once
 
 #include "app/scores/metrics.h"
@@ -10,7 +10,8 @@
 
 namespace binosplat::test {
 
-// Vulkan's and OpenXR's validation layers are on, and both must stay silent; no window opens, where a mouse might pass.
+// Vulkan's and OpenXR's validation layers are on, and both must stay silent; no window opens, since a mouse
+// might pass over it.
 inline const std::string kValidated =
     "XDG_CONFIG_HOME=\"$PWD/../config\" DISPLAY= WAYLAND_DISPLAY= BINOSPLAT_VALIDATION=1 "
     "XR_ENABLE_API_LAYERS=XR_APILAYER_LUNARG_core_validation "
@@ -61,10 +62,10 @@ struct ViewRun {
     Outcome outcome;
     std::filesystem::path out;
     std::vector<nlohmann::json> frames;   // of frames.jsonl
-    std::vector<nlohmann::json> between;  // its lines that are no frames
+    std::vector<nlohmann::json> between;  // its lines without a frame
 
     [[nodiscard]] bool says(const std::string& words) const { return outcome.output.find(words) != std::string::npos; }
-    // The lines of its output that have these words.
+    // The lines of its output with these words.
     [[nodiscard]] std::vector<std::string> lines(const std::string& words) const {
         std::vector<std::string> found;
         std::istringstream output(outcome.output);
@@ -73,14 +74,14 @@ struct ViewRun {
         }
         return found;
     }
-    // The first frame that was displayed so many seconds after the script began, or later.
+    // The first frame that was displayed this many seconds after the script began, or later.
     [[nodiscard]] std::size_t frameAt(double seconds) const {
         const auto found = std::ranges::find_if(frames, [&](const nlohmann::json& frame) { return secondsOf(frame) > seconds - 1e-4; });
         CAPTURE(seconds);
         REQUIRE(found != frames.end());
         return static_cast<std::size_t>(found - frames.begin());
     }
-    // The same of frames of which there are pictures.
+    // The same among frames with pictures.
     [[nodiscard]] std::size_t pictureAt(double seconds) const {
         std::size_t frame = frameAt(seconds);
         while (frame < frames.size() && !frames[frame].contains("picture")) { ++frame; }
@@ -94,7 +95,7 @@ struct ViewRun {
     [[nodiscard]] Image eye(std::size_t frame, int side) const {
         return sideOf(readPicture(out / fmt::format("frame_{:06}.png", frame)), side);
     }
-    // How alike two frames are to the left eye, in dB.
+    // How alike two frames look to the left eye, in dB.
     [[nodiscard]] double likeness(std::size_t a, std::size_t b) const { return compare(eye(a, 0), eye(b, 0)).psnrDb(); }
     [[nodiscard]] LoggedEye loggedEye(std::size_t frame, std::size_t side) const {
         const nlohmann::json& eye = frames.at(frame).at("eyes").at(side);
@@ -114,7 +115,7 @@ struct ViewRun {
     [[nodiscard]] nlohmann::json view(std::size_t frame, std::size_t side = 0) const {
         return layers(frame, "projection").at(0).at("views").at(side);
     }
-    // How large what an eye sees is in its picture, which may be larger.
+    // The size of what an eye sees in its picture, which may be larger.
     [[nodiscard]] glm::ivec2 sizePx(std::size_t frame, std::size_t side) const {
         const nlohmann::json picture = view(frame, side), &fov = picture.at("fov"), &rect = picture.at("rect");
         const auto tangent = [&](const char* name) { return std::tan(fov.at(name).get<double>()); };
@@ -127,7 +128,7 @@ struct ViewRun {
     // Where the eyes' views are, in the room.
     [[nodiscard]] glm::dvec3 viewPlace(std::size_t frame, std::size_t side) const { return poseOf(view(frame, side).at("pose")).position; }
     [[nodiscard]] std::int64_t periodNs(std::size_t frame) const { return frames.at(frame).at("period_ns").get<std::int64_t>(); }
-    // What hangs in the room, by how it is drawn: the panel is the largest picture, rays are thin.
+    // Things in the room, by how they are drawn: the panel is the largest picture, rays are thin.
     [[nodiscard]] std::vector<nlohmann::json> panels(std::size_t frame) const {
         return quadsWhere(frame, [](const nlohmann::json& quad) { return quad.at("views").at(0).at("rect").at(3) > 256; });
     }
@@ -150,7 +151,7 @@ struct ViewRun {
     }
 };
 
-// `arguments` after `view`; a script of these lines drives the headset.
+// `arguments` after `view`; a script with these lines drives the headset.
 inline ViewRun runView(const Workplace& work, const std::string& name, const std::string& script, const std::string& arguments,
                        const std::string& environment = kValidated) {
     std::ofstream(work.path / (name + ".script")) << script;
@@ -172,7 +173,7 @@ inline std::string withConfig(const Workplace& work, const std::string& lines) {
 }
 inline const std::string kMethodPage = "[view]\npanel-page = \"method\"\n";
 
-// It ended well and no validation layer said a word.
+// It ended well, and the validation layers were silent.
 inline void checkClean(const ViewRun& run) {
     INFO("stdout: " << run.outcome.output);
     INFO("stderr: " << run.outcome.errors);
@@ -181,7 +182,7 @@ inline void checkClean(const ViewRun& run) {
     CHECK(these(run.outcome.output.find("VUID"), run.outcome.output.find("ERROR")) == these(std::string::npos, std::string::npos));
 }
 
-// A run that ended so, and showed no more layers than a runtime must take.
+// A run that ended like this, and showed no more layers than a runtime must take.
 inline ViewRun runClean(const Workplace& work, const std::string& name, const std::string& script, const std::string& arguments,
                         const std::string& environment = kValidated) {
     const ViewRun run = runView(work, name, script, arguments, environment);
@@ -190,7 +191,7 @@ inline ViewRun runClean(const Workplace& work, const std::string& name, const st
     return run;
 }
 
-// It said one after the other.
+// It printed these one after the other.
 inline void checkOrder(const ViewRun& run, const std::vector<std::string>& said) {
     std::size_t from = 0;
     for (const std::string& words : said) {
@@ -206,7 +207,7 @@ inline Colour colourAt(const Image& image, glm::uvec2 at) {
     const float* value = &image.values.at((std::size_t{at.y} * image.size_px.x + at.x) * static_cast<std::size_t>(image.channels));
     return {value[0], value[1], value[2]};
 }
-// Of pictures as large, at the same place.
+// For pictures of the same size, at the same place.
 template <typename Condition>
 std::size_t countPixels(const Image& a, const Image& b, const Condition& condition) {
     std::size_t found = 0;

@@ -11,7 +11,7 @@
 
 namespace binosplat::test {
 
-inline constexpr int kPatienceMs = 60'000;  // until a program that is silent counts as hung
+inline constexpr int kPatienceMs = 60'000;  // after which a silent program counts as hung
 inline constexpr glm::ivec2 kScreenPx(1400, 800);
 // The dominant eye is shown on the left, the panel beside it.
 inline constexpr int kEyePx = 720;
@@ -34,7 +34,8 @@ public:
         pclose(pipe_);
     }
 
-    // What it printed from the last line waited for to the end of the next that has `words` in it; empty if none comes.
+    // What it printed from the last awaited line to the end of the next line with `words` in it; empty if
+    // none comes.
     std::string waitFor(const std::string& words) {
         std::size_t found = said_.find(words, read_), end = std::string::npos;
         while (found == std::string::npos || (end = said_.find('\n', found)) == std::string::npos) {
@@ -70,10 +71,10 @@ private:
     bool ended_ = false;
 };
 
-// Xvfb keeps its picture in a file. It ends when everybody has left it, also if the test crashed.
+// Xvfb keeps its picture in a file. It ends when all clients have left, even if the test crashed.
 class Screen {
 public:
-    // Of numbers that are taken it complains first.
+    // It first complains about display numbers that are taken.
     explicit Screen(const std::filesystem::path& folder)
         : folder_(folder),
           server_(folder, fmt::format("Xvfb -terminate -displayfd 1 -screen 0 {}x{}x24 -fbdir . 2> /dev/null", kScreenPx.x, kScreenPx.y)),
@@ -112,7 +113,7 @@ public:
     const std::string name;
 };
 
-// What xdotool of Debian 12 cannot do, by Xlib, which GLFW takes along itself; for as long as the tests run.
+// What Debian 12's xdotool cannot do, by Xlib, which GLFW loads anyway; for as long as the tests run.
 class XConnection {
 public:
     explicit XConnection(const std::string& name) {
@@ -120,24 +121,24 @@ public:
         display_ = find<void* (*)(const char*)>("XOpenDisplay")(name.c_str());
         REQUIRE(display_ != nullptr);
     }
-    // As desktops tell programs how large people want things; for as long as somebody is connected.
+    // The magnification that desktops tell programs; for as long as a client is connected.
     void setDpi(int dpi) const {
         const std::string resources = fmt::format("Xft.dpi:\t{}\n", dpi);
         const unsigned long root = find<unsigned long (*)(void*)>("XDefaultRootWindow")(display_);
         constexpr unsigned long kResourceManager = 23, kString = 31;
         change(root, kResourceManager, kString, 8, resources.data(), resources.size());
     }
-    // What a window manager does when somebody clicks on the cross: a message that the window may obey.
+    // What a window manager does when the user clicks on the cross: a message that the window may obey.
     void clickCross(unsigned long window) const {
         // Xlib's XClientMessageEvent: its kind (33), sent, to which window, a message, bits of a number, a number.
         send(window, {33, 0, 1, reinterpret_cast<unsigned long>(display_), window, atomOf("WM_PROTOCOLS"), 32, atomOf("WM_DELETE_WINDOW")});
     }
-    // What a window manager notes down at a window that it takes from the screen (3), or brings back (1).
+    // What a window manager notes at a window that it takes from the screen (3), or brings back (1).
     void minimize(unsigned long window, bool is_gone) const {
         const std::array<unsigned long, 2> state{is_gone ? 3ul : 1ul, 0};
         change(window, atomOf("WM_STATE"), atomOf("WM_STATE"), 32, state.data(), 2);
     }
-    // The end of dragging a file to a window: the file's name lies at the window, which is told so.
+    // The end of dragging a file to a window: the file's name is at the window, which is told so.
     void drop(unsigned long window, const fs::path& file) const {
         const std::string uri = "file://" + file.string() + "\r\n";
         const unsigned long place = atomOf("XdndSelection"), kind = atomOf("text/uri-list");
@@ -185,8 +186,8 @@ private:
     void* display_ = nullptr;
 };
 
-// One screen for all, with a mouse and keys. Somebody stays connected: a server whom everybody left begins anew, with its mouse in the
-// middle.
+// One screen for all, with a mouse and keys. A client stays connected: a server without clients starts
+// afresh, with its mouse in the middle.
 struct Desk {
     Workplace folder;
     Screen screen{folder.path};
@@ -216,7 +217,7 @@ inline unsigned long numberOfWindow(const std::string& name, const std::string& 
 }
 inline void clickCross(const std::string& window_name) { desk().connection.clickCross(numberOfWindow(window_name, "WINDOW")); }
 
-// In lock-step it would draw as much as it can while hands are on their way.
+// In lock-step it would draw as much as it can while the input is on its way.
 inline std::string viewOnDesk(const std::string& arguments, int dpi = 96) {
     return "env DISPLAY=" + desk(dpi).screen.name +
            " WAYLAND_DISPLAY= BINOSPLAT_VALIDATION=1 SIMULATED_OPENXR_CLOCK=real XDG_CONFIG_HOME=\"$PWD/../config\" "
@@ -236,14 +237,14 @@ public:
         hands("search --sync --onlyvisible --name '^binosplat$' mousemove --window %1 20 20");
     }
 
-    // The panel goes or comes: by then everything before has reached the viewer.
+    // The panel is hidden or shown: by then everything before has reached the viewer.
     std::string tab() {
         hands("key Tab");
         const std::string lines = program_.waitFor("panel = ");
         CHECK(lines != "");
         return lines;
     }
-    // One after the other, each of which has arrived before the next.
+    // One after the other; each arrives before the next is sent.
     void handsInTurn(const std::vector<std::string>& all) {
         for (const std::string& does : all) {
             if (&does != &all.front()) { tab(); }
@@ -256,7 +257,7 @@ public:
     void drag(int button, const glm::dvec2& from, const glm::dvec2& to) {
         handsInTurn({moveTo(from), fmt::format("mousedown {}", button), moveTo(to), fmt::format("mouseup {}", button)});
     }
-    // Where the wearer's room lies now, as the viewer saves it.
+    // Where the wearer's room is now, as the viewer saves it.
     Similarity placement(const Workplace& work) {
         click(placeOf("Save", true));
         REQUIRE(program_.waitFor("slanted-wall.view.toml") != "");

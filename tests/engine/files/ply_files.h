@@ -1,4 +1,4 @@
-// PLY files made to measure, in a folder that goes away with them.
+// PLY files made to measure, in a folder that is removed with them.
 #pragma once
 
 #include "engine/files/load_scene.h"
@@ -8,7 +8,7 @@
 
 namespace binosplat::test {
 
-// A folder of its own for each test case, gone afterwards.
+// A folder of its own for each test case, removed afterwards.
 class Folder {
 public:
     Folder() : path_(std::filesystem::temp_directory_path() / fmt::format("binosplat_scene_test_{}", ::getpid())) {
@@ -19,7 +19,7 @@ public:
     Folder& operator=(const Folder&) = delete;
     [[nodiscard]] std::string file(const std::string& name) const { return (path_ / name).string(); }
     [[nodiscard]] std::string write(const std::string& name, const std::string& bytes) const {
-        std::filesystem::remove(file(name));  // some file systems wait for the disk where a file is cut to nothing and written again
+        std::filesystem::remove(file(name));  // some file systems wait for the disk when a file is truncated and written again
         std::ofstream(file(name), std::ios::binary) << bytes;
         return file(name);
     }
@@ -30,7 +30,7 @@ public:
 private:
     std::filesystem::path path_;
 };
-// For facts that have one: TEST_CASE_FIXTURE(InFolder, "...").
+// For facts that use one: TEST_CASE_FIXTURE(InFolder, "...").
 struct InFolder {
     const Folder folder;
 };
@@ -130,7 +130,7 @@ inline std::string loadError(const std::string& source, std::uint64_t splats = 0
 }
 inline std::string loadError(const Folder& folder, const std::string& bytes) { return loadError(folder.write("broken.ply", bytes)); }
 
-// `action` tells how far it is from 0 to 1, at least so many times, and ends when whoever is told throws.
+// `action` reports progress from 0 to 1, at least this often, and ends when the callback throws.
 inline void checkProgress(std::size_t times, const std::function<void(const Progress&)>& action) {
     std::vector<double> told;
     action([&](double share) { told.push_back(share); });
@@ -146,7 +146,7 @@ inline void checkProgress(std::size_t times, const std::function<void(const Prog
     }
 }
 
-// A message, with the slashes in its paths that Windows writes the other way.
+// A message with the slashes of its paths turned, which Windows writes the other way.
 inline std::string withSlashes(std::string text) {
     if constexpr (std::filesystem::path::preferred_separator != '/') { std::replace(text.begin(), text.end(), '\\', '/'); }
     return text;
@@ -154,13 +154,13 @@ inline std::string withSlashes(std::string text) {
 inline bool contains(const std::string& text, const std::string& part) {
     return withSlashes(text).find(withSlashes(part)) != std::string::npos;
 }
-// One line is there, which has this part.
+// There is one line, with this part.
 inline void checkSays(const std::vector<std::string>& lines, const std::string& part) {
     REQUIRE(lines.size() == 1);
     CHECK_MESSAGE(contains(lines[0], part), lines[0]);
 }
 
-// A scene, and what there was to note.
+// A scene, and the notes about it.
 struct ReadScene {
     LoadNotes notes;
     Scene scene;
@@ -177,14 +177,14 @@ inline void checkSameScene(const Scene& a, const Scene& b) {
           these(b.sh_degree, b.positions, b.rotations, b.scales, b.thicknesses, b.opacities, b.sh));
 }
 
-// Replaces the first `from`; it must be there.
+// Replaces the first `from`, which must exist.
 inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
     const std::size_t at = text.find(from);
     REQUIRE(at != std::string::npos);
     return text.replace(at, from.size(), to);
 }
 
-// Of a good file `from` is replaced by `to`; what reading it then says holds `message`.
+// In a good file `from` is replaced by `to`; the error on reading it must contain `message`.
 struct Fault {
     std::string from, to, message;
 };

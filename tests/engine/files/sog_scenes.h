@@ -7,7 +7,7 @@
 
 namespace binosplat::test {
 
-// By file name, meta.json among them.
+// By file name, including meta.json.
 using SogText = std::map<std::string, std::string>;
 
 inline std::string codebook(double first, double step, int entries = 256) {
@@ -22,7 +22,7 @@ inline std::string makeWebp(std::uint32_t width, std::uint32_t height, const std
     return {reinterpret_cast<const char*>(file.data()), file.size()};
 }
 
-// A picture of 3 x 3 pixels, of which `pixel` gives the first eight.
+// A picture of 3 x 3 pixels; `pixel` gives the first eight.
 inline std::string makeNine(const std::function<std::array<int, 4>(int)>& pixel) {
     std::vector<std::uint8_t> rgba;
     for (int i = 0; i < 8; ++i) {

@@ -1,4 +1,4 @@
-// Streamed SOG scenes made to measure: chunks in folders, and a lod-meta.json that says what they hold.
+// Streamed SOG scenes made to measure: chunks in folders, and a lod-meta.json that describes them.
 #pragma once
 
 #include "tests/engine/files/sog_scenes.h"
@@ -19,14 +19,14 @@ inline std::string makeLodMeta() {
            leaf(R"("0":{"file":1,"offset":0,"count":8})") + "]}]}}";
 }
 
-// A chunk of its own place: its splats begin at x = -expm1(-left).
+// A chunk with a place of its own: its splats begin at x = -expm1(-left).
 inline SogText makeChunk(int left, int version = 2, bool with_palette = true) {
     SogText files = makeSog(version, with_palette);
     files["meta.json"] = replaced(files["meta.json"], "\"mins\":[-1,", fmt::format("\"mins\":[-{},", left));
     return files;
 }
 
-// Gives the folder. `meta` is that of makeLodMeta or a broken one. Chunks in `bundles` are a .sog each.
+// Returns the folder. `meta` is from makeLodMeta, or a broken one. Chunks in `bundles` are .sog files.
 inline std::string writeStreamed(const Folder& folder, const std::string& name, std::string meta,
                                  const std::vector<std::string>& bundles = {}) {
     std::filesystem::remove_all(folder.file(name));

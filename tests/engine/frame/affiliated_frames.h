@@ -1,4 +1,4 @@
-// Whole frames in which one eye is made from the other, with all that they leave.
+// Whole frames in which one eye is made from the other, with everything that they leave.
 #pragma once
 
 #include "engine/frame/stereo_frame.h"
@@ -32,8 +32,8 @@ inline std::array<Eye, 2> headsetEyes(const Eye& middle, double canting_rad, dou
     return eyes;
 }
 
-// Makes splats invisible that either eye's near plane may cut: of such the device's bounds, and so the tiles it counts, are rougher than
-// the twin's.
+// Makes splats invisible that either eye's near plane may cut: for these the device's bounds, and so the
+// tiles that it counts, are rougher than the twin's.
 inline void hideWhatMeetsTheNearPlane(Scene& scene, const std::array<Eye, 2>& eyes) {
     for (std::size_t i = 0; i < scene.size(); ++i) {
         for (const Eye& eye : eyes) {
@@ -43,7 +43,7 @@ inline void hideWhatMeetsTheNearPlane(Scene& scene, const std::array<Eye, 2>& ey
     }
 }
 
-// The tiles that are marked, everything else black.
+// The marked tiles; everything else is black.
 inline Image keepTiles(Image image, const std::vector<std::uint32_t>& tile_kinds) {
     const std::size_t columns = (image.size_px.x + 15) / 16;
     for (std::size_t i = 0; i < image.pixelCount(); ++i) {

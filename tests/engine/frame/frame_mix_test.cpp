@@ -56,7 +56,7 @@ public:
 
     [[nodiscard]] FrameSettings settings() {
         FrameSettings settings = settings_;
-        // Moments are for files: there is no kernel for them in pictures that are only shown, nor in pasts.
+        // Moments are for files: there is no kernel for them in pictures that are only shown, nor in histories.
         settings.keep_moments = settings.keep_moments && !settings.half_floats && !(settings.keep_past && hasPast(settings.mode));
         const std::vector<Eye> all = eyes();
         for (std::size_t e = 0; e < all.size() && hides_; ++e) {
@@ -71,7 +71,7 @@ public:
     [[nodiscard]] bool goesAhead() { return dice_.falls(0.5); }
 
 private:
-    // All of it at first, then a few things at a time, so that pasts live on.
+    // All of it at first, then a few things at a time, so that histories live on.
     void change() {
         FrameSettings& s = settings_;
         const bool is_new = std::exchange(is_new_, false);

@@ -1,4 +1,4 @@
-// Running whole frames in tests: one call, and all that they leave.
+// Runs whole frames in tests: one call, and everything that they leave.
 #pragma once
 
 #include "app/scores/metrics.h"
@@ -8,8 +8,9 @@
 
 namespace binosplat::test {
 
-// While it lives a frame on the tests' own device has the kernels that were made before it in this program. They are those of frames
-// whose options leave the threads of a cell to the device: a frame that chose them makes its own.
+// While it exists, a frame on the tests' own device has the kernels made before it in this program. They are
+// those of frames whose options leave the threads of a cell to the device: a frame that chose them makes its
+// own.
 class KeptKernels {
 public:
     KeptKernels(const Context& context, StereoFrame& frame, const FrameOptions& options = {})
@@ -39,8 +40,8 @@ private:
 struct OwnScene {
     std::optional<GpuScene> own_scene;
 };
-// A frame with such kernels, of a scene on the device or of one that it brings there itself. While one of them lives others make their
-// kernels anew, unless they are StereoFrame::beside it.
+// A frame with such kernels, of a scene on the device or of one that it uploads itself. While one of them
+// exists, others make their kernels again, unless they are StereoFrame::beside it.
 class KeptFrame : private OwnScene, public StereoFrame {
 public:
     KeptFrame(const Context& context, const GpuScene& scene, const FrameOptions& options = {})
@@ -54,7 +55,7 @@ private:
     KeptKernels kept_;
 };
 
-// 0 as long as there was no frame.
+// 0 before the first frame.
 inline std::uint64_t countOf(const FrameResult& result, const char* name) {
     const auto counters = result.counters.named();
     return counters.empty() ? 0 : counters.at(name);

@@ -18,7 +18,7 @@ inline Eye eyeOf(const View& view, glm::uvec2 size_px) {
     return {lookAt(view.eye, view.look, view.up), intrinsicsFromFovX(glm::radians(view.fov_x_deg), size_px), size_px};
 }
 
-// Each is made once: the atelier's light takes longer to bake than many a test.
+// Each is made once: baking the atelier's light takes longer than many tests.
 inline ViewedScene viewBuiltin(const std::string& name, glm::uvec2 size_px, std::uint64_t splats = 0) {
     static std::map<std::pair<std::string, std::uint64_t>, Scene> made;
     auto found = made.find({name, splats});
@@ -26,14 +26,15 @@ inline ViewedScene viewBuiltin(const std::string& name, glm::uvec2 size_px, std:
     return {name, found->second, eyeOf(*builtinView(name), size_px)};
 }
 
-// A cloud that holds the eye: near and far, through the near plane, thin and long, huge, tiny, and edge-on to 1e-7 rad.
+// A cloud around the eye: near and far, through the near plane, thin and long, huge, tiny, and edge-on to
+// 1e-7 rad.
 inline ViewedScene viewCloud(glm::uvec2 size_px) {
     const Eye eye = makeOddEye(size_px);
     Scene scene = makeCloud(1500, 3);
     std::mt19937 random(4);
     const auto draw = [&] { return drawUnit(random); };
     for (std::size_t i = 0; i < 300; ++i) {
-        // t_u along the line of sight but for a small angle: the plane all but holds the eye.
+        // t_u along the line of sight except for a small angle: the plane almost holds the eye.
         const glm::dvec3 sight = glm::normalize(glm::dvec3(scene.positions[i]) - eye.world_from_camera.position);
         const glm::dvec3 across = glm::normalize(glm::cross(sight, glm::dvec3(draw(), draw(), -draw())));
         const glm::dvec3 normal = glm::normalize(across + std::pow(10.0, -1.0 - 6.0 * draw()) * sight);
@@ -45,7 +46,7 @@ inline ViewedScene viewCloud(glm::uvec2 size_px) {
     return {"cloud", std::move(scene), eye};
 }
 
-// For the constant kSplatKind of passes that dimming does not matter to.
+// For the constant kSplatKind of passes in which dimming makes no difference.
 inline std::uint32_t shapeOf(const Scene& scene) { return scene.isGaussian3d() ? gpu::kGaussians : gpu::kDiscs; }
 
 // The same as 3D Gaussians from as thick as their second axis to flat; needles of 1e6; some within the near plane's reach and beside the

@@ -53,7 +53,7 @@ public:
         full_->render(eyes_, makeSettings(Mode::kShared));
         return test::picturesOf(*full_);
     }
-    // Of each eye by itself, without a past.
+    // Of each eye by itself, without a history.
     std::array<Image, 2> alone() {
         std::array<Image, 2> pictures;
         for (std::size_t e = 0; e < 2; ++e) {

@@ -1,4 +1,5 @@
-// What compiled shaders say of their structs, and what they do with specialization constants and with structs of addresses: their SPIR-V.
+// What compiled shaders say about their structs, and what they do with specialization constants and with
+// structs of addresses: their SPIR-V.
 #pragma once
 
 #include "tests/suite.h"
@@ -24,7 +25,8 @@ public:
         for (std::size_t at = 5; at < words.size(); at += words[at] >> 16) {
             read(words[at] & 0xffff, words.subspan(at + 1, (words[at] >> 16) - 1));
         }
-        // What is made of constants alone is read if what is made of it is; the later ones are made of the earlier.
+        // A value made only of constants counts as read if something made of it is; later ones are made of
+        // earlier ones.
         for (auto made = made_of_.rbegin(); made != made_of_.rend(); ++made) {
             if (used_.contains(made->first)) { used_.insert(made->second.begin(), made->second.end()); }
         }

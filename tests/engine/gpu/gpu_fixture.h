@@ -1,4 +1,5 @@
-// What GPU tests start from: a device under the validation layers, arrays to it and back, and lists as the shaders make them.
+// The start of GPU tests: a device under the validation layers, arrays to it and back, and lists as the
+// shaders make them.
 #pragma once
 
 #include "engine/gpu/commands.h"
@@ -8,8 +9,8 @@ namespace binosplat::test {
 
 inline constexpr bool kValidation = BINOSPLAT_TEST_VALIDATION;  // whether programs can have the validation layers at all
 
-// A test case's fixture. All of a program share one device; that there is none fails every test, and so does any message of the
-// validation layers during the test.
+// A test case's fixture. All tests of a program share one device. If there is none, every test fails; any
+// message of the validation layers during a test fails it, too.
 class Gpu {
 public:
     Gpu();
@@ -51,7 +52,7 @@ public:
     [[nodiscard]] const Kernel& kernel(const std::string& shader, std::uint32_t push_bytes,
                                        const std::vector<std::uint32_t>& constants = {});
 
-    // Runs what `record(commands)` records, to its end.
+    // Runs what `record(commands)` records, and waits for it.
     template <typename Record>
     void run(const Record& record) {
         commands_.begin();
@@ -68,7 +69,7 @@ private:
     std::size_t messages_before_;
 };
 
-// A list of `needed` items with room for `capacity`, as shaders/lib/list.glsl makes it.
+// A list of `needed` items with capacity `capacity`, as shaders/lib/list.glsl makes it.
 gpu::ListState makeList(std::uint32_t needed, std::uint32_t capacity);
 inline gpu::ListState makeList(std::size_t count) { return makeList(static_cast<std::uint32_t>(count), UINT32_MAX); }
 

@@ -1,4 +1,4 @@
-// A program in C, by the header that it was compiled against.
+// A program in C, compiled against an earlier header.
 #pragma once
 
 #ifdef __cplusplus

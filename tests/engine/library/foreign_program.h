@@ -1,4 +1,4 @@
-// A Vulkan program of somebody else: its own instance under the validation layers, its device, a picture and its depth.
+// A Vulkan program of its own: an instance under the validation layers, a device, a picture and its depth.
 #pragma once
 
 #include "tests/suite.h"
@@ -31,7 +31,7 @@ public:
     [[nodiscard]] bsp::Device open();
     // Clears colour and depth, and puts a wall over the left half: red, at the stored depth. The image is then read as an attachment.
     void drawWall(const vk::raii::CommandBuffer& commands, float wall_depth) const;
-    // A white square in the corner, over what is there.
+    // A white square in the corner, over the existing picture.
     void drawSign(const vk::raii::CommandBuffer& commands) const;
     // The bytes of an image in this layout; waits.
     [[nodiscard]] std::vector<float> readFloats(const ForeignImage& image, vk::ImageLayout layout, std::uint32_t floats_per_pixel) const;

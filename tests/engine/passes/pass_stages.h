@@ -1,4 +1,4 @@
-// A scene as every stage of the twin leaves it, and what the device needs to take over at any of them.
+// A scene as every stage of the twin leaves it, and what the device needs to continue from any of them.
 #pragma once
 
 #include "engine/gpu/gpu_scene.h"

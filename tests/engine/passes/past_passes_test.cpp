@@ -1,4 +1,4 @@
-// Facts about the passes that make an eye from its past, each held to its twin, which goes on from what the device had one pass before:
+// Facts about the passes that make an eye from its history, each held to its twin, which goes on from what the device had one pass before:
 // warp_past and warp_pixels, what rasterize measures (price and select: selection_test.cpp), and what a scene changes meanwhile. Where a
 // depth or a place lies on a threshold, float32 may come to the other side: such flips have a budget.
 #include "engine/frame/changes.h"
@@ -99,7 +99,7 @@ void checkWarped(Gpu& gpu, const Way& way) {
     CHECK(test::isNear(all.grown, all.twin_grown, 0.001, 0.0));
 }
 
-// Pictures that have no past, and what they leave for later.
+// Pictures that have no history, and what they leave for later.
 void checkFirst(Gpu& gpu, const Way& way) {
     INFO(way.view.name, ", half floats ", way.half_floats, ", cant ", way.cant, ", hides ", way.hides);
     const test::WalkSettings settings = way.settings();

@@ -1,4 +1,5 @@
-// Frames that are made from the ones before, and what the device knows of them, as the twin goes on from it.
+// Frames that are made from the ones before, and what the device knows about them, from which the twin
+// continues.
 #pragma once
 
 #include "engine/twin/past.h"
@@ -109,14 +110,14 @@ private:
     std::array<Eye, 2> eyes_;
 };
 
-// How far what the device warped is from what the twin did.
+// How far the device's warp is from the twin's.
 struct WarpDifferences {
     std::size_t pixels = 0, other_depths = 0, other_spreads = 0, tiles = 0, other_tiles = 0;
     std::size_t quarters = 0, other_grown = 0, other_errors = 0, other_growth = 0, other_gradients = 0;
     double grown = 0.0, twin_grown = 0.0, squares = 0.0;
 };
 
-// Of what the device made of `before`, nothing of which was rendered again, and what the twin makes of it.
+// Of what the device made of `before`, with nothing rendered again, and what the twin makes of it.
 inline void compareWarped(WarpDifferences& differences, const EyeOnDevice& made, reference::Past twin) {
     for (std::size_t i = 0; i < twin.rgba.size(); ++i) {
         const glm::dvec4 off = made.past.rgba[i] - twin.rgba[i];
@@ -132,7 +133,7 @@ inline void compareWarped(WarpDifferences& differences, const EyeOnDevice& made,
         const reference::PastTile &a = made.past.tiles[t], &b = twin.tiles[t];
         for (std::size_t q = 0; q < 4; ++q) {
             differences.other_growth += isNear(a.growth[q], b.growth[q], 1e-5, 1e-8) ? 0 : 1;
-            // A pixel's error is cut off to steps.
+            // A pixel's error is rounded down to steps.
             differences.other_grown += isNear(a.grown[q], b.grown[q], 0.02, 66.0 / kErrorSteps) ? 0 : 1;
             differences.grown += a.grown[q];
             differences.twin_grown += b.grown[q];

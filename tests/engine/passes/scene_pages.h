@@ -1,4 +1,4 @@
-// Scenes whose chunks come and go, as tests take them: splats that lie together come together.
+// Scenes whose chunks come and go, for tests: splats that lie together are loaded together.
 #pragma once
 
 #include "engine/stream/resident_scene.h"
@@ -56,7 +56,7 @@ inline Scene inMortonOrder(const Scene& scene) {
 
 inline std::uint32_t pagesOf(std::size_t splats) { return static_cast<std::uint32_t>((splats + gpu::kPageSplats - 1) / gpu::kPageSplats); }
 
-// All of a scene as one part, which the first frame brings to the device; `more` pages stay free.
+// A whole scene as one part, which the first frame brings to the device; `more` pages stay free.
 class WholeInPages {
 public:
     WholeInPages(const Context& context, const Scene& scene, std::uint32_t more = 0)

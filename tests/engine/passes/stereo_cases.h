@@ -1,4 +1,5 @@
-// Dominant pictures and pairs of eyes that the stereo passes are tested on, and the twin's arrays as the device holds them.
+// Dominant pictures and pairs of eyes on which the stereo passes are tested, and the twin's arrays as the
+// device holds them.
 #pragma once
 
 #include "engine/twin/stereo.h"
@@ -184,7 +185,7 @@ inline std::size_t tileOf(std::size_t pixel, glm::uvec2 size_px) {
     return pixel / size_px.x / 16 * ((size_px.x + 15) / 16) + pixel % size_px.x / 16;
 }
 
-// What weigh tells newcomers of each tile.
+// What weigh tells newcomers about each tile.
 inline std::vector<gpu::uint> depthsOfTiles(const StereoCase& c) {
     std::vector<gpu::uint> depths(std::size_t{(c.sizePx().x + 15) / 16} * ((c.sizePx().y + 15) / 16));
     for (std::size_t t = 0; t < depths.size(); ++t) { depths[t] = packMoving(reference::movingAtMiddle(c.dominant, t, c.settings)); }

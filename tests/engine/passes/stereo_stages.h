@@ -15,8 +15,8 @@ inline bool areHalves(Rows rows) { return rows == Rows::kOwnHalves || rows == Ro
 // The longest row that resample keeps in shared memory.
 inline std::uint32_t longestSharedRow(const Context& context) { return mostRowSteps(context) * gpu::kArrivalsStep; }
 
-// What passes of warp and choose work on. Each call runs one of them; between calls every array may be read or replaced. What a pass is to
-// write begins as kUnwritten.
+// The arrays of the passes of warp and choose. Each call runs one pass; between calls every array may be read
+// or replaced. Arrays that a pass is to write start as kUnwritten.
 class StereoOnDevice {
 public:
     static constexpr gpu::uint kUnwritten = 0xcdcdcdcdu;

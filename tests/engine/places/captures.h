@@ -1,4 +1,5 @@
-// Captures as people make them, each made here, small, with what makes its kind hard; and where one stands in them.
+// Captures as people make them, each made here, small, with the difficulties of its kind; and where one
+// stands in them.
 #pragma once
 
 #include "engine/builtin/procedural.h"
@@ -46,12 +47,12 @@ public:
         }
         return *this;
     }
-    // Splats from here on are so large.
+    // Splats from here on have this size.
     Maker& sized(double size) {
         size_ = size;
         return *this;
     }
-    // One splat in fifty lies far away, or anywhere.
+    // One splat in fifty is far away, or anywhere.
     Maker& floaters(double within) {
         for (std::size_t i = 0, count = scene_.size() / 49; i < count; ++i) {
             add(within * (2.0 * inUnitBox() - 1.0), {0, 0, 1});
@@ -106,7 +107,7 @@ inline Maker street() {
     return made.box({-3.5, -1.5, 2}, {-1.8, 0, 6}, 150.0);
 }
 
-// A head on a pedestal, with nothing about it.
+// A head on a pedestal, with nothing around it.
 inline Maker statue() {
     Maker made;
     made.ball({0.2, -1.9, 0.1}, 0.4, 6000);
@@ -118,10 +119,10 @@ inline Maker statueOnGround() {
     return made.wall({-2.5, 0, -2.5}, {5, 0, 0}, {0, 0, 5}, 200.0);
 }
 
-// A crate of half a metre is no room, though it has a floor, walls and a ceiling.
+// A crate of half a metre is not a room, although it has a floor, walls and a ceiling.
 inline Maker crate() { return Maker().box({-0.3, -0.5, -0.25}, {0.3, 0, 0.25}, 8000.0); }
 
-// A table with a vase on a lawn, a hedge about it, and a sky far away that has a fifth of the splats.
+// A table with a vase on a lawn, a hedge around it, and a sky far away that has a fifth of the splats.
 inline Maker garden() {
     Maker made;
     made.wall({-9, 0, -9}, {18, 0, 0}, {0, 0, 18}, 60.0, 0.05).box({-0.7, -0.75, -0.7}, {0.7, -0.7, 0.7}, 2000.0);
@@ -132,7 +133,7 @@ inline Maker garden() {
     return made.sized(2.0).ball({0, -5, 0}, 80.0, 12000);
 }
 
-// What is scanned on a desk, all around: the object, a piece of the desk, and the room about it as a far, thin shell.
+// A scan on a desk, all around: the object, a piece of the desk, and the room around it as a far, thin shell.
 inline Maker scannedToy() {
     Maker made;
     made.sized(0.003).ball({0, -0.12, 0}, 0.06, 20000).box({-0.04, -0.06, -0.04}, {0.04, 0, 0.04}, 400000.0);
@@ -140,14 +141,15 @@ inline Maker scannedToy() {
     return made.sized(0.1).ball({0, -1, 0}, 4.0, 6000);
 }
 
-// Seen from the front alone, as a few photographs beside one another show it: things on a table, and the wall behind, wide.
+// Seen only from the front, as in a few photographs side by side: things on a table, and the wall behind,
+// wide.
 inline Maker facingForward() {
     Maker made;
     for (const double x : {-0.8, 0.0, 0.7}) { made.ball({x, -0.3, 3.0 + 0.3 * x}, 0.25, 5000); }
     return made.wall({-1.6, 0, 2.4}, {3.2, 0, 0}, {0, 0, 1.6}, 800.0).sized(0.08).wall({-5, -3, 7}, {10, 0, 0}, {0, 4, 0}, 400.0, 0.2);
 }
 
-// Three walls and a floor: nobody went into the fourth part of the room.
+// Three walls and a floor: the camera never went into the fourth part of the room.
 inline Maker openRoom() {
     Maker made;
     made.wall({-3, 0, 0}, {6, 0, 0}, {0, 0, 5}).wall({-3, -2.8, 5}, {6, 0, 0}, {0, 2.8, 0}).wall({-3, -2.8, 0}, {0, 2.8, 0}, {0, 0, 5});
@@ -173,7 +175,7 @@ inline Maker town() {
     return made;
 }
 
-// A car, of which only the outside is seen, in a yard whose ground is all that there is of it.
+// A car, only the outside of which is seen, in a yard that shows nothing but its ground.
 inline Maker car() {
     Maker made;
     made.box({-0.9, -0.9, -2.2}, {0.9, -0.2, 2.2}, 900.0, false).box({-0.7, -1.5, -1.2}, {0.7, -0.9, 1.0}, 900.0, false);
@@ -188,7 +190,7 @@ inline Maker relief() {
     return made;
 }
 
-// A wall with something before it, in which most of the splats lie.
+// A wall with something in front of it, in which most of the splats lie.
 inline Maker fence() {
     Maker made;
     made.wall({-3, -3, 0}, {6, 0, 0}, {0, 6, 0});

@@ -1,4 +1,4 @@
-// Scenes at random, and what two of them have in common.
+// Random scenes, and what two of them have in common.
 #pragma once
 
 #include "engine/files/ply.h"

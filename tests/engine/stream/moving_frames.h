@@ -7,9 +7,9 @@
 
 namespace binosplat::test {
 
-// The atelier, of which what stands before the walls slides to the right and turns as it goes.
+// The atelier, with the things in front of the walls sliding to the right and turning.
 inline Scene slidingAtelier(double frame, std::uint64_t splats = 8'000) {
-    static std::map<std::uint64_t, Scene> made;  // its light takes longer than many a test
+    static std::map<std::uint64_t, Scene> made;  // baking its light takes longer than many tests
     auto found = made.find(splats);
     if (found == made.end()) { found = made.emplace(splats, makeBuiltin("builtin:atelier", splats)).first; }
     Scene scene = found->second;
@@ -24,7 +24,7 @@ inline Scene slidingAtelier(double frame, std::uint64_t splats = 8'000) {
     return scene;
 }
 
-// The atelier, of which a small part slides, and from frame `first` on all goes up and down in turn.
+// The atelier, of which a small part slides and, from frame `first` on, everything goes up and down in turn.
 inline Scene shakenAtelier(int frame, int first) {
     Scene scene = slidingAtelier(0);
     const bool is_up = frame >= first && (frame - first) % 2 == 0;

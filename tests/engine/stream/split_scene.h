@@ -1,4 +1,4 @@
-// Streamed SOG scenes out of whole ones: what there is to stream where nobody has one to give.
+// Makes streamed SOG scenes from whole ones, for when there is none to stream.
 #pragma once
 
 #include "engine/scene/scene.h"
@@ -14,9 +14,9 @@ struct SplitSettings {
     std::uint32_t chunk_splats = 262144;  // of a file, at most, unless a leaf has more
 };
 
-// Writes lod-meta.json and its chunks, bundles LEVEL_NUMBER.sog, to `folder`, which is made where it is not there. The tree is cut at
-// medians. Level k keeps every 2^k-th splat of a leaf along a Morton curve, with its group's mean colour and 2^k times its area. Throws
-// Error where files cannot be written.
+// Writes lod-meta.json and its chunks, bundles LEVEL_NUMBER.sog, to `folder`, which is made if it does not
+// exist. The tree is cut at medians. Level k keeps every 2^k-th splat of a leaf along a Morton curve, with
+// its group's mean colour and 2^k times its area. Throws Error if files cannot be written.
 void splitScene(const Scene& scene, const std::string& folder, const SplitSettings& settings = {});
 
 }  // namespace binosplat::test

@@ -92,7 +92,7 @@ TEST_CASE("a wave on a wall comes out as it would have been seen, for the least 
     CHECK(std::ranges::count(warped.one_by_one, 1) == 0);
     // The fifth differences of these waves come to 2e-5 at most.
     for (const double grown : warped.picture.tiles[1].grown) { CHECK(grown == doctest::Approx(64.0 * kLeastGrowth)); }
-    // A whole pixel on, the last column has no past; these pixels count with an amplitude of 1.
+    // A whole pixel on, the last column has no history; these pixels count with an amplitude of 1.
     const WarpedPast on = warpPast(past, moved(eye, {0.02, 0.0, 0.0}));
     CHECK(std::ranges::count(on.unseen, 1) == 64);
     CHECK(on.picture.tiles[5].grown[1] >= 8.0);

@@ -31,7 +31,8 @@ inline Scene makeScene(const std::vector<Splat>& splats) {
 // At the origin along z, focal length 100 px, the axis through the centre of the middle pixel of an odd size.
 inline Eye makeEye(glm::uvec2 size_px) { return {Pose{}, {100.0, 100.0, 0.5 * size_px.x, 0.5 * size_px.y}, size_px}; }
 
-// Random splats about an eye at the origin: near and far, large and thin, behind, through the near plane, off the image.
+// Random splats around an eye at the origin: near and far, large and thin, behind, through the near plane,
+// off the image.
 inline Scene makeCloud(int count, unsigned seed) {
     std::mt19937 random(seed);
     const auto draw = [&](float low, float high) { return low + (high - low) * static_cast<float>(drawUnit(random)); };
@@ -48,7 +49,7 @@ inline Scene makeCloud(int count, unsigned seed) {
     return makeScene(splats);
 }
 
-// An eye with nothing special about it: turned, moved, asymmetric.
+// An ordinary eye: turned, moved, asymmetric.
 inline Eye makeOddEye(glm::uvec2 size_px) {
     Eye eye = makeEye(size_px);
     eye.world_from_camera = {glm::normalize(glm::dquat(0.98, 0.05, -0.1, 0.08)), {0.1, -0.2, -0.3}};

@@ -1,4 +1,5 @@
-// An empty folder for a test's files, gone with the test. For what is independent of the engine, whose tests have Workplace.
+// An empty folder for a test's files, removed with the test. For tests that are independent of the engine,
+// whose tests have Workplace.
 #pragma once
 
 #include "tests/suite.h"
@@ -7,7 +8,7 @@
 
 namespace simulated {
 
-// A headset's file, whose last table may go on.
+// A headset's file, whose last table may continue.
 inline const std::string kHeadsetToml =
     "name = \"n\"\nsource = \"s\"\nsize = \"100x100\"\ncanting_deg = 0\neye_distance_m = 0.06\n"
     "[left]\nleft = -40\nright = 40\nup = 40\ndown = -40\n[right]\nleft = -40\nright = 40\nup = 40\ndown = -40\n";

@@ -1,5 +1,5 @@
-// Programs of others that tests run. Where one is missing its tests are skipped, visibly; where the environment variable CI is set, as
-// .ci/run does after installing them all, that is a failure.
+// Other programs that tests run. If one is missing, its tests are visibly skipped; if the environment
+// variable CI is set, as .ci/run does after installing them all, that is a failure.
 #pragma once
 
 #include "tests/suite.h"

@@ -1,4 +1,4 @@
-// Loading scenes from a test's server.
+// Loads scenes from a test's server.
 #pragma once
 
 #include "engine/files/web/web_files.h"
@@ -22,7 +22,7 @@ inline Scene loadFromWeb(const std::string& address, const WebSettings& settings
     return loadSceneFromAnywhere(address, 0, notes != nullptr ? *notes : ignored, progress, level, settings);
 }
 
-// The message of the Error that it gives, one line that begins with the address; empty if there is none.
+// The message of the Error that it throws, one line that begins with the address; empty if there is none.
 inline std::string webError(const std::string& address, const WebSettings& settings) {
     try {
         (void)loadFromWeb(address, settings);
@@ -43,7 +43,7 @@ inline std::vector<std::string> filesIn(const std::filesystem::path& folder) {
     return names;
 }
 
-// All that lies in a folder, by its path behind `prefix`.
+// Everything in a folder, by its path after `prefix`.
 inline WebPages filesOf(const std::filesystem::path& folder, const std::string& prefix = "/") {
     WebPages files;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {

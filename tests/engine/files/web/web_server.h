@@ -1,4 +1,4 @@
-// A small HTTP server on the loopback address, as good or as bad as a test wants it.
+// A small HTTP server on the loopback address, as well or badly behaved as a test wants.
 #pragma once
 
 #include "tests/suite.h"
@@ -17,9 +17,9 @@ namespace binosplat::test {
 struct WebRequest {
     std::string path;                            // with what follows a question mark
     std::map<std::string, std::string> headers;  // by names in small letters
-    std::size_t number = 0;                      // how many came before
+    std::size_t number = 0;                      // how many came before it
 
-    // Empty if it has none of that name.
+    // Empty if there is no header of that name.
     [[nodiscard]] std::string header(const std::string& name) const {
         const auto found = headers.find(name);
         return found != headers.end() ? found->second : "";
@@ -37,7 +37,7 @@ inline WebAnswer answer(const std::string& status, const std::string& headers = 
     return {fmt::format("HTTP/1.1 {}\r\nContent-Length: {}\r\n{}\r\n{}", status, body.size(), headers, body)};
 }
 
-// Of a server with these files by their paths, "/a/b.ply"; others are not there.
+// A server with these files by their paths, "/a/b.ply"; others do not exist.
 using WebPages = std::map<std::string, std::string>;
 inline WebAnswer answerFrom(const WebPages& files, const WebRequest& request) {
     const auto found = files.find(request.path);
@@ -67,7 +67,7 @@ public:
     ~WebServer() { stop(); }
 
     [[nodiscard]] std::string at(const std::string& path) const { return fmt::format("http://127.0.0.1:{}{}", port_, path); }
-    // The paths that were asked for, in that order.
+    // The requested paths, in order.
     [[nodiscard]] std::vector<std::string> asked() const {
         const std::lock_guard lock(mutex_);
         return asked_;
@@ -77,7 +77,7 @@ public:
         return connections_.size();
     }
 
-    // From now on nobody listens there; what is under way goes on. Also for a handler.
+    // From now on nothing listens there; requests in progress go on. A handler may call it, too.
     void refuse() { ::shutdown(listener_, SHUT_RDWR); }
 
     // Ends everything.
