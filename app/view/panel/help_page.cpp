@@ -36,7 +36,7 @@ std::array<Part, 6> partsOf(const xr::ProfileBindings& held, int hand) {
     const bool left = hand == kLeft;
     return {{{{-0.75f, -0.75f}, held.trigger, "click"},
              {{0.35f, -0.45f}, held.menu[h], "the panel"},
-             {{0.45f, 0.15f}, held.play[h], "rest, or play"},
+             {{0.45f, 0.15f}, held.play[h], "pause, or play"},
              {{-0.3f, -0.1f}, held.stick, left ? "walk, or teleport" : "turn, rise, sink"},
              {{-0.3f, -0.1f}, held.stick_press, left ? "viewpoint before" : "next viewpoint"},
              {{-0.55f, 1.5f}, held.squeeze, "hold the scene"}}};
