@@ -62,7 +62,7 @@ RenderOptions asUsed(RenderOptions options, const Scene& scene, const LoadNotes&
     LoadOptions& load = options.run.load;
     if (live != nullptr) {
         load.sh_degree = static_cast<std::uint32_t>(live->traits().sh_degree);
-        load.antialiased = live->traits().splat_kind == gpu::kAntialiasedGaussians;
+        load.antialiased = live->traits().is_dimmed;
     } else {
         if (!notes.level_splats.empty()) { load.lod = notes.level; }
         load.sh_degree = static_cast<std::uint32_t>(scene.sh_degree);

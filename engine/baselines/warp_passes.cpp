@@ -179,7 +179,8 @@ void WarpRecorder::findNewcomers() {
                                   .tile_errors = in_.warp.tileErrors(),
                                   .counters = counters(),
                                   .chunk_bits = in_.scene.chunkBits(),
-                                  .eye = static_cast<gpu::uint>(in_.index)};
+                                  .eye = static_cast<gpu::uint>(in_.index),
+                                  .is_dimmed = in_.scene.traits().is_dimmed};
     dispatchByCounter(NewcomersKernel{.splat_kind = in_.scene.splatKind(), .placed = in_.scene.isPlaced()}, pass,
                       offsetof(gpu::WarpCounters, per_visible));
 }
@@ -192,12 +193,12 @@ void WarpRecorder::groupHoles() {
                                    .boxes = in_.warp.boxes(),
                                    .tile_kinds = in_.warp.tileKinds(),
                                    .counters = counters(),
-                                   .box_capacity = in_.warp.needs().boxes};
+                                   .box_capacity = in_.warp.needs().boxes,
+                                   .slots_apart = halfFloats() ? 1u : 2u};
     for (std::uint32_t step = 0; step < 3; ++step) {
-        dispatchByCounter(ComponentsKernel{.step = step, .half_colours = halfFloats()}, pass,
-                          offsetof(gpu::WarpCounters, component_groups));
+        dispatchByCounter(ComponentsKernel{.step = step}, pass, offsetof(gpu::WarpCounters, component_groups));
     }
-    dispatch(ComponentsKernel{.step = 3, .half_colours = halfFloats()}, pass, kMarkGroups);
+    dispatch(ComponentsKernel{.step = 3}, pass, kMarkGroups);
 }
 
 void WarpRecorder::price() {

@@ -44,11 +44,8 @@ public:
     [[nodiscard]] std::uint32_t splatsComing() const { return splats_coming_; }
     [[nodiscard]] const SceneTraits& traits() const { return traits_; }
     [[nodiscard]] int shDegree() const { return traits_.sh_degree; }
-    // kDiscs, kGaussians or kAntialiasedGaussians.
     [[nodiscard]] std::uint32_t splatKind() const { return traits_.splat_kind; }
-    // For passes in which dimming makes no difference: kDiscs or kGaussians.
-    [[nodiscard]] std::uint32_t splatShape() const { return traits_.isGaussian3d() ? gpu::kGaussians : gpu::kDiscs; }
-    // The order that the scene asks for.
+    // As the scene asks for it.
     [[nodiscard]] Order usualOrder() const { return traits_.usual_order; }
     // True if its colours are light, to be encoded after blending.
     [[nodiscard]] bool isLight() const { return traits_.is_light; }

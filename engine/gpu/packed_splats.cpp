@@ -75,9 +75,8 @@ gpu::ScenePage PageBounds::page() const {
 
 SceneTraits traitsOf(const Scene& scene) {
     return {.sh_degree = scene.sh_degree,
-            .splat_kind = !scene.isGaussian3d() ? gpu::kDiscs
-                          : scene.antialiased   ? gpu::kAntialiasedGaussians
-                                                : gpu::kGaussians,
+            .splat_kind = scene.isGaussian3d() ? gpu::kGaussians : gpu::kDiscs,
+            .is_dimmed = scene.isGaussian3d() && scene.antialiased,
             .usual_order = scene.by_distance ? Order::kDistance : Order::kDepth,
             .is_light = scene.is_linear};
 }

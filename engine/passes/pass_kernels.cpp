@@ -22,9 +22,11 @@ bool loadsByAddress(const Context& context) { return context.isSoftware(); }
 
 // Of cull to rasterize, without sorting.
 KernelTable frameKernels(std::uint32_t threads) {
-    KernelTable table = everyVariantOf<CullPagesKernel, ProjectKernel, BinKernel, BinLargeKernel>();
+    KernelTable table = everyVariantOf<CullPagesKernel, BinKernel, BinLargeKernel>();
     append(table, everyVariant<CullKernel>([](const CullKernel& k) { return k.placed <= k.in_pages; }));
     append(table, everyVariant<CompactKernel>([](const CompactKernel& k) { return k.placed <= k.in_pages; }));
+    // Scenes among others each have their own degree.
+    append(table, everyVariant<ProjectKernel>([](const ProjectKernel& k) { return k.placed == 0 || k.sh_degree == kMaxShDegree; }));
     append(table, everyVariant<TileRangesKernel>([](const TileRangesKernel& k) { return k.masked == 1 || k.half_colours == 0; }));
     for (std::uint32_t choices = 0; choices < 8; ++choices) {
         const Kept plain{.depth = (choices & 1) != 0, .half_floats = (choices & 2) != 0};
@@ -34,9 +36,10 @@ KernelTable frameKernels(std::uint32_t threads) {
         const auto add = [&](const Kept& kept, bool masked, bool coarse = false) {
             table.push_back(variantOf(rasterizeKernel(threads, kept, choices >> 2, masked, coarse)));
         };
-        for (const Kept& kept : {plain, moving, even_rows, cut}) { add(kept, false); }
+        for (const Kept& kept : {plain, moving, even_rows}) { add(kept, false); }
         add(plain, true);
-        if (plain.depth) { continue; }  // a history's depths follow from its words
+        if (plain.depth) { continue; }  // a past's depths follow from its words
+        add(cut, false);
         add(past, false);
         add(past, true);
         for (const Kept& kept : {plain, past}) { add(kept, true, true); }
@@ -91,11 +94,11 @@ PassKernels::PassKernels(const Context& context, const Sort& sort, std::uint32_t
 PassKernels::PassKernels(const Context& context, std::uint32_t threads_per_cell)
     : PassKernels(context, Sort(context), cellThreads(context, threads_per_cell)) {}
 
-// With coarse tiles there is one kernel for everything that a picture may keep.
+// With coarse tiles there is one kernel for all that a picture may keep, and so there is where meshes cut.
 RasterizeKernel rasterizeKernel(std::uint32_t threads_per_cell, const Kept& kept, std::uint32_t splat_shape, bool masked, bool coarse) {
     const bool moves_by_depth = kept.moving && kept.depth_choice != gpu::kDepthInverse;
     return {.threads_per_cell = threads_per_cell,
-            .depth = (kept.depth || moves_by_depth || coarse) && !kept.past,  // a history has it from its words
+            .depth = (kept.depth || moves_by_depth || coarse || kept.cut) && !kept.past,  // a past has it from its words
             .moments = kept.moments || kept.moving || kept.past,
             .half_colours = kept.half_floats,
             .splat_kind = splat_shape,

@@ -26,7 +26,7 @@ void dispatchOverBlocks(Commands& commands, const Kernel& kernel, const Pass& pa
 void recordCullPages(PassKernels& kernels, Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes,
                      Role role) {
     commands.beginPass({role, FrameStage::kSort, "cull_pages"});
-    commands.dispatchOver(kernels.get(CullPagesKernel{.splat_kind = scene.splatShape()}),
+    commands.dispatchOver(kernels.get(CullPagesKernel{.splat_kind = scene.splatKind()}),
                           gpu::CullPagesPass{.pages = scene.pages(),
                                              .eyes = buffers.eyes(),
                                              .page_bits = buffers.pageBits(),
@@ -80,8 +80,9 @@ void recordProjected(const Recording& recording) {
                                    .targets = recording.states(),
                                    .chunk_bits = scene.chunkBits(),
                                    .splats_apart = recording.splatsApart(),
-                                   .capacity = recording.targets.pairs.capacity};
-    const ProjectKernel kernel{.sh_degree = static_cast<std::uint32_t>(scene.shDegree()),
+                                   .capacity = recording.targets.pairs.capacity,
+                                   .is_dimmed = scene.traits().is_dimmed};
+    const ProjectKernel kernel{.sh_degree = static_cast<std::uint32_t>(scene.isPlaced() ? kMaxShDegree : scene.shDegree()),
                                .masked = recording.targets.masked,
                                .splat_kind = scene.splatKind(),
                                .placed = scene.isPlaced()};
@@ -108,7 +109,7 @@ void recordBinned(const Recording& recording) {
                            .all_tiles = recording.targets.all_tiles};
     recording.commands.dispatchIndirect(recording.kernels.get(BinKernel{}), bin, recording.buffers.state,
                                         recording.visibleList() + offsetof(gpu::ListState, per_block));
-    const BinLargeKernel large{.masked = recording.targets.masked, .splat_kind = recording.scene.splatShape()};
+    const BinLargeKernel large{.splat_kind = recording.scene.splatKind()};
     recording.commands.dispatch(recording.kernels.get(large), bin, gpu::kBinLargeGroups, 1, recording.count());
 }
 
@@ -144,7 +145,7 @@ void recordRasterized(const Recording& recording, const KeyValues& sorted) {
                                        .depth_choice = targets.kept.depth_choice,
                                        .is_light = is_light};
     const Kernel& kernel = recording.kernels.get(rasterizeKernel(recording.kernels.threadsPerCell(), targets.kept,
-                                                                 recording.scene.splatShape(), recording.listsFull(), targets.coarse));
+                                                                 recording.scene.splatKind(), recording.listsFull(), targets.coarse));
     if (recording.listsFull()) {
         recording.commands.dispatchIndirect(kernel, rasterize, recording.buffers.state,
                                             recording.field(offsetof(TargetState, counters) + offsetof(gpu::EyeCounters, per_full_tile)));
@@ -175,7 +176,7 @@ void recordCull(PassKernels& kernels, Commands& commands, const GpuScene& scene,
                              .first_tile_mask = eyes.first_mask,
                              .last_tile_mask = eyes.last_mask};
     const CullKernel kernel{
-        .splat_kind = scene.splatShape(), .masked = eyes.first_mask.value != 0, .in_pages = scene.isInPages(), .placed = scene.isPlaced()};
+        .splat_kind = scene.splatKind(), .masked = eyes.first_mask.value != 0, .in_pages = scene.isInPages(), .placed = scene.isPlaced()};
     dispatchOverBlocks(commands, kernels.get(kernel), pass, scene, buffers, eyes.list);
 }
 
@@ -195,8 +196,9 @@ void recordOrder(PassKernels& kernels, Commands& commands, const GpuScene& scene
                                 .splat_count = scene.splatCount(),
                                 .chunk_bits = scene.chunkBits(),
                                 .order_eye = static_cast<gpu::uint>(eyes.order_eye),
+                                .by_distance = eyes.middle.has_value(),
                                 .middle = eyes.middle.value_or(gpu::Place{})};
-    const CompactKernel kernel{.by_distance = eyes.middle.has_value(), .in_pages = scene.isInPages(), .placed = scene.isPlaced()};
+    const CompactKernel kernel{.in_pages = scene.isInPages(), .placed = scene.isPlaced()};
     dispatchOverBlocks(commands, kernels.get(kernel), pass, scene, buffers, eyes.list);
     commands.beginPass({role, FrameStage::kSort, "sort_depth"});
     static_assert(Sort::endsInSpare(gpu::kDepthKeyBits));

@@ -57,7 +57,7 @@ PlacedScenes::PlacedScenes(const Context& context, std::span<const PlacedScene> 
     std::size_t pages = 0;
     for (const PlacedScene& placed : scenes) {
         const SceneTraits& its = placed.scene->traits();
-        check(its.splat_kind == traits.splat_kind && its.is_light == traits.is_light,
+        check(its.splat_kind == traits.splat_kind && its.is_dimmed == traits.is_dimmed && its.is_light == traits.is_light,
               "scenes of one frame must be all discs, all Gaussians, or all Gaussians with antialiasing, and of colours encoded alike");
         traits.sh_degree = std::max(traits.sh_degree, its.sh_degree);
         if (its.usual_order == Order::kDistance) { traits.usual_order = Order::kDistance; }

@@ -46,7 +46,10 @@ SceneTraits traitsOf(ChunkSource& source, const StreamSettings& settings) {
     if (!any && trouble) { throw *trouble; }
     SceneTraits traits;
     traits.sh_degree = std::min(sh_degree, settings.sh_degree.value_or(kMaxShDegree));
-    if (!discs && !settings.flatten) { traits.splat_kind = antialiased ? gpu::kAntialiasedGaussians : gpu::kGaussians; }
+    if (!discs && !settings.flatten) {
+        traits.splat_kind = gpu::kGaussians;
+        traits.is_dimmed = antialiased;
+    }
     return traits;
 }
 

@@ -11,10 +11,8 @@ layout(push_constant, scalar) uniform Push { ComponentsPass pass; };
 const uint kStepUnite = 0, kStepCount = 1, kStepBound = 2, kStepMark = 3;
 layout(constant_id = 0) const uint kStep = kStepUnite;
 
-layout(constant_id = 1) const bool kHalfColours = false;
-
 // Where a pixel's colour would lie.
-uint slotOf(uint pixel) { return kHalfColours ? pixel : 2 * pixel; }
+uint slotOf(uint pixel) { return pass.slots_apart * pixel; }
 
 bool isHole(WarpView warp, uvec2 at) {
     return ((pass.pixel_classes.at[at.y * warp.size_tiles.x + at.x / kTileSize] >> (2 * (at.x % kTileSize))) & 3) == kHole;

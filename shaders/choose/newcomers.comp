@@ -54,7 +54,7 @@ void addError(uint tile, uint steps) {
 bool addNewcomer(uint rank, EyeView eye, WarpView warp, bool together) {
     const CameraSplat splat = loadCameraSplat(pass.chunks, placeOfSplat(pass.order.at[rank], pass.chunk_bits), eye);
     bool has_reference;
-    ProjectedSplat p = projectSplat(splat, eye, has_reference);
+    ProjectedSplat p = projectSplat(splat, eye, pass.is_dimmed != 0, has_reference);
     const Outline outline = outlineOfProjected(p, eye.low_pass);
     const ivec4 box = tileBox(splat, eye, outline);
     const uint tiles = uint(max(box.z - box.x, 0) * max(box.w - box.y, 0));

@@ -72,8 +72,8 @@ ProjectedSplat projectGaussian(CameraSplat splat, EyeView eye, bool dimmed, out 
     return p;
 }
 
-// For a splat of the scene's kind.
-ProjectedSplat projectSplat(CameraSplat splat, EyeView eye, out bool has_reference) {
+// For a splat of the scene's kind; `dimmed`: Gaussians are.
+ProjectedSplat projectSplat(CameraSplat splat, EyeView eye, bool dimmed, out bool has_reference) {
     if (kSplatKind == kDiscs) { return projectGeometry(splat, eye, has_reference); }
-    return projectGaussian(splat, eye, kSplatKind == kAntialiasedGaussians, has_reference);
+    return projectGaussian(splat, eye, dimmed, has_reference);
 }

@@ -69,10 +69,9 @@ BINOSPLAT_CONSTANT uint kMaxItems = 0x7fffffffu;
 // A dispatch of more groups than this is folded into rows: 65535 is what every device allows along one axis.
 BINOSPLAT_CONSTANT uint kMaxGroupsX = 32768;
 
-// A scene's splats are discs (2DGS) or 3D Gaussians; antialiased ones were trained with an opacity that the low-pass dims.
+// A scene's splats are discs (2DGS) or 3D Gaussians.
 BINOSPLAT_CONSTANT uint kDiscs = 0;
 BINOSPLAT_CONSTANT uint kGaussians = 1;
-BINOSPLAT_CONSTANT uint kAntialiasedGaussians = 2;
 // The low-pass of 3DGS: this much variance is added on the screen, in px^2 (Kerbl et al. 2023, the reference implementation).
 BINOSPLAT_CONSTANT float kScreenVariance = 0.3f;
 // The projection's derivative is taken within the picture enlarged by this fraction of its width and height

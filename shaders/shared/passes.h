@@ -52,8 +52,9 @@ struct CompactPass {
     Uints splats;  // out: indices into the scene
     uint splat_count;
     uint chunk_bits;
-    uint order_eye;  // the eye whose depths are the keys
-    Place middle;    // between the eyes, if distances are the keys
+    uint order_eye;    // the eye whose depths are the keys
+    uint by_distance;  // 1: distances from `middle`, between the eyes, are
+    Place middle;
 };
 
 // project: the visible splats, front to back, as each eye sees them, and how many tiles each meets.
@@ -71,6 +72,7 @@ struct ProjectPass {
     uint chunk_bits;
     uint splats_apart;  // of one target's splats, sets and counts to the next one's
     uint capacity;      // of the pairs
+    uint is_dimmed;     // 1: Gaussians that were trained with an opacity that the low-pass dims
 };
 
 // bin and bin_large: a (tile, splat) pair for each tile that a splat meets, front to back.
@@ -229,6 +231,7 @@ struct NewcomersPass {
     WarpCounterss counters;
     uint chunk_bits;
     uint eye;
+    uint is_dimmed;  // as in ProjectPass
 };
 
 // components: paper: connected holes inside the picture (section 3.5, step 2), in steps: see the shader.
@@ -240,6 +243,7 @@ struct ComponentsPass {
     Uints tile_kinds;  // in and out
     WarpCounterss counters;
     uint box_capacity;
+    uint slots_apart;  // of one pixel to the next one's: 1 in a picture of half floats, otherwise 2
 };
 
 // mark_changed: where parts of the scene came, went or faded, a history is wrong.

@@ -7,12 +7,11 @@
 #include "lib/group.glsl"
 #include "lib/list.glsl"
 const uint kSplatKind = kDiscs;  // only the centre is read, whatever the kind
-layout(constant_id = 2) const bool kPlaced = false;
+layout(constant_id = 1) const bool kPlaced = false;
 #include "lib/splat.glsl"
 #include "lib/eye.glsl"
 
-layout(constant_id = 0) const bool kByDistance = false;
-layout(constant_id = 1) const bool kInPages = false;
+layout(constant_id = 0) const bool kInPages = false;
 
 layout(local_size_x = kGroupSize) in;
 layout(push_constant, scalar) uniform Push { CompactPass pass; };
@@ -24,7 +23,7 @@ shared uint visible_before[kBlockWords];  // how many of the block's splats come
 
 // What splats are ordered by. A distance is the same float for whichever eyes the list is made, since it depends on neither.
 float depthOf(EyeView eye, vec3 position) {
-    if (kByDistance) {
+    if (pass.by_distance != 0) {
         const vec3 from_middle = fromPlace(pass.middle.position, pass.middle.position_low, position);
         precise const float distance = sqrt(dot(from_middle, from_middle));
         return distance;

@@ -10,7 +10,7 @@
 #include "lib/list.glsl"
 #include "lib/sums.glsl"
 
-layout(constant_id = 0) const uint kSplatKind = kDiscs;  // dimmed or not makes no difference here
+layout(constant_id = 0) const uint kSplatKind = kDiscs;
 layout(constant_id = 3) const bool kPlaced = false;      // pages of scenes that are placed among others
 
 #include "lib/splat.glsl"

@@ -1,8 +1,10 @@
 // bin, second step: the pairs of the splats that bin listed. A subgroup per splat and a lane per row of tiles.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_buffer_reference_uvec2 : require
 #extension GL_EXT_control_flow_attributes : require
 #include "passes.h"
+#include "lib/address.glsl"
 #include "lib/group.glsl"
 #include "lib/tile_set.glsl"
 #include "lib/tile_mask.glsl"
@@ -11,21 +13,25 @@
 
 layout(local_size_x = kBinLargeSize) in;
 layout(push_constant, scalar) uniform Push { BinPass pass; };
-layout(constant_id = 0) const bool kMasked = false;  // only pairs in tiles of the mask
-layout(constant_id = 1) const uint kSplatKind = kDiscs;  // dimmed or not makes no difference here
+layout(constant_id = 0) const uint kSplatKind = kDiscs;
 
 const bool kPlaced = false;  // no splat of the scene is read
 #include "lib/splat.glsl"
 #include "lib/outline.glsl"
 #include "lib/pair.glsl"
 
+// As maskBits; without a mask all tiles count.
+uint bitsOf(Uints mask, uvec2 size_tiles, int row, uint begin, uint end) {
+    if (isThere(uvec2(mask))) { return maskBits(mask, size_tiles, row, begin, end); }
+    return 0xffffffffu >> (32 - (end - begin));
+}
+
 // How many of a row's tiles from `begin` to `end` count.
 uint countRow(Uints mask, uvec2 size_tiles, int row, uint begin, uint end) {
-    if (!kMasked) { return end - begin; }
     uint tiles = 0, x = begin;
     if (x < end) {
         [[dont_unroll]] do {
-            tiles += bitCount(maskBits(mask, size_tiles, row, x, wordEnd(x, end)));
+            tiles += bitCount(bitsOf(mask, size_tiles, row, x, wordEnd(x, end)));
             x = wordEnd(x, end);
         } while (x < end);
     }
@@ -37,19 +43,14 @@ void putRow(Uints mask, uvec2 size_tiles, uvec2 pairs, int row, uint begin, uint
     uint x = begin;
     if (x >= end) { return; }
     [[dont_unroll]] do {
-        if (!kMasked) {
-            putPair(pairs, first + x, rank);
-            ++x;
-        } else {
-            uint bits = maskBits(mask, size_tiles, row, x, wordEnd(x, end));
-            if (bits != 0) {
-                [[dont_unroll]] do {
-                    putPair(pairs, first + x + findLSB(bits), rank);
-                    bits &= bits - 1;
-                } while (bits != 0);
-            }
-            x = wordEnd(x, end);
+        uint bits = bitsOf(mask, size_tiles, row, x, wordEnd(x, end));
+        if (bits != 0) {
+            [[dont_unroll]] do {
+                putPair(pairs, first + x + findLSB(bits), rank);
+                bits &= bits - 1;
+            } while (bits != 0);
         }
+        x = wordEnd(x, end);
     } while (x < end);
 }
 
@@ -59,7 +60,7 @@ void putLarge(uint i, uint lanes) {
     const ivec4 box = largeBox(pass.tile_sets.at[splat]);
     const Outline outline = outlineOfProjected(pass.splats.at[splat], pass.eyes.at[gl_WorkGroupID.z].low_pass);
     const uvec2 size_tiles = pass.eyes.at[gl_WorkGroupID.z].size_tiles;
-    Uints mask = Uints(kMasked ? TARGET.tile_mask : uvec2(0));
+    Uints mask = Uints(TARGET.tile_mask);
     uvec2 pairs = pairsFrom(pass.large_begins.at[i], pass.tile_counts.at[splat]);
     int first_row = box.y;
     [[dont_unroll]] do {

@@ -8,7 +8,7 @@
 
 layout(local_size_x = kGroupSize) in;
 layout(push_constant, scalar) uniform Push { ContributePass pass; };
-layout(constant_id = 0) const uint kSplatKind = kDiscs;  // dimmed or not makes no difference here
+layout(constant_id = 0) const uint kSplatKind = kDiscs;
 layout(constant_id = 1) const bool kFits = false;        // there is a wanted picture
 
 const bool kPlaced = false;  // no splat of the scene is read

@@ -71,7 +71,7 @@ uint project(uint rank, EyeView eye) {
     const CameraSplat in_world = loadWorldSplat(pass.chunks, at);
     const CameraSplat splat = cameraFromWorld(eye, in_world);
     bool has_reference;
-    ProjectedSplat p = projectSplat(splat, eye, has_reference);
+    ProjectedSplat p = projectSplat(splat, eye, pass.is_dimmed != 0, has_reference);
     if (has_reference) { placeExactly(p, in_world.centre, eye); }
     const Outline outline = outlineOfProjected(p, eye.low_pass);
     const ivec4 box = tileBox(splat, eye, outline);

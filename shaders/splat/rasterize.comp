@@ -19,7 +19,7 @@ layout(constant_id = 0) const uint kThreadsPerCell = 32;  // 8, 16, 32 or 64
 layout(constant_id = 1) const bool kDepth = true;     // D is summed
 layout(constant_id = 2) const bool kMoments = false;  // I and J are, as for a picture that is going to be warped
 layout(constant_id = 3) const bool kHalfColours = false;
-layout(constant_id = 4) const uint kSplatKind = kDiscs;  // dimmed or not makes no difference here
+layout(constant_id = 4) const uint kSplatKind = kDiscs;
 layout(local_size_x_id = 5) in;  // kCellsPerTile * kThreadsPerCell
 layout(constant_id = 6) const bool kEvenRows = false;  // an odd row is going to be warped like the even one above it
 layout(constant_id = 7) const bool kMasked = false;    // only the tiles of its target's list

@@ -153,6 +153,7 @@ inline ProjectedOnDevice projectOnDevice(Gpu& gpu, const SceneOnDevice& device, 
     pass.capacity = pair_capacity;
     pass.targets = result.target.address<gpu::TargetState>();
     pass.chunk_bits = device.scene.chunkBits();
+    pass.is_dimmed = device.scene.traits().is_dimmed;
     gpu.run([&](Commands& commands) { commands.dispatchIndirect(kernel, pass, result.list, offsetof(gpu::ListState, per_block)); });
     return result;
 }

@@ -123,7 +123,7 @@ Culled cullOnDevice(Gpu& gpu, const SceneOnDevice& device, std::size_t first_eye
                     const Kernel* other_kernel = nullptr) {
     const std::uint32_t count = device.scene.splatCount();
     const std::size_t groups = test::pagesOf(count);
-    const Kernel& kernel = other_kernel != nullptr ? *other_kernel : gpu.kernel(CullKernel{.splat_kind = device.scene.splatShape()});
+    const Kernel& kernel = other_kernel != nullptr ? *other_kernel : gpu.kernel(CullKernel{.splat_kind = device.scene.splatKind()});
     const Buffer bits = gpu.allocate<std::uint32_t>("bits", groups * kGroupWords), counts = gpu.allocate<std::uint32_t>("counts", groups);
     const Buffer list = gpu.upload("visible", std::vector{gpu::ListState{}});
     gpu::CullPass pass{};
@@ -178,7 +178,7 @@ void checkPages(Gpu& gpu, int count) {
 
         const std::vector<Eye> eyes = eyesAbout(view, count);
         const SceneOnDevice device(gpu, view.scene, eyes, kSettings.near);
-        Pages on_device(gpu, packed.pages(), device.scene.splatShape(), eyes);
+        Pages on_device(gpu, packed.pages(), device.scene.splatKind(), eyes);
         for (std::size_t e = 1; e < eyes.size(); e += 3) {
             for (const auto& [first, many] : {std::pair(e - 1, 2), std::pair(e, 1), std::pair(e, 2)}) {
                 const Pages::Found found = on_device.cull(first, static_cast<std::size_t>(many));
@@ -218,7 +218,7 @@ struct Compacted {
 // compact of these splats, ascending, for the device's first eye; by distance from `middle` where there is one.
 Compacted compactOnDevice(Gpu& gpu, const SceneOnDevice& device, const std::vector<std::uint32_t>& visible,
                           const std::optional<glm::dvec3>& middle) {
-    const Kernel& kernel = gpu.kernel(CompactKernel{.by_distance = middle.has_value()});
+    const Kernel& kernel = gpu.kernel(CompactKernel{});
     const std::uint32_t count = device.scene.splatCount();
     const std::size_t groups = (count + gpu::kCullBlock - 1) / gpu::kCullBlock;
     std::vector<std::uint32_t> bits(groups * kGroupWords), offsets(groups + 1);
@@ -233,7 +233,10 @@ Compacted compactOnDevice(Gpu& gpu, const SceneOnDevice& device, const std::vect
     gpu::CompactPass pass{};
     pass.chunks = device.scene.chunks();
     pass.eyes = device.eyeViews();
-    if (middle) { pass.middle = placeOf(*middle); }
+    if (middle) {
+        pass.by_distance = 1;
+        pass.middle = placeOf(*middle);
+    }
     pass.visible_bits = bit_buffer.address<gpu::uint>();
     pass.group_offsets = offset_buffer.address<gpu::uint>();
     pass.visible = list.address<gpu::ListState>();
@@ -294,7 +297,7 @@ TEST_CASE_FIXTURE(Gpu, "a splat that is not all numbers is not visible") {
         if (is_gaussian) { scene.thicknesses.assign(6, 0.1f); }
         scene.positions[1].x = scene.positions[2].z = scene.scales[3].y = scene.opacities[4] = scene.rotations[5].x = kNone;
         const SceneOnDevice device(*this, scene, {eye}, kSettings.near);
-        const Kernel without_nan = withoutNan(*this, CullKernel{.splat_kind = device.scene.splatShape()});
+        const Kernel without_nan = withoutNan(*this, CullKernel{.splat_kind = device.scene.splatKind()});
         for (const Kernel* kernel : {static_cast<const Kernel*>(nullptr), &without_nan}) {
             CHECK(cullOnDevice(*this, device, 0, 1, kernel).bits[0] == 1);
         }

@@ -113,7 +113,7 @@ std::vector<TilePair> binOnDevice(Gpu& gpu, const ViewedScene& view, const TwinS
     const Buffer mask_buffer = gpu.upload("tile mask", mask);
     const auto tile_mask = mask.empty() ? gpu::DeviceAddress<gpu::uint>{} : mask_buffer.address<gpu::uint>();
     const Kernel& kernel = gpu.kernel(BinKernel{});
-    const Kernel& large_kernel = gpu.kernel(BinLargeKernel{.masked = !mask.empty(), .splat_kind = device.scene.splatShape()});
+    const Kernel& large_kernel = gpu.kernel(BinLargeKernel{.splat_kind = device.scene.splatKind()});
     const auto capacity = static_cast<std::uint32_t>(4 * twin.pairs.size() + 1000);
     const test::ProjectedOnDevice projected = test::projectOnDevice(gpu, device, twin.order, capacity, tile_mask);
     const Buffer tiles = gpu.allocate<gpu::uint>("tiles", capacity), ranks = gpu.allocate<gpu::uint>("ranks", capacity);

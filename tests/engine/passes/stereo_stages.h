@@ -116,7 +116,8 @@ public:
                                     .tile_errors = words(tile_errors_),
                                     .counters = counters(),
                                     .chunk_bits = scene.scene.chunkBits(),
-                                    .eye = 1},
+                                    .eye = 1,
+                                    .is_dimmed = scene.scene.traits().is_dimmed},
                  {groupsOver(order.size(), gpu::kNewcomersBlock), 1});
     }
     struct ResampleParts {
@@ -171,11 +172,10 @@ public:
                                        .boxes = boxes_.address<gpu::PixelBox>(),
                                        .tile_kinds = words(tile_kinds_),
                                        .counters = counters(),
-                                       .box_capacity = box_capacity_};
-        for (std::uint32_t step = 0; step < 3; ++step) {
-            dispatch(ComponentsKernel{.step = step, .half_colours = areHalves(rows_)}, pass, pixelGroups());
-        }
-        dispatch(ComponentsKernel{.step = 3, .half_colours = areHalves(rows_)}, pass, {3, 1});
+                                       .box_capacity = box_capacity_,
+                                       .slots_apart = areHalves(rows_) ? 1u : 2u};
+        for (std::uint32_t step = 0; step < 3; ++step) { dispatch(ComponentsKernel{.step = step}, pass, pixelGroups()); }
+        dispatch(ComponentsKernel{.step = 3}, pass, {3, 1});
     }
 
     [[nodiscard]] std::vector<gpu::uint> readArrivals() {
