@@ -143,7 +143,7 @@ void settle(LiveScene& scene, std::span<const Eye> eyes, const Progress& progres
         stopIfInterrupted();
         if (progress) { progress(share); }
     });
-    for (const std::string& said : scene.takeLines()) { fmt::print(stderr, "binosplat: {}\n", said); }
+    for (const std::string& said : scene.takeLines(Waits::kBriefly)) { fmt::print(stderr, "binosplat: {}\n", said); }
 }
 
 FrameCounters::Streaming streamingOf(const LiveScene& scene) {

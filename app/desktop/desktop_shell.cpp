@@ -183,7 +183,7 @@ void DesktopShell::drawScene(double seconds) {
         const std::size_t before = scene.clock.frame();
         const WindowSight sight = windowSight();
         scene.follow(eyesOf(mover_.camera(), sight, sightNow().part_px), seconds);
-        for (const std::string& line : scene.live->tryTakeLines()) { say(line); }
+        for (const std::string& line : scene.live->takeLines(Waits::kNever)) { say(line); }
         if (!scene.live->isSettled() || before != scene.clock.frame()) { ++moment_; }
     }
     const Sight sight = sightNow();

@@ -105,7 +105,7 @@ void Viewer::drawFrame() {
 }
 
 void Viewer::sayLive(LoadedScene& scene) {
-    for (const std::string& line : scene.live->tryTakeLines()) { say(line); }
+    for (const std::string& line : scene.live->takeLines(Waits::kNever)) { say(line); }
     if (said_there_ || scene.stream == nullptr || !scene.stream->isSettled()) { return; }
     const std::optional<LoaderWork> work = scene.stream->tryWork();
     if (!work) { return; }

@@ -88,7 +88,7 @@ void bsp_scene_t::advance(std::span<const Eye> eyes, double time_s, bool settles
         }
         throw;
     }
-    for (const std::string& line : settles ? live->takeLines() : live->tryTakeLines()) { device.log(line); }
+    for (const std::string& line : live->takeLines(settles ? Waits::kBriefly : Waits::kNever)) { device.log(line); }
 }
 
 void bsp_renderer_t::readScenes(const bsp_frame_info& frame, AskedFrame& asked) const {

@@ -45,25 +45,19 @@ ChunkLoader::~ChunkLoader() {
     thread_.join();
 }
 
-void ChunkLoader::setWishes(std::vector<LeafLevel> coarsest, std::vector<LeafLevel> finer) {
+bool ChunkLoader::want(std::vector<LeafLevel> coarsest, std::vector<LeafLevel> finer, Waits waits) {
+    const std::unique_lock lock = lockOf(mutex_, waits);
+    if (!lock) { return false; }
     coarsest_ = std::move(coarsest);
     finer_ = std::move(finer);
     for (const LoadedPart& part : done_) { removeWish(part.at); }
     changed_.notify_all();
+    return true;
 }
 
-void ChunkLoader::want(std::vector<LeafLevel> coarsest, std::vector<LeafLevel> finer) {
-    const std::lock_guard lock(mutex_);
-    setWishes(std::move(coarsest), std::move(finer));
-}
-
-bool ChunkLoader::tryWant(const std::vector<LeafLevel>& coarsest, const std::vector<LeafLevel>& finer) {
-    const std::unique_lock lock(mutex_, std::try_to_lock);
-    if (lock) { setWishes(coarsest, finer); }
-    return lock.owns_lock();
-}
-
-std::vector<LoadedPart> ChunkLoader::takeDone() {
+std::vector<LoadedPart> ChunkLoader::take(Waits waits) {
+    const std::unique_lock lock = lockOf(mutex_, waits);
+    if (!lock) { return {}; }
     std::vector<LoadedPart> taken(std::make_move_iterator(done_.begin()), std::make_move_iterator(done_.end()));
     done_.clear();
     done_splats_ = 0;
@@ -71,54 +65,26 @@ std::vector<LoadedPart> ChunkLoader::takeDone() {
     return taken;
 }
 
-std::vector<LoadedPart> ChunkLoader::take() {
-    const std::lock_guard lock(mutex_);
-    return takeDone();
-}
-
-std::vector<LoadedPart> ChunkLoader::tryTake() {
-    const std::unique_lock lock(mutex_, std::try_to_lock);
-    return lock ? takeDone() : std::vector<LoadedPart>();
-}
-
-std::vector<std::string> ChunkLoader::takeLines() {
-    const std::lock_guard lock(mutex_);
-    return std::exchange(lines_, {});
-}
-
-std::vector<std::string> ChunkLoader::tryTakeLines() {
-    const std::unique_lock lock(mutex_, std::try_to_lock);
+std::vector<std::string> ChunkLoader::takeLines(Waits waits) {
+    const std::unique_lock lock = lockOf(mutex_, waits);
     return lock ? std::exchange(lines_, {}) : std::vector<std::string>();
 }
 
-std::vector<bool> ChunkLoader::listBroken() const {
+std::optional<std::vector<bool>> ChunkLoader::brokenFiles(Waits waits) const {
+    const std::unique_lock lock = lockOf(mutex_, waits);
+    if (!lock) { return std::nullopt; }
     std::vector<bool> broken;
     for (const Trouble& trouble : troubles_) { broken.push_back(trouble.broken); }
     return broken;
 }
 
-std::vector<bool> ChunkLoader::brokenFiles() const {
-    const std::lock_guard lock(mutex_);
-    return listBroken();
-}
-
-std::optional<std::vector<bool>> ChunkLoader::tryBrokenFiles() const {
-    const std::unique_lock lock(mutex_, std::try_to_lock);
-    return lock ? std::optional(listBroken()) : std::nullopt;
-}
-
-bool ChunkLoader::isDone() const {
-    const std::lock_guard lock(mutex_);
-    return done_.empty() && !nextFile();
-}
-
-bool ChunkLoader::isSurelyDone() const {
-    const std::unique_lock lock(mutex_, std::try_to_lock);
+bool ChunkLoader::isDone(Waits waits) const {
+    const std::unique_lock lock = lockOf(mutex_, waits);
     return lock && done_.empty() && !nextFile();
 }
 
 std::optional<LoaderWork> ChunkLoader::tryWork() const {
-    const std::unique_lock lock(mutex_, std::try_to_lock);
+    const std::unique_lock lock = lockOf(mutex_, Waits::kNever);
     return lock ? std::optional(work_) : std::nullopt;
 }
 

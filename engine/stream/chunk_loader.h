@@ -5,6 +5,7 @@
 #include "engine/gpu/packed_splats.h"
 #include "engine/stream/chunk_source.h"
 #include "engine/stream/level_chooser.h"
+#include "engine/stream/mailbox.h"
 
 #include <chrono>
 #include <condition_variable>
@@ -54,25 +55,19 @@ public:
 
     [[nodiscard]] const ChunkSource& source() const { return *source_; }
 
-    // From now on only these are wanted; they must not include what has been taken already. `finer` is begun
-    // when nothing of `coarsest` is left to load.
-    void want(std::vector<LeafLevel> coarsest, std::vector<LeafLevel> finer);
-    // The parts that are loaded, in the order in which they were requested.
-    [[nodiscard]] std::vector<LoadedPart> take();
-    // The same for callers that must not wait, even while the loader searches its lists: then false and
-    // empty.
-    [[nodiscard]] bool tryWant(const std::vector<LeafLevel>& coarsest, const std::vector<LeafLevel>& finer);
-    [[nodiscard]] std::vector<LoadedPart> tryTake();
-    [[nodiscard]] std::optional<std::vector<bool>> tryBrokenFiles() const;
-    [[nodiscard]] std::vector<std::string> tryTakeLines();
-    [[nodiscard]] bool isSurelyDone() const;
-    [[nodiscard]] std::optional<LoaderWork> tryWork() const;
+    // From now on these are wished for, and nothing else; they must not include what was taken already. `finer` is begun when nothing of
+    // `coarsest` is left to load. False if that was not heard: who never waits finds this and what follows false and empty while the
+    // loader looks through its lists.
+    bool want(std::vector<LeafLevel> coarsest, std::vector<LeafLevel> finer, Waits waits = Waits::kBriefly);
+    // The parts that are loaded, in the order of the wishes.
+    [[nodiscard]] std::vector<LoadedPart> take(Waits waits = Waits::kBriefly);
     // One sentence for each file that is broken or missing, and one each time that a server does not answer; each only once.
-    [[nodiscard]] std::vector<std::string> takeLines();
-    // By file: true if it cannot be loaded now. Requests for such files are not loaded.
-    [[nodiscard]] std::vector<bool> brokenFiles() const;
-    // True if everything requested was taken or cannot be loaded.
-    [[nodiscard]] bool isDone() const;
+    [[nodiscard]] std::vector<std::string> takeLines(Waits waits = Waits::kBriefly);
+    // By file: true if it cannot be had now. Wishes in such files are not loaded.
+    [[nodiscard]] std::optional<std::vector<bool>> brokenFiles(Waits waits = Waits::kBriefly) const;
+    // True if every wish was taken or cannot be had.
+    [[nodiscard]] bool isDone(Waits waits = Waits::kBriefly) const;
+    [[nodiscard]] std::optional<LoaderWork> tryWork() const;
     // Waits until there is something to take, a file is broken, or all is done; false if the time is up first.
     bool waitForNews(std::chrono::milliseconds most) const;
 
@@ -90,12 +85,8 @@ private:
     };
 
     void run();
-    // With the mutex held.
-    void setWishes(std::vector<LeafLevel> coarsest, std::vector<LeafLevel> finer);
-    [[nodiscard]] std::vector<LoadedPart> takeDone();
-    [[nodiscard]] std::vector<bool> listBroken() const;
     [[nodiscard]] const LodRange& rangeOf(LeafLevel at) const { return source_->leaves()[at.leaf].levels[at.level]; }
-    // The file of the first request that can be loaded.
+    // With the mutex held. The file of the first wish that can be loaded.
     [[nodiscard]] std::optional<std::size_t> nextFile() const;
     [[nodiscard]] std::vector<LeafLevel> wishesIn(std::size_t file) const;
     [[nodiscard]] std::vector<std::size_t> filesAhead() const;

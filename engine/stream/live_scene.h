@@ -3,6 +3,7 @@
 
 #include "engine/geometry.h"
 #include "engine/gpu/gpu_scene.h"
+#include "engine/stream/mailbox.h"
 
 #include <cstdint>
 #include <span>
@@ -47,9 +48,7 @@ public:
     [[nodiscard]] virtual double share() const = 0;
     [[nodiscard]] virtual StreamCounters counters() const = 0;
     // Problems with files and servers, one sentence each, once.
-    [[nodiscard]] virtual std::vector<std::string> takeLines() = 0;
-    // The same for callers that must not wait: perhaps later.
-    [[nodiscard]] virtual std::vector<std::string> tryTakeLines() = 0;
+    [[nodiscard]] virtual std::vector<std::string> takeLines(Waits waits) = 0;
 };
 
 }  // namespace binosplat

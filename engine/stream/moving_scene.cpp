@@ -51,16 +51,7 @@ MovingScene::MovingScene(const Context& context, SceneSeries series, MovingSetti
     resident_ = std::make_unique<ResidentScene>(context_, traits_, options);
     for (const PackedPages& page : shown_) { parts_.push_back(resident_->add(PackedPages(page)).value()); }
     wantFrom(0);
-    thread_ = std::thread([this] { run(); });
-}
-
-MovingScene::~MovingScene() {
-    {
-        const std::lock_guard lock(mutex_);
-        stops_ = true;
-    }
-    asked_changed_.notify_all();
-    thread_.join();
+    steps_.emplace([this](const Question& question) { return stepTo(question); });
 }
 
 MovingScene::Moment MovingScene::momentAt(double time_s) const {
@@ -106,39 +97,12 @@ MovingScene::Step MovingScene::stepTo(const Question& question) const {
     return {question.moment, stepBetween(shown_, question.first->splats, traits_, next, question.moment.share)};
 }
 
-void MovingScene::run() {
-    std::unique_lock lock(mutex_);
-    for (;;) {
-        asked_changed_.wait(lock, [&] { return stops_ || question_; });
-        if (stops_) { return; }
-        const Question question = *std::exchange(question_, std::nullopt);
-        lock.unlock();
-        Step step = stepTo(question);
-        lock.lock();
-        answer_ = std::move(step);
-        answered_.notify_all();
-    }
-}
-
 void MovingScene::ask(Moment moment) {
-    std::optional<Question> question = questionFor(moment);
-    if (!question) { return; }
-    const std::unique_lock lock(mutex_, std::try_to_lock);
-    if (!lock) { return; }
-    question_ = std::move(question);
-    is_asked_ = true;
-    asked_changed_.notify_all();
-}
-
-std::optional<MovingScene::Step> MovingScene::tryTakeStep() {
-    const std::unique_lock lock(mutex_, std::try_to_lock);
-    return lock ? std::exchange(answer_, std::nullopt) : std::nullopt;
+    if (std::optional<Question> question = questionFor(moment)) { is_asked_ = steps_->ask(*std::move(question)); }
 }
 
 void MovingScene::dropSteps() {
-    std::unique_lock lock(mutex_);
-    answered_.wait(lock, [&] { return !is_asked_ || answer_; });
-    answer_.reset();
+    if (is_asked_) { (void)steps_->waitForAnswer(); }
     next_.reset();
     is_asked_ = is_stale_ = false;
 }
@@ -180,7 +144,7 @@ void MovingScene::update(std::span<const Eye> /*eyes*/, double /*step_seconds*/)
         is_stale_ = is_asked_;
         next_.reset();
     }
-    if (std::optional<Step> step = tryTakeStep()) {
+    if (std::optional<Step> step = steps_->take()) {
         is_asked_ = false;
         if (!std::exchange(is_stale_, false)) { next_ = std::move(step); }
     }
@@ -228,9 +192,9 @@ bool MovingScene::isSettled() const { return moment_ == momentAt(time_s_) && !re
 
 StreamCounters MovingScene::counters() const { return {resident_->splatsAdded(), resident_->splatsShown(), parts_.size(), 0, late_count_}; }
 
-std::vector<std::string> MovingScene::tryTakeLines() {
-    std::vector<std::string> lines = std::exchange(lines_, {}), of_loader = loader_->tryTakeLines();
-    lines.insert(lines.end(), of_loader.begin(), of_loader.end());
+std::vector<std::string> MovingScene::takeLines(Waits waits) {
+    std::vector<std::string> lines = std::exchange(lines_, {});
+    if (waits == Waits::kNever) { std::ranges::move(loader_->takeLines(waits), std::back_inserter(lines)); }
     return lines;
 }
 

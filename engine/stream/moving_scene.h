@@ -6,14 +6,11 @@
 #include "engine/stream/resident_scene.h"
 #include "engine/stream/series_loader.h"
 
-#include <condition_variable>
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -33,7 +30,6 @@ public:
     // Reads the first frame; see notes(). Throws Error if it cannot be loaded, or the device lacks memory for
     // it.
     MovingScene(const Context& context, SceneSeries series, MovingSettings settings, const Progress& progress = {});
-    ~MovingScene() override;
 
     [[nodiscard]] const std::string& name() const override { return series_.name(); }
     [[nodiscard]] const GpuScene& scene() const override { return resident_->scene(); }
@@ -55,9 +51,8 @@ public:
     [[nodiscard]] bool isSettled() const override;
     [[nodiscard]] double share() const override { return 1.0; }
     [[nodiscard]] StreamCounters counters() const override;
-    // settle() throws if it lacks what it needs; for display, broken files are reported, see tryTakeLines().
-    [[nodiscard]] std::vector<std::string> takeLines() override { return std::exchange(lines_, {}); }
-    [[nodiscard]] std::vector<std::string> tryTakeLines() override;
+    // Of files that are broken only for display, which never waits: settle() throws if it lacks what it needs.
+    [[nodiscard]] std::vector<std::string> takeLines(Waits waits) override;
 
 private:
     // A scene frame, and how far it is on to the next.
@@ -84,13 +79,11 @@ private:
     [[nodiscard]] std::optional<Question> questionFor(Moment moment) const;
     void wantFrom(std::size_t frame);
     void ask(Moment moment);
-    [[nodiscard]] std::optional<Step> tryTakeStep();
     // Waits for a step that is being made, and drops it.
     void dropSteps();
     // Empty if there is.
     [[nodiscard]] std::string noRoomFor(const Step& step) const;
     void take(Step&& step);
-    void run();
 
     const Context& context_;
     SceneSeries series_;
@@ -107,16 +100,10 @@ private:
     double time_s_ = 0.0, told_s_ = 0.0;
     std::optional<std::size_t> late_, wanted_from_;
     std::uint64_t late_count_ = 0;
-    bool is_asked_ = false;     // and not answered yet
-    bool is_stale_ = false;     // and the time was set since
-    std::optional<Step> next_;  // none while is_asked_
-
-    std::mutex mutex_;  // of what follows
-    std::condition_variable asked_changed_, answered_;
-    bool stops_ = false;
-    std::optional<Question> question_;
-    std::optional<Step> answer_;
-    std::thread thread_;  // last: makes steps
+    bool is_asked_ = false;                         // and not answered yet
+    bool is_stale_ = false;                         // and the time was set since
+    std::optional<Step> next_;                      // none while is_asked_
+    std::optional<Mailbox<Question, Step>> steps_;  // last
 };
 
 }  // namespace binosplat

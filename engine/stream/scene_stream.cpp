@@ -126,7 +126,7 @@ std::vector<LeafLevel> SceneStream::missing(const std::vector<LeafLevel>& chosen
     return wishes;
 }
 
-void SceneStream::wish(bool coarsest_only) {
+void SceneStream::wish(Waits waits, bool coarsest_only) {
     std::vector<LeafLevel> coarsest, finer;
     // A leaf that shows something already needs no coarse level first.
     std::ranges::copy_if(chosen_.coarsest, std::back_inserter(coarsest),
@@ -136,7 +136,7 @@ void SceneStream::wish(bool coarsest_only) {
         // Leaves that are to have fewer splats make space for the others.
         std::ranges::stable_partition(finer, [&](LeafLevel at) { return leaves_->isTooFine(at.leaf); });
     }
-    has_wishes_ = !loader_->tryWant(missing(coarsest), missing(finer));
+    has_wishes_ = !loader_->want(missing(coarsest), missing(finer), waits);
 }
 
 void SceneStream::takeLoaded(bool at_once) {
@@ -156,7 +156,7 @@ void SceneStream::takeLoaded(bool at_once) {
         }
     };
     takeHeld();
-    for (LoadedPart& part : loader_->tryTake()) {
+    for (LoadedPart& part : loader_->take(at_once ? Waits::kBriefly : Waits::kNever)) {
         if (take(part)) {
             if (at_once) { takeHeld(); }
         } else {
@@ -166,7 +166,11 @@ void SceneStream::takeLoaded(bool at_once) {
 }
 
 void SceneStream::update(std::span<const Eye> eyes, double step_seconds) {
-    if (!planner_) { planner_ = std::make_unique<LevelPlanner>(source().leaves()); }
+    if (!planner_) {
+        planner_.emplace([chooser = LevelChooser(source().leaves())](const LevelQuestion& question) mutable {
+            return chooser.choose(question.eyes, question.settings, question.there);
+        });
+    }
     if (std::optional<LevelChoices> answer = planner_->take()) {
         chosen_ = std::move(*answer);
         answered_ = true;
@@ -176,19 +180,19 @@ void SceneStream::update(std::span<const Eye> eyes, double step_seconds) {
     if (!chosen_.levels.empty()) {
         takeLoaded(false);
         leaves_->step(static_cast<float>(settings_.fade_seconds > 0.0 ? step_seconds / settings_.fade_seconds : 1.0));
-        if (has_wishes_) { wish(); }
+        if (has_wishes_) { wish(Waits::kNever); }
     }
     ask(eyes);
 }
 
 void SceneStream::ask(std::span<const Eye> eyes) {
-    const std::optional<std::vector<bool>> broken = loader_->tryBrokenFiles();
+    const std::optional<std::vector<bool>> broken = loader_->brokenFiles(Waits::kNever);
     if (!broken) { return; }
     LevelQuestion question{{eyes.begin(), eyes.end()}, choice_, {}};
     if (std::ranges::find(*broken, true) != broken->end()) { question.there = {*broken, leaves_->loadedLevels()}; }
     if (asked_ && isSame(*asked_, question)) { return; }
     answered_ = false;
-    if (planner_->ask(question)) { asked_ = std::move(question); }
+    if (planner_->ask(LevelQuestion(question))) { asked_ = std::move(question); }
 }
 
 // The rest comes with the next frame, which then knows where it is.
@@ -199,17 +203,17 @@ void SceneStream::flushIfMuch() {
 }
 
 void SceneStream::settleChosen(std::span<const Eye> eyes, bool coarsest_only, const Progress& progress) {
-    if (!chooser_) { chooser_ = std::make_unique<LevelChooser>(source().leaves()); }
+    if (!chooser_) { chooser_.emplace(source().leaves()); }
     std::optional<std::vector<bool>> broken;
     for (;;) {
-        std::vector<bool> now = loader_->brokenFiles();
-        if (broken && *broken == now && loader_->isDone()) { break; }
-        if (!broken || *broken != now) {
-            broken = std::move(now);
+        const std::optional<std::vector<bool>> now = loader_->brokenFiles(Waits::kBriefly);
+        if (broken == now && loader_->isDone(Waits::kBriefly)) { break; }
+        if (broken != now) {
+            broken = now;
             chosen_ = chooser_->choose(eyes, choice_, {*broken, leaves_->loadedLevels()});
             leaves_->want(chosen_.levels);
             leaves_->exchangeAtOnce();
-            do { wish(coarsest_only); } while (has_wishes_);
+            wish(Waits::kBriefly, coarsest_only);
         }
         takeLoaded(true);
         flushIfMuch();
@@ -226,7 +230,7 @@ void SceneStream::settleCoarsest(std::span<const Eye> eyes, const Progress& prog
 
 bool SceneStream::isSettled() const {
     return answered_ && !has_wishes_ && held_.empty() && !leaves_->isExchanging() && !leaves_->resident().hasChanges() &&
-           loader_->isSurelyDone();
+           loader_->isDone(Waits::kNever);
 }
 
 double SceneStream::share() const {

@@ -2,7 +2,6 @@
 // and of memory.
 #pragma once
 
-#include "engine/stream/level_planner.h"
 #include "engine/stream/live_scene.h"
 #include "engine/stream/shown_leaves.h"
 
@@ -23,6 +22,12 @@ struct StreamSettings {
     std::optional<int> sh_degree = {};
     bool flatten = false, antialiased = false;
     LoaderSettings loader = {};  // but its `finish`
+};
+
+struct LevelQuestion {
+    std::vector<Eye> eyes;
+    ChoiceSettings settings;
+    LevelsThere there;
 };
 
 class SceneStream final : public LiveScene {
@@ -49,14 +54,13 @@ public:
     [[nodiscard]] double share() const override;
     [[nodiscard]] StreamCounters counters() const override;
     [[nodiscard]] std::optional<LoaderWork> tryWork() const { return loader_->tryWork(); }
-    [[nodiscard]] std::vector<std::string> takeLines() override { return loader_->takeLines(); }
-    [[nodiscard]] std::vector<std::string> tryTakeLines() override { return loader_->tryTakeLines(); }
+    [[nodiscard]] std::vector<std::string> takeLines(Waits waits) override { return loader_->takeLines(waits); }
 
 private:
     // The chosen levels that are not loaded, to be requested.
     [[nodiscard]] std::vector<LeafLevel> missing(const std::vector<LeafLevel>& chosen) const;
-    void wish(bool coarsest_only = false);
-    // Adds the parts that did not fit before, and those loaded since.
+    void wish(Waits waits, bool coarsest_only = false);
+    // Adds the parts that found no room before, and those loaded since.
     void takeLoaded(bool at_once);
     void ask(std::span<const Eye> eyes);
     void settleChosen(std::span<const Eye> eyes, bool coarsest_only, const Progress& progress);
@@ -69,13 +73,13 @@ private:
     std::unique_ptr<ChunkLoader> loader_;
     std::unique_ptr<ShownLeaves> leaves_;
     LevelChoices chosen_;
-    std::deque<LoadedPart> held_;  // parts that do not fit yet
-    bool has_wishes_ = false;      // that the loader has not been told
-    // For settle, and for update.
-    std::unique_ptr<LevelChooser> chooser_;
-    std::unique_ptr<LevelPlanner> planner_;
+    std::deque<LoadedPart> held_;         // parts that found no room yet
+    bool has_wishes_ = false;             // that the loader has not been told
     std::optional<LevelQuestion> asked_;  // the last one
     bool answered_ = false;
+    // For settle, and for update.
+    std::optional<LevelChooser> chooser_;
+    std::optional<Mailbox<LevelQuestion, LevelChoices>> planner_;
 };
 
 }  // namespace binosplat

@@ -66,22 +66,14 @@ SeriesLoader::Held SeriesLoader::get(std::size_t scene) {
     }
 }
 
-std::vector<std::string> SeriesLoader::linesOf() {
+std::vector<std::string> SeriesLoader::takeLines(Waits waits) {
+    const std::unique_lock lock = lockOf(mutex_, waits);
+    if (!lock) { return {}; }
     std::vector<std::string> lines;
     for (auto& [scene, trouble] : troubles_) {
         if (!std::exchange(trouble.said, true)) { lines.push_back(trouble.what); }
     }
     return lines;
-}
-
-std::vector<std::string> SeriesLoader::takeLines() {
-    const std::lock_guard lock(mutex_);
-    return linesOf();
-}
-
-std::vector<std::string> SeriesLoader::tryTakeLines() {
-    const std::unique_lock lock(mutex_, std::try_to_lock);
-    return lock ? linesOf() : std::vector<std::string>();
 }
 
 std::uint64_t SeriesLoader::bytesKept() const {

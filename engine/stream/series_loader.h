@@ -1,6 +1,7 @@
 // Reads the frames of a moving scene ahead, on threads of its own, as many as memory allows.
 #pragma once
 
+#include "engine/stream/mailbox.h"
 #include "engine/stream/scene_frames.h"
 
 #include <atomic>
@@ -51,9 +52,8 @@ public:
     [[nodiscard]] bool isSurelyBroken(std::size_t scene) const;
     // Waits until it is loaded. Throws Error if it cannot be.
     [[nodiscard]] Held get(std::size_t scene);
-    // One sentence for each scene that cannot be loaded, once.
-    [[nodiscard]] std::vector<std::string> takeLines();
-    [[nodiscard]] std::vector<std::string> tryTakeLines();
+    // One sentence for each scene that cannot be had, once.
+    [[nodiscard]] std::vector<std::string> takeLines(Waits waits);
     [[nodiscard]] std::uint64_t bytesKept() const;
 
 private:
@@ -67,7 +67,6 @@ private:
     [[nodiscard]] std::optional<std::size_t> next();
     [[nodiscard]] std::size_t orderOf(std::size_t scene) const;
     [[nodiscard]] Held hold(std::size_t scene) const;
-    [[nodiscard]] std::vector<std::string> linesOf();
 
     Load load_;
     SceneTraits traits_;

@@ -122,7 +122,7 @@ TEST_CASE_FIXTURE(InFolder, "of a file that is broken or missing one line says s
         CHECK(placesOf(takeAll(loader)) == come);
         const std::vector<std::string> lines = loader.takeLines();
         checkSays(lines, line);
-        CHECK(these(loader.takeLines().empty(), loader.brokenFiles(), loader.isDone()) ==
+        CHECK(these(loader.takeLines().empty(), loader.brokenFiles().value(), loader.isDone()) ==
               these(true, std::vector<bool>{false, true, false, false}, true));
     };
     // Ranges beyond a chunk break that chunk alone.

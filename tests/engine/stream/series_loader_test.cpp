@@ -48,7 +48,7 @@ TEST_CASE("with room for all every frame is read once, in order, and stays") {
     CHECK(loader.get(6) == loader.tryGet(6));
     const std::lock_guard lock(mutex);
     CHECK(read == from(4));
-    CHECK(loader.takeLines().empty());
+    CHECK(loader.takeLines(Waits::kBriefly).empty());
 }
 
 TEST_CASE("a frame that cannot be read is told once, whatever went wrong, and the others come") {
@@ -66,9 +66,9 @@ TEST_CASE("a frame that cannot be read is told once, whatever went wrong, and th
         waitUntil([&] { return loader.isSurelyBroken(scene); });
     }
     CHECK(loader.get(11) != nullptr);
-    CHECK(loader.takeLines() ==
+    CHECK(loader.takeLines(Waits::kBriefly) ==
           std::vector<std::string>{"the first trouble", "a frame of the moving scene does not fit into memory", "the third trouble"});
-    CHECK(loader.takeLines().empty());
+    CHECK(loader.takeLines(Waits::kBriefly).empty());
     CHECK_THROWS_WITH_AS((void)loader.get(3), "the third trouble", Error);
 }
 

@@ -86,7 +86,8 @@ TEST_CASE_FIXTURE(Sliding, "each frame of a moving scene is, to the bit, its fil
         CHECK(pictureOf(frame).values == pictureOf(context(), loadScene(fileOf((at + kFrames) % kFrames))).values);
     }
     CHECK(moving->isSettled());
-    CHECK(these(moving->counters().scene_frames_late, moving->counters().splats_read, moving->takeLines().empty()) == these(0, 8000, true));
+    CHECK(these(moving->counters().scene_frames_late, moving->counters().splats_read, moving->takeLines(Waits::kBriefly).empty()) ==
+          these(0, 8000, true));
 }
 
 TEST_CASE_FIXTURE(Sliding, "between two frames there is what lies between their splats, if asked for") {
@@ -154,7 +155,7 @@ TEST_CASE_FIXTURE(Sliding, "in place of a broken frame the one before stays, and
         moving->setTime(timeOf(at));
         updateUntil(*moving, [&] {
             pictureOf(frame);
-            for (std::string& line : moving->tryTakeLines()) { lines.push_back(std::move(line)); }
+            for (std::string& line : moving->takeLines(Waits::kNever)) { lines.push_back(std::move(line)); }
             return at == 2 ? !moving->isSettled() && !lines.empty() : moving->isSettled();
         });
         CHECK(pictureOf(frame).values == pictureOf(context(), loadScene(fileOf(at == 2 ? 1 : at))).values);

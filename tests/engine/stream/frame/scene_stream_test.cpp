@@ -89,7 +89,8 @@ TEST_CASE_FIXTURE(Streamed, "with room for all of it a view shows what the whole
     CHECK(stream->share() == 1.0);
     CHECK(compare(pictureOf(stream->scene()), whole).psnrDb() > 38.0);
     CHECK(stream->counters().splats_read > kSplats / 4);
-    CHECK(these(stream->counters().splats_read, stream->takeLines().empty()) == these(stream->counters().splats_resident, true));
+    CHECK(these(stream->counters().splats_read, stream->takeLines(Waits::kBriefly).empty()) ==
+          these(stream->counters().splats_resident, true));
 }
 
 TEST_CASE_FIXTURE(Streamed, "frames go on while levels come: the coarsest of all first, then what the eyes ask for, as if waited for") {
@@ -130,7 +131,7 @@ TEST_CASE_FIXTURE(Streamed, "where a chunk is missing the coarser level stays, a
     std::filesystem::remove(broken + "/a/q.webp");
     const auto stream = open(broken, {});
     stream->settle(eyes);
-    const std::vector<std::string> lines = stream->takeLines();
+    const std::vector<std::string> lines = stream->takeLines(Waits::kBriefly);
     checkSays(lines, "a/q.webp: no such file");
     CHECK(stream->counters().splats_resident == 8 + 8 + 8);  // c, b and the environment
     KeptFrame frame(context(), stream->scene());
@@ -193,7 +194,7 @@ TEST_CASE_FIXTURE(Streamed, "whatever a server does to a chunk, the coarser leve
         const auto stream = open(server.at("/lod-meta.json"), impatient, web);
         stream->settle(eyes);
         CHECK(hits > 0);
-        const std::vector<std::string> lines = stream->takeLines();
+        const std::vector<std::string> lines = stream->takeLines(Waits::kBriefly);
         const Image shown = pictureOf(stream->scene());
         if (comes) {
             CHECK(lines.empty());
