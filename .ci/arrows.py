@@ -32,6 +32,7 @@ ROOMS = {
     "engine/library": "engine engine/scene engine/builtin engine/places engine/files engine/files/web engine/picture engine/gpu engine/passes engine/frame engine/stream",
     "xr": "engine engine/gpu shaders/shared",
     "app/scores": "engine engine/picture shaders/shared",
+    "app/summary": "engine engine/scene",
     "app/axes": "engine engine/passes shaders/shared",
     "app/stability_cases": "engine engine/*",
     "app/terminal": "engine",

@@ -1,7 +1,7 @@
 // Finds the nearest splat, by its centre.
 #include "app/blind_camera.h"
 
-#include "engine/scene/describe.h"
+#include "app/summary/describe.h"
 
 #include <fmt/format.h>
 

@@ -2,9 +2,9 @@
 #include "app/commands.h"
 #include "app/load.h"
 #include "app/options/start_view.h"
+#include "app/summary/describe.h"
+#include "app/summary/survey.h"
 #include "engine/gpu/gpu_scene.h"
-#include "engine/scene/describe.h"
-#include "engine/scene/survey.h"
 
 #include <fmt/format.h>
 

@@ -1,12 +1,12 @@
 // Readers take files: the inputs are given to them in memory, under a name in /proc.
 #include "tests/fuzz/targets.h"
 
+#include "app/summary/survey.h"
 #include "engine/files/load_scene.h"
 #include "engine/files/lod_meta.h"
 #include "engine/files/scene_targets.h"
 #include "engine/files/sog_meta.h"
 #include "engine/platform.h"
-#include "engine/scene/survey.h"
 #include "engine/setup/camera_file.h"
 #include "engine/setup/head_motion.h"
 #include "engine/setup/headset.h"

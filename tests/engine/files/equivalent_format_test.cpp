@@ -1,9 +1,9 @@
 // The same scene as SOG and as PLY: what each format keeps of it.
+#include "app/summary/survey.h"
 #include "engine/files/scene_targets.h"
 #include "engine/files/sog.h"
 #include "engine/files/sog_files.h"
 #include "engine/picture/webp.h"
-#include "engine/scene/survey.h"
 #include "engine/twin/reference.h"
 #include "tests/engine/scene/scene_measures.h"
 #include "tests/shared_data.h"

@@ -1,7 +1,7 @@
 // What a PLY file means: values, encodings, orders, types; what is written reads back; and what is said of a broken one.
 #include "engine/files/ply.h"
+#include "app/summary/describe.h"
 #include "engine/builtin/procedural.h"
-#include "engine/scene/describe.h"
 #include "engine/scene/pick_splats.h"
 #include "tests/engine/scene/scene_measures.h"
 

@@ -1,8 +1,8 @@
 // The built-in scenes, folders of scenes, moving ones among them, what `info` says of a scene, and the shared ones.
+#include "app/summary/describe.h"
 #include "engine/builtin/procedural.h"
 #include "engine/files/scene_folder.h"
 #include "engine/files/scene_series.h"
-#include "engine/scene/describe.h"
 #include "tests/engine/files/spz_files.h"
 #ifdef BINOSPLAT_SOG
 #include "tests/engine/files/sog_scenes.h"

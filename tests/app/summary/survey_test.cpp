@@ -1,5 +1,5 @@
 // What is counted in a scene: shares of splats that cost more than they show, floaters, and what would take less memory.
-#include "engine/scene/survey.h"
+#include "app/summary/survey.h"
 #include "tests/suite.h"
 
 SUITE(survey) {

@@ -1,5 +1,7 @@
 // Order statistics along axes, and a grid as a sorted list of cells.
-#include "engine/scene/survey.h"
+#include "app/summary/survey.h"
+
+#include "app/summary/describe.h"
 
 #include <algorithm>
 #include <array>
@@ -10,32 +12,21 @@ namespace binosplat {
 
 namespace {
 
-constexpr std::array<double, 3> kRanks{0.05, 0.5, 0.95};
+constexpr std::array<double, 3> kShares{0.05, 0.5, 0.95};
 constexpr std::int64_t kFurthestCell = std::int64_t{1} << 20;  // 21 bits along each axis
-
-// The values at `ranks`, ascending. Reorders `values`, which must not be empty.
-std::array<float, 3> findRanks(std::vector<float>& values) {
-    std::array<float, 3> found{};
-    for (std::size_t i = 0; i < kRanks.size(); ++i) {
-        const auto rank = static_cast<std::ptrdiff_t>(std::llround(kRanks[i] * static_cast<double>(values.size() - 1)));
-        std::nth_element(values.begin(), values.begin() + rank, values.end());
-        found[i] = values[static_cast<std::size_t>(rank)];
-    }
-    return found;
-}
 
 void findExtent(const Scene& scene, SceneSurvey& survey) {
     std::vector<float> values(scene.size());
     for (int axis = 0; axis < 3; ++axis) {
         std::ranges::transform(scene.positions, values.begin(), [&](const glm::vec3& position) { return position[axis]; });
-        const auto [low, median, high] = findRanks(values);
+        const auto [low, median, high] = findQuantiles(values, kShares);
         survey.middle[axis] = static_cast<double>(median);
         survey.size = std::max(survey.size, static_cast<double>(high) - static_cast<double>(low));
     }
     std::ranges::transform(scene.positions, values.begin(), [&](const glm::vec3& position) {
         return static_cast<float>(glm::distance(glm::dvec3(position), survey.middle));
     });
-    survey.half_radius = static_cast<double>(findRanks(values)[1]);
+    survey.half_radius = static_cast<double>(findQuantiles(values, kShares)[1]);
 }
 
 float longestAxis(const Scene& scene, std::size_t i) { return std::max(scene.scales[i].x, scene.scales[i].y); }

@@ -3,7 +3,9 @@
 
 #include "engine/scene/scene.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -24,7 +26,19 @@ struct SceneSummary {
 };
 inline constexpr std::array<double, 5> kSummaryQuantiles{0.0, 0.05, 0.5, 0.95, 1.0};
 
-// `notes` adds what loading has already left out.
+// The values at these shares of their order, 0 to 1; zeros if there are none. Reorders `values`.
+template <std::size_t N>
+std::array<float, N> findQuantiles(std::vector<float>& values, const std::array<double, N>& shares) {
+    std::array<float, N> quantiles{};
+    for (std::size_t i = 0; i < N && !values.empty(); ++i) {
+        const auto rank = static_cast<std::ptrdiff_t>(std::llround(shares[i] * static_cast<double>(values.size() - 1)));
+        std::nth_element(values.begin(), values.begin() + rank, values.end());
+        quantiles[i] = values[static_cast<std::size_t>(rank)];
+    }
+    return quantiles;
+}
+
+// `notes` adds what loading already left out.
 SceneSummary describeScene(const Scene& scene, const LoadNotes* notes = nullptr);
 
 // "1.5,20,-3": with four digits, or enough for thousandths of `size`.

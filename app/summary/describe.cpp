@@ -1,5 +1,5 @@
-// Counts over a scene.
-#include "engine/scene/describe.h"
+// Counting over a scene.
+#include "app/summary/describe.h"
 
 #include <fmt/format.h>
 
@@ -9,18 +9,6 @@
 namespace binosplat {
 
 namespace {
-
-// The values at kSummaryQuantiles. Reorders `values`.
-std::array<float, 5> findQuantiles(std::vector<float>& values) {
-    std::array<float, 5> quantiles{};
-    if (values.empty()) { return quantiles; }
-    for (std::size_t i = 0; i < quantiles.size(); ++i) {
-        const auto rank = static_cast<std::ptrdiff_t>(std::llround(kSummaryQuantiles[i] * static_cast<double>(values.size() - 1)));
-        std::nth_element(values.begin(), values.begin() + rank, values.end());
-        quantiles[i] = values[static_cast<std::size_t>(rank)];
-    }
-    return quantiles;
-}
 
 void countBands(const Scene& scene, SceneSummary& summary) {
     const auto width = static_cast<std::size_t>(3 * shCoefficientCount(scene.sh_degree));
@@ -81,14 +69,14 @@ SceneSummary describeScene(const Scene& scene, const LoadNotes* notes) {
     std::vector<float> values = scene.opacities;
     summary.invisible_splats =
         static_cast<std::uint64_t>(std::count_if(values.begin(), values.end(), [](float o) { return o < 1.0f / 255.0f; }));
-    summary.opacity_quantiles = findQuantiles(values);
+    summary.opacity_quantiles = findQuantiles(values, kSummaryQuantiles);
     for (std::size_t i = 0; i < scene.size(); ++i) { values[i] = std::max(scene.scales[i].x, scene.scales[i].y); }
-    summary.scale_quantiles = findQuantiles(values);
+    summary.scale_quantiles = findQuantiles(values, kSummaryQuantiles);
     for (std::size_t i = 0; i < scene.size(); ++i) {
         const float longer = std::max(scene.scales[i].x, scene.scales[i].y);
         values[i] = longer > 0.0f ? std::min(scene.scales[i].x, scene.scales[i].y) / longer : 1.0f;
     }
-    summary.aspect_quantiles = findQuantiles(values);
+    summary.aspect_quantiles = findQuantiles(values, kSummaryQuantiles);
     listLeftOut(notes, summary);
     return summary;
 }
