@@ -18,8 +18,6 @@ std::uint32_t cellThreads(const Context& context, std::uint32_t wanted) {
     return std::clamp(wanted != 0 ? wanted : context.subgroupSize(), 8u, most);
 }
 
-bool loadsByAddress(const Context& context) { return context.isSoftware(); }
-
 // Of cull to rasterize, without sorting.
 KernelTable frameKernels(std::uint32_t threads) {
     KernelTable table = everyVariantOf<CullPagesKernel, BinKernel, BinLargeKernel>();
@@ -78,7 +76,7 @@ KernelTable allKernels(const Context& context, const Sort& sort, std::uint32_t t
     KernelTable table = frameKernels(threads_per_cell);
     append(table, sort.kernels());
     append(table, warpKernels(context));
-    append(table, pastKernels(loadsByAddress(context)));
+    append(table, pastKernels(context.isSoftware()));
     append(table, everyVariant<ContributeKernel>());
     return table;
 }
@@ -88,7 +86,7 @@ KernelTable allKernels(const Context& context, const Sort& sort, std::uint32_t t
 PassKernels::PassKernels(const Context& context, const Sort& sort, std::uint32_t threads_per_cell)
     : KernelCache(context, allKernels(context, sort, threads_per_cell)),
       threads_per_cell_(threads_per_cell),
-      by_address_(loadsByAddress(context)),
+      by_address_(context.isSoftware()),
       sort_(sort) {}
 
 PassKernels::PassKernels(const Context& context, std::uint32_t threads_per_cell)
