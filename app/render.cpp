@@ -33,6 +33,7 @@ void writeEyes(OutputFiles& files, const NamedPictures& pictures, const std::opt
         stopIfInterrupted();
         writePicture(files.staging() / name, PictureKind::kFloat, image);
         writeDisplay(files.staging() / name, image, panorama);
+        if (panorama) { writeForGalleries(files.staging() / name, image, *panorama); }
     }
 }
 

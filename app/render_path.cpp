@@ -78,6 +78,11 @@ void requireSameSize(const std::filesystem::path& folder, std::size_t number, st
           before_px.y, size_px.x, size_px.y);
 }
 
+void tag(const std::filesystem::path& path, const Image& image, const std::optional<Panorama>& panorama) {
+    if (!panorama || image.size_px != panorama->size_px) { return; }
+    writeText(path, withPanoramaTags(readTextFile(path, "a picture", SIZE_MAX), *panorama));
+}
+
 }  // namespace
 
 NamedPictures namedPictures(std::vector<Image> eyes, PictureLayout layout) {
@@ -90,8 +95,12 @@ NamedPictures namedPictures(std::vector<Image> eyes, PictureLayout layout) {
 
 void writeDisplay(const std::filesystem::path& stem, const Image& image, const std::optional<Panorama>& panorama) {
     const std::filesystem::path path = writePicture(stem, PictureKind::kDisplay, image).front();
-    if (!panorama || image.size_px != panorama->size_px || path.extension() != ".png") { return; }
-    writeText(path, withPanoramaTags(readTextFile(path, "a picture", SIZE_MAX), *panorama));
+    if (path.extension() == ".png") { tag(path, image, panorama); }
+}
+
+void writeForGalleries(const std::filesystem::path& stem, const Image& image, const Panorama& panorama) {
+    if (image.size_px != panorama.size_px) { return; }  // both eyes
+    if (const std::filesystem::path path = writeJpeg(stem, image); !path.empty()) { tag(path, image, panorama); }
 }
 
 HeadPath readHeadPath(const RenderOptions& options) {

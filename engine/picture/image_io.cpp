@@ -55,6 +55,11 @@ std::vector<fs::path> writePicture(const fs::path& stem, PictureKind kind, const
     return {path, alpha};
 }
 
+fs::path writeJpeg(const fs::path& stem, const Image& image) {
+    const fs::path path = withExtension(stem, ".jpg");
+    return writeJpegFile(path, image.channels == 4 ? selectChannels(image, 0, 3) : image) ? path : fs::path();
+}
+
 Image readPicture(const fs::path& path) {
     std::string reason;
     const File file = openRegularFile(path, reason);

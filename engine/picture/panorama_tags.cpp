@@ -69,10 +69,10 @@ std::size_t findBox(std::string_view bytes, std::string_view type, std::size_t b
 
 }  // namespace
 
-std::string withPanoramaTags(const std::string& png, const Panorama& panorama) {
+static std::string xmpOf(const Panorama& panorama) {
     const glm::uvec2 size = panorama.size_px;
     const auto whole_width = static_cast<std::uint32_t>(std::lround(size.x * 2.0 * std::numbers::pi / panorama.width_rad));
-    const std::string xmp = fmt::format(
+    return fmt::format(
         "<?xpacket begin=\"\xef\xbb\xbf\" id=\"W5M0MpCehiHzreSzNTczkc9d\"?><x:xmpmeta xmlns:x=\"adobe:ns:meta/\">"
         "<rdf:RDF xmlns:rdf=\"http://www.w3.org/1999/02/22-rdf-syntax-ns#\"><rdf:Description rdf:about=\"\" "
         "xmlns:GPano=\"http://ns.google.com/photos/1.0/panorama/\" GPano:ProjectionType=\"equirectangular\" "
@@ -80,11 +80,23 @@ std::string withPanoramaTags(const std::string& png, const Panorama& panorama) {
         "GPano:FullPanoWidthPixels=\"{}\" GPano:FullPanoHeightPixels=\"{}\" GPano:CroppedAreaLeftPixels=\"{}\" "
         "GPano:CroppedAreaTopPixels=\"0\"/></rdf:RDF></x:xmpmeta><?xpacket end=\"r\"?>",
         size.x, size.y, whole_width, size.y, (whole_width - size.x) / 2);
+}
+
+std::string withPanoramaTags(const std::string& file, const Panorama& panorama) {
+    const std::string xmp = xmpOf(panorama);
+    if (file.starts_with("\xff\xd8")) {
+        // A segment APP1, after the one that says that it is a JFIF.
+        const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(file.at(at)); };
+        const std::size_t place = byte(3) == 0xe0 ? std::size_t{4} + byte(4) * 256 + byte(5) : 2;
+        const std::string segment = "http://ns.adobe.com/xap/1.0/"s + '\0' + xmp;
+        const std::string length = bigEndian(static_cast<std::uint32_t>(segment.size() + 2)).substr(2);
+        return file.substr(0, place) + "\xff\xe1" + length + segment + file.substr(place);
+    }
     // Not compressed, without a language.
     const std::string chunk = "iTXt"s + "XML:com.adobe.xmp" + std::string(5, '\0') + xmp;
     constexpr std::size_t kHeader = 8 + 25;  // the signature, and the chunk IHDR
-    return png.substr(0, kHeader) + bigEndian(static_cast<std::uint32_t>(chunk.size() - 4)) + chunk + bigEndian(checksum(chunk)) +
-           png.substr(kHeader);
+    return file.substr(0, kHeader) + bigEndian(static_cast<std::uint32_t>(chunk.size() - 4)) + chunk + bigEndian(checksum(chunk)) +
+           file.substr(kHeader);
 }
 
 std::string withFilmTags(const std::string& moov, const FilmTags& tags) {

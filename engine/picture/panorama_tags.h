@@ -1,5 +1,5 @@
-// What a file says about its picture, for galleries and headset players: GPano in the XMP of a PNG, and the
-// boxes of Google's Spherical Video V2 (docs/spherical-video-v2-rfc.md in its spatial-media) in an MP4.
+// What a file says of the picture in it, for galleries and players of headsets: GPano in the XMP of a PNG or a JPEG, and the boxes of
+// Google's Spherical Video V2 (docs/spherical-video-v2-rfc.md of its spatial-media) in an MP4.
 #pragma once
 
 #include "engine/picture/panorama.h"
@@ -9,8 +9,8 @@
 
 namespace binosplat {
 
-// A PNG file whose picture is this panorama, with the tags.
-std::string withPanoramaTags(const std::string& png, const Panorama& panorama);
+// A PNG or JPEG file whose picture is this panorama, with the tags.
+std::string withPanoramaTags(const std::string& file, const Panorama& panorama);
 
 enum class FilmEyes : unsigned char { kOne = 0, kTopBottom = 1, kSideBySide = 2 };  // as the box st3d counts; the left one first
 

@@ -20,7 +20,10 @@ void writeExr(const std::filesystem::path& path, const Image& image);
 // 8 bits, from an image with three channels. Throws Error, and then there is no file.
 void writePng(const std::filesystem::path& path, const Image& rgb);
 
-// `file` is the file at `path`, at its beginning. Throws Error.
+// The same as JPEG; false if this build cannot.
+bool writeJpegFile(const std::filesystem::path& path, const Image& rgb);
+
+// `file` is the file `path`, at its beginning. Throws Error.
 Image readPictureFile(const std::filesystem::path& path, std::FILE* file);
 
 }  // namespace binosplat

@@ -12,6 +12,8 @@ void writeExr(const std::filesystem::path&, const Image&) { assert(false); }
 
 void writePng(const std::filesystem::path&, const Image&) { assert(false); }
 
+bool writeJpegFile(const std::filesystem::path&, const Image&) { return false; }
+
 Image readPictureFile(const std::filesystem::path& path, std::FILE*) {
     fail("{}: cannot be read in a build without OpenImageIO, must be .pfm, .ppm or .pgm", path.string());
 }

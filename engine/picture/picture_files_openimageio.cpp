@@ -53,11 +53,18 @@ void writeExr(const fs::path& path, const Image& image) {
     writeWithLibrary(path, spec, OIIO::TypeDesc::FLOAT, image.values.data());
 }
 
-void writePng(const fs::path& path, const Image& rgb) {
+static void writeBytes(const fs::path& path, const Image& rgb) {
     OIIO::ImageSpec spec(static_cast<int>(rgb.size_px.x), static_cast<int>(rgb.size_px.y), 3, OIIO::TypeDesc::UINT8);
     std::vector<unsigned char> bytes(rgb.values.size());
     std::ranges::transform(rgb.values, bytes.begin(), quantize);
     writeWithLibrary(path, spec, OIIO::TypeDesc::UINT8, bytes.data());
+}
+
+void writePng(const fs::path& path, const Image& rgb) { writeBytes(path, rgb); }
+
+bool writeJpegFile(const fs::path& path, const Image& rgb) {
+    writeBytes(path, rgb);
+    return true;
 }
 
 Image readPictureFile(const fs::path& path, std::FILE*) {

@@ -191,6 +191,8 @@ Image readPng(const fs::path& path, std::FILE* file) {
 
 }  // namespace
 
+bool writeJpegFile(const fs::path&, const Image&) { return false; }
+
 bool hasPngAndExr() { return true; }
 
 void writeExr(const fs::path& path, const Image& image) {
