@@ -35,6 +35,8 @@ std::vector<std::filesystem::path> fileSystemRoots();
 // folder.
 std::filesystem::path userCacheFolder();
 std::filesystem::path userConfigFolder();
+// Where the user's pictures are kept; it need not exist, and is empty if the user has no such place.
+std::filesystem::path userPicturesFolder();
 
 bool isTerminal(std::FILE* stream);
 

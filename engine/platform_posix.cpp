@@ -72,6 +72,21 @@ fs::path userCacheFolder() { return userFolder("XDG_CACHE_HOME", ".cache"); }
 
 fs::path userConfigFolder() { return userFolder("XDG_CONFIG_HOME", ".config"); }
 
+// By the lines of xdg-user-dirs: XDG_PICTURES_DIR="$HOME/Pictures".
+fs::path userPicturesFolder() {
+    const fs::path home = userHomeFolder();
+    constexpr std::string_view kBegin = "XDG_PICTURES_DIR=\"", kHome = "$HOME/";
+    std::ifstream lines(userConfigFolder() / "user-dirs.dirs");
+    for (std::string line; std::getline(lines, line);) {
+        const std::size_t end = line.rfind('"');
+        if (!line.starts_with(kBegin) || end < kBegin.size()) { continue; }
+        const std::string place = line.substr(kBegin.size(), end - kBegin.size());
+        if (place.starts_with(kHome) && !home.empty()) { return home / place.substr(kHome.size()); }
+        if (place.starts_with('/')) { return place; }
+    }
+    return home.empty() ? fs::path() : home / "Pictures";
+}
+
 bool isTerminal(std::FILE* stream) { return ::isatty(::fileno(stream)) == 1; }
 
 std::vector<std::string> programArguments(int count, const char* const* arguments) { return {arguments, arguments + count}; }

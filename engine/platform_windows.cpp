@@ -97,6 +97,13 @@ fs::path userCacheFolder() { return userFolder("LOCALAPPDATA"); }
 
 fs::path userConfigFolder() { return userFolder("APPDATA"); }
 
+fs::path userPicturesFolder() {
+    std::array<wchar_t, MAX_PATH> folder{};
+    if (::SHGetFolderPathW(nullptr, CSIDL_MYPICTURES, nullptr, SHGFP_TYPE_CURRENT, folder.data()) == S_OK) { return folder.data(); }
+    const fs::path home = userHomeFolder();
+    return home.empty() ? fs::path() : home / "Pictures";
+}
+
 // One that understands how a line is cleared; older ones must be asked to.
 bool isTerminal(std::FILE* stream) {
     DWORD mode = 0;

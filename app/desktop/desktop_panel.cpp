@@ -114,13 +114,16 @@ void DesktopShell::openFile() {
 
 void DesktopShell::takePicture() {
     try {
-        std::error_code error;
-        const std::filesystem::path folder = std::filesystem::current_path(error);
-        check(!error, "the picture cannot be written: the working directory is gone");
         if (const std::optional<std::string> outcome = writer_.finish()) { say(*outcome); }
-        writer_.begin(scenes_.frame(), pictures_.eyes(), pictures_.eyes(), folder);
+        const bool both = state_.settings().picture_both_eyes;
+        WindowSight sight = windowSight();
+        sight.stereo = both ? WindowStereo::kSideBySide : WindowStereo::kMono;
+        FrameSettings settings = frameSettingsNow(true);
+        settings.mode = both ? Mode::kShared : Mode::kMono;
+        settings.keep_classes = false;
+        writer_.begin(scenes_.picturesOf(eyesOf(mover_.camera(), sight, areaPx()), settings), scenes_.name());
     } catch (const vk::DeviceLostError&) { throw; } catch (const vk::SystemError& error) {
-        say(fmt::format("the picture cannot be read: {}", error.what()));
+        say(fmt::format("the picture cannot be rendered: {}", error.what()));
     } catch (const Error& error) { say(error.what()); }
 }
 

@@ -129,6 +129,11 @@ bool SceneRenderer::dropDepth(ConnectedHeadset& headset) {
     return std::exchange(takes_depth_, false);
 }
 
+glm::dvec3 SceneRenderer::backgroundOf(const ViewSettings& settings, const glm::dvec3& set) const {
+    if (seesThrough(settings)) { return glm::dvec3(0.0); }
+    return settings.backdrop == Backdrop::kAsSet ? set : colourOf(settings.backdrop);
+}
+
 FrameSettings SceneRenderer::settingsOfFrame(ConnectedHeadset& headset, const ViewSettings& settings, double scale,
                                              const FrameViews& views) {
     StereoOptions stereo = settings.stereo;
@@ -147,8 +152,7 @@ FrameSettings SceneRenderer::settingsOfFrame(ConnectedHeadset& headset, const Vi
     frame.mark = governed_count_;
     frame.measured_part = measured_part_ = (measured_part_ + 1) % gpu::kMeasuredParts;
     frame.keep_past = true;
-    if (settings.backdrop != Backdrop::kAsSet) { frame.background = colourOf(settings.backdrop); }
-    if (seesThrough(settings)) { frame.background = glm::dvec3(0.0); }
+    frame.background = backgroundOf(settings, frame.background);
     // If both eyes share a picture, it is seen through either lens.
     if (!settings.showsOneEye() && settings.visibility_mask) {
         frame.hidden_tiles =
@@ -221,6 +225,25 @@ void SceneRenderer::aimInsets(const ConnectedHeadset& headset, const Similarity&
         Eye& about = eyes_[inset_eyes_.size() - 1];
         about.own_pixel_px = std::min(about.intrinsics.fx / inset.intrinsics.fx, 1.0);
     }
+}
+
+std::vector<Image> SceneRenderer::takePictures(ShownScene& shown, const Similarity& scene_from_room, const ViewSettings& settings,
+                                               const FrameViews& views) const {
+    StereoOptions stereo = settings.stereo;
+    stereo.mode = settings.picture_both_eyes ? Mode::kShared : Mode::kMono;
+    stereo.foveation_deg = 0.0;
+    FrameSettings frame = frameSettings(options_.camera, stereo, kWearersOrder);
+    frame.near *= scene_from_room.scale;
+    frame.units_per_metre = scene_from_room.scale;
+    frame.half_floats = true;
+    frame.background = backgroundOf(settings, frame.background);
+    std::vector<Eye> eyes;
+    for (const int e : {kLeft, kRight}) {
+        if (!settings.picture_both_eyes && e != stereo.dominant) { continue; }
+        const auto at = static_cast<std::size_t>(e);
+        eyes.push_back(eyeInScene(scene_from_room, views.room_from_eyes[at], views.eyes[at].fov, instance_.recommendedSizePx()));
+    }
+    return shown.picturesOf(eyes, frame);
 }
 
 void SceneRenderer::render(ConnectedHeadset& headset, ShownScene& shown, const ViewSettings& settings, MirrorWindow* window,

@@ -51,6 +51,10 @@ public:
     void render(ConnectedHeadset& headset, ShownScene& shown, const ViewSettings& settings, MirrorWindow* window,
                 const std::function<void(Commands&)>& record_panel);
 
+    // What the eyes see, or the dominant one, in full at the headset's size, without a mask, whatever the frames are.
+    [[nodiscard]] std::vector<Image> takePictures(ShownScene& shown, const Similarity& scene_from_room, const ViewSettings& settings,
+                                                  const FrameViews& views) const;
+
     // True if the wearer wants the room behind the scene, and the headset can show it.
     [[nodiscard]] bool seesThrough(const ViewSettings& settings) const { return settings.passthrough && instance_.canSeeThrough(); }
     // The last frame that the device has finished. No counters before a scene's first frame.
@@ -93,6 +97,7 @@ private:
         static constexpr std::array<int, 2> kEyes{kLeft, kRight};
         return frame_.mode == Mode::kMono ? std::span(kEyes).subspan(static_cast<std::size_t>(frame_.dominant), 1) : std::span(kEyes);
     }
+    [[nodiscard]] glm::dvec3 backgroundOf(const ViewSettings& settings, const glm::dvec3& set) const;
     [[nodiscard]] FrameSettings settingsOfFrame(ConnectedHeadset& headset, const ViewSettings& settings, double scale,
                                                 const FrameViews& views);
     // Presents the eyes of `frame` into `images`.

@@ -82,8 +82,8 @@ private:
     void keepPictureOfScene();
     void load();
     void reloadShaders();
-    // Writes the last frame to a file, and reports the outcome.
-    void takePicture();
+    // Writes what the eyes see to a file, and reports the outcome.
+    void takePicture(const FrameViews& views);
     void sayPicture(const std::optional<std::string>& outcome);
     // In the log and on the panel.
     void say(const std::string& message);

@@ -63,16 +63,12 @@ void Viewer::reloadShaders() {
     }));
 }
 
-void Viewer::takePicture() {
-    if (scenes_.get() == nullptr || renderer_.lastFrame().counters.targets.empty()) { return; }
+void Viewer::takePicture(const FrameViews& views) {
     try {
-        std::error_code error;
-        const std::filesystem::path folder = std::filesystem::current_path(error);
-        check(!error, "the picture cannot be written: the working directory is gone");
         sayPicture(pictures_.finish());
-        pictures_.begin(scenes_.frame(), renderer_.pictures(), renderer_.views(), folder);
+        pictures_.begin(renderer_.takePictures(scenes_, state_.sceneFromRoom(), state_.settings(), views), scenes_.name());
     } catch (const vk::DeviceLostError&) { throw; } catch (const vk::SystemError& error) {
-        say(fmt::format("the picture cannot be read: {}", error.what()));
+        say(fmt::format("the picture cannot be rendered: {}", error.what()));
     } catch (const Error& error) { say(error.what()); }
 }
 

@@ -85,6 +85,7 @@ void Viewer::drawFrame() {
     fade_.update(state_.sceneFromRoom(), room_from_head_, std::exchange(is_new_view_, false), step_seconds);
     headset().things.darken(fade_.darkness(), coverMetres(views.eyes));
     onWindow(&MirrorWindow::acquire);
+    const bool takes_picture = std::exchange(picture_asked_, false) && scenes_.get() != nullptr && fits;
     if (LoadedScene* scene = scenes_.get(); scene != nullptr && fits) {
         renderer_.render(headset(), scenes_, drawn_, window_.get(), [this](Commands& commands) {
             recordPanel(commands);
@@ -92,14 +93,13 @@ void Viewer::drawFrame() {
         });
         ++frames_of_scene_;
         if (scene->live) { sayLive(*scene); }
-        if (picture_asked_) { takePicture(); }
     } else {
         renderWaiting();
     }
-    picture_asked_ = false;
     sayPicture(pictures_.takeOutcome());
     onWindow(&MirrorWindow::show);
     showFrame(views);
+    if (takes_picture) { takePicture(views); }  // which holds up the next frame
     sayChange();
     panel_.keepFrameTime();
 }
@@ -128,9 +128,7 @@ bool Viewer::prepareScene(FrameViews& views) {
     drawn_ = waits ? drawable : state_.settings();
     try {
         renderer_.govern(headset(), drawn_, views);
-        ViewSettings wished = drawn_;
-        if (picture_asked_) { wished.visibility_mask = false; }  // picture files have no lens mask
-        if (scenes_.get() != nullptr) { renderer_.prepare(headset(), scenes_, state_.sceneFromRoom(), wished, views); }
+        if (scenes_.get() != nullptr) { renderer_.prepare(headset(), scenes_, state_.sceneFromRoom(), drawn_, views); }
         state_.keepFitting(drawn_);
         return true;
     } catch (const Error& error) {

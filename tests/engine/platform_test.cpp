@@ -223,6 +223,23 @@ TEST_CASE("the user's folders are where the environment says, and relative ones 
     foldersWith(home.c_str(), cache.c_str(), config.c_str());
 }
 
+TEST_CASE_FIXTURE(AtWork, "the pictures' folder is the one that the desktop names, or else Pictures at home") {
+    const std::string home = environment("HOME"), config = environment("XDG_CONFIG_HOME");
+    const auto folderWith = [&](const char* at_home, const char* line) {
+        setEnvironment("HOME", at_home);
+        std::ofstream(work.path / "user-dirs.dirs") << "# a comment\nXDG_MUSIC_DIR=\"$HOME/Lieder\"\n" << line << "\n";
+        return userPicturesFolder();
+    };
+    setEnvironment("XDG_CONFIG_HOME", work.path.string());
+    CHECK(folderWith("/home/somebody", "XDG_PICTURES_DIR=\"$HOME/Bilder und mehr\"") == "/home/somebody/Bilder und mehr");
+    CHECK(folderWith("/home/somebody", "XDG_PICTURES_DIR=\"/photos\"") == "/photos");
+    CHECK(folderWith("/home/somebody", "XDG_PICTURES_DIR=\"photos\"") == "/home/somebody/Pictures");
+    CHECK(folderWith("/home/somebody", "XDG_PICTURES_DIR=\"") == "/home/somebody/Pictures");
+    CHECK(folderWith("", "XDG_PICTURES_DIR=\"$HOME/Bilder\"") == "");
+    setEnvironment("HOME", home);
+    setEnvironment("XDG_CONFIG_HOME", config);
+}
+
 TEST_CASE("nothing but platform_*.cpp includes a header of a system") {
     const std::regex system_header(
         R"(\s*#\s*include\s*<((sys|linux|netinet|arpa)/.*|unistd\.h|fcntl\.h|signal\.h|poll\.h|spawn\.h|dirent\.h|dlfcn\.h|)"

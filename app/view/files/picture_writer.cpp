@@ -1,14 +1,15 @@
-// Writes both eyes side by side.
+// Names, folders, and a thread.
 #include "app/view/files/picture_writer.h"
 
 #include "engine/error.h"
 #include "engine/picture/image_io.h"
 #include "engine/picture/join.h"
-#include "engine/picture/turned.h"
+#include "engine/platform.h"
 #include "engine/setup/output_files.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <new>
 #include <utility>
@@ -17,22 +18,29 @@ namespace binosplat {
 
 namespace {
 
-// Without its extension; pictures are never overwritten.
-std::string freePictureName(const std::filesystem::path& folder) {
+namespace fs = std::filesystem;
+
+constexpr std::size_t kLongestName = 100;  // in bytes, of a scene
+
+// Pictures are never overwritten: the second one of a second is "NAME-2".
+std::string freeName(const fs::path& folder, const std::string& name) {
     for (int number = 1;; ++number) {
-        const std::string name = fmt::format("binosplat-{:04}", number);
+        const std::string numbered = number == 1 ? name : fmt::format("{}-{}", name, number);
         std::error_code ignored;  // if looking fails, writing will fail too, and will say why
-        if (!std::filesystem::exists(folder / (name + extensionOf(PictureKind::kDisplay)), ignored)) { return name; }
+        if (!fs::exists(folder / (numbered + extensionOf(PictureKind::kDisplay)), ignored)) { return numbered; }
     }
 }
 
 // Returns a message about the outcome.
-std::string write(const Image& picture, const std::filesystem::path& folder) {
+std::string write(const std::vector<Image>& eyes, const std::string& name) {
     try {
+        const fs::path folder = userPicturesFolder();
+        check(!folder.empty(), "the picture cannot be written: there is no folder for pictures, since HOME is not set");
         OutputFiles files(folder);
-        const auto written = writePicture(files.staging() / freePictureName(folder), PictureKind::kDisplay, picture);
+        const Image picture = eyes.size() == 1 ? eyes.front() : besideOneAnother(eyes[0], eyes[1]);
+        const auto written = writePicture(files.staging() / freeName(folder, name), PictureKind::kDisplay, picture);
         files.publish();
-        return "picture " + written.front().filename().string();
+        return "picture " + (folder / written.front().filename()).string();
     } catch (const Error& error) { return error.what(); } catch (const std::bad_alloc&) {
         return "the picture cannot be written: there is not enough memory";
     }
@@ -40,15 +48,33 @@ std::string write(const Image& picture, const std::filesystem::path& folder) {
 
 }  // namespace
 
-void PictureWriter::begin(StereoFrame& frame, const std::vector<Eye>& pictures, const std::vector<Eye>& views,
-                          const std::filesystem::path& folder) {
+std::string pictureName(const std::string& scene, const std::tm& when) {
+    const auto lastPart = [](std::string path) {
+        while (!path.empty() && (path.back() == '/' || path.back() == '\\')) { path.pop_back(); }
+        const std::size_t slash = path.find_last_of("/\\:");
+        return slash == std::string::npos ? std::pair(std::string(), path) : std::pair(path.substr(0, slash), path.substr(slash + 1));
+    };
+    auto [folder, name] = lastPart(scene);
+    // What all folders of a kind call their file says nothing.
+    if (name == "meta.json" || name == "lod-meta.json" || name == "point_cloud.ply") { name = lastPart(folder).second; }
+    if (const std::size_t dot = name.rfind('.'); dot != std::string::npos && dot > 0) { name.resize(dot); }
+    for (char& letter : name) {  // Windows has no others in names
+        if (static_cast<unsigned char>(letter) < 0x20 || std::string_view("<>\"|?*").find(letter) != std::string_view::npos) {
+            letter = '_';
+        }
+    }
+    std::size_t bytes = std::min(name.size(), kLongestName);
+    while (bytes > 0 && bytes < name.size() && (static_cast<unsigned char>(name[bytes]) & 0xc0) == 0x80) { --bytes; }
+    name.resize(bytes);
+    return fmt::format("{}{}{:04}-{:02}-{:02}-{:02}{:02}{:02}", name, name.empty() ? "" : "-", when.tm_year + 1900, when.tm_mon + 1,
+                       when.tm_mday, when.tm_hour, when.tm_min, when.tm_sec);
+}
+
+void PictureWriter::begin(std::vector<Image> eyes, const std::string& scene) {
     if (under_way_.valid()) { under_way_.wait(); }
-    std::vector<Image> images;
-    for (std::size_t e = 0; e < views.size(); ++e) { images.push_back(frame.readPicture(static_cast<int>(e))); }
-    under_way_ = std::async(std::launch::async, [images = std::move(images), pictures, views, folder] {
-        const auto seen = [&](std::size_t e) { return showTurned(images[e], pictures[e], views[e]); };
-        return write(views.size() == 1 ? seen(0) : besideOneAnother(seen(0), seen(1)), folder);
-    });
+    const std::time_t now = std::time(nullptr);
+    under_way_ = std::async(std::launch::async,
+                            [eyes = std::move(eyes), name = pictureName(scene, *std::localtime(&now))] { return write(eyes, name); });
 }
 
 std::optional<std::string> PictureWriter::takeOutcome() {

@@ -1,22 +1,26 @@
-// The pictures of both eyes, side by side, as a file.
+// Pictures that somebody took, as files.
 #pragma once
 
-#include "engine/frame/stereo_frame.h"
+#include "engine/picture/image.h"
 
+#include <ctime>
 #include <filesystem>
 #include <future>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace binosplat {
+
+// "garden-2026-05-31-142530" for a picture of a file, a folder, an address or a built-in scene.
+std::string pictureName(const std::string& scene, const std::tm& when);
 
 // Writes pictures on a thread of its own: frames must not wait for files.
 class PictureWriter {
 public:
-    // Begins to write into `folder`, under a free name, what one or two `views` see of the last pictures of
-    // `frame`, which are `pictures`. Waits for the device, and for the previous picture.
-    void begin(StereoFrame& frame, const std::vector<Eye>& pictures, const std::vector<Eye>& views, const std::filesystem::path& folder);
-    // The name of a picture that has been written since, or why it was not; once.
+    // Begins to write one eye's picture, or both side by side, into the user's folder of pictures. Waits for the picture before.
+    void begin(std::vector<Image> eyes, const std::string& scene);
+    // The name of a picture that was written since, or why it was not; once.
     [[nodiscard]] std::optional<std::string> takeOutcome();
     // The same, but waits for it.
     [[nodiscard]] std::optional<std::string> finish();

@@ -5,6 +5,9 @@
 
 namespace binosplat {
 
+// Of a line, for pictures and files; what pictures show is beside them.
+inline constexpr float kKeptShare = 0.74f;
+
 // For wearers: sharpness and smoothness, place, size of the scene, and ways to move.
 void drawViewPage(PanelWidgets& widgets, ViewSettings& settings, const PanelStatus& status, PanelRequests& requests);
 // The same for a window.

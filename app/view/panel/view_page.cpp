@@ -137,9 +137,11 @@ void drawViewPage(PanelWidgets& widgets, ViewSettings& settings, const PanelStat
     drawPlace(widgets, status.place, requests);
     drawMoving(widgets, settings, status.tools, status.can_pass_through);
     static constexpr std::array kKept{"Picture", "Save", "Load"};
-    if (const auto pressed = widgets.row(kKept, {}, kTargetPx)) {
+    if (const auto pressed = widgets.row(kKept, {}, kTargetPx, kKeptShare)) {
         (*pressed == 0 ? requests.take_picture : *pressed == 1 ? requests.save : requests.load) = true;
     }
+    ImGui::SameLine();
+    widgets.checkbox("Both eyes", &settings.picture_both_eyes);
     drawRates(widgets, settings, status.refresh_rates);
     drawSaid(status);
 }

@@ -75,9 +75,11 @@ void drawWindowPage(PanelWidgets& widgets, ViewSettings& settings, const PanelSt
         settings.backdrop = static_cast<Backdrop>(*pressed);
     }
     static constexpr std::array kKept{"Picture", "Save", "Load"};
-    if (const auto pressed = widgets.row(kKept, {}, kTargetPx)) {
+    if (const auto pressed = widgets.row(kKept, {}, kTargetPx, kKeptShare)) {
         (*pressed == 0 ? requests.take_picture : *pressed == 1 ? requests.save : requests.load) = true;
     }
+    ImGui::SameLine();
+    widgets.checkbox("Both eyes", &settings.picture_both_eyes);
     const std::array window{status.window->fills_screen ? "Window" : "Full screen", "Help"};
     if (const auto pressed = widgets.row(window, status.window->helps ? std::optional<std::size_t>(1) : std::nullopt, kTargetPx)) {
         (*pressed == 0 ? requests.fill_screen : requests.help) = true;

@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,9 @@ public:
     [[nodiscard]] StereoFrame& frame() const { return *frame_; }
     [[nodiscard]] StereoFrame& insets();
     void dropInsets() { insets_.reset(); }
+    // What these eyes see of the scene now, by a frame of its own: those under way go on as they were. Waits for the device. Throws Error if
+    // it lacks the memory.
+    [[nodiscard]] std::vector<Image> picturesOf(std::span<const Eye> eyes, const FrameSettings& settings);
     // Makes their kernels anew, see StereoFrame.
     void rebuildKernels();
     // The scene's name or, until it is loaded, that of the requested one.

@@ -89,6 +89,7 @@ std::span<const OptionRow<ViewSettings>> viewSettingsRows() {
         row("passthrough", "", "show the room behind the scene, if the headset can", field::flag<&S::passthrough>()),
         row("quality", "PRESET", "how the frame rate is held, see headset.md",
             field::named<&S::quality>({std::begin(kQualityNames), std::end(kQualityNames)})),
+        row("picture-both-eyes", "", "pictures that are taken show both eyes, side by side", field::flag<&S::picture_both_eyes>()),
         row("window-stereo", "KIND", "in a window without a headset: one eye's picture, or how both are shown",
             field::named<&S::window_stereo>({"mono", "side-by-side", "cross-eyed", "top-bottom", "anaglyph"})),
         row("window-eyes", "SHARE", "in a window: distance between the eyes, as a share of the distance to the screen plane",

@@ -43,6 +43,7 @@ struct ViewSettings {
     FirstStepsShown first_steps = FirstStepsShown::kOnce;
     bool passthrough = false;              // the room in place of the background, if the headset can
     Quality quality = Quality::kBalanced;  // how the frame rate is held
+    bool picture_both_eyes = false;        // pictures as files show both, side by side
     double last_foveation_deg = 15.0;      // for the panel's box: as far as eyes usually turn before the head does
     // Of a window without a headset, see WindowSight.
     WindowStereo window_stereo = WindowStereo::kMono;

@@ -9,7 +9,7 @@ std::uint64_t pictureOf(const std::string& line) { return std::stoull(line.subst
 class Window {
 public:
     Window(const Workplace& work, const std::string& options, const std::string& environment = "")
-        : program_(work.path, "env " + environment + viewOnDesk("builtin:slanted-wall " + options).substr(3)) {
+        : program_((picturesInto(work), work.path), "env " + environment + viewOnDesk("builtin:slanted-wall " + options).substr(3)) {
         REQUIRE(program_.waitFor("shows builtin:slanted-wall") != "");
         hands("search --sync --onlyvisible --name '^builtin:slanted-wall - binosplat$' mousemove --window %1 20 20");
     }
@@ -23,8 +23,12 @@ public:
     // Until it shows all pixels: then it writes a picture that was asked for.
     void rest() {
         hands("key p");
-        REQUIRE(program_.waitFor("picture binosplat-") != "");
+        picture_ = program_.waitFor("/pictures/");
+        REQUIRE(picture_ != "");
+        picture_ = picture_.substr(picture_.rfind(": picture ") + 10);
+        picture_.pop_back();
     }
+    [[nodiscard]] const std::string& picture() const { return picture_; }  // the last one's file
     // What is seen at a place, after the keys and clicks that come before; back at the start view.
     glm::dvec3 seenAt(const glm::dvec2& place) {
         help();
@@ -57,6 +61,7 @@ public:
 
 private:
     Program program_;
+    std::string picture_;
 };
 
 TEST_CASE("without a runtime the scene is in a window, as render draws it; mouse and wheel keep hold of what is seen; it rests") {
@@ -92,6 +97,8 @@ TEST_CASE("without a runtime the scene is in a window, as render draws it; mouse
     Image screen = desk().screen.picture();
     const Image drawn = readPicture(work.path / "drawn" / "mono.png");
     CHECK(compare(partOf(screen, {0, 0}, {1280, 720}), drawn).psnrDb() > 40.0);
+    window.rest();
+    CHECK(compare(readPicture(window.picture()), drawn).psnrDb() > 45.0);
     window.checkEnd();
 }
 

@@ -22,6 +22,12 @@ inline std::string withFaults(const std::string& faults, const std::string& envi
     return environment + " VK_ADD_LAYER_PATH='" BINOSPLAT_FAULT_LAYER "' VK_INSTANCE_LAYERS=VK_LAYER_BINOSPLAT_faults " + faults;
 }
 
+// Pictures that are taken go into a folder of the workplace.
+inline void picturesInto(const Workplace& work) {
+    std::filesystem::create_directories(work.base / "config");
+    std::ofstream(work.base / "config" / "user-dirs.dirs") << fmt::format("XDG_PICTURES_DIR=\"{}/pictures\"\n", work.path.string());
+}
+
 // A pose of the log, in OpenXR's axes.
 struct LoggedPose {
     glm::dvec3 position;

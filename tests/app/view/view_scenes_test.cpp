@@ -107,22 +107,35 @@ TEST_CASE("a moving scene plays, rests while a button has it rest, and plays on;
 }
 
 TEST_CASE_FIXTURE(AtWork, "a picture of both eyes is a file that is not overwritten, of what the lenses hide as well") {
-    const auto take = [&](const std::string& name, const std::string& mask) {
+    picturesInto(work);
+    const auto take = [&](const std::string& name, const std::string& mask, const std::string& options) {
         Acts acts("rate 50\nsize 160 160\nframes from 10 to 10\nvisibility-mask " + mask + "\n");
         acts.wait(0.05).click(placeOf("Picture")).click(placeOf("Picture")).point(kBeside).wait(0.1);
-        const ViewRun run = runClean(work, name, acts.script(), kWall + " --mode shared");
+        const ViewRun run = runClean(work, name, acts.script(), kWall + " --mode shared" + options);
         CHECK(run.says("the lenses hide ") == (mask == "on"));
         return run;
     };
-    const ViewRun run = take("off", "off"), masked = take("on", "on");
-    const auto fileOf = [](int number) { return fmt::format("binosplat-{:04}.png", number); };
-    for (const int number : {1, 2}) {
-        CHECK(run.says("picture " + fileOf(number)));
-        CHECK(masked.says("picture " + fileOf(number + 2)));
-    }
-    const Image both = readPicture(work.path / fileOf(1));
+    const auto filesOf = [&](const ViewRun& run) {
+        std::vector<fs::path> files;
+        for (const std::string& line : run.lines("picture " + work.path.string() + "/pictures/slanted-wall-20")) {
+            files.emplace_back(line.substr(line.find("/")));
+        }
+        return files;
+    };
+    const std::string all = withConfig(work, "[view]\npicture-both-eyes = true\n");
+    const ViewRun run = take("off", "off", all), masked = take("on", "on", all);
+    REQUIRE(these(filesOf(run).size(), filesOf(masked).size()) == these(std::size_t{2}, std::size_t{2}));
+    const Image both = readPicture(filesOf(run)[0]);
     REQUIRE(both.size_px == glm::uvec2(320, 160));
-    CHECK(readPicture(work.path / fileOf(3)).values == both.values);
+    for (const fs::path& file : {filesOf(run)[1], filesOf(masked)[0], filesOf(masked)[1]}) {
+        CHECK(readPicture(file).values == both.values);
+    }
+    CHECK(std::ranges::distance(fs::directory_iterator(work.path / "pictures")) == 4);
+    // One eye's, at the headset's size whatever the frames have.
+    const ViewRun one = take("one", "off", withConfig(work, "[view]\nresolution-scale = 0.5\n"));
+    const Image dominant = readPicture(filesOf(one).at(0));
+    CHECK(dominant.size_px == glm::uvec2(160, 160));
+    CHECK(compare(dominant, sideOf(both, kLeft)).psnrDb() > 50.0);
     // As the wearer sees it, at the right, where no panel hangs.
     for (const int side : {kLeft, kRight}) {
         const Image seen = run.eye(10, side);
@@ -181,41 +194,13 @@ TEST_CASE_FIXTURE(AtWork, "the room shows behind the scene where the headset and
     CHECK(isCorner(additive, 0.2, kLeft, green));
 }
 
-TEST_CASE_FIXTURE(AtWork, "where the room is a layer, it lies below the scene while the wearer wants it, and its cameras rest otherwise") {
-    const std::string ahead = kWall + " --mode mono --eye 0,0,-6 --look 0,0,3 --up 0,-1,0 --background 1,0,0";
-    Acts acts("rate 50\nsize 128 128\nframes every 5\npassthrough on\nroom-colour 0.2 0.9 0.4\n");
-    const double opaque = acts.look();
-    const double through = acts.click(placeOf("Passthrough", true)).look();
-    const double again = acts.click(placeOf("Passthrough", true)).look();
-    const ViewRun run = runClean(work, "run", acts.script(), ahead);
-    const auto corner = [&](double seconds) { return colourAt(run.eye(run.pictureAt(seconds), kLeft), {0, 0}); };
-    const auto isNear = [](const Colour& a, const glm::vec3& b) { return glm::length(glm::vec3(a[0], a[1], a[2]) - b) < 0.02f; };
-    for (const double seconds : {opaque, through, again}) {
-        CAPTURE(seconds);
-        const nlohmann::json& frame = run.frames.at(run.pictureAt(seconds));
-        const bool sees = seconds == through;
-        CHECK(frame.at("blend_mode") == "OPAQUE");
-        CHECK(frame.at("layers").at(0).at("type") == (sees ? "passthrough" : "projection"));
-        CHECK(run.layers(run.pictureAt(seconds), "projection").at(0).at("flags").empty() == !sees);
-        CHECK(isNear(corner(seconds), sees ? glm::vec3(0.2f, 0.9f, 0.4f) : glm::vec3(1.0f, 0.0f, 0.0f)));
-    }
-    // Of a headset whose pictures cover the room by their alpha, that is used.
-    const ViewRun alpha =
-        runClean(work, "alpha", "rate 50\nsize 128 128\nframes none\npassthrough on\nblend-modes opaque alpha-blend\nat 0.3 exit\n",
-                 ahead + withConfig(work, "[view]\npassthrough = true\n"));
-    CHECK(alpha.frames.at(10).at("blend_mode") == "ALPHA_BLEND");
-    CHECK(alpha.layers(10, "passthrough").empty());
-}
-
-TEST_CASE_FIXTURE(AtWork, "a working directory that was deleted takes no picture, and is no end") {
+TEST_CASE_FIXTURE(AtWork, "a picture that cannot be written is a message, and no end") {
+    fs::create_directories(work.base / "config");
+    std::ofstream(work.base / "config" / "user-dirs.dirs") << "XDG_PICTURES_DIR=\"/proc/no-such-folder\"\n";
     Acts acts("rate 50\nsize 64 64\nframes none\n");
-    std::ofstream(work.path / "gone.script") << acts.click(placeOf("Picture")).wait(0.1).script();
-    const Outcome outcome = work.runCommand(
-        fmt::format("mkdir gone && cd gone && rmdir ../gone && DISPLAY= WAYLAND_DISPLAY= XDG_CONFIG_HOME='{0}/config' '" BINOSPLAT_PROGRAM
-                    "' view builtin:one-splat --load-first --mode mono --simulate '{0}/gone.script' --out '{0}/seen'",
-                    work.path.string()));
-    CHECK(these(outcome.exit_code, outcome.errors) == these(0, ""));
-    CHECK(outcome.output.find("the picture cannot be written: the working directory is gone") != std::string::npos);
+    acts.click(placeOf("Picture")).wait(0.1);
+    const ViewRun run = runClean(work, "nowhere", acts.script(), "builtin:one-splat --load-first --mode mono");
+    CHECK(run.says("/proc/no-such-folder: cannot be "));
 }
 
 TEST_CASE_FIXTURE(AtWork, "up in a trained scene is the up of its cameras, or else of its floor") {

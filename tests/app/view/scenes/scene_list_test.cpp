@@ -1,6 +1,7 @@
 // Facts about looking for a scene: folders, scenes that were shown last, what is said and kept of one, and places in it.
 #include "app/view/scenes/scene_list.h"
 #include "app/view/files/file_worker.h"
+#include "app/view/files/picture_writer.h"
 #include "app/view/governor/met_displays.h"
 #include "app/view/scenes/natural_order.h"
 #include "app/view/scenes/recent_scenes.h"
@@ -347,6 +348,25 @@ TEST_CASE("a late frame's reason is what took longer than a display") {
                                       std::pair(FrameCost{9, 2, 3}, "neither the GPU (9.0 ms) nor the program (3.0 ms) took that long")}) {
         CHECK(whyLate(cost, 10.0).starts_with(words));
     }
+}
+
+TEST_CASE("a picture's name has its scene and its time") {
+    std::tm when{};
+    when.tm_year = 126, when.tm_mon = 4, when.tm_mday = 3, when.tm_hour = 9, when.tm_min = 7, when.tm_sec = 5;
+    const auto nameOf = [&](const std::string& scene) {
+        const std::string name = pictureName(scene, when), time = "2026-05-03-090705";
+        REQUIRE(name.ends_with(time));
+        return name.substr(0, name.size() - time.size());
+    };
+    CHECK(these(nameOf("garden.ply"), nameOf("/a/b.c/garden.v2.ply"), nameOf("scenes/garden/")) == these("garden-", "garden.v2-", "garden-"));
+    CHECK(these(nameOf("builtin:atelier"), nameOf("https://a.org/x/garden.ply?dl=1"), nameOf("C:\\scenes\\garden.spz")) ==
+          these("atelier-", "garden-", "garden-"));
+    CHECK(these(nameOf("/a/garden/meta.json"), nameOf("garden/lod-meta.json"), nameOf("/")) == these("garden-", "garden-", ""));
+    CHECK(nameOf("what?.ply") == "what_-");
+    // Cut between letters.
+    std::string umlauts;
+    for (int i = 0; i < 80; ++i) { umlauts += "\u00e4"; }
+    CHECK(nameOf(umlauts + "x.ply") == umlauts.substr(0, 100) + "-");
 }
 
 }  // SUITE(scene_list)
