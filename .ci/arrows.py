@@ -49,7 +49,7 @@ ROOMS = {
     "app/view/headset": "engine engine/gpu engine/passes xr app/terminal app/view/room",
     "app/view/scenes": "engine engine/* app/load app/options app/terminal app/view/files app/view/placement app/view/settings",
     "app/view/wearer": "engine engine/frame xr app/view/placement app/view/room app/view/settings",
-    "app/view/panel": "engine engine/* xr app/options app/report app/view/files app/view/headset app/view/room app/view/scenes app/view/settings app/view/wearer",
+    "app/view/panel": "engine engine/* xr app/options app/report app/view/files app/view/headset app/view/placement app/view/room app/view/scenes app/view/settings app/view/wearer",
     "app/view/window": "engine engine/gpu app/view/panel app/view/placement app/view/room",
     "app/desktop": "engine engine/* app/options app/terminal app/view/files app/view/panel app/view/placement app/view/room app/view/scenes app/view/settings app/view/window",
     "app/view": "engine engine/* shaders xr app/axes app/options app/terminal app/view/* app/desktop",

@@ -3,6 +3,8 @@
 
 #include "app/command_line/option_documents.h"
 #include "app/options/option_layers.h"
+#include "app/terminal/frame_log.h"
+#include "app/view/settings/preferences.h"
 #include "engine/error.h"
 #include "engine/files/scene_folder.h"
 
@@ -146,6 +148,20 @@ Options makeBench(const Settings& given) {
     return bench;
 }
 
+// What was set on the panel in earlier runs. A file that is of no use keeps nobody out.
+void readOwnPreferences(RunOptions& standard, std::vector<SettingsTable>& view) {
+    const std::filesystem::path file = preferencesFile();
+    std::error_code ignored;
+    if (file.empty() || !std::filesystem::exists(file, ignored)) { return; }
+    try {
+        std::vector<SettingsTable> tables = readSettingsFile(file);
+        static_cast<void>(readPreferences(tables));  // checks them
+        standard.stereo = runOptions(configLayer(file, tables, {"view"}), standard).stereo;
+        std::erase_if(tables, [](const SettingsTable& table) { return table.name != "view"; });
+        view = std::move(tables);
+    } catch (const Error& error) { FrameLog::print(fmt::format("{}; preferences are not used", error.what())); }
+}
+
 Options makeView(const Settings& given) {
     Settings line = given;
     ViewOptions view;
@@ -163,6 +179,7 @@ Options makeView(const Settings& given) {
     RunOptions standard = withPast();
     standard.stereo.half_periphery = true;
     standard.stereo.axes = Axes::kStay;
+    if (!view.simulate) { readOwnPreferences(standard, view.tables); }  // whose runs are alike wherever they are
     view.run = readRun(line, {"view"}, standard, &view.tables);
     return readRows(viewRows(), line, view);
 }

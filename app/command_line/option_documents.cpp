@@ -73,7 +73,8 @@ std::string markdown() {
     }
     text +=
         "\n### [view]\n\nConfig files alone, and what the panel saves; beside these, `scene-position`, `scene-orientation` (w, x, y, z) "
-        "and `units-per-metre`, all\nthree or none.\n\n| key | | range | default |\n|---|---|---|---|\n";
+        "and `units-per-metre`, all\nthree or none, and `metres-per-unit`, the measure of a scene that was saved.\n\n| key | | range | "
+        "default |\n|---|---|---|---|\n";
     for (const OptionRow<ViewSettings>& row : viewSettingsRows()) {
         const OptionDescription key = describe(row);
         text +=

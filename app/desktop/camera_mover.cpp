@@ -9,7 +9,7 @@ namespace binosplat {
 
 namespace {
 
-constexpr double kWaySeconds = 0.35, kShareOfStep = 0.85;
+constexpr double kShareOfStep = 0.85;
 constexpr double kTurnRadPerSecond = 1.2, kFlyDistancesPerSecond = 0.6, kFaster = 4.0;
 
 }  // namespace
@@ -48,7 +48,7 @@ void CameraMover::pass(const HeldMotion& held, double seconds) {
     }
     if (!way_) { return; }
     way_->seconds += seconds;
-    const double share = std::min(way_->seconds / kWaySeconds, 1.0);
+    const double share = std::min(way_->seconds / way_->whole_seconds, 1.0);
     camera_ = OrbitCamera::between(way_->from, way_->to, share * share * (3.0 - 2.0 * share));
     if (share == 1.0) { way_.reset(); }
 }

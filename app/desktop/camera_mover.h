@@ -20,7 +20,7 @@ public:
     [[nodiscard]] const OrbitCamera& camera() const { return camera_; }
     // Jumps, or goes there in a moment; any other motion ends that.
     void set(const OrbitCamera& camera) { camera_ = camera, way_.reset(), drag_ = Drag::kNone; }
-    void glideTo(const OrbitCamera& camera) { way_ = Way{camera_, camera, 0.0}; }
+    void glideTo(const OrbitCamera& camera, double within_seconds = 0.35) { way_ = Way{camera_, camera, within_seconds, 0.0}; }
     [[nodiscard]] bool isGliding() const { return way_.has_value(); }
 
     // A drag begins at `place_px` of a picture, where `under` is seen; `focal_px` and `height_px` are the
@@ -39,7 +39,7 @@ public:
 private:
     struct Way {
         OrbitCamera from, to;
-        double seconds = 0.0;
+        double whole_seconds = 0.0, seconds = 0.0;
     };
     OrbitCamera camera_;
     std::optional<Way> way_;

@@ -1,5 +1,6 @@
 // Mouse and keys of the window.
 #include "app/desktop/desktop_shell.h"
+#include "app/view/panel/measure.h"
 #include "app/view/panel/panel_style.h"
 
 #define GLFW_INCLUDE_NONE
@@ -28,6 +29,7 @@ void DesktopShell::handle(const DesktopEvent& event) {
     const bool on_panel = event.kind != Kind::kLeave && !mover_.isDragging() && (pointer_.pressed || isIn(part, event.place_px));
     const bool is_left = event.code == GLFW_MOUSE_BUTTON_LEFT;
     layouts_due_ = 2;
+    if (takesText(event)) { return; }
     // The panel sees each event by itself: a click may begin and end between two pictures.
     if (on_panel && event.kind != Kind::kKey && event.kind != Kind::kDrop) {
         pointer_.place_px = (event.place_px - glm::dvec2(part.at_px)) * glm::dvec2(kPanelPx) / glm::dvec2(part.size_px);
@@ -54,20 +56,29 @@ void DesktopShell::handle(const DesktopEvent& event) {
             mover_.endDrag();
             break;
         case Kind::kWheel:
+            viewpoints_.endTour();
             mover_.turnWheel(event.steps, under(event.place_px));
             break;
         case Kind::kKey:
             pressKey(event.code);
             break;
         case Kind::kDrop:
-            scenes_.begin(event.path);
+            openDropped(event.path);
+            break;
+        case Kind::kText:
             break;
     }
 }
 
 void DesktopShell::press(const DesktopEvent& event) {
     if (scenes_.get() == nullptr) { return; }
+    viewpoints_.endTour();
     const bool is_left = event.code == GLFW_MOUSE_BUTTON_LEFT;
+    if (is_left && ruler_.isOpen()) {
+        say(measureAt(seenAt(event.place_px), ruler_, state_.sceneFromRoom().scale, panel_.entry()));
+        if (!ruler_.isOpen()) { showPanel(); }
+        return;
+    }
     if (is_left) {
         const auto now = Clock::now();
         const bool is_double = std::chrono::duration<double>(now - pressed_at_).count() < kDoubleClickSeconds &&
@@ -116,7 +127,8 @@ glm::dvec3 DesktopShell::under(const glm::dvec2& place_px) {
 }
 
 void DesktopShell::pressKey(int key) {
-    if (key >= GLFW_KEY_1 && key <= GLFW_KEY_9) { return goToViewpoint(static_cast<std::size_t>(key - GLFW_KEY_1)); }
+    viewpoints_.endTour();
+    if (key >= GLFW_KEY_1 && key <= GLFW_KEY_9) { return goTo(viewpoints_.go(static_cast<std::size_t>(key - GLFW_KEY_1))); }
     PanelRequests requests;
     requests.settings = state_.settings();
     switch (key) {
@@ -157,16 +169,20 @@ void DesktopShell::pressKey(int key) {
     follow(requests);
 }
 
-void DesktopShell::goToViewpoint(std::size_t index) {
-    const LoadedScene* const scene = scenes_.get();
-    if (scene == nullptr) { return; }
-    if (index >= scene->viewpoints.size()) {
-        return say(fmt::format("this scene has {} viewpoints: keep one on the page Scenes, or put a cameras.json beside it",
-                               scene->viewpoints.size()));
-    }
-    viewpoint_ = index;
-    mover_.glideTo(OrbitCamera(scene->viewpoints[index].view));
-    log_.say(fmt::format("viewpoint {} of {}: {}", index + 1, scene->viewpoints.size(), scene->viewpoints[index].name));
+void DesktopShell::goTo(const Viewpoint* viewpoint, double within_seconds) {
+    if (viewpoint == nullptr) { return; }
+    mover_.glideTo(OrbitCamera(viewpoint->view), within_seconds);
+    log_.say(viewpoints_.words());
+}
+
+bool DesktopShell::takesText(const DesktopEvent& event) {
+    TextEntry& entry = panel_.entry();
+    if (event.kind == DesktopEvent::Kind::kText && entry.isOpen()) { entry.type(event.path); }
+    if (event.kind != DesktopEvent::Kind::kKey || !entry.isOpen()) { return event.kind == DesktopEvent::Kind::kText; }
+    if (event.code == GLFW_KEY_BACKSPACE) { entry.eraseLast(); }
+    if (event.code == GLFW_KEY_ESCAPE) { entry.close(); }
+    if (event.code == GLFW_KEY_ENTER || event.code == GLFW_KEY_KP_ENTER) { entry.confirm(); }
+    return true;
 }
 
 void DesktopShell::showWhole() {

@@ -1,6 +1,7 @@
 // The window's panel, and the requests made there.
 #include "app/desktop/desktop_shell.h"
 #include "app/desktop/open_dialog.h"
+#include "app/view/panel/measure.h"
 #include "app/view/placement/placement.h"
 #include "app/view/settings/view_files.h"
 #include "engine/error.h"
@@ -20,10 +21,11 @@ void DesktopShell::layOutPanel(const PanelPointer& pointer, double seconds) {
     status.has_scene = scene != nullptr;
     status.time.reset();
     if (scene != nullptr) {
-        status.facts = describeFacts(scene->facts, options_.run.metres_per_unit);
-        status.place.view = viewpoint_;
-        status.viewpoint_count = scene->viewpoints.size();
-        status.viewpoint = viewpoint_ ? scene->viewpoints[*viewpoint_].name : "";
+        status.facts = describeFacts(scene->facts, scene->measured.value_or(options_.run.metres_per_unit));
+        status.place.view = viewpoints_.at();
+        status.viewpoint_count = viewpoints_.count();
+        status.viewpoint = viewpoints_.current() != nullptr ? viewpoints_.current()->name : "";
+        status.tours = viewpoints_.isTouring();
         if (scene->moving != nullptr) {
             status.time = {scene->clock.frame(), scene->clock.frameCount(), scene->moving->rateHz(), scene->clock.plays(),
                            scene->moving->counters().scene_frames_late};
@@ -39,8 +41,8 @@ void DesktopShell::follow(const PanelRequests& requests) {
     ShownWindow& window = *panel_.status().window;
     if (requests.help) {
         window.helps = !window.helps || !state_.settings().panel;
+        showPanel();
         ViewSettings settings = state_.settings();
-        settings.panel = true;
         settings.page = PanelPage::kView;
         state_.set(settings);
         log_.say(window.helps ? "help" : "no help");
@@ -52,20 +54,32 @@ void DesktopShell::follow(const PanelRequests& requests) {
     if (LoadedScene* const scene = scenes_.get(); scene != nullptr) {
         if (requests.show_whole) { showWhole(); }
         if (requests.reset_scene) { showStart(); }
-        if (requests.viewpoint_step != 0 && !scene->viewpoints.empty()) {
-            const std::size_t count = scene->viewpoints.size(), last = count - 1;
-            const std::size_t before = viewpoint_.value_or(requests.viewpoint_step > 0 ? last : 0);
-            goToViewpoint((before + (requests.viewpoint_step > 0 ? 1 : last)) % count);
-        }
-        if (requests.keep_viewpoint) {
-            const OrbitCamera& camera = mover_.camera();
-            notes_.addViewpoint(*scene, {camera.position(), camera.centre(), camera.up(), 0.0});
-            viewpoint_ = scene->viewpoints.size() - 1;
-        }
+        changeViewpoints(requests);
+        measure(requests);
         if (const std::string said = scene->moveTime(requests.play, requests.frame_step, requests.frame); !said.empty()) { log_.say(said); }
     }
     openAndSave(requests);
     if (requests.quit) { leaving_ = true; }
+}
+
+void DesktopShell::changeViewpoints(const PanelRequests& requests) {
+    if (requests.viewpoint_step != 0) { goTo(viewpoints_.goBy(requests.viewpoint_step)); }
+    if (requests.keep_viewpoint) {
+        const OrbitCamera& camera = mover_.camera();
+        viewpoints_.keep({camera.position(), camera.centre(), camera.up(), 0.0});
+    }
+    followViewpoints(requests, panel_.entry(), viewpoints_);
+}
+
+void DesktopShell::measure(const PanelRequests& requests) {
+    LoadedScene& scene = *scenes_.get();
+    if (requests.measure) { say(openRuler(ruler_)); }
+    const std::optional<double> measured = takeMeasure(requests, ruler_, scene);
+    if (!measured) { return; }
+    Similarity placement = state_.sceneFromRoom();
+    placement.scale = 1.0 / *measured;
+    state_.place(placement);
+    notes_.save(scene.name, savedPlace(state_, scene));
 }
 
 void DesktopShell::openAndSave(const PanelRequests& requests) {
@@ -75,7 +89,7 @@ void DesktopShell::openAndSave(const PanelRequests& requests) {
         Similarity level = startPlacement({camera.position(), camera.centre(), camera.up(), 0.0}, options_.run.metres_per_unit);
         level.scale = state_.sceneFromRoom().scale;
         state_.place(level);
-        notes_.save(scenes_.name(), state_.withPlacement());
+        notes_.save(scenes_.name(), savedPlace(state_, *scenes_.get()));
     }
     if (requests.load) { load(); }
     if (requests.scene_step != 0) { scenes_.beginBeside(requests.scene_step, files_); }
@@ -88,6 +102,12 @@ void DesktopShell::openAndSave(const PanelRequests& requests) {
     }
     if (requests.open_file) { openFile(); }
     if (requests.take_picture && scenes_.get() != nullptr) { writes_picture_ = true, is_refined_ = false; }
+}
+
+void DesktopShell::showPanel() {
+    ViewSettings settings = state_.settings();
+    settings.panel = true;
+    state_.set(settings);
 }
 
 void DesktopShell::load() {
@@ -110,6 +130,10 @@ void DesktopShell::openFile() {
             if (!chosen.file.empty()) { scenes_.begin(chosen.file); }
         };
     });
+}
+
+void DesktopShell::openDropped(const std::string& path) {
+    path.ends_with(".viewpoints.json") ? viewpoints_.read(path) : scenes_.begin(path);
 }
 
 void DesktopShell::takePicture() {

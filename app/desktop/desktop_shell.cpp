@@ -20,8 +20,8 @@ constexpr double kIdleSeconds = 0.25;     // how often to check for Ctrl-C
 constexpr double kLoadingSeconds = 0.05;  // how often to check for results of threads
 constexpr double kGamepadSeconds = 1.0 / 60.0, kNoPictureSeconds = 0.002;
 constexpr double kUsualAngleDeg = 60.0;
-// The panel's size: in its own pixels, on a desktop without magnification; and at most this share of the
-// window's width.
+constexpr double kTourWaySeconds = 4.0;  // from one viewpoint to the next
+// The panel's size: of its own pixels, on a desktop that does not magnify; and at most of the window's width.
 constexpr double kPanelScale = 0.7, kPanelShare = 0.6;
 constexpr double kNearShare = 0.05;  // of the distance to the centre: closer than the usual near plane if the camera goes close
 
@@ -50,6 +50,7 @@ DesktopShell::DesktopShell(const ViewOptions& options, const ViewSettings& setti
       commands_{Commands(context), Commands(context)},
       angle_rad_(glm::radians(options.run.camera.fov_x_deg.value_or(kUsualAngleDeg))),
       notes_(files_, [this](const std::string& message) { say(message); }),
+      viewpoints_(files_, [this](const std::string& message) { say(message); }),
       scenes_(context_, options_, log_, framesAhead(settings, window_.sizePx())) {
     panel_.status().window.emplace();
     if (const std::string& complaint = panel_.canvas().font().complaint(); !complaint.empty()) { log_.print(complaint); }
@@ -59,6 +60,7 @@ void DesktopShell::run() {
     while (!leaving_) { step(); }
     if (const std::optional<std::string> outcome = writer_.finish()) { say(*outcome); }
     keepPictureOfScene();
+    notes_.keepPreferences(state_.settings(), 0.0, true);
     files_.finish();
     log_.print(fmt::format("{} pictures in the window, {} of the scene", log_.frame, scene_frames_));
 }
@@ -74,24 +76,29 @@ void DesktopShell::step() {
     if (scenes_.isNextReady()) { takeScene(); }
     for (const DesktopEvent& event : window_.takeEvents()) { handle(event); }
     const bool was_on_way = mover_.isGliding();
-    mover_.pass(window_.heldMotion(), seconds);
+    mover_.pass(heldMotion(), seconds);
     if (was_on_way && !mover_.isGliding()) { log_.say("arrived"); }
+    if (heldMotion().isAny()) { viewpoints_.endTour(); }
+    goTo(viewpoints_.pass(seconds, !mover_.isGliding()), kTourWaySeconds);
     layOutPanel(pointer_, seconds);
     draw(seconds);
+    notes_.keepPreferences(state_.settings(), seconds);
     if (const std::string change = state_.takeChange(); !change.empty()) { log_.say(change); }
 }
 
 double DesktopShell::secondsToWait() const {
     if (window_.isMinimized()) { return kIdleSeconds; }
     if (!is_shown_) { return kNoPictureSeconds; }
-    if (layouts_due_ > 0 || mover_.isGliding() || window_.heldMotion().isAny()) { return 0.0; }
+    if (layouts_due_ > 0 || mover_.isGliding() || heldMotion().isAny()) { return 0.0; }
     const LoadedScene* const scene = scenes_.get();
     if (scene != nullptr && scene->live && (!scene->live->isSettled() || (scene->moving != nullptr && scene->clock.plays()))) {
         return kNoPictureSeconds;
     }
     double most = kIdleSeconds;
     if (!is_refined_) { most = std::clamp(kRestSeconds - secondsSince(changed_at_), 0.0, most); }
-    if (scenes_.isLoading() || !files_.now().empty() || !dialogs_.now().empty()) { most = std::min(most, kLoadingSeconds); }
+    if (viewpoints_.isTouring() || scenes_.isLoading() || !files_.now().empty() || !dialogs_.now().empty()) {
+        most = std::min(most, kLoadingSeconds);
+    }
     return window_.hasGamepad() ? std::min(most, kGamepadSeconds) : most;
 }
 
@@ -105,7 +112,10 @@ void DesktopShell::takeScene() {
     if (scene == before) { return; }
     pictures_.forget();
     drawn_ = {};
-    viewpoint_.reset();
+    viewpoints_.show(scenes_.get());
+    ruler_.close();
+    is_shown_ = false;
+    if (scene == nullptr) { return; }  // it made way for the next one
     OrbitCamera camera(scene->start_view);
     if (const Similarity& placed = state_.sceneFromRoom(); !(placed == scene->start)) {  // where it was saved
         const glm::dvec3 ahead = placed.orientation * glm::dvec3(0.0, 0.0, camera.distance());

@@ -7,8 +7,10 @@
 #include "app/terminal/frame_log.h"
 #include "app/view/files/picture_writer.h"
 #include "app/view/panel/panel_picture.h"
+#include "app/view/placement/ruler.h"
 #include "app/view/scenes/scene_notes.h"
 #include "app/view/scenes/shown_scene.h"
+#include "app/view/scenes/viewpoint_list.h"
 #include "app/view/settings/view_state.h"
 
 #include <array>
@@ -61,7 +63,10 @@ private:
     // centre.
     [[nodiscard]] std::optional<glm::dvec3> seenAt(const glm::dvec2& place_px);
     [[nodiscard]] glm::dvec3 under(const glm::dvec2& place_px);
-    void goToViewpoint(std::size_t index);
+    void goTo(const Viewpoint* viewpoint, double within_seconds = 0.35);  // null: stays
+    // What is written goes to the panel while it asks for something.
+    bool takesText(const DesktopEvent& event);
+    [[nodiscard]] HeldMotion heldMotion() const { return panel_.entry().isOpen() ? HeldMotion() : window_.heldMotion(); }
     void showWhole();
     void showStart();
 
@@ -69,9 +74,13 @@ private:
     void layOutPanel(const PanelPointer& pointer, double seconds);
     void follow(const PanelRequests& requests);
     void openAndSave(const PanelRequests& requests);
+    void measure(const PanelRequests& requests);
+    void changeViewpoints(const PanelRequests& requests);
     void load();
     void openFile();
+    void openDropped(const std::string& path);
     void takePicture();
+    void showPanel();
     void say(const std::string& message);
 
     ViewOptions options_;
@@ -93,11 +102,12 @@ private:
     bool is_refined_ = true, is_shown_ = true, leaving_ = false, writes_picture_ = false;
     int layouts_due_ = 2;  // widgets settle one layout after input
     std::uint64_t shown_panel_ = 0, scene_frames_ = 0, moment_ = 0;
-    std::optional<std::size_t> viewpoint_;  // the last one gone to
-    glm::dvec2 pressed_px_{0.0};            // the last press of the left button
+    Ruler ruler_;
+    glm::dvec2 pressed_px_{0.0};  // the last press of the left button
     Clock::time_point pressed_at_{}, changed_at_{}, last_step_ = Clock::now();
     SceneNotes notes_;
-    FileWorker dialogs_, files_;  // their threads end before the objects that use their results
+    ViewpointList viewpoints_;
+    FileWorker dialogs_, files_;  // their threads end before the users of their results
     ShownScene scenes_;           // last: the loading thread ends first
 };
 

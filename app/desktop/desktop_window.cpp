@@ -20,6 +20,15 @@ constexpr double kStickRests = 0.15;
 
 DesktopWindow& self(GLFWwindow* window) { return *static_cast<DesktopWindow*>(glfwGetWindowUserPointer(window)); }
 
+std::string utf8Of(unsigned letter) {
+    const auto byte = [](unsigned value) { return static_cast<char>(value); };
+    const auto more = [&](int shift) { return byte(0x80 | ((letter >> shift) & 0x3f)); };
+    if (letter < 0x80) { return {byte(letter)}; }
+    if (letter < 0x800) { return {byte(0xc0 | letter >> 6), more(0)}; }
+    if (letter < 0x10000) { return {byte(0xe0 | letter >> 12), more(6), more(0)}; }
+    return {byte(0xf0 | letter >> 18), more(12), more(6), more(0)};
+}
+
 double stick(float value) { return std::abs(value) < kStickRests ? 0.0 : static_cast<double>(value); }
 
 bool gamepadState(GLFWgamepadstate& state) {
@@ -79,8 +88,10 @@ void DesktopWindow::listen() {
     using Kind = DesktopEvent::Kind;
     GLFWwindow* const window = window_.get();
     glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int, int action, int) {
-        if (action == GLFW_PRESS) { self(w).add({.kind = Kind::kKey, .code = key, .path = {}}); }
+        const bool repeats = action == GLFW_REPEAT && key == GLFW_KEY_BACKSPACE;
+        if (action == GLFW_PRESS || repeats) { self(w).add({.kind = Kind::kKey, .code = key, .path = {}}); }
     });
+    glfwSetCharCallback(window, [](GLFWwindow* w, unsigned letter) { self(w).add({.kind = Kind::kText, .path = utf8Of(letter)}); });
     glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int button, int action, int) {
         self(w).add({.kind = action == GLFW_PRESS ? Kind::kPress : Kind::kRelease, .code = button, .path = {}});
     });

@@ -17,11 +17,11 @@ namespace binosplat {
 
 // User input, in order. Places are in the window's pixels, from its top left corner.
 struct DesktopEvent {
-    enum class Kind { kMove, kPress, kRelease, kWheel, kKey, kDrop, kLeave } kind;
+    enum class Kind { kMove, kPress, kRelease, kWheel, kKey, kText, kDrop, kLeave } kind;
     glm::dvec2 place_px{0.0};
     int code = 0;        // GLFW's number of a key or a button
-    double steps = 0.0;  // of the wheel, away from the user
-    std::string path;    // that was dropped
+    double steps = 0.0;  // of the wheel, away from oneself
+    std::string path;    // that was dropped, or a letter that was written, in UTF-8
 };
 
 class DesktopWindow {

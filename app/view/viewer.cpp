@@ -31,7 +31,7 @@ Viewer::Viewer(const ViewOptions& options, const ViewSettings& settings, xr::Ins
       commands_(context_),
       probe_(context_),
       notes_(files_, [this](const std::string& message) { say(message); }),
-      first_steps_(files_, settings.first_steps),
+      viewpoints_(files_, [this](const std::string& message) { say(message); }),
       scenes_(context_, options_, log_,
               FramesAhead{settings.stereo, renderer_.sizePx(settings), instance.takesDepth(), settings.tint, {}}) {
     for (const double rate_hz : headset().refresh_rates) {
@@ -68,6 +68,7 @@ void Viewer::run() {
     }
     sayPicture(pictures_.finish());
     keepPictureOfScene();
+    keepPreferences(0.0, true);
     files_.finish();
     if (const LoadedScene* const scene = scenes_.get(); scene != nullptr && scene->moving != nullptr) {
         const StreamCounters counters = scene->moving->counters();
@@ -129,6 +130,10 @@ void Viewer::say(const std::string& message) {
     panel_.status().message = message;
     message_ = message;
     log_.say(message);
+}
+
+void Viewer::keepPreferences(double step_seconds, bool at_once) {
+    if (!options_.simulate) { notes_.keepPreferences(state_.settings(), step_seconds, at_once); }
 }
 
 void Viewer::sayChange() {

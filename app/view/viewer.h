@@ -5,11 +5,13 @@
 #include "app/view/headset/headset_connection.h"
 #include "app/view/panel/first_steps.h"
 #include "app/view/panel/panel.h"
+#include "app/view/placement/ruler.h"
 #include "app/view/room/fade.h"
 #include "app/view/room/vignette.h"
 #include "app/view/scene_renderer.h"
 #include "app/view/scenes/scene_notes.h"
 #include "app/view/scenes/shown_scene.h"
+#include "app/view/scenes/viewpoint_list.h"
 #include "app/view/settings/view_state.h"
 #include "app/view/wearer/gaze_follower.h"
 #include "app/view/wearer/wearer_controls.h"
@@ -76,8 +78,10 @@ private:
     [[nodiscard]] ShownPlace shownPlace() const;
     [[nodiscard]] std::optional<double> sceneFloorMetres() const;
     void movePlace(const PanelRequests& requests);
-    void goToViewpoint(int step);
-    void keepViewpointHere();
+    void goTo(const Viewpoint* viewpoint);  // null: stays
+    // While the ruler is open, a trigger says where the ray meets the scene.
+    void measure(const std::array<xr::Hand, 2>& hands);
+    void showPanel();
     // Saves a small picture of the scene as it was last seen, for the list of scenes.
     void keepPictureOfScene();
     void load();
@@ -90,6 +94,7 @@ private:
     // As a line before the eyes, for some seconds, while the panel is hidden; otherwise what one does first.
     void showMessage(RoomSight& sight, double step_seconds);
     void sayChange();
+    void keepPreferences(double step_seconds, bool at_once);
     void leave();
     void waitForQueue() const;
 
@@ -118,13 +123,14 @@ private:
     PictureWriter pictures_;
     bool picture_asked_ = false;  // for the next frame
     std::uint64_t frames_of_scene_ = 0;
-    bool said_there_ = false;               // everything in the first view of a streamed scene is loaded, and that was reported
-    std::optional<std::size_t> viewpoint_;  // the last one gone to
-    Pose room_from_head_;                   // as last known
+    bool said_there_ = false;  // that all of the first view of a streamed scene is there
+    Pose room_from_head_;      // as last known
+    Ruler ruler_;
+    std::array<bool, 2> clicked_{};  // by hand, in the frame before
     bool recentre_asked_ = false, leaving_ = false, waits_for_kernels_ = false;
     std::chrono::steady_clock::time_point last_alone_{};
     SceneNotes notes_;
-    FirstSteps first_steps_;
+    ViewpointList viewpoints_;
     FileWorker files_;   // its thread ends before the users of its results
     ShownScene scenes_;  // last: the loading thread ends first
 };

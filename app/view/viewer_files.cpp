@@ -1,4 +1,5 @@
 // The viewer's files: scenes, settings, pictures, shaders.
+#include "app/view/panel/measure.h"
 #include "app/view/settings/view_files.h"
 #include "app/view/shader_reload.h"
 #include "app/view/viewer.h"
@@ -17,14 +18,16 @@ void Viewer::takeScene() {
     controls_.letGo();
     is_new_view_ = before != nullptr;
     if (before == nullptr) { fade_ = {}; }  // there was nothing to jump from
-    viewpoint_.reset();
+    viewpoints_.show(scenes_.get());
+    ruler_.close();
+    if (scenes_.get() == nullptr) { return; }  // it made way for the next one
     frames_of_scene_ = 0;
     said_there_ = false;
     notes_.remember(scenes_.name(), complaint);
 }
 
 void Viewer::openAndSave(const PanelRequests& requests) {
-    if (requests.save) { notes_.save(scenes_.name(), state_.withPlacement()); }
+    if (requests.save && scenes_.get() != nullptr) { notes_.save(scenes_.name(), savedPlace(state_, *scenes_.get())); }
     if (requests.load) { load(); }
     if (requests.scene_step != 0) { scenes_.beginBeside(requests.scene_step, files_); }
     if (!requests.chosen_scene.empty()) { scenes_.begin(requests.chosen_scene); }

@@ -16,6 +16,8 @@ namespace {
 // While the scene loads, unless a background is set.
 constexpr glm::vec3 kWaitingColour(0.06f, 0.07f, 0.09f);
 constexpr double kMessageSeconds = 6.0;
+// A tour rests longer than in a window, where the ways between viewpoints take their time: for five seconds.
+constexpr double kTourPace = ViewpointList::kRestSeconds / 5.0;
 
 }  // namespace
 
@@ -61,13 +63,19 @@ void Viewer::drawFrame() {
     wearer.ground_scene = std::move(probes_seen_.ground);
     wearer.scene_floor_m = sceneFloorMetres();
     controls_.update(wearer, panel_.inRoom(), state_);
-    probeScene(wearer.floor_m.value_or(kUsualFloorMetres));
+    measure(wearer.hands);
+    probeScene();
     if (const double clear_deg = state_.settings().stereo.foveation_deg; clear_deg > 0.0 && !views.insets) {
         views.gazes = gaze_.update(headset().input.gaze(), views.room_from_eyes, glm::radians(clear_deg), step_seconds);
     } else {
         gaze_ = {};
     }
-    if (const int step = controls_.viewpointStep(); step != 0) { goToViewpoint(step); }
+    if (const int step = controls_.viewpointStep(); step != 0) {
+        viewpoints_.endTour();
+        goTo(viewpoints_.goBy(step));
+    }
+    // A wearer is not moved smoothly: the tour jumps, with a fade.
+    goTo(viewpoints_.pass(kTourPace * step_seconds, true));
     moveTime(controls_.playPressed(), 0, {});
     chooseThings(wearer, views);
     takeWindowInput(step_seconds);

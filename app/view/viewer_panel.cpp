@@ -64,7 +64,11 @@ void Viewer::takeWindowInput(double step_seconds) {
     window_input_ = window_->poll();
     if (window_input_.quit) { leave(); }
     recentre_asked_ = recentre_asked_ || window_input_.recentre;
-    if (!window_input_.dropped.empty()) { scenes_.begin(window_input_.dropped); }
+    if (const std::string& dropped = window_input_.dropped; dropped.ends_with(".viewpoints.json")) {
+        viewpoints_.read(dropped);
+    } else if (!dropped.empty()) {
+        scenes_.begin(dropped);
+    }
     if (window_input_.reload_shaders) { reloadShaders(); }
     moveTime(window_input_.play, window_input_.frame_step, {});
     if (window_input_.toggle_panel) {
@@ -90,8 +94,9 @@ void Viewer::layOutPanel(bool hung, double step_seconds) {
     if (status.has_scene) {
         status.facts = describeFacts(scenes_.get()->facts, 1.0 / state_.sceneFromRoom().scale);
         status.place = shownPlace();
-        status.viewpoint_count = scenes_.get()->viewpoints.size();
-        status.viewpoint = viewpoint_ ? scenes_.get()->viewpoints[*viewpoint_].name : "";
+        status.viewpoint_count = viewpoints_.count();
+        status.viewpoint = viewpoints_.current() != nullptr ? viewpoints_.current()->name : "";
+        status.tours = viewpoints_.isTouring();
         status.time.reset();
         if (const LoadedScene& scene = *scenes_.get(); scene.moving != nullptr) {
             status.time = {scene.clock.frame(), scene.clock.frameCount(), scene.moving->rateHz(), scene.clock.plays(),
@@ -103,6 +108,7 @@ void Viewer::layOutPanel(bool hung, double step_seconds) {
     if (status.files.empty() && scenes_.isMakingKernels()) {
         status.files = fmt::format("preparing {}", nameOf(state_.settings().stereo.mode));
     }
+    keepPreferences(step_seconds, false);
     followPanel(panel_.layOut(hung ? connection_.headset() : nullptr, window_input_.pointer, window_input_.uses_panel, state_.settings(),
                               step_seconds));
 }

@@ -1,4 +1,5 @@
-// The wearer's place in the scene, and what the viewer stores about it.
+// The wearer's place in the scene, and what the viewer keeps of it.
+#include "app/view/panel/measure.h"
 #include "app/view/placement/placement.h"
 #include "app/view/scenes/viewpoints.h"
 #include "app/view/viewer.h"
@@ -21,11 +22,11 @@ ShownPlace Viewer::shownPlace() const {
     const Similarity& placement = state_.sceneFromRoom();
     ShownPlace place;
     place.size_m = scene.facts.size_units / placement.scale;
-    place.growth = 1.0 / (options_.run.metres_per_unit * placement.scale);
+    place.growth = 1.0 / (scene.measured.value_or(options_.run.metres_per_unit) * placement.scale);
     const double eyes = glm::dot(scene.up, transform(placement, room_from_head_.position));
     place.has_floor = scene.floor.has_value();
     place.eyes_m = (eyes - scene.floor.value_or(glm::dot(scene.up, scene.start.position))) / placement.scale;
-    place.view = viewpoint_;
+    place.view = viewpoints_.at();
     return place;
 }
 
@@ -35,10 +36,14 @@ std::optional<double> Viewer::sceneFloorMetres() const {
 }
 
 void Viewer::movePlace(const PanelRequests& requests) {
-    const LoadedScene& scene = *scenes_.get();
+    LoadedScene& scene = *scenes_.get();
     if (requests.reset_scene) { state_.place(scene.start); }
     if (requests.level_scene) { state_.place(levelledAlong(state_.sceneFromRoom(), scene.up, room_from_head_.position)); }
-    const double growth = requests.natural_size ? options_.run.metres_per_unit * state_.sceneFromRoom().scale : requests.growth;
+    if (requests.measure) { say(openRuler(ruler_)); }
+    const std::optional<double> measured = takeMeasure(requests, ruler_, scene);
+    const double growth = requests.natural_size || measured
+                              ? scene.measured.value_or(options_.run.metres_per_unit) * state_.sceneFromRoom().scale
+                              : requests.growth;
     if (growth != 1.0) {
         // About the feet, so that the wearer stays on the floor.
         const ShownPlace place = shownPlace();
@@ -46,31 +51,39 @@ void Viewer::movePlace(const PanelRequests& requests) {
         feet.y += place.has_floor && place.eyes_m > 0.0 ? place.eyes_m : kUsualEyesMetres;
         state_.place(grownBy(state_.sceneFromRoom(), growth, feet));
     }
+    if (measured) { notes_.save(scene.name, savedPlace(state_, scene)); }
     if (requests.rise_m != 0.0) { state_.place(movedBy(state_.sceneFromRoom(), {0.0, -requests.rise_m, 0.0})); }
-    if (requests.viewpoint_step != 0) { goToViewpoint(requests.viewpoint_step); }
-    if (requests.keep_viewpoint) { keepViewpointHere(); }
+    if (requests.viewpoint_step != 0) { goTo(viewpoints_.goBy(requests.viewpoint_step)); }
+    if (requests.keep_viewpoint) { viewpoints_.keep(viewOf(state_.sceneFromRoom(), room_from_head_)); }
+    followViewpoints(requests, panel_.entry(), viewpoints_);
 }
 
-void Viewer::goToViewpoint(int step) {
-    const LoadedScene* scene = scenes_.get();
-    if (scene == nullptr) { return; }
-    if (scene->viewpoints.empty()) {
-        say("this scene has no viewpoints: keep one on the page Scenes, or put a cameras.json beside it");
-        return;
+void Viewer::measure(const std::array<xr::Hand, 2>& hands) {
+    for (const int h : {kLeft, kRight}) {
+        const auto at = static_cast<std::size_t>(h);
+        const bool clicks = hands[at].clicks, begins = !std::exchange(clicked_[at], clicks) && clicks;
+        const std::optional<Pose> aim = panel_.inRoom().missesWith(h);
+        if (!begins || !ruler_.isOpen() || !aim || scenes_.get() == nullptr) { continue; }
+        std::optional<glm::dvec3> place;
+        if (paths_seen_[at].meets) {
+            place = transform(state_.sceneFromRoom(), transform(*aim, {0.0, 0.0, probeMetres(*paths_seen_[at].meets)}));
+        }
+        say(measureAt(place, ruler_, state_.sceneFromRoom().scale, panel_.entry()));
+        if (!ruler_.isOpen()) { showPanel(); }
     }
-    const auto count = static_cast<std::ptrdiff_t>(scene->viewpoints.size());
-    const std::ptrdiff_t before = viewpoint_ ? static_cast<std::ptrdiff_t>(*viewpoint_) : step > 0 ? -1 : 0;
-    viewpoint_ = static_cast<std::size_t>(((before + step) % count + count) % count);
-    const Viewpoint& there = scene->viewpoints[*viewpoint_];
-    state_.place(placedAt(there.view, state_.sceneFromRoom(), room_from_head_));
-    controls_.letGo();
-    log_.say(fmt::format("viewpoint {} of {}: {}", *viewpoint_ + 1, count, there.name));
 }
 
-void Viewer::keepViewpointHere() {
-    LoadedScene& scene = *scenes_.get();
-    notes_.addViewpoint(scene, viewOf(state_.sceneFromRoom(), room_from_head_));
-    viewpoint_ = scene.viewpoints.size() - 1;
+void Viewer::showPanel() {
+    if (state_.settings().panel) { return; }
+    state_.togglePanel();
+    panel_.inRoom().hangBefore(room_from_head_);
+}
+
+void Viewer::goTo(const Viewpoint* viewpoint) {
+    if (viewpoint == nullptr) { return; }
+    state_.place(placedAt(viewpoint->view, state_.sceneFromRoom(), room_from_head_));
+    controls_.letGo();
+    log_.say(viewpoints_.words());
 }
 
 void Viewer::keepPictureOfScene() {

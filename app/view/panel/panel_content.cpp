@@ -48,6 +48,7 @@ std::string namesOn(const ViewSettings& settings, const SceneChooser& chooser, c
     std::string names;
     const auto add = [&](const std::string& name) { names += name + '\n'; };
     for (const std::string& name : {status.scene, status.message, status.files}) { add(name); }
+    if (status.entry != nullptr) { add(status.entry->title()), add(status.entry->text()); }
     if (settings.page == PanelPage::kScenes) {
         add(chooser.list().title);
         add(chooser.list().trouble);
@@ -70,6 +71,18 @@ std::vector<ScenePicture> picturesOn(const ViewSettings& settings, const SceneCh
     return pictures;
 }
 
+void followViewpoints(const PanelRequests& requests, TextEntry& entry, ViewpointList& viewpoints) {
+    if (requests.tour) { viewpoints.toggleTour(); }
+    if (requests.viewpoint_move != 0) { viewpoints.moveBy(requests.viewpoint_move); }
+    if (requests.forget_viewpoint) { viewpoints.forget(); }
+    if (requests.share_viewpoints) { viewpoints.writeShared(); }
+    if (requests.read_viewpoints) { viewpoints.read(""); }
+    if (requests.rename_viewpoint && viewpoints.requireOwn()) {
+        entry.open(TextEntry::What::kViewpointName, "The viewpoint's name", viewpoints.current()->name);
+    }
+    if (requests.entered && requests.entered->first == TextEntry::What::kViewpointName) { viewpoints.rename(requests.entered->second); }
+}
+
 PanelRequests drawPanel(glm::uvec2 size_px, const ViewSettings& current, SceneChooser& chooser, const PanelStatus& status) {
     PanelRequests requests;
     ViewSettings& settings = requests.settings = current;
@@ -82,7 +95,9 @@ PanelRequests drawPanel(glm::uvec2 size_px, const ViewSettings& current, SceneCh
     static constexpr std::array kQuit{"Quit"};
     requests.quit = widgets.row(kQuit, {}, kTabPx).has_value();
     writeLine(endOf(asShown(status.state.empty() ? status.scene : fmt::format("{}  {}", status.state, status.scene))));
-    if (!status.has_scene) {
+    if (status.entry != nullptr && status.entry->isOpen()) {
+        drawTextEntry(widgets, *status.entry, requests);
+    } else if (!status.has_scene) {
         if (status.loading) { ImGui::ProgressBar(static_cast<float>(*status.loading), ImVec2(-1.0f, 0.0f)); }
     } else if (settings.page == PanelPage::kView && status.window) {
         drawWindowPage(widgets, settings, status, requests);

@@ -4,6 +4,8 @@
 #include "app/view/panel/panel_font.h"
 #include "app/view/panel/panel_widgets.h"
 #include "app/view/panel/scene_chooser.h"
+#include "app/view/panel/text_entry.h"
+#include "app/view/scenes/viewpoint_list.h"
 #include "app/view/settings/view_settings.h"
 #include "app/view/wearer/wearer_tool.h"
 #include "engine/frame/stereo_frame.h"
@@ -76,30 +78,39 @@ struct PanelStatus {
     std::optional<ShownTime> time;            // of a scene that moves
     std::size_t viewpoint_count = 0;          // places in the scene to go to
     std::string viewpoint;                    // name of the one gone to last
+    bool tours = false;                       // through them
     const PicturePlaces* pictures = nullptr;  // of scenes, in the font's texture; null: none
+    TextEntry* entry = nullptr;               // what is written on the panel; null: nothing ever
 };
 
 // What the wearer asked for.
 struct PanelRequests {
     bool save = false, load = false, reset_scene = false, quit = false, reload_shaders = false, recentre = false, level_scene = false,
          take_picture = false, natural_size = false, keep_viewpoint = false, last_scene = false, play = false, show_whole = false,
-         open_file = false, fill_screen = false, help = false;
+         open_file = false, fill_screen = false, help = false, tour = false, rename_viewpoint = false, forget_viewpoint = false,
+         share_viewpoints = false, read_viewpoints = false, measure = false;
     double growth = 1.0;               // of the scene, around the wearer's feet
     double rise_m = 0.0;               // of the wearer
     int scene_step = 0;                // to the previous or next scene
     int viewpoint_step = 0;            // to the previous or next viewpoint
+    int viewpoint_move = 0;            // of the current one, in the list
     int frame_step = 0;                // of a scene that moves
     std::optional<std::size_t> frame;  // to go to
     std::string chosen_scene;          // empty: none
     std::string favourite;             // a scene to mark as favourite, or to unmark; empty: none
-    WidgetPlaces places;               // of what was drawn
-    ViewSettings settings;             // as they should be from now on
+    // What was written.
+    std::optional<std::pair<TextEntry::What, std::string>> entered;
+    WidgetPlaces places;    // of what was drawn
+    ViewSettings settings;  // as they should be from now on
 };
 
 // All names and messages on the canvas, a line each; see PanelFont::want.
 std::string namesOn(const ViewSettings& settings, const SceneChooser& chooser, const PanelStatus& status);
 // All pictures on it.
 std::vector<ScenePicture> picturesOn(const ViewSettings& settings, const SceneChooser& chooser);
+
+// Does what was asked for with viewpoints, apart from going to one and keeping one. A new name is asked for by `entry`.
+void followViewpoints(const PanelRequests& requests, TextEntry& entry, ViewpointList& viewpoints);
 
 // Draws the widgets that fill a canvas of `size_px`, between Canvas::begin and record. Changes `chooser` as the wearer does.
 PanelRequests drawPanel(glm::uvec2 size_px, const ViewSettings& current, SceneChooser& chooser, const PanelStatus& status);

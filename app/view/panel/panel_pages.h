@@ -23,6 +23,9 @@ void drawTimePage(PanelWidgets& widgets, const PanelStatus& status, PanelRequest
 // What hands and controllers do, and the way out.
 void drawHelpPage(PanelWidgets& widgets, const PanelStatus& status, PanelRequests& requests);
 
+// In place of any page.
+void drawTextEntry(PanelWidgets& widgets, TextEntry& entry, PanelRequests& requests);
+
 // Outcomes and work in progress, below all buttons since it may take several lines.
 void drawSaid(const PanelStatus& status);
 

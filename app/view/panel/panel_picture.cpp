@@ -13,7 +13,7 @@ constexpr double kTimesSeconds = 0.25;
 
 }  // namespace
 
-PanelPicture::PanelPicture(const Context& context, vk::Format format) : canvas_(context, kPanelPx, format) {}
+PanelPicture::PanelPicture(const Context& context, vk::Format format) : canvas_(context, kPanelPx, format) { status_.entry = &entry_; }
 
 void PanelPicture::keepFrameTime() {
     const auto now = std::chrono::steady_clock::now();

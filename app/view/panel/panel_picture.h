@@ -18,6 +18,10 @@ public:
     // Its content for the next layout; times and the governor's sentence are filled in by showTimes().
     [[nodiscard]] PanelStatus& status() { return status_; }
 
+    // What is written on it.
+    [[nodiscard]] TextEntry& entry() { return entry_; }
+    [[nodiscard]] const TextEntry& entry() const { return entry_; }
+
     // A frame was drawn just now.
     void keepFrameTime();
     // Shows the last frame's times, updated only now and then, since numbers that change with every frame
@@ -36,6 +40,7 @@ private:
     Canvas canvas_;
     PanelStatus status_;
     SceneChooser chooser_;
+    TextEntry entry_;
     FrameResult shown_frame_;      // the frame whose times are shown
     std::vector<float> frame_ms_;  // see PanelStatus
     double times_age_s_ = 0.0;

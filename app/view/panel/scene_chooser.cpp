@@ -9,7 +9,7 @@
 namespace binosplat {
 
 SceneList makeSceneList(const SceneListWish& wish) {
-    SceneList list = wish.recent ? listScenes("Recent scenes", recentScenes()) : listFolder(wish.folder);
+    SceneList list = wish.recent ? listScenes("Favourites and recent scenes", favouriteAndRecentScenes()) : listFolder(wish.folder);
     describeScenes(list);
     return list;
 }

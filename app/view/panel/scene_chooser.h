@@ -13,7 +13,7 @@ namespace binosplat {
 
 // A request for a list.
 struct SceneListWish {
-    bool recent = false;       // the scenes shown last; otherwise
+    bool recent = false;       // the favourites, and the scenes shown last; otherwise
     std::string folder;        // see listFolder
     std::uint64_t number = 0;  // only the latest one counts
 
@@ -29,7 +29,7 @@ public:
 
     // Opens a folder, or kBuiltinFolder.
     void showFolder(const std::string& folder);
-    void showRecent() { showAnother(true, "Recent scenes"); }
+    void showRecent() { showAnother(true, "Favourites and recent scenes"); }
     void goUp();
     // Opens what it opened last again; the first time, the folder of `scene`.
     void refresh(const std::string& scene);

@@ -76,6 +76,15 @@ void drawViewpoints(PanelWidgets& widgets, const PanelStatus& status, PanelReque
         requests.viewpoint_step = *pressed == 0 ? -1 : *pressed == 1 ? 1 : 0;
         requests.keep_viewpoint = *pressed == 2;
     }
+    static constexpr std::array kWithOwn{"Tour", "Name", "Earlier", "Later", "Forget", "Export", "Import"};
+    if (const auto pressed = widgets.row(kWithOwn, status.tours ? std::optional<std::size_t>(0) : std::nullopt, kTargetPx)) {
+        requests.tour = *pressed == 0;
+        requests.rename_viewpoint = *pressed == 1;
+        requests.viewpoint_move = *pressed == 2 ? -1 : *pressed == 3 ? 1 : 0;
+        requests.forget_viewpoint = *pressed == 4;
+        requests.share_viewpoints = *pressed == 5;
+        requests.read_viewpoints = *pressed == 6;
+    }
     const std::size_t count = status.viewpoint_count;
     std::string words =
         count == 0 ? "No viewpoints yet: keep one, or put a cameras.json beside the scene" : fmt::format("{} viewpoints", count);

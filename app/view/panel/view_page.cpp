@@ -64,10 +64,14 @@ std::string describeHeight(const ShownPlace& place) {
 }
 
 void drawPlace(PanelWidgets& widgets, const ShownPlace& place, PanelRequests& requests) {
-    static constexpr std::array kPlaces{"Recentre", "Level", "Reset"}, kSizes{"Smaller", "1:1", "Larger"};
+    static constexpr std::array kPlaces{"Recentre", "Level", "Reset", "True size"};
+    static constexpr std::array kSizes{"Smaller", "1:1", "Larger"};
     static constexpr std::array kHeights{"Lower", "Higher"};
     if (const auto pressed = widgets.row(kPlaces, {}, kLargeTargetPx)) {
-        (*pressed == 0 ? requests.recentre : *pressed == 1 ? requests.level_scene : requests.reset_scene) = true;
+        (*pressed == 0   ? requests.recentre
+         : *pressed == 1 ? requests.level_scene
+         : *pressed == 2 ? requests.reset_scene
+                         : requests.measure) = true;
     }
     writeBefore(describeSize(place), kTabPx);
     ImGui::PushButtonRepeat(true);

@@ -62,9 +62,12 @@ void drawStereo(PanelWidgets& widgets, ViewSettings& settings) {
 }  // namespace
 
 void drawWindowPage(PanelWidgets& widgets, ViewSettings& settings, const PanelStatus& status, PanelRequests& requests) {
-    static constexpr std::array kPlaces{"Open", "Whole scene", "Start view"};
+    static constexpr std::array kPlaces{"Open", "Whole scene", "Start view", "True size"};
     if (const auto pressed = widgets.row(kPlaces, {}, kLargeTargetPx)) {
-        (*pressed == 0 ? requests.open_file : *pressed == 1 ? requests.show_whole : requests.reset_scene) = true;
+        (*pressed == 0   ? requests.open_file
+         : *pressed == 1 ? requests.show_whole
+         : *pressed == 2 ? requests.reset_scene
+                         : requests.measure) = true;
     }
     drawStereo(widgets, settings);
     static constexpr std::array kBackdrops{"Default", "Black", "Grey", "White"};

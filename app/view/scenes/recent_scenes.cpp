@@ -8,6 +8,7 @@
 #include "engine/setup/output_files.h"
 #include "engine/setup/text_file.h"
 
+#include <algorithm>
 #include <sstream>
 
 namespace binosplat {
@@ -51,6 +52,14 @@ std::vector<std::string> withLatest(std::vector<std::string> scenes, const std::
 std::vector<std::string> recentScenes() { return readList(kRecentName, kMostRecentScenes); }
 
 std::vector<std::string> favouriteScenes() { return readList(kFavouritesName, kMostFavourites); }
+
+std::vector<std::string> favouriteAndRecentScenes() {
+    std::vector<std::string> scenes = favouriteScenes();
+    for (const std::string& scene : recentScenes()) {
+        if (std::ranges::find(scenes, scene) == scenes.end()) { scenes.push_back(scene); }
+    }
+    return scenes;
+}
 
 void toggleFavourite(const std::string& scene) {
     if (scene.find('\n') != std::string::npos) { return; }  // it would be two lines

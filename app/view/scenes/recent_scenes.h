@@ -17,6 +17,8 @@ void rememberScene(const std::string& scene);
 
 // The scenes that the wearer marked, in the order of marking.
 std::vector<std::string> favouriteScenes();
+// These, and then the recent ones that are none of them.
+std::vector<std::string> favouriteAndRecentScenes();
 // Marks or unmarks `scene`. Throws Error if that cannot be saved.
 void toggleFavourite(const std::string& scene);
 

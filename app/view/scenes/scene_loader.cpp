@@ -119,7 +119,9 @@ void SceneLoader::load(const Context& context, const RunOptions& options, bool s
         loaded_->place = placeOf(scene_);
         loaded_->origin = scene.origin;
         try {
-            loaded_->remembered = rememberedPlacement(scene_);
+            const RememberedPlace remembered = rememberedPlace(scene_);
+            loaded_->remembered = remembered.scene_from_room;
+            loaded_->measured = remembered.metres_per_unit;
             if (loaded_->remembered) { loaded_->remembered->position -= scene.origin; }
         } catch (const Error& error) { loaded_->remembering_trouble = error.what(); }
         const bool is_asked_for = options.camera.eye || options.camera.look || !options.camera.cameras_file.empty();

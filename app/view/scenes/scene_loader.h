@@ -51,7 +51,8 @@ struct LoadedScene {
     LoadNotes notes;
     SceneFacts facts;
     std::string place;                     // one name for a scene, however it is spelled
-    std::optional<Similarity> remembered;  // see rememberedPlacement
+    std::optional<Similarity> remembered;  // see rememberedPlace
+    std::optional<double> measured;        // metres in a unit, by somebody who knew
     std::string remembering_trouble;       // why not, if it exists but cannot be read
 };
 

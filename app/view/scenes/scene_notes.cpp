@@ -29,6 +29,20 @@ void SceneNotes::save(const std::string& scene, const ViewSettings& settings) {
     });
 }
 
+void SceneNotes::keepPreferences(const ViewSettings& now, double step_seconds, bool at_once) {
+    preferences_.note(now, step_seconds);
+    const PreferenceLines changes = preferences_.takeChanges(at_once);
+    if (changes.empty()) { return; }
+    files_.write("keeping preferences", [this, changes]() -> FileWorker::Done {
+        try {
+            binosplat::keepPreferences(changes);
+        } catch (const Error& error) {
+            return [this, why = std::string(error.what())] { say_(why); };
+        }
+        return {};
+    });
+}
+
 void SceneNotes::toggleFavourite(const std::string& scene, std::function<void()> done) {
     files_.write("keeping a favourite", [this, scene, done = std::move(done)]() -> FileWorker::Done {
         std::string trouble;
@@ -39,21 +53,6 @@ void SceneNotes::toggleFavourite(const std::string& scene, std::function<void()>
             if (!trouble.empty()) { say_(trouble); }
             done();
         };
-    });
-}
-
-void SceneNotes::addViewpoint(LoadedScene& scene, const View& view) {
-    std::size_t number = 1;
-    for (const Viewpoint& viewpoint : scene.viewpoints) { number += viewpoint.name.starts_with("your own "); }
-    scene.viewpoints.push_back(ownViewpoint(number, view));
-    View in_file = view;
-    in_file.eye += scene.origin, in_file.look += scene.origin;
-    files_.write("keeping a viewpoint", [this, source = scene.name, in_file]() -> FileWorker::Done {
-        std::string outcome = "this viewpoint is kept";
-        try {
-            keepViewpoint(source, in_file);
-        } catch (const Error& error) { outcome = error.what(); }
-        return [this, outcome] { say_(outcome); };
     });
 }
 

@@ -3,7 +3,7 @@
 
 #include "app/view/files/file_worker.h"
 #include "app/view/scenes/scene_loader.h"
-#include "app/view/settings/view_settings.h"
+#include "app/view/settings/preferences.h"
 #include "engine/picture/image.h"
 
 #include <functional>
@@ -21,10 +21,10 @@ public:
     // Records that it was shown. `complaint` has been reported already.
     void remember(const std::string& scene, const std::string& complaint);
     void save(const std::string& scene, const ViewSettings& settings);
+    // In each frame: what somebody sets is kept once it stays so for a second, or `at_once`.
+    void keepPreferences(const ViewSettings& now, double step_seconds, bool at_once = false);
     // Marks a favourite, or unmarks it, and then calls `done`.
     void toggleFavourite(const std::string& scene, std::function<void()> done);
-    // Adds a viewpoint to the scene's, and keeps it.
-    void addViewpoint(LoadedScene& scene, const View& view);
     // A small picture of the scene, for the list of scenes.
     void keepPicture(const LoadedScene& scene, Image view);
     // Finds the scene that was shown before this one, and opens it.
@@ -33,6 +33,7 @@ public:
 private:
     FileWorker& files_;
     Say say_;
+    Preferences preferences_;
 };
 
 }  // namespace binosplat

@@ -3,6 +3,7 @@
 
 #include "app/view/scenes/view_scenes.h"
 #include "engine/error.h"
+#include "engine/gpu/device_error.h"
 
 #include <algorithm>
 #include <utility>
@@ -109,9 +110,13 @@ std::string ShownScene::take(ViewState& state) {
         scene_ = std::move(taken);
         if (const auto kernels = std::exchange(scene_->kernels, nullptr)) { frame_->takeKernels(*kernels); }
         if (ahead_) { haveReady(loader->madeFor()); }
-    } catch (const vk::DeviceLostError&) { throw; } catch (const vk::SystemError& error) {
+    } catch (const vk::DeviceLostError&) { throw; } catch (const DeviceError& error) {
+        const bool lacks_memory = error.kind() == DeviceError::Kind::kMemory;
+        return lacks_memory && scene_ ? makeWay(state) : goOnWithout(error.what());
+    } catch (const vk::SystemError& error) { return goOnWithout(error.what()); } catch (const Error& error) {
         return goOnWithout(error.what());
-    } catch (const Error& error) { return goOnWithout(error.what()); }
+    }
+    gone_first_.clear();
     log_.say("shows " + scene_->name);
     const std::string complaint = place(state);
     for (const std::string& line : scene_->notes.lines) { log_.print("note: " + line); }
@@ -150,9 +155,23 @@ void ShownScene::rebuildKernels() {
 
 std::string ShownScene::goOnWithout(const std::string& why) {
     if (scene_) { return why; }
-    if (asked_ == options_.scene) { throw; }  // nothing to show instead
-    begin(options_.scene);                    // which another one had displaced
+    const std::string instead = gone_first_.empty() ? options_.scene : gone_first_;  // which another one had displaced
+    if (asked_ == instead) { throw; }                                                // nothing to show instead
+    begin(instead);
     return why;
+}
+
+std::string ShownScene::makeWay(const ViewState& state) {
+    left_[scene_->place] = state.sceneFromRoom();
+    gone_first_ = scene_->name;
+    maker_.reset();
+    insets_.reset();
+    // Its kernels stay.
+    if (!nothing_) { nothing_ = std::make_unique<GpuScene>(context_, Scene{}); }
+    frame_->show(*nothing_);
+    scene_.reset();
+    begin(std::string(asked_));
+    return fmt::format("{} and {} do not fit into the device's memory together: the first one goes first", gone_first_, asked_);
 }
 
 std::string ShownScene::place(ViewState& state) {

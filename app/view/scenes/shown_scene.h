@@ -27,8 +27,8 @@ public:
     [[nodiscard]] StereoFrame& frame() const { return *frame_; }
     [[nodiscard]] StereoFrame& insets();
     void dropInsets() { insets_.reset(); }
-    // What these eyes see of the scene now, by a frame of its own: those under way go on as they were. Waits for the device. Throws Error if
-    // it lacks the memory.
+    // What these eyes see of the scene now, by a frame of its own: those under way go on as they were. Waits for the device. Throws Error
+    // if it lacks the memory.
     [[nodiscard]] std::vector<Image> picturesOf(std::span<const Eye> eyes, const FrameSettings& settings);
     // Makes their kernels anew, see StereoFrame.
     void rebuildKernels();
@@ -54,7 +54,8 @@ public:
     void begin(const std::string& scene);
     // The same for the scene `step` further on in the folder of the last requested one, once `files` has found it.
     void beginBeside(int step, FileWorker& files);
-    // Waits for the next scene, shows it and places the wearer: where they left it, where `state` was asked for (only for the first scene),
+    // Waits for the next scene, shows it (or, where it lacks memory beside the one shown, has that one go and begins again: then there is
+    // none for a while) and places the wearer: where they left it, where `state` was asked for (only for the first scene),
     // or where the scene was saved. Returns what went wrong, or empty; throws it if the options' scene cannot be loaded and there is no
     // other to stay with.
     [[nodiscard]] std::string take(ViewState& state);
@@ -68,6 +69,8 @@ private:
     void haveReady(const FramesAhead& ahead);
     // Within a handler: the next scene cannot be shown. Returns `why`, or rethrows.
     [[nodiscard]] std::string goOnWithout(const std::string& why);
+    // What is shown goes, so that the scene that was asked for has its memory, and that one is loaded again; says so.
+    [[nodiscard]] std::string makeWay(const ViewState& state);
 
     const Context& context_;
     const ViewOptions& options_;
@@ -78,6 +81,8 @@ private:
     std::uint64_t asked_count_ = 0;
     int steps_asked_ = 0;  // from that one, not looked for yet
     bool is_looking_ = false;
+    std::string gone_first_;             // the scene that made way for that one, if any
+    std::unique_ptr<GpuScene> nothing_;  // that frames show meanwhile
     std::unique_ptr<LoadedScene> scene_;
     std::unique_ptr<StereoFrame> frame_, insets_;  // of the current scene
     std::unique_ptr<KernelMaker> maker_;           // for the current scene

@@ -1,15 +1,23 @@
-// A line of nine numbers for each that was kept: eye, look, up.
+// As JSON: eye, look and up of each, with its name.
 #include "app/view/scenes/viewpoints.h"
 
 #include "app/options/start_view.h"
 #include "app/view/placement/placement.h"
 #include "app/view/settings/view_files.h"
+#include "engine/address.h"
+#include "engine/builtin/procedural.h"
 #include "engine/error.h"
+#include "engine/files/json_node.h"
+#include "engine/platform.h"
 #include "engine/setup/output_files.h"
 #include "engine/setup/text_file.h"
 
+#include <array>
 #include <cmath>
+#include <optional>
+#include <span>
 #include <sstream>
+#include <utility>
 
 namespace binosplat {
 
@@ -18,8 +26,12 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostKept = 1000;
+constexpr const char* kExtension = ".viewpoints.json";
+constexpr std::array kPoints{std::pair("eye", &View::eye), std::pair("look", &View::look), std::pair("up", &View::up)};
 
-fs::path keptFile(const std::string& source) { return viewFileStem(source).string() + ".viewpoints.txt"; }
+fs::path keptFile(const std::string& source) { return viewFileStem(source).string() + kExtension; }
+// A line of nine numbers for each, as programs before wrote it.
+fs::path oldFile(const std::string& source) { return viewFileStem(source).string() + ".viewpoints.txt"; }
 
 bool isView(const View& view) {
     const glm::dvec3 ahead = view.look - view.eye;
@@ -27,23 +39,99 @@ bool isView(const View& view) {
     return std::isfinite(length) && length > 0.0 && glm::length(glm::cross(ahead, view.up)) > 1e-6 * length;
 }
 
-}  // namespace
-
-std::vector<View> keptViews(const std::string& source) {
-    std::vector<View> kept;
-    try {
-        std::istringstream lines(readTextFile(keptFile(source), "a list of viewpoints"));
-        for (std::string line; std::getline(lines, line) && kept.size() < kMostKept;) {
-            std::istringstream numbers(line);
-            View view{};
-            for (glm::dvec3* const point : {&view.eye, &view.look, &view.up}) { numbers >> point->x >> point->y >> point->z; }
-            if (numbers && isView(view)) { kept.push_back(view); }
-        }
-    } catch (const Error&) {}  // no list, or an unreadable one, which the next viewpoint replaces
+// Lines that are no view are left out.
+std::vector<Viewpoint> readOld(const fs::path& file) {
+    std::vector<Viewpoint> kept;
+    std::istringstream lines(readTextFile(file, "a list of viewpoints"));
+    for (std::string line; std::getline(lines, line) && kept.size() < kMostKept;) {
+        std::istringstream numbers(line);
+        View view{};
+        for (const auto& [name, point] : kPoints) { numbers >> (view.*point).x >> (view.*point).y >> (view.*point).z; }
+        if (numbers && isView(view)) { kept.push_back({fmt::format("your own {}", kept.size() + 1), view, true}); }
+    }
     return kept;
 }
 
-Viewpoint ownViewpoint(std::size_t number, const View& view) { return {fmt::format("your own {}", number), view}; }
+glm::dvec3 pointIn(const JsonNode& node) {
+    node.requireArray(3);
+    glm::dvec3 point(0.0);
+    for (int i = 0; i < 3; ++i) {
+        const JsonNode number = node.at(static_cast<std::size_t>(i));
+        static_cast<void>(number.number());  // checks it
+        point[i] = number.value.get<double>();
+    }
+    return point;
+}
+
+}  // namespace
+
+std::vector<Viewpoint> readViewpoints(const fs::path& file) {
+    const std::string text = readTextFile(file, "a list of viewpoints (JSON)"), name = file.string();
+    const nlohmann::json document = parseJson(std::as_bytes(std::span(text)), name, "a list of viewpoints");
+    const JsonNode list = JsonNode{document, name}.at("viewpoints");
+    std::vector<Viewpoint> viewpoints;
+    const std::size_t count = list.arraySize();
+    check(count <= kMostKept, "{}: {} viewpoints, must be at most {}", name, count, kMostKept);
+    for (std::size_t i = 0; i < count; ++i) {
+        const JsonNode node = list.at(i);
+        Viewpoint viewpoint{node.at("name").text(), {{}, {}, {}, 60.0}, true};
+        for (const auto& [key, point] : kPoints) { viewpoint.view.*point = pointIn(node.at(key)); }
+        check(isView(viewpoint.view), "{}: looks nowhere, must have a place to look at that is not the eye's, nor straight up",
+              node.place());
+        viewpoints.push_back(std::move(viewpoint));
+    }
+    return viewpoints;
+}
+
+void writeViewpoints(const fs::path& file, const std::vector<Viewpoint>& viewpoints) {
+    check(viewpoints.size() <= kMostKept, "{}: {} viewpoints, which are more than {}", file.string(), viewpoints.size(), kMostKept);
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    for (const Viewpoint& viewpoint : viewpoints) {
+        nlohmann::ordered_json entry{{"name", viewpoint.name}};
+        for (const auto& [key, point] : kPoints) {
+            const glm::dvec3& at = viewpoint.view.*point;
+            entry[key] = {at.x, at.y, at.z};
+        }
+        list.push_back(std::move(entry));
+    }
+    // Names come from outside: what is no UTF-8 is replaced.
+    const nlohmann::ordered_json document{{"viewpoints", list}};
+    OutputFiles files(file.parent_path());
+    writeText(files.staging() / file.filename(), document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+    files.publish();
+}
+
+fs::path sharedViewpoints(const std::string& source) {
+    if (isBuiltin(source) || isAddress(source)) {
+        const fs::path folder = userPicturesFolder();
+        check(!folder.empty(), "{}: viewpoints cannot be shared, since HOME is not set", source);
+        const std::string name = source.substr(source.find_last_of("/:") + 1);
+        return folder / (fs::path(name).stem().string() + kExtension);
+    }
+    std::error_code ignored;
+    fs::path place = fs::absolute(source, ignored).lexically_normal();
+    if (!place.has_filename()) { place = place.parent_path(); }
+    return place.parent_path() / ((fs::is_directory(place, ignored) ? place.filename() : place.stem()).string() + kExtension);
+}
+
+std::vector<Viewpoint> keptViewpoints(const std::string& source) {
+    const auto read = [&](const auto& find) -> std::optional<std::vector<Viewpoint>> {
+        try {
+            return find();
+        } catch (const Error&) { return std::nullopt; }  // there is none, or one that cannot be read, which the next viewpoint replaces
+    };
+    if (const auto kept = read([&] { return readViewpoints(keptFile(source)); })) { return *kept; }
+    if (const auto old = read([&] { return readOld(oldFile(source)); })) { return *old; }
+    const bool is_on_disk = !isBuiltin(source) && !isAddress(source);
+    if (!is_on_disk) { return {}; }
+    return read([&] { return readViewpoints(sharedViewpoints(source)); }).value_or(std::vector<Viewpoint>());
+}
+
+void keepViewpoints(const std::string& source, const std::vector<Viewpoint>& own) {
+    writeViewpoints(keptFile(source), own);
+    std::error_code ignored;
+    fs::remove(oldFile(source), ignored);  // they are in the new one
+}
 
 std::vector<Viewpoint> findViewpoints(const Scene& scene, const std::string& source, const fs::path& camera_file) {
     std::vector<FileCamera> cameras;
@@ -59,26 +147,11 @@ std::vector<Viewpoint> findViewpoints(const Scene& scene, const std::string& sou
         if (!isView(view)) { view.up = own_up; }
         viewpoints.push_back({camera.name, view});
     }
-    std::size_t number = 0;
-    for (View view : keptViews(source)) {
-        view.eye -= scene.origin, view.look -= scene.origin;
-        viewpoints.push_back(ownViewpoint(++number, view));
+    for (Viewpoint& own : keptViewpoints(source)) {
+        own.view.eye -= scene.origin, own.view.look -= scene.origin;
+        viewpoints.push_back(std::move(own));
     }
     return viewpoints;
-}
-
-void keepViewpoint(const std::string& source, const View& view) {
-    std::vector<View> kept = keptViews(source);
-    check(kept.size() < kMostKept, "{}: {} viewpoints are kept, and there can be no more", source, kMostKept);
-    kept.push_back(view);
-    std::string text;
-    for (const auto& [eye, look, up, fov] : kept) {
-        text += fmt::format("{} {} {}  {} {} {}  {} {} {}\n", eye.x, eye.y, eye.z, look.x, look.y, look.z, up.x, up.y, up.z);
-    }
-    const fs::path file = keptFile(source);
-    OutputFiles files(file.parent_path());
-    writeText(files.staging() / file.filename(), text);
-    files.publish();
 }
 
 Similarity placedAt(const View& view, const Similarity& scene_from_room, const Pose& room_from_head) {

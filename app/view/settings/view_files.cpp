@@ -61,18 +61,19 @@ fs::path viewFileStem(const std::string& scene) {
     return settings.parent_path() / settings.stem().stem();
 }
 
-std::optional<Similarity> rememberedPlacement(const std::string& scene) {
+RememberedPlace rememberedPlace(const std::string& scene) {
     const fs::path file = viewSettingsFile(scene);
     std::error_code ignored;
-    if (!fs::exists(file, ignored)) { return std::nullopt; }
-    return readViewSettings(viewTables(readSettingsFile(file)), {}).scene_from_room;
+    if (!fs::exists(file, ignored)) { return {}; }
+    const ViewSettings saved = readViewSettings(viewTables(readSettingsFile(file)), {});
+    return {saved.scene_from_room, saved.metres_per_unit};
 }
 
 std::string saveViewSettings(const std::string& scene, const ViewSettings& settings) {
     try {
         const fs::path file = viewSettingsFile(scene);
         OutputFiles files(file.parent_path());
-        writeText(files.staging() / file.filename(), viewSettingsToml(settings));
+        writeText(files.staging() / file.filename(), scenePlaceToml(settings));
         files.publish();
         return "saved as " + file.string();
     } catch (const Error& error) { return error.what(); }

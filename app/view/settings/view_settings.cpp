@@ -27,31 +27,22 @@ glm::dquat readRotation(const Setting& setting) {
     return glm::normalize(rotation);
 }
 
-// A key, and its value as TOML writes it.
 template <typename Owner>
-std::pair<std::string, std::string> lineOf(const OptionRow<Owner>& row, const Owner& owner) {
+SettingLine lineOf(const OptionRow<Owner>& row, const Owner& owner) {
     const OptionValue value = row.field.value(owner);
     const std::string text = textOf(value);
-    return {row.text.key, std::holds_alternative<std::string>(value) ? fmt::format("\"{}\"", text) : text};
+    return {row.text.table, row.text.key, std::holds_alternative<std::string>(value) ? fmt::format("\"{}\"", text) : text};
 }
 
-std::vector<std::pair<std::string, std::string>> stereoLines(const StereoOptions& stereo) {
-    RunOptions options;
-    options.stereo = stereo;
-    std::vector<std::pair<std::string, std::string>> lines;
-    for (const OptionRow<RunOptions>& row : runRows()) {
-        if (std::string_view(row.text.table) != "stereo" || (row.text.commands & kView) == 0) { continue; }
-        // Half resolution goes with foveation: other commands refuse it alone.
-        if (std::string_view(row.text.key) == "periphery" && stereo.foveation_deg == 0.0) { continue; }
-        lines.push_back(lineOf(row, options));
+std::string placeLines(const ViewSettings& settings) {
+    std::string text;
+    if (settings.scene_from_room) {
+        const auto& [q, p, scale] = *settings.scene_from_room;
+        text += fmt::format("scene-position = [{}, {}, {}]\nscene-orientation = [{}, {}, {}, {}]\nunits-per-metre = {}\n", p.x, p.y, p.z,
+                            q.w, q.x, q.y, q.z, scale);
     }
-    return lines;
-}
-
-std::vector<std::pair<std::string, std::string>> viewLines(const ViewSettings& settings) {
-    std::vector<std::pair<std::string, std::string>> lines;
-    for (const OptionRow<ViewSettings>& row : viewSettingsRows()) { lines.push_back(lineOf(row, settings)); }
-    return lines;
+    if (settings.metres_per_unit) { text += fmt::format("metres-per-unit = {}\n", *settings.metres_per_unit); }
+    return text;
 }
 
 }  // namespace
@@ -121,6 +112,9 @@ ViewSettings readViewSettings(const std::vector<SettingsTable>& tables, ViewSett
                 placement.orientation = readRotation(setting);
             } else if (key == "units-per-metre") {
                 placement.scale = readPositive(setting);
+            } else if (key == "metres-per-unit") {
+                --placed;
+                settings.metres_per_unit = readPositive(setting);
             } else {
                 fail("{} is not a known key of [view]", setting.origin);
             }
@@ -133,32 +127,43 @@ ViewSettings readViewSettings(const std::vector<SettingsTable>& tables, ViewSett
     return settings;
 }
 
+std::vector<SettingLine> settingLines(const ViewSettings& settings) {
+    RunOptions options;
+    options.stereo = settings.stereo;
+    std::vector<SettingLine> lines;
+    for (const OptionRow<RunOptions>& row : runRows()) {
+        if (std::string_view(row.text.table) != "stereo" || (row.text.commands & kView) == 0) { continue; }
+        // Half resolution goes with foveation: other commands refuse it alone.
+        if (std::string_view(row.text.key) == "periphery" && settings.stereo.foveation_deg == 0.0) { continue; }
+        lines.push_back(lineOf(row, options));
+    }
+    for (const OptionRow<ViewSettings>& row : viewSettingsRows()) { lines.push_back(lineOf(row, settings)); }
+    return lines;
+}
+
 std::string viewSettingsToml(const ViewSettings& settings) {
-    std::string text = "# The settings of the viewer's panel, and the place of the wearer's room in the scene.\n\n[stereo]\n";
-    for (const auto& [key, value] : stereoLines(settings.stereo)) {
-        if (!value.empty()) { text += fmt::format("{} = {}\n", key, value); }  // empty: left to the scene
+    std::string text = "# What the viewer's panel was set to, and where the wearer's room lay in the scene.\n";
+    const char* table = "";
+    for (const SettingLine& line : settingLines(settings)) {
+        if (line.value.empty()) { continue; }  // left to the scene
+        if (std::string_view(std::exchange(table, line.table)) != line.table) { text += fmt::format("\n[{}]\n", line.table); }
+        text += fmt::format("{} = {}\n", line.key, line.value);
     }
-    text += "\n[view]\n";
-    for (const auto& [key, value] : viewLines(settings)) { text += fmt::format("{} = {}\n", key, value); }
-    if (settings.scene_from_room) {
-        const auto& [q, p, scale] = *settings.scene_from_room;
-        text += fmt::format("scene-position = [{}, {}, {}]\nscene-orientation = [{}, {}, {}, {}]\nunits-per-metre = {}\n", p.x, p.y, p.z,
-                            q.w, q.x, q.y, q.z, scale);
-    }
-    return text;
+    return text + placeLines(settings);
+}
+
+std::string scenePlaceToml(const ViewSettings& settings) {
+    return "# Where the wearer's room lay in the scene.\n\n[view]\n" + placeLines(settings);
 }
 
 std::string describeChange(const ViewSettings& before, const ViewSettings& after) {
     std::string text;
     if (before == after) { return text; }  // as in nearly every frame
-    const auto compare = [&](const auto& old_lines, const auto& new_lines) {
-        for (std::size_t i = 0; i < old_lines.size(); ++i) {
-            if (old_lines[i].second == new_lines[i].second) { continue; }
-            text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", new_lines[i].first, new_lines[i].second);
-        }
-    };
-    compare(stereoLines(before.stereo), stereoLines(after.stereo));
-    compare(viewLines(before), viewLines(after));
+    const std::vector<SettingLine> lines_before = settingLines(before);
+    for (const SettingLine& line : settingLines(after)) {
+        if (std::ranges::find(lines_before, line) != lines_before.end()) { continue; }
+        text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", line.key, line.value);
+    }
     return text;
 }
 

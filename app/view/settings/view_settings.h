@@ -49,6 +49,7 @@ struct ViewSettings {
     WindowStereo window_stereo = WindowStereo::kMono;
     double window_eyes = 0.033, window_plane = 1.0;
     std::optional<Similarity> scene_from_room;  // absent: the scene's own view
+    std::optional<double> metres_per_unit;      // of the scene, if somebody has measured it
 
     bool operator==(const ViewSettings&) const = default;
 
@@ -63,6 +64,16 @@ ViewSettings readViewSettings(const std::vector<SettingsTable>& tables, ViewSett
 
 // A config for --config, also for that of `render`.
 std::string viewSettingsToml(const ViewSettings& settings);
+// Only what is kept of a scene: where the wearer's room lies in it, and its measure.
+std::string scenePlaceToml(const ViewSettings& settings);
+
+// A setting as TOML writes it.
+struct SettingLine {
+    const char* table;  // "stereo" or "view"
+    std::string key, value;
+    bool operator==(const SettingLine&) const = default;
+};
+std::vector<SettingLine> settingLines(const ViewSettings& settings);
 
 // The differences, as "mode = paper, margin = 16", except placements. Empty if there are none.
 std::string describeChange(const ViewSettings& before, const ViewSettings& after);

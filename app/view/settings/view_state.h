@@ -11,7 +11,9 @@ class ViewState {
 public:
     // A placement among the settings is that of the first scene.
     explicit ViewState(ViewSettings settings = {})
-        : asked_(std::exchange(settings.scene_from_room, {})), settings_(std::move(settings)), said_(settings_) {}
+        : asked_(std::exchange(settings.scene_from_room, {})), settings_(std::move(settings)), said_(settings_) {
+        settings_.metres_per_unit = said_.metres_per_unit = {};
+    }
 
     // Without a placement.
     [[nodiscard]] const ViewSettings& settings() const { return settings_; }
@@ -33,6 +35,7 @@ public:
     void set(ViewSettings settings) {
         scene_from_room_ = inScene(std::exchange(settings.scene_from_room, {})).value_or(scene_from_room_);
         settings_ = std::move(settings);
+        settings_.metres_per_unit.reset();  // the scene's
     }
     void togglePanel() { settings_.panel = !settings_.panel; }
 

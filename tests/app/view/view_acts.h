@@ -141,10 +141,15 @@ struct KeptPlace {
 inline std::vector<KeptPlace> keptPlaces(const Workplace& work) {
     std::vector<KeptPlace> kept;
     for (const auto& file : std::filesystem::directory_iterator(work.base / "config" / "binosplat" / "scenes")) {
-        if (!file.path().string().ends_with(".viewpoints.txt")) { continue; }
-        std::ifstream numbers(file.path());
-        for (KeptPlace p{}; numbers >> p.eye.x >> p.eye.y >> p.eye.z >> p.look.x >> p.look.y >> p.look.z >> p.up.x >> p.up.y >> p.up.z;) {
-            kept.push_back(p);
+        if (!file.path().string().ends_with(".viewpoints.json")) { continue; }
+        std::ifstream text(file.path());
+        const nlohmann::json document = nlohmann::json::parse(text);
+        for (const nlohmann::json& viewpoint : document.at("viewpoints")) {
+            const auto point = [&](const char* name) {
+                const auto at = viewpoint.at(name).get<std::array<double, 3>>();
+                return glm::dvec3(at[0], at[1], at[2]);
+            };
+            kept.push_back({point("eye"), point("look"), point("up")});
         }
     }
     return kept;

@@ -49,6 +49,20 @@ public:
             hands(does);
         }
     }
+    // On its panel, at a scale of 0.7 in the upper right corner.
+    void click(const std::string& widget, PanelPage page) {
+        PanelSketch sketch;
+        sketch.status.window.emplace();
+        sketch.settings.page = page;
+        const glm::dvec2 size(glm::ivec2(0.7 * glm::dvec2(kPanelPx)));
+        hands(moveTo(glm::dvec2(1280.0 - size.x, 0.0) + shareOf(sketch.draw().places, widget) * size) + "click 1");
+    }
+    std::string waitFor(const std::string& words) {
+        const std::string lines = program_.waitFor(words);
+        INFO(words << ": " << program_.said());
+        REQUIRE(lines != "");
+        return lines;
+    }
     // It ends well.
     void checkEnd() {
         hands("key Escape");
@@ -143,6 +157,60 @@ TEST_CASE("a runtime that hangs keeps no window from opening; what is dropped on
     desk().connection.minimize(number, false);
     window.rest();
     CHECK(window.help() > before);
+    window.checkEnd();
+}
+
+TEST_CASE(
+    "two ends and a number give the scene its true size; a viewpoint gets a name and a tour; what is set on the panel is so the next "
+    "time") {
+    if (!haveScreen()) { return; }
+    const Workplace work;
+    const fs::path kept = work.base / "config" / "binosplat";
+    const glm::dvec2 one(200.0, 300.0), other(500.0, 360.0);
+    {
+        Window window(work, "--desktop");
+        const glm::dvec3 from = window.seenAt(one), to = window.seenAt(other);
+        window.click("True size", PanelPage::kView);
+        window.waitFor("click on one end");
+        hands(moveTo(one) + "click 1");
+        window.waitFor("and now on its other end");
+        hands(moveTo(other) + "click 1");
+        window.waitFor("as shown, it is ");
+        hands("key 2 period 5 9 BackSpace Return");
+        window.waitFor("saved as ");
+        const std::string text = textIn(kept / "scenes" / "slanted-wall.view.toml"), key = "metres-per-unit = ";
+        REQUIRE(text.find(key) != std::string::npos);
+        CHECK(std::stod(text.substr(text.find(key) + key.size())) == doctest::Approx(2.5 / glm::distance(from, to)).epsilon(0.01));
+
+        window.click("Both eyes", PanelPage::kView);
+        window.waitFor("picture-both-eyes = true");
+        window.rest();
+        CHECK(readPicture(window.picture()).size_px == glm::uvec2(2 * 743, 720));
+
+        window.click("Scenes", PanelPage::kView);
+        window.waitFor("panel-page");
+        for (const char* number : {"1", "2"}) {
+            window.click("Keep this one", PanelPage::kScenes);
+            window.waitFor("this viewpoint is kept");
+            CHECK(textIn(kept / "scenes" / "slanted-wall.viewpoints.json").find("your own " + std::string(number)) != std::string::npos);
+        }
+        window.click("Name", PanelPage::kScenes);
+        hands("key --repeat 12 BackSpace");
+        hands("type door");
+        hands("key Return");
+        window.waitFor("this viewpoint is called door");
+        window.click("Tour", PanelPage::kScenes);
+        window.waitFor("viewpoint 1 of 2: your own 1");
+        window.waitFor("viewpoint 2 of 2: door");
+        window.waitFor("the tour is over");
+        window.checkEnd();
+    }
+    CHECK(textIn(kept / "preferences.toml").find("\n[view]\npicture-both-eyes = true\n") != std::string::npos);
+    Window window(work, "--desktop --hide-panel");
+    window.rest();
+    CHECK(readPicture(window.picture()).size_px == glm::uvec2(2560, 720));
+    hands("key 2");
+    window.waitFor("viewpoint 2 of 2: door");
     window.checkEnd();
 }
 

@@ -240,6 +240,28 @@ TEST_CASE("a ring shows where a ray meets the scene; an arc that something stand
     CHECK(kept[0].eye == kept[1].eye);
 }
 
+TEST_CASE("two ends that a ray clicks on, and a number, give the scene its true size, which stays with it") {
+    const Workplace work;
+    TextEntry entry;
+    entry.open(TextEntry::What::kMetres, "As shown, it is 0.8485 m long. How many metres is it in truth?", "");
+    PanelSketch sketch;
+    sketch.status.entry = &entry;
+    const WidgetPlaces keys = sketch.draw().places;
+    Acts acts(kSmall + "extension XR_EXT_hand_tracking off\n");  // a palm that is turned to the eyes points at nothing
+    acts.click(placeOf("True size"));
+    for (const double x : {0.05, 0.65}) {
+        acts.move("controller right", lookingAt({x, 1.2, -0.4}, {x, 1.2, -1.0})).wait(0.1).press("right trigger").wait(0.05);
+    }
+    acts.click(shareOf(keys, "2")).click(shareOf(keys, "Done")).wait(1.0);
+    const ViewRun run = runClean(work, "run", acts.script(), kWithHands + " --eye 0,0,0 --look 0,0,9 --up 0,-1,0");
+    INFO(run.outcome.output);
+    checkOrder(run, {"click on one end", "and now on its other end", "as shown, it is ", "saved as "});
+    // The wall is 4 m away ahead, and as much farther as to the right.
+    const std::string text = textIn(work.base / "config" / "binosplat" / "scenes" / "slanted-wall.view.toml"), key = "metres-per-unit = ";
+    REQUIRE(text.find(key) != std::string::npos);
+    CHECK(std::stod(text.substr(text.find(key) + key.size())) == doctest::Approx(2.0 / (0.6 * std::sqrt(2.0))).epsilon(0.04));
+}
+
 TEST_CASE("controllers are drawn where grips are; the wearer teleports to where the arc ended, on the floor that the runtime says") {
     const Workplace work;
     const std::string config =

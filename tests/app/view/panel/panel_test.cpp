@@ -76,6 +76,7 @@ TEST_CASE_FIXTURE(PanelSketch, "a click reaches what it points at: boxes, button
                                                                                           {"Recentre", &Asked::recentre},
                                                                                           {"Reset", &Asked::reset_scene},
                                                                                           {"1:1", &Asked::natural_size},
+                                                                                          {"True size", &Asked::measure},
                                                                                           {"Picture", &Asked::take_picture}}) {
         CHECK_MESSAGE(asks(name, request), name);
     }
@@ -87,13 +88,52 @@ TEST_CASE_FIXTURE(PanelSketch, "a click reaches what it points at: boxes, button
     CHECK(asks("Last shown", &Asked::last_scene));
     CHECK(asks("Next viewpoint", &Asked::viewpoint_step) == 1);
     CHECK(asks("Previous viewpoint", &Asked::viewpoint_step) == -1);
-    CHECK(asks("Keep this one", &Asked::keep_viewpoint));
+    for (const auto& [name, request] : std::vector<std::pair<const char*, bool Asked::*>>{{"Keep this one", &Asked::keep_viewpoint},
+                                                                                          {"Tour", &Asked::tour},
+                                                                                          {"Name", &Asked::rename_viewpoint},
+                                                                                          {"Forget", &Asked::forget_viewpoint},
+                                                                                          {"Export", &Asked::share_viewpoints},
+                                                                                          {"Import", &Asked::read_viewpoints}}) {
+        CHECK_MESSAGE(asks(name, request), name);
+    }
+    CHECK(these(asks("Earlier", &Asked::viewpoint_move), asks("Later", &Asked::viewpoint_move)) == these(-1, 1));
     click("Help");
     CHECK(settings.page == Page::kHelp);
     CHECK(asks("Leave", &Asked::quit));
     status.window.emplace();  // there H lists the keys
     draw();
     CHECK(settings.page == Page::kView);
+}
+
+TEST_CASE_FIXTURE(PanelSketch, "what the panel asks for is written with its keys or a keyboard, in place of its page") {
+    using What = TextEntry::What;
+    TextEntry entry;
+    status.entry = &entry;
+    CHECK(draw().places.contains("Recentre"));
+    entry.open(What::kViewpointName, "The viewpoint's name", "my");
+    CHECK_FALSE(draw().places.contains("Recentre"));
+    for (const char* key : {"Space", "d", "Capitals", "O", "Capitals", "o", "x", "Erase"}) { click(key); }
+    CHECK(entry.text() == "my dOo");
+    entry.type("\u00e4");
+    CHECK(entry.text() == "my dOo\u00e4");
+    entry.eraseLast();
+    CHECK(entry.text() == "my dOo");
+    entry.type("r");
+    CHECK(click("Done").entered == std::pair(What::kViewpointName, std::string("my dOor")));
+    CHECK_FALSE(entry.isOpen());
+    CHECK(draw().places.contains("Recentre"));
+    entry.open(What::kMetres, "How long?", "");
+    for (const char* key : {"2", ".", "5"}) { click(key); }
+    CHECK_FALSE(draw().places.contains("q"));
+    entry.confirm();
+    CHECK(draw().entered == std::pair(What::kMetres, std::string("2.5")));
+    entry.open(What::kMetres, "How long?", "3");
+    CHECK_FALSE(click("Cancel").entered.has_value());
+    CHECK_FALSE(entry.isOpen());
+    // There is an end to it.
+    entry.open(What::kViewpointName, "", "");
+    for (int i = 0; i < 100; ++i) { entry.type("ab"); }
+    CHECK(entry.text().size() == 60);
 }
 
 TEST_CASE_FIXTURE(PanelSketch, "a message is white letters on a dark plate, in two lines if it is long; beside it nothing is seen") {
@@ -411,7 +451,7 @@ TEST_CASE_FIXTURE(AtWork, "names of any bytes and of any length are shown, and a
     PanelSketch sketch;
     sketch.settings.page = Page::kScenes;
     sketch.chooser.showFolder(work.path.string());
-    CHECK(sketch.draw().places.size() == 17 + 2 * 5);
+    CHECK(sketch.draw().places.size() == 24 + 2 * 5);
     CHECK(sketch.click(longest).chosen_scene == (work.path / longest).string());
     CHECK(asShown("a\nb\x1b[1m\x7f") ==
           "a\xef\xbf\xbd"

@@ -2,7 +2,9 @@
 #include "app/view/placement/placement.h"
 #include "app/options/start_view.h"
 #include "app/view/headset/losses.h"
+#include "app/view/placement/ruler.h"
 #include "app/view/placement/view_eyes.h"
+#include "app/view/settings/preferences.h"
 #include "app/view/settings/view_files.h"
 #include "app/view/settings/view_settings.h"
 #include "tests/app/options/parsed.h"
@@ -166,6 +168,84 @@ TEST_CASE("sessions that are lost one after the other are too many after three, 
     losses.forget();
     for (int i = 0; i < 20; ++i) { CHECK(losses.add(now += std::chrono::seconds(11))); }
     CHECK(losses.count() == 1);
+}
+
+TEST_CASE("what somebody sets on the panel is kept, key by key, and is there the next time; the rest is left to the program") {
+    const Workplace work;
+    setenv("XDG_CONFIG_HOME", (work.base / "config").c_str(), 1);
+    const auto parse = [](std::vector<const char*> words) {
+        words.insert(words.begin(), {"binosplat", "view", "builtin:fence"});
+        return std::get<ViewOptions>(parseOptions(static_cast<int>(words.size()), words.data()));
+    };
+    const auto settingsOf = [](const ViewOptions& options) {
+        ViewSettings settings;
+        settings.stereo = options.run.stereo;
+        return readViewSettings(options.tables, settings);
+    };
+    ViewSettings now = settingsOf(parse({}));
+    const ViewSettings begin = now;
+    Preferences preferences;
+    preferences.note(now, 0.1);
+    CHECK(preferences.takeChanges(true).empty());
+    now.quality = Quality::kFast;
+    now.stereo.mode = Mode::kShared;
+    now.panel = !now.panel;
+    now.scene_from_room = kSome;
+    preferences.note(now, 0.1);
+    CHECK(preferences.takeChanges().empty());  // it may change on
+    preferences.note(now, 2.0);
+    const PreferenceLines changes = preferences.takeChanges();
+    CHECK(changes == PreferenceLines{{{"stereo", "mode"}, "\"shared\""}, {{"view", "quality"}, "\"fast\""}});
+    keepPreferences(changes);
+    keepPreferences({{{"view", "vignette"}, "false"}});
+    const ViewSettings next = settingsOf(parse({}));
+    CHECK(describeChange(begin, next) == "mode = \"shared\", vignette = false, quality = \"fast\"");
+    // The command line and a config come first, and the simulated headset knows nothing of it.
+    CHECK(settingsOf(parse({"--mode", "mono"})).stereo.mode == Mode::kMono);
+    work.write("own.toml", "[view]\nquality = \"sharp\"\n");
+    const std::string own = (work.path / "own.toml").string();
+    CHECK(settingsOf(parse({"--config", own.c_str()})).quality == Quality::kSharp);
+    CHECK(describeChange(begin, settingsOf(parse({"--simulate"}))) == "");
+    // One that is broken keeps nobody out, and is replaced.
+    std::ofstream(preferencesFile()) << "[view]\nnonsense = 1\n";
+    CHECK(describeChange(begin, settingsOf(parse({}))) == "");
+    keepPreferences({{{"view", "vignette"}, "false"}});
+    CHECK(describeChange(begin, settingsOf(parse({}))) == "vignette = false");
+    unsetenv("XDG_CONFIG_HOME");
+}
+
+TEST_CASE("a ruler has two ends, and is put away with the second") {
+    Ruler ruler;
+    CHECK_FALSE(ruler.isOpen());
+    ruler.open();
+    CHECK_FALSE(ruler.add({1.0, 2.0, 3.0}).has_value());
+    ruler.open();  // from the beginning
+    CHECK_FALSE(ruler.hasFirst());
+    CHECK_FALSE(ruler.add({1.0, 2.0, 3.0}).has_value());
+    CHECK(ruler.add({1.0, 5.0, 7.0}) == 5.0);
+    CHECK(these(ruler.isOpen(), ruler.units()) == these(false, 5.0));
+}
+
+TEST_CASE("of a scene only its place and its measure are kept") {
+    const Workplace work;
+    setenv("XDG_CONFIG_HOME", (work.base / "config").c_str(), 1);
+    ViewSettings settings;
+    settings.stereo.mode = Mode::kPaper;
+    settings.scene_from_room = kSome;
+    settings.metres_per_unit = 0.25;
+    CHECK(saveViewSettings("builtin:fence", settings).starts_with("saved as "));
+    const RememberedPlace there = rememberedPlace("builtin:fence");
+    REQUIRE(there.scene_from_room.has_value());
+    checkNear(there.scene_from_room->position, kSome.position);
+    CHECK(there.metres_per_unit == 0.25);
+    ViewSettings loaded;
+    CHECK(takeSavedSettings(readSavedSettings("builtin:fence"), loaded).starts_with("loaded "));
+    CHECK(describeChange({}, loaded) == "");
+    // What programs before have saved is taken as a whole.
+    std::ofstream(viewSettingsFile("builtin:fence")) << viewSettingsToml(settings);
+    CHECK(takeSavedSettings(readSavedSettings("builtin:fence"), loaded).starts_with("loaded "));
+    CHECK(loaded.stereo.mode == Mode::kPaper);
+    unsetenv("XDG_CONFIG_HOME");
 }
 
 TEST_CASE("what the panel is set to survives its file") {

@@ -3,6 +3,7 @@
 #include "app/view/files/file_worker.h"
 #include "app/view/files/picture_writer.h"
 #include "app/view/governor/met_displays.h"
+#include "app/view/panel/scene_chooser.h"
 #include "app/view/scenes/natural_order.h"
 #include "app/view/scenes/recent_scenes.h"
 #include "app/view/scenes/scene_facts.h"
@@ -278,12 +279,13 @@ TEST_CASE_FIXTURE(Home, "viewpoints are the cameras beside the scene, and then t
     const std::string scene = at("a.ply");
     add("a.ply");
     CHECK(findViewpoints({}, scene, {}).empty());
-    keepViewpoint(scene, {{0, 0, 1}, {0, 0, 2}, {0, -1, 0}, 60.0});
-    keepViewpoint(scene, {{0, 0, 3}, {1, 0, 3}, {0, -1, 0}, 60.0});
+    const fs::path kept = viewFileStem(scene).string() + ".viewpoints.json", old = viewFileStem(scene).string() + ".viewpoints.txt";
+    fs::create_directories(kept.parent_path());
+    std::ofstream(old) << "0 0 1  0 0 2  0 -1 0\n0 0 3  1 0 3  0 -1 0\n";
     write("cameras.json", R"([{"img_name": "door", "width": 8, "height": 8, "fx": 8, "fy": 8, "position": [5, 0, 0],
                                     "rotation": [[1,0,0],[0,1,0],[0,0,1]]}])");
     // Lines that are no view: one that looks along its up, and one that is broken off.
-    std::ofstream(viewFileStem(scene).string() + ".viewpoints.txt", std::ios::app) << "0 0 1 0 0 2 0 0 1\n0 0 1 0\n";
+    std::ofstream(old, std::ios::app) << "0 0 1 0 0 2 0 0 1\n0 0 1 0\n";
     const std::vector<Viewpoint> found = findViewpoints({}, scene, {});
     REQUIRE(found.size() == 3);
     CHECK(these(found[0].name, found[0].view.eye, found[1].view.eye, found[2].name) ==
@@ -296,6 +298,57 @@ TEST_CASE_FIXTURE(Home, "viewpoints are the cameras beside the scene, and then t
     CHECK(these(there[0].view.eye, there[2].view.eye, there[2].view.look) ==
           these(glm::dvec3(1, 0, 2), glm::dvec3(-4, 0, 5), glm::dvec3(-3, 0, 5)));
     CHECK(findViewpoints(far, scene, path / "cameras.json")[0].view.eye == glm::dvec3(1, 0, 2));
+    // Lines of programs before go where all are kept now, in their order and with their names.
+    std::vector<Viewpoint> own = keptViewpoints(scene);
+    own.back().name = "\u00fcber dem Tisch \"2\"";
+    std::swap(own[0], own[1]);
+    keepViewpoints(scene, own);
+    CHECK_FALSE(fs::exists(old));
+    own = keptViewpoints(scene);
+    REQUIRE(own.size() == 2);
+    CHECK(these(own[0].name, own[0].view.eye, own[0].is_own, own[1].name) ==
+          these("\u00fcber dem Tisch \"2\"", glm::dvec3(0, 0, 3), true, "your own 1"));
+    // Those of others lie beside the scene, and count where nothing was kept.
+    CHECK(sharedViewpoints(scene) == at("a.viewpoints.json"));
+    writeViewpoints(sharedViewpoints(scene), {own[1]});
+    CHECK(keptViewpoints(scene).size() == 2);
+    fs::remove(kept);
+    REQUIRE(keptViewpoints(scene).size() == 1);
+    CHECK(keptViewpoints(scene)[0].view.look == glm::dvec3(0, 0, 2));
+}
+
+TEST_CASE_FIXTURE(Home, "a list of viewpoints that is broken is one line with the place") {
+    const auto checkRefused = [&](const std::string& text, const std::string& part) {
+        write("bad.viewpoints.json", text);
+        try {
+            static_cast<void>(readViewpoints(at("bad.viewpoints.json")));
+            FAIL(text);
+        } catch (const Error& error) {
+            INFO(error.what());
+            CHECK(std::string(error.what()).starts_with(at("bad.viewpoints.json") + ": "));
+            CHECK(std::string(error.what()).find(part) != std::string::npos);
+        }
+    };
+    const auto with = [](const std::string& eye) {
+        return R"({"viewpoints": [{"name": "a", "eye": )" + eye + R"(, "look": [0, 0, 1], "up": [0, -1, 0]}]})";
+    };
+    write("good.viewpoints.json", with("[0, 0, 0]"));
+    CHECK(readViewpoints(at("good.viewpoints.json")).size() == 1);
+    checkRefused("{", "JSON");
+    checkRefused("{}", "viewpoints");
+    checkRefused(with("[0, 0]"), "viewpoints[0].eye");
+    checkRefused(with(R"([0, "x", 0])"), "viewpoints[0].eye[1]");
+    checkRefused(with("[0, 0, 1]"), "viewpoints[0]: looks nowhere");
+}
+
+TEST_CASE_FIXTURE(Home, "favourites come before the recent scenes, each once") {
+    for (const char* name : {"a.ply", "b.ply", "c.ply"}) { add(name); }
+    for (const char* name : {"a.ply", "b.ply"}) { rememberScene(at(name)); }
+    for (const char* name : {"c.ply", "a.ply"}) { toggleFavourite(at(name)); }
+    CHECK(favouriteAndRecentScenes() == std::vector<std::string>{at("c.ply"), at("a.ply"), at("b.ply")});
+    const SceneList list = makeSceneList({.recent = true, .folder = {}, .number = 1});
+    REQUIRE(list.entries.size() == 3);
+    CHECK(these(list.entries[0].name, list.entries[1].is_favourite, list.entries[2].is_favourite) == these("c.ply", true, false));
 }
 
 TEST_CASE_FIXTURE(Home, "a scene that was shown has a small picture and a line, and favourites come first") {
@@ -358,7 +411,8 @@ TEST_CASE("a picture's name has its scene and its time") {
         REQUIRE(name.ends_with(time));
         return name.substr(0, name.size() - time.size());
     };
-    CHECK(these(nameOf("garden.ply"), nameOf("/a/b.c/garden.v2.ply"), nameOf("scenes/garden/")) == these("garden-", "garden.v2-", "garden-"));
+    CHECK(these(nameOf("garden.ply"), nameOf("/a/b.c/garden.v2.ply"), nameOf("scenes/garden/")) ==
+          these("garden-", "garden.v2-", "garden-"));
     CHECK(these(nameOf("builtin:atelier"), nameOf("https://a.org/x/garden.ply?dl=1"), nameOf("C:\\scenes\\garden.spz")) ==
           these("atelier-", "garden-", "garden-"));
     CHECK(these(nameOf("/a/garden/meta.json"), nameOf("garden/lod-meta.json"), nameOf("/")) == these("garden-", "garden-", ""));

@@ -4,8 +4,10 @@
 #include "app/view/panel/canvas.h"
 #include "app/view/panel/panel_content.h"
 #include "app/view/panel/panel_style.h"
+#include "app/view/scenes/viewpoint_list.h"
 #include "app/view/settings/view_files.h"
 #include "engine/builtin/procedural.h"
+#include "engine/files/load_scene.h"
 #include "tests/engine/gpu/device_image.h"
 #include "tests/run_program.h"
 
@@ -249,6 +251,108 @@ TEST_CASE_FIXTURE(Gpu, "the panel has the same colours where the runtime has no 
         CHECK(colours.size() > 20);
         CHECK(farthest < 1.0);
     }
+}
+
+TEST_CASE_FIXTURE(
+    Shown, "where two scenes do not fit together, the one that is shown goes first, with a word, and comes back if that was in vain") {
+    go("scene atelier --splats 20000 --out many.ply");
+    go("scene atelier --splats 24000 --out more.ply");
+    go("scene atelier --splats 400000 --out most.ply");
+    const auto bytesOf = [&](const char* name) {
+        const std::uint64_t before = context().memoryUse().current_bytes;
+        const GpuScene scene(context(), loadScene((path / name).string()));
+        return context().memoryUse().current_bytes - before;
+    };
+    // Room for one and a half of them, and their lists.
+    ContextOptions limited;
+    limited.memory_limit_bytes = bytesOf("many.ply") + bytesOf("more.ply") - bytesOf("many.ply") / 4;
+    const Context small(limited);
+    options.scene = (path / "many.ply").string();
+    const std::string more = (path / "more.ply").string(), most = (path / "most.ply").string();
+    ShownScene scenes(small, options, log);
+    REQUIRE(scenes.take(state).empty());
+    const Similarity moved = Similarity{{1, 0, 0, 0}, {1, 2, 3}, 2.0};
+    state.place(moved);
+    scenes.begin(more);
+    CHECK(scenes.take(state) == options.scene + " and " + more + " do not fit into the device's memory together: the first one goes first");
+    CHECK(scenes.get() == nullptr);
+    CHECK(scenes.name() == more);
+    CHECK(scenes.take(state).empty());
+    REQUIRE(scenes.get() != nullptr);
+    CHECK(scenes.name() == more);
+    // One that fits by no means: then what was shown comes back.
+    scenes.begin(most);
+    CHECK(scenes.take(state).find(" goes first") != std::string::npos);
+    CHECK(scenes.take(state).find("MiB") != std::string::npos);
+    CHECK(scenes.get() == nullptr);
+    CHECK(scenes.take(state).empty());
+    CHECK(scenes.name() == more);
+    // And where its wearer stood is known.
+    scenes.begin(options.scene);
+    static_cast<void>(scenes.take(state));
+    REQUIRE(scenes.take(state).empty());
+    CHECK(same(state.sceneFromRoom(), moved));
+}
+
+TEST_CASE_FIXTURE(Shown, "viewpoints are kept, named, put in order, forgotten, shared, and toured") {
+    go("scene one-splat --out one.ply");
+    options.scene = (path / "one.ply").string();
+    ShownScene scenes(context(), options, log);
+    REQUIRE(scenes.take(state).empty());
+    FileWorker files;
+    std::string said;
+    ViewpointList list(files, [&](const std::string& words) { said = words; });
+    CHECK(list.goBy(1) == nullptr);
+    list.show(scenes.get());
+    CHECK(list.goBy(1) == nullptr);
+    CHECK(said.find("no viewpoints") != std::string::npos);
+    const auto names = [&] {
+        files.finish();
+        std::string all;
+        for (const Viewpoint& viewpoint : keptViewpoints(options.scene)) { all += viewpoint.name + ";"; }
+        return all;
+    };
+    for (const double z : {-1.0, -2.0, -3.0}) { list.keep({{0.0, 0.0, z}, {0.0, 0.0, 1.0}, {0.0, -1.0, 0.0}, 60.0}); }
+    CHECK(names() == "your own 1;your own 2;your own 3;");
+    list.rename("door");
+    list.moveBy(-1);
+    list.moveBy(-1);
+    list.moveBy(-1);
+    CHECK(names() == "door;your own 1;your own 2;");
+    CHECK(list.words() == "viewpoint 1 of 3: door");
+    REQUIRE(list.goBy(1) != nullptr);
+    list.forget();
+    CHECK(names() == "door;your own 2;");
+    CHECK_FALSE(list.requireOwn());
+    // Shared, and read by somebody who has none of them; twice is no more.
+    list.writeShared();
+    files.finish();
+    CHECK(said == "2 viewpoints are in " + (path / "one.viewpoints.json").string());
+    scenes.get()->viewpoints.clear();
+    list.show(scenes.get());
+    // Reading that has not begun is dropped by finish(); what was read is written then.
+    const auto readAll = [&] {
+        while (!files.now().empty()) { std::this_thread::yield(); }
+        files.finish();
+        files.finish();
+    };
+    for (const int added : {2, 0}) {
+        list.read("");
+        readAll();
+        CHECK(said == fmt::format("2 viewpoints from {}, {} of them new", (path / "one.viewpoints.json").string(), added));
+    }
+    CHECK(list.count() == 2);
+    list.read((path / "gone.json").string());
+    readAll();
+    CHECK(said.find("gone.json") != std::string::npos);
+    // The tour rests at each, and ends after the last.
+    std::string toured;
+    list.toggleTour();
+    for (int i = 0; i < 100 && list.isTouring(); ++i) {
+        if (const Viewpoint* const next = list.pass(0.25, true)) { toured += fmt::format("{} {};", i, next->name); }
+    }
+    CHECK(toured == "0 door;6 your own 2;");
+    CHECK(said == "the tour is over");
 }
 
 TEST_CASE_FIXTURE(Shown, "another method is drawn once its kernels are there, made beside the frames, and the next scene comes with them") {
