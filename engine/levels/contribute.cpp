@@ -20,8 +20,8 @@ void recordContributions(PassKernels& kernels, Commands& commands, const GpuScen
         pass.wanted = wanted->colours.address<gpu::vec4>();
     }
     commands.beginPass({Role::kNone, ContributeKernel::kStage, ContributeKernel::kShader});
-    commands.dispatch(kernels.get(ContributeKernel{.splat_kind = scene.splatKind(), .fits = wanted != nullptr}), pass, targets.size_tiles.x,
-                      targets.size_tiles.y);
+    commands.dispatch(kernels.get(contributeKernel(kernels.threadsPerCell(), scene.splatShape(), wanted != nullptr)), pass,
+                      targets.size_tiles.x, targets.size_tiles.y);
 }
 
 }  // namespace binosplat

@@ -247,7 +247,8 @@ TEST_CASE_FIXTURE(Gpu, "rasterize leaves the word that each pixel moves by, and 
 }
 
 // Of each splat by rank, from one run of contribute.
-std::vector<std::array<double, gpu::kContributionSums>> contributionsOnDevice(Gpu& gpu, const Raster& raster, const Buffer& wanted) {
+std::vector<std::array<double, gpu::kContributionSums>> contributionsOnDevice(Gpu& gpu, const Raster& raster, const Buffer& wanted,
+                                                                              std::uint32_t threads) {
     const std::size_t splats = raster.staged.twin.splats.size();
     std::vector<gpu::uint> order(splats);
     std::iota(order.begin(), order.end(), 0u);
@@ -262,7 +263,7 @@ std::vector<std::array<double, gpu::kContributionSums>> contributionsOnDevice(Gp
                                    wanted.address<gpu::vec4>(),
                                    sums.address<gpu::uint>(),
                                    0};
-    const Kernel& kernel = gpu.kernel(ContributeKernel{.splat_kind = test::shapeOf(raster.staged.view.scene), .fits = 1});
+    const Kernel& kernel = gpu.kernel(contributeKernel(threads, test::shapeOf(raster.staged.view.scene), true));
     const glm::uvec2 size_tiles = tilesOf(raster.staged.view.eye.size_px);
     gpu.run([&](Commands& commands) { commands.dispatch(kernel, pass, size_tiles.x, size_tiles.y); });
     std::vector<std::array<double, gpu::kContributionSums>> found(splats);
@@ -284,21 +285,24 @@ TEST_CASE_FIXTURE(Gpu, "contribute finds what each splat makes up of a picture a
         std::vector<glm::vec4> colours;
         for (const glm::dvec3& colour : wanted) { colours.emplace_back(glm::vec3(colour), 1.0f); }
         const Buffer picture = upload("wanted", colours);
-        const auto found = contributionsOnDevice(*this, raster, picture);
-        CHECK(contributionsOnDevice(*this, raster, picture) == found);
         const auto expected = reference::contribute(staged.twin.splats, staged.twin.sorted_pairs, staged.twin.ranges, staged.view.eye,
                                                     kSettings, truth, wanted);
-        std::array<double, gpu::kContributionSums> off{}, all{};
-        for (std::size_t i = 0; i < found.size(); ++i) {
-            const reference::Contribution& e = expected[i];
-            const std::array sums{e.weight,       e.missing.x,    e.missing.y, e.missing.z,
-                                  e.opacity_pull, e.opacity_hold, e.size_pull, e.size_hold};
-            for (std::size_t s = 0; s < sums.size(); ++s) { off[s] += std::abs(found[i][s] - sums[s]), all[s] += std::abs(sums[s]); }
-        }
-        for (std::size_t s = 0; s < off.size(); ++s) {
-            CAPTURE(s);
-            // Colours are half floats, of which sums of either sign keep what does not cancel.
-            CHECK(off[s] <= 1e-3 * all[s] + (s == gpu::kSumWeight ? 0.0 : 2e-4 * all[gpu::kSumWeight]));
+        for (const std::uint32_t threads : {8u, 32u}) {
+            CAPTURE(threads);
+            const auto found = contributionsOnDevice(*this, raster, picture, threads);
+            CHECK(contributionsOnDevice(*this, raster, picture, threads) == found);
+            std::array<double, gpu::kContributionSums> off{}, all{};
+            for (std::size_t i = 0; i < found.size(); ++i) {
+                const reference::Contribution& e = expected[i];
+                const std::array sums{e.weight,       e.missing.x,    e.missing.y, e.missing.z,
+                                      e.opacity_pull, e.opacity_hold, e.size_pull, e.size_hold};
+                for (std::size_t s = 0; s < sums.size(); ++s) { off[s] += std::abs(found[i][s] - sums[s]), all[s] += std::abs(sums[s]); }
+            }
+            for (std::size_t s = 0; s < off.size(); ++s) {
+                CAPTURE(s);
+                // Colours are half floats, of which sums of either sign keep what does not cancel.
+                CHECK(off[s] <= 1e-3 * all[s] + (s == gpu::kSumWeight ? 0.0 : 2e-4 * all[gpu::kSumWeight]));
+            }
         }
     }
 }
