@@ -31,7 +31,7 @@ View viewFromOrigin() { return {{0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}, {0.0, -1.0, 0.
 
 constexpr std::uint64_t kWallSplats = 121 * 121;
 constexpr std::array<Entry, 6> kEntries{{
-    {"atelier", "a furnished room with a window onto hills", 200'000, 1'000, 10'000'000, builtin::makeAtelier, builtin::atelierView},
+    {"atelier", "a furnished room with a window onto hills", 200'000, 1'000, 40'000'000, builtin::makeAtelier, builtin::atelierView},
     {"one-splat", "one disc", 1, 1, 1, makeFixed<builtin::makeOneSplat>, viewFromOrigin},
     {"slanted-wall", "a wall at 45 degrees", 41 * 41, 41 * 41, 41 * 41, makeFixed<builtin::makeSlantedWall>, viewFromOrigin},
     {"two-layers", "a translucent disc in front of another", 2, 2, 2, makeFixed<builtin::makeTwoLayers>, viewFromOrigin},

@@ -1,7 +1,7 @@
 // Built-in scenes: one to look at, and small analytic ones whose pictures can be derived by hand.
 // World axes as in trained scenes: x right, y down, z forward; metres.
 //
-// builtin:atelier       a furnished room with a window onto hills, 1,000 to 10,000,000 splats of the same look (default 200,000).
+// builtin:atelier       a furnished room with a window onto hills, 1,000 to 40,000,000 splats of the same look (default 200,000).
 //                       The floor is y = 0, the ceiling y = -2.8; x from -3 to 3, z from 0 to 5. Only its glazed vase has SH beyond
 //                       degree 0 (degree 3).
 //

@@ -112,8 +112,8 @@ TEST_CASE("built-in names and counts that do not exist are refused") {
     const std::string message = loadError("builtin:castle");
     CHECK(contains(message, "builtin:castle: no such built-in scene"));
     for (const BuiltinInfo& info : listBuiltins()) { CHECK(contains(message, info.name)); }
-    CHECK(contains(loadError("builtin:atelier", 999), "999 splats asked for, expected 1000 to 10000000"));
-    CHECK(contains(loadError("builtin:atelier", 10'000'001), "expected 1000 to 10000000"));
+    CHECK(contains(loadError("builtin:atelier", 999), "999 splats asked for, expected 1000 to 40000000"));
+    CHECK(contains(loadError("builtin:atelier", 40'000'001), "expected 1000 to 40000000"));
     CHECK(contains(loadError("builtin:one-splat", 2), "expected 1"));
     CHECK_FALSE(builtinView("castle").has_value());
 }
