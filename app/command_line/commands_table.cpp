@@ -221,7 +221,8 @@ Options makeDocument(const Settings& line) { return HelpText{documentOf(wordOf(l
 
 constexpr const char* kCompareFooter =
     "Prints one `name value` per line. psnr: dB over the stored R, G, B values; inf if the pictures are equal. ssim: 1 if they\n"
-    "are equal. flip and lpips: 0 if they are equal. The last three clamp values to 0 to 1.";
+    "are equal. flip and lpips: 0 if they are equal. The last three clamp values to 0 to 1. Of the frames of two paths: pictures\n"
+    "(how many), psnr, psnr_least (of the worst one), and change: how much A changes from frame to frame, over how much B does.";
 
 }  // namespace
 
@@ -261,8 +262,9 @@ std::span<const Command> commands() {
          makeConvert},
         {"compare",
          kCompare,
-         "Compare two pictures: PSNR, SSIM, FLIP and LPIPS",
-         {{"A", "picture: PNG, EXR, PFM, PPM (without OpenImageIO only the last two)"}, {"B", "picture of the same size"}},
+         "Compare two pictures, or the frames of two paths: PSNR, SSIM, FLIP and LPIPS",
+         {{"A", "picture: PNG, EXR, PFM, PPM (without OpenImageIO only the last two), or the folder of render --path"},
+          {"B", "picture of the same size, or folder of the same frames"}},
          describe(compareRows()),
          makeCompare,
          kCompareFooter},
