@@ -12,10 +12,9 @@ namespace binosplat {
 
 namespace {
 
-// A tenth of the period is left free, since we cannot know what else the compositor and the machine do.
-// Settings that are still unproven, and calm changes, must need even less; so must a change after one that
-// was not enough.
-constexpr double kTarget = 0.9, kCalmly = 0.85, kAgain = 0.7;
+// A tenth of the period is left free, since we cannot know what the compositor and the machine do besides. Settings that are still
+// unproven, and calm changes, must need even less; so must a change after one that was not enough.
+constexpr double kTarget = 0.9, kCalmly = 0.85, kAgain = 0.8;  // kAgain: times as much for each
 // A smaller rise of the budget is not worth a change; if a smaller share of it is spent, it does not determine the frame time.
 constexpr double kLeastRise = 1.1, kSpent = 0.75;
 // Pixels are not all of a frame's cost: fewer of them save less than their share, more are assumed to cost all of it.
@@ -131,11 +130,14 @@ double Governor::scaleFor(double ratio) const {
     return std::round(10.0 * own_.resolution_scale * std::clamp(tenths, 10.0 * limitsOf(quality_).scale, 10.0)) / 100.0;
 }
 
-GovernedSettings Governor::bestWithin(double most_ms) const {
+KnobLimits Governor::knobLimits() const {
     const Limits limits = limitsOf(quality_);
-    const Knobs best = model_.best(most_ms, {limits.scale, own_.resolution_scale, limits.bound_db});
-    return {settings_.budget, best.scale, best.bound_db};
+    return {limits.scale, own_.resolution_scale, limits.bound_db};
 }
+
+GovernedSettings Governor::with(const Knobs& knobs) const { return {settings_.budget, knobs.scale, knobs.bound_db}; }
+
+GovernedSettings Governor::bestWithin(double most_ms) const { return with(model_.best(most_ms, knobLimits())); }
 
 bool Governor::isBetter(const GovernedSettings& to) const {
     const double enough_db = std::min(settings_.error_bound_db + kMoreDb, limitsOf(quality_).bound_db);
@@ -143,7 +145,8 @@ bool Governor::isBetter(const GovernedSettings& to) const {
     return is_more || model_.expectedError({to.resolution_scale, to.error_bound_db}) < kBetter * model_.expectedError(knobs());
 }
 
-GovernedSettings Governor::lowered(double ratio, double work) const {
+GovernedSettings Governor::lowered(double ratio, double work, bool as_usual) const {
+    if (turnsKnobs() && as_usual) { return with(model_.bestAsUsual(ratio, knobLimits())); }
     if (turnsKnobs()) { return bestWithin(ratio * model_.expectedMs(knobs())); }
     GovernedSettings to = settings_;
     if (hasBudget(mode_)) {
@@ -197,13 +200,16 @@ void Governor::measure(const GovernedFrame& frame) {
         misses_.lowerShare(now_ms, period_ms_);
     }
     misses_.hold();
-    makeItFit(now_ms, at_once);
+    makeItFit(now_ms, at_once, takes_too_long);
     if (!takes_too_long && missesWhateverIsDrawn()) { leaveMissesAlone(); }
 }
 
-void Governor::makeItFit(double now_ms, std::size_t frames) {
-    const double most_ms = downs_ >= 2 ? 0.0 : (downs_ == 0 ? kTarget : kAgain) * roomMs();
-    const GovernedSettings to = lowered(std::min(most_ms / now_ms, 1.0), medianOf(recent_work_, frames));
+void Governor::makeItFit(double now_ms, std::size_t frames, bool takes_too_long) {
+    // Of displays that others miss no step is enough: the least settings soon tell them apart.
+    const bool is_least = downs_ >= 2 && !takes_too_long;
+    const double most_ms = is_least ? 0.0 : kTarget * std::pow(kAgain, downs_) * roomMs();
+    const double work = medianOf(recent_work_, frames);
+    const GovernedSettings to = lowered(std::min(most_ms / now_ms, 1.0), work, downs_ == 1);
     beaten_ = to == settings_;
     if (beaten_) { return describe(now_ms, "not even that fits"); }
     ++downs_;

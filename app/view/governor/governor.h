@@ -47,8 +47,8 @@ public:
     void wish(Quality quality, Mode mode, const GovernedSettings& own);
     // From the next frame on, another scene is shown: the measurements do not apply to it.
     void forget();
-    // Takes the last frame's cost. The settings change at most three times while adapting to a new load, and then at most once a
-    // second.
+    // Takes the last frame's cost. The settings change a few times while adapting to a new load, and then at
+    // most once a second.
     void measure(const GovernedFrame& frame);
 
     [[nodiscard]] const GovernedSettings& settings() const { return settings_; }
@@ -69,17 +69,19 @@ private:
     [[nodiscard]] double scaleFor(double ratio) const;
     // Settings whose expected cost is `ratio` times that of the present ones, if `work` is rendered again: first the budget is lowered,
     // then the resolution.
-    [[nodiscard]] GovernedSettings lowered(double ratio, double work) const;
+    [[nodiscard]] GovernedSettings lowered(double ratio, double work, bool as_usual = false) const;
     // The reverse; the budget rises only if it is spent.
     [[nodiscard]] GovernedSettings raised(double ratio) const;
     // `temporal`: the resolution and bound that the model chooses for frames of at most this time.
     [[nodiscard]] GovernedSettings bestWithin(double most_ms) const;
-    // True if they are worth a change: clearly less error, or both knobs higher.
+    [[nodiscard]] GovernedSettings with(const Knobs& knobs) const;
+    [[nodiscard]] KnobLimits knobLimits() const;
+    // True if they are worth a change: clearly less is off, or both knobs are higher.
     [[nodiscard]] bool isBetter(const GovernedSettings& to) const;
     [[nodiscard]] bool turnsKnobs() const { return mode_ == Mode::kTemporal && quality_ != Quality::kOff; }
     [[nodiscard]] Knobs knobs() const { return {settings_.resolution_scale, settings_.error_bound_db}; }
     // Reactions to frames that took too long, and to those that did not.
-    void makeItFit(double now_ms, std::size_t frames);
+    void makeItFit(double now_ms, std::size_t frames, bool takes_too_long);
     void giveBack(double now_ms);
     void stepDown(const GovernedSettings& to, const std::string& why);
     void step(const GovernedSettings& to, const std::string& why);

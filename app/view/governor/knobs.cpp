@@ -141,13 +141,19 @@ void KnobModel::noteChange(const KnobFrame& frame) {
     changed_ = 0;
 }
 
-// Shares of at least 0 that fit the visits' times, relatively, and stay near the usual ones where the visits
-// leave them open: coordinate descent.
-void KnobModel::fit() {
+KnobModel::Terms KnobModel::usualShares() const {
     const Visit& now = visits_.back();
     Terms usual = kUsualShares;
     const double all = now.ms / sumOf(termsOf(now.knobs.scale, now.work), usual);
     for (double& share : usual) { share *= all; }
+    return usual;
+}
+
+// Shares of at least 0 that fit the visits' times, relatively, and stay near the usual ones where the visits do not say: coordinate
+// descent.
+void KnobModel::fit() {
+    const Visit& now = visits_.back();
+    const Terms usual = usualShares();
     if (visits_.size() == 1 && now.all_ms.size() == 1) { shares_ = usual; }
     for (int round = 0; round < kFitRounds; ++round) {
         for (std::size_t i = 0; i < shares_.size(); ++i) {
@@ -167,19 +173,24 @@ void KnobModel::fit() {
     for (double& share : shares_) { share *= now.ms / expected; }
 }
 
-double KnobModel::expectedMs(const Knobs& knobs) const { return sumOf(termsOf(knobs.scale, workAt(knobs.bound_db)), shares_); }
-
 double KnobModel::expectedError(const Knobs& knobs) const {
     const double over_db = knobs.bound_db - visits_.back().knobs.bound_db;
     return loss_ * (std::pow(knobs.scale, -3.0) - 1.0) + warp_error_ * std::pow(10.0, -0.1 * kErrorDbPerDb * over_db);
 }
 
-Knobs KnobModel::best(double most_ms, const KnobLimits& limits) const {
+Knobs KnobModel::best(double most_ms, const KnobLimits& limits) const { return bestBy(shares_, most_ms, limits); }
+
+Knobs KnobModel::bestAsUsual(double ratio, const KnobLimits& limits) const {
+    const Terms usual = usualShares();
+    return bestBy(usual, ratio * msBy(usual, visits_.back().knobs), limits);
+}
+
+Knobs KnobModel::bestBy(const Terms& shares, double most_ms, const KnobLimits& limits) const {
     std::optional<Knobs> best;
     Knobs quickest{limits.least_scale * limits.whole, std::min(kLastBoundDb, limits.most_bound_db)};
     const auto consider = [&](const Knobs& knobs) {
-        if (expectedMs(knobs) > most_ms || (best && expectedError(knobs) >= expectedError(*best))) { return; }
-        best = knobs;
+        const bool is_better = !best || expectedError(knobs) < expectedError(*best);
+        if (is_better && msBy(shares, knobs) <= most_ms) { best = knobs; }
     };
     for (double tenths = 10.0; tenths >= 10.0 * limits.least_scale - 1e-6; --tenths) {
         const double scale = std::round(10.0 * limits.whole * tenths) / 100.0;

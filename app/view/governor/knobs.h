@@ -38,12 +38,15 @@ public:
     void add(const Knobs& knobs, const KnobFrame& frame);
 
     [[nodiscard]] bool knows() const { return !visits_.empty(); }
-    // The expected time and error of a frame with such knobs, while the head moves as it did recently.
-    [[nodiscard]] double expectedMs(const Knobs& knobs) const;
+    // What a frame with such knobs is expected to take and to be off by, while the head moves as it did lately.
+    [[nodiscard]] double expectedMs(const Knobs& knobs) const { return msBy(shares_, knobs); }
     [[nodiscard]] double expectedError(const Knobs& knobs) const;
     // Among the knobs within the limits whose frames take at most this long, those with the least error; if
     // there are none, the quickest.
     [[nodiscard]] Knobs best(double most_ms, const KnobLimits& limits) const;
+    // The same for frames that take `ratio` times as long as the present ones by the usual shares, whatever
+    // was learned: for when it is not clear whether turning the knobs gained nothing or all became slower.
+    [[nodiscard]] Knobs bestAsUsual(double ratio, const KnobLimits& limits) const;
 
 private:
     // A frame's time is the sum of these, each times a share of its own: 1, pixels, work, pixels that are rendered.
@@ -56,6 +59,11 @@ private:
         double weight = 1.0;  // old visits count for less
     };
     [[nodiscard]] double workAt(double bound_db) const;
+    [[nodiscard]] double msBy(const Terms& shares, const Knobs& knobs) const {
+        return sumOf(termsOf(knobs.scale, workAt(knobs.bound_db)), shares);
+    }
+    [[nodiscard]] Knobs bestBy(const Terms& shares, double most_ms, const KnobLimits& limits) const;
+    [[nodiscard]] Terms usualShares() const;
     [[nodiscard]] static Terms termsOf(double scale, double work);
     [[nodiscard]] static double sumOf(const Terms& terms, const Terms& shares);
     void enter(const Knobs& knobs);

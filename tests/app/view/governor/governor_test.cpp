@@ -178,6 +178,15 @@ TEST_CASE("a load that comes and goes: resolution falls only where the budget is
     }
 }
 
+TEST_CASE("a load that grows takes three steps in a row, the third of which is not down to the least") {
+    const Over ms = [](double t) { return std::clamp(9.0 + 60.0 * (t - 2.0), 9.0, 15.0); };
+    const Run run({.ms = ms, .fixed = 1.0, .mode = Mode::kPredicted});
+    CHECK(run.longestOver() <= 10);
+    REQUIRE(run.changes().size() >= 3);
+    CHECK(run.frames[run.changes()[2]].time_s < 2.2);
+    CHECK(run.frames[run.changes()[2]].settings.resolution_scale >= 0.5 - 1e-9);
+}
+
 TEST_CASE("while the head stands still nothing is left to mend: the budget does not rise, and frames fit once it moves") {
     Governor governor;
     governor.wish(Quality::kBalanced, Mode::kPredicted, kWish);

@@ -120,6 +120,38 @@ TEST_CASE("what three slow frames took away is given back within fifty frames, a
     CHECK(governor.settings().resolution_scale == 1.0);
 }
 
+TEST_CASE("a load that grows hardly ever has it fall to the least knobs where much more fits") {
+    const Device& device = kDevices[0];
+    int fallen = 0;
+    for (const double growth : {1.05, 1.08, 1.12}) {
+        for (const double most : {1.16, 1.28, 1.3, 1.44}) {
+            for (const Place& place : kPlaces) {
+                CHECK(msAt(device, 0.6, workAt(place, 24.0, 1.0)) * most < 0.65 * kPeriodMs);
+                for (unsigned seed = 1; seed <= 4; ++seed) {
+                    Governor governor;
+                    std::mt19937 random(seed);
+                    double cost = most > 1.29 ? 0.9 : 0.8;
+                    bool has_fallen = false;
+                    for (int frame = 0; frame < 200; ++frame) {
+                        governor.wish(Quality::kBalanced, Mode::kTemporal, {1.0, 1.0});
+                        const auto [budget, scale, bound_db] = governor.settings();
+                        has_fallen = has_fallen || (scale < 0.61 && bound_db == KnobModel::kLastBoundDb);
+                        cost = frame > 45 ? std::min(growth * cost, most) : cost;
+                        const double work = workAt(place, bound_db, 1.0);
+                        const double ms = msAt(device, scale, work) * cost * drawBetween(random, 0.95, 1.05);
+                        const double lost = std::max(std::ceil(ms / kPeriodMs) - 1.0, 0.0);
+                        governor.measure({ms, kPeriodMs, false, lost, work,
+                                          warpErrorAt(place, bound_db, 1.0) * drawBetween(random, 0.9, 1.1),
+                                          lossAt(place, scale / 2.0) - lossAt(place, scale)});
+                    }
+                    fallen += has_fallen;
+                }
+            }
+        }
+    }
+    CHECK(fallen <= 5);  // of 144
+}
+
 TEST_CASE("where nothing fits it ends at the least resolution, and only there under 26 dB") {
     const Over same = [](double) { return 1.0; };
     const Minute slow({"all", 90.0, 0.3, 0.2, 0.2, 0.3}, kPlaces[0], {"nothing", same, same});
