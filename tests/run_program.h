@@ -2,7 +2,7 @@
 #pragma once
 
 #include "engine/platform.h"
-#include "tests/suite.h"
+#include "tests/script.h"
 
 #ifndef _WIN32
 #include <sys/wait.h>
@@ -10,11 +10,6 @@
 #endif
 
 namespace binosplat::test {
-
-struct Outcome {
-    int exit_code = -1;
-    std::string output, errors;
-};
 
 // Set by test programs that hold the program itself (fork_program.cpp): runs it in a fork of this process, whose libraries are loaded and
 // linked already, which is a third of what a start takes. -1 where that will not do, else the status as `waitpid` has it.
