@@ -82,8 +82,8 @@ TEST_CASE_FIXTURE(AtWork, "somebody else's program finds the installed library b
     install(work, prefix, "library");
     install(work, prefix, "development");
     const std::string cmake = "'" BINOSPLAT_CMAKE "' ";
-    goCommand(work, cmake + "-S '" BINOSPLAT_SOURCE_DIR "/tests/packages/engine' -B build -DCMAKE_PREFIX_PATH='" + prefix.string() +
-                        "' && " + cmake + "--build build");
+    goCommand(work, cmake + "-S '" BINOSPLAT_SOURCE_DIR "/examples' -B build -DCMAKE_PREFIX_PATH='" + prefix.string() + "' && " + cmake +
+                        "--build build");
     work.go("scene atelier --splats 1000 --out room.ply");
     CHECK(goCommand(work, "build/stereo room.ply 0 -1.5 0.5 0 -1.2 3").output.starts_with("1000 splats on "));
     // The program makes the same pictures.
