@@ -2,7 +2,7 @@
 #pragma once
 
 #include "engine/files/load_scene.h"
-#include "tests/suite.h"
+#include "tests/script.h"
 
 #include <unistd.h>
 
@@ -184,7 +184,15 @@ inline std::string replaced(std::string text, const std::string& from, const std
     return text.replace(at, from.size(), to);
 }
 
-// In a good file `from` is replaced by `to`; the error on reading it must contain `message`.
+// A script in which `> FROM => TO` reads `good` with FROM replaced by TO; `read` returns the error, if there is one.
+inline void runFaults(const std::string& good, const std::function<std::string(const std::string& broken)>& read) {
+    runScript({[&](const std::string& edit, const std::string&) {
+        const std::string error = read(edited(good, edit));
+        return Outcome{error.empty() ? 0 : 1, "", withSlashes(error) + "\n"};
+    }});
+}
+
+// Of a good file `from` is replaced by `to`; what reading it then says holds `message`.
 struct Fault {
     std::string from, to, message;
 };

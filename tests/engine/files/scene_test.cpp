@@ -8,6 +8,8 @@
 #include "tests/engine/files/sog_scenes.h"
 #endif
 
+#include <fmt/ranges.h>
+
 SUITE(scene) {
 
 void checkSound(const Scene& scene, std::uint64_t splats) {
@@ -156,146 +158,67 @@ TEST_CASE("colours are limited to the bands that are asked for") {
     CHECK(scene.sh == std::vector<float>{0.0f, 1.0f, 2.0f, 27.0f, 28.0f, 29.0f});
 }
 
-TEST_CASE("a folder is streamed SOG, SOG, a training's output, a moving scene or has one scene, judged in this order, or none of them") {
+SCRIPT(scene, "engine/files/scene") {
     const Garden garden;
-    const std::string root = garden.path();
-    std::filesystem::create_directories(root + "/point_cloud/iteration_best");
-    const std::string four = loadError(root);
-    for (const char* kind :
-         {"is a directory", "lod-meta.json", "meta.json (SOG)", "point_cloud/iteration_N", "numbered files", "one scene file"}) {
-        CHECK(contains(four, kind));
-    }
-    garden.place({{"frame_9.txt", 0}, {"frame_10.txt", 0}, {".hidden.ply", 1}});
-    CHECK(loadError(root) == four);
-    garden.place({{"alone_1.ply", 4}});
-#ifdef BINOSPLAT_SOG
-    for (const char* weights : {"/ckpt_6999_rank0.pt", "/ckpt_29999_rank0.pt"}) {  // of a network: zip archives
-        std::ofstream(root + weights, std::ios::binary)
-            << makeZip(std::vector<std::pair<std::string, std::string>>{{"archive/data.pkl", "x"}, {"archive/data/0", "y"}});
-    }
-#endif
-    LoadNotes of_one;
-    CHECK(loadScene(root, 0, &of_one).size() == 4);
-    checkSays(of_one.lines, ": a folder, of which");
-    CHECK(contains(of_one.lines[0], "alone_1.ply was loaded, its only scene"));
-    garden.place({{"other.ply", 1}});
-    CHECK(loadError(root) == four);
-    garden.place({{"step_10.ply", 1}, {"step_9.ply", 2}, {"step_100.ply", 1}});
-    LoadNotes of_moving;
-    CHECK(loadScene(root, 0, &of_moving).size() == 2);
-    checkSays(of_moving.lines, ": a moving scene of 3 frames, of which");
-    CHECK(contains(of_moving.lines[0], "step_9.ply was loaded"));
-
-    garden.place({{"point_cloud/iteration_7000/point_cloud.ply", 7}});
-    CHECK(loadScene(root).size() == 7);
-    garden.place({{"point_cloud/iteration_30000/point_cloud.ply", 30},
-                  {"point_cloud/iteration_9000/point_cloud.ply", 9},
-                  {"point_cloud/iteration_40000/other.ply", 4},  // stopped before it was written
-                  {"point_cloud/iteration_best/point_cloud.ply", 5}});
-    LoadNotes notes;
-    CHECK(loadScene(root + "/", 0, &notes).size() == 30);
-    checkSays(notes.lines, "iteration_30000");
-
-    garden.place({{"meta.json", 0}});
-#ifdef BINOSPLAT_SOG
-    CHECK(contains(loadError(root), "meta.json"));
-    CHECK_FALSE(contains(loadError(root), "lod-meta.json"));
-    garden.place({{"lod-meta.json", 0}});
-    CHECK(contains(loadError(root), "lod-meta.json"));
-#else
-    const std::string without = "a SOG scene, which this build cannot read: configure with BINOSPLAT_SOG=ON";
-    garden.place({{"streamed/lod-meta.json", 0}});
-    (void)garden.write("meta.json", R"({"version":2,"count":0,"means":{"mins":[0,0,0],"maxs":[0,0,0],"files":["l.webp","u.webp"]}})");
-    (void)garden.write("a.sog", "PK\x03\x04 and so on");
-    for (const char* source : {"", "/meta.json", "/streamed", "/streamed/lod-meta.json", "/a.sog"}) {
-        CHECK(contains(loadError(root + source), without));
-    }
-#endif
-}
-
-TEST_CASE("checkpoints of a training, as folders or files with round numbers, are no film: the newest is shown, the others are named") {
-    const auto check = [](const std::vector<std::pair<std::string, int>>& files, std::size_t splats, const std::string& older) {
-        const Garden garden;
-        garden.place(files);
+    const auto load = [&](const std::string& name) {
         LoadNotes notes;
-        CHECK(loadScene(garden.path(), 0, &notes).size() == splats);
-        REQUIRE(notes.lines.size() == 1);
-        const std::string said = "a training's output, of which " + garden.file(files.back().first) + " was loaded" + older;
-        CHECK_MESSAGE(contains(notes.lines[0], said), notes.lines[0]);
-        CHECK_FALSE(isMovingScene(garden.path()));
+        const std::size_t splats = loadScene(garden.file(name), 0, &notes).size();
+        std::string said = fmt::format("{} splats, {} notes\n", splats, notes.lines.size());
+        for (const std::string& line : notes.lines) { said += withSlashes(line) + "\n"; }
+        return said;
     };
-    check({{"iteration_7000/point_cloud.ply", 7}, {"cameras.json", 0}, {"iteration_30000/point_cloud.ply", 30}}, 30,
-          "; older ones: iteration_7000/point_cloud.ply");
-    check({{"point_cloud_6999.ply", 7}, {"point_cloud_500.ply", 5}, {"point_cloud_29999.ply", 30}}, 30,
-          "; older ones: point_cloud_6999.ply, point_cloud_500.ply");
-    check({{"export_5000.ply", 5}}, 5, "");
-    const Garden film;
-    film.place({{"point_cloud_99.ply", 1}, {"point_cloud_100.ply", 2}, {"point_cloud_101.ply", 3}});
-    CHECK(film.counts() == std::vector<std::size_t>{1, 2, 3});
+    ScriptHost host{[&](const std::string& name, const std::string&) {
+                        Outcome outcome = tried([&] { return load(name); });
+                        outcome.errors = withSlashes(outcome.errors);
+                        return outcome;
+                    },
+                    garden.path()};
+    host.names = {{"ROOT", withSlashes(garden.path())}};
+    host.verbs["folder"] = [&](const std::string& name) { std::filesystem::create_directories(garden.file(name)); };
+    host.verbs["still"] = [&](const std::string& name) {
+        CHECK_FALSE(isMovingScene(name.starts_with("builtin:") ? name : garden.file(name)));
+    };
+    host.verbs["place"] = [&](const std::string& line) {
+        const std::vector<std::string> words = wordsIn(line);
+        for (std::size_t i = 0; i < words.size(); i += 2) { garden.place({{words[i], std::stoi(words.at(i + 1))}}); }
+    };
+    // A moving scene's frames, and after a colon its only note; `!` and what is said of none.
+    host.verbs["frames"] = [&](const std::string& expected) {
+        if (expected.starts_with('!')) {
+            CHECK_FALSE(garden.error().empty());
+            CHECK(contains(garden.error(), expected.substr(std::min<std::size_t>(2, expected.size()))));
+            return;
+        }
+        CHECK(isMovingScene(garden.path()));
+        const std::vector<std::string> notes = SceneSeries(garden.path()).lines();
+        const std::size_t colon = std::min(expected.find(": "), expected.size());
+        CHECK(fmt::format("{}", fmt::join(garden.counts(), " ")) == expected.substr(0, colon));
+        CHECK(notes.empty() == (colon == expected.size()));
+        if (colon < expected.size()) { checkSays(notes, expected.substr(colon + 2)); }
+    };
+#ifdef BINOSPLAT_SOG
+    host.features = {"sog"};
+    // Of a network: zip archives.
+    host.verbs["checkpoints"] = [&](const std::string&) {
+        using Entries = std::vector<std::pair<std::string, std::string>>;
+        for (const char* weights : {"ckpt_6999_rank0.pt", "ckpt_29999_rank0.pt"}) {
+            (void)garden.write(weights, makeZip(Entries{{"archive/data.pkl", "x"}, {"archive/data/0", "y"}}));
+        }
+    };
+#endif
+    runScript(host);
+}
 
-    const Garden garden;
-    garden.place({{"point_cloud/iteration_100/point_cloud.ply", 1}, {"cameras.json", 0}});
+TEST_CASE_FIXTURE(Garden,
+                  "a training's cameras are found from its folder and from that of its point clouds, and frames that grow are told") {
+    place({{"point_cloud/iteration_100/point_cloud.ply", 1}, {"cameras.json", 0}, {"film/a1.ply", 1}, {"film/a2.ply", 2}});
     for (const char* folder : {"", "point_cloud", "point_cloud/"}) {
-        const std::optional<TrainingOutput> found = findTrainingOutput(garden.file(folder));
+        const std::optional<TrainingOutput> found = findTrainingOutput(file(folder));
         REQUIRE(found);
-        CHECK(std::filesystem::equivalent(found->cameras, garden.file("cameras.json")));
-        CHECK(findCameraFile(garden.file(folder)) == garden.file("cameras.json"));
+        CHECK(std::filesystem::equivalent(found->cameras, file("cameras.json")));
+        CHECK(findCameraFile(file(folder)) == file("cameras.json"));
     }
-}
-
-TEST_CASE_FIXTURE(InFolder, "files and folders that people take for a scene are named as what they are, with what to open instead") {
-    const std::string training = "point_cloud/iteration_N/point_cloud.ply";
-    const struct {
-        const char *name, *bytes;
-        std::string what, instead;
-    } files[] = {
-        {"garden.ply", "\xef\xbb\xbf\n<!DOCTYPE html>\n<html>", "garden.ply: a web page (HTML)", "download button"},
-        {"garden.splat", "<HTML><body>", "a web page (HTML)", "download button"},
-        {"tileset.json", R"({"asset":{"version":"1.1"},"geometricError":1,"root":{}})", "a tileset of 3D Tiles", ".glb"},
-        {"t.json", R"({"camera_angle_x":1,"frames":[{"transform_matrix":[]}]})", "photographs with their cameras", training},
-        {"cameras.json", R"([{"img_name":"a","rotation":[]}])", "the cameras of a 3DGS training", "--cameras"},
-        {"list.json", R"({"cameras": []})", "a list of cameras", "--cameras"},
-        {"cameras.bin", "\1", "the cameras of a COLMAP project", training},
-        {"points3D.bin", "\1", "the point cloud of a COLMAP project", training},
-        {"a/sparse/0/cameras.bin", "\1", "a COLMAP project", training},
-        {"b/cameras.txt", "#", "cameras of a COLMAP project", training},
-        {"c/opensfm/reconstruction.json", "[]", "an OpenDroneMap project", training},
-        {"d/transforms.json", "{}", "photographs with their cameras", training},
-    };
-    for (const auto& [name, bytes, what, instead] : files) {
-        const std::string text = name;
-        std::filesystem::create_directories(std::filesystem::path(folder.file(text)).parent_path());
-        const std::string path = folder.write(text, bytes);
-        const std::string message = loadError(text[1] == '/' ? folder.file(text.substr(0, 1)) : path);
-        CHECK_MESSAGE(contains(message, what), message);
-        CHECK_MESSAGE(contains(message, "not a splat scene"), message);
-        CHECK_MESSAGE(contains(message, instead), message);
-    }
-}
-
-TEST_CASE_FIXTURE(Garden, "numbered files are frames in the order of their numbers, whatever else lies beside them") {
-    CHECK_FALSE(isMovingScene(path()));
-    place({{"step_9.ply", 1}, {"notes_1.txt", 0}, {"notes_2.txt", 0}, {"notes_3.txt", 0}});
-    CHECK_FALSE(isMovingScene(path()));
-    CHECK_FALSE(error().empty());
-    place({{"step_10.ply", 2}, {"step_11.ply", 3}, {"other.ply", 9}});
-    CHECK(isMovingScene(path()));
-    CHECK(counts() == std::vector<std::size_t>{1, 2, 3});
-    CHECK(SceneSeries(path()).lines().empty());
-    CHECK(SceneSeries(path()).growth() > 1.0);
-    CHECK_FALSE(isMovingScene(file("step_9.ply")));
-    CHECK_FALSE(isMovingScene("builtin:atelier"));
-}
-
-TEST_CASE("a number that is missing shows what comes before it for longer, and numbers without any order count as they come") {
-    const Garden garden;
-    garden.place({{"t010.ply", 1}, {"t020.ply", 2}, {"t050.ply", 5}, {"t060.ply", 6}});
-    CHECK(garden.counts() == std::vector<std::size_t>{1, 2, 2, 2, 5, 6});
-    const SceneSeries series(garden.path());
-    CHECK(series.sceneCount() == 4);
-    checkSays(series.lines(), "2 of 6 numbered files are missing, the first after t020.ply");
-    garden.place({{"t901.ply", 9}, {"t99999999999999999999999999.ply", 7}});
-    CHECK(garden.counts() == std::vector<std::size_t>{1, 2, 5, 6, 9, 7});
+    CHECK(these(SceneSeries(file("film")).growth() > 1.0, SceneSeries(file("film")).sceneCount()) == these(true, 2));
 }
 
 TEST_CASE_FIXTURE(Garden, "the frames of a moving scene count from one place") {
@@ -317,14 +240,8 @@ TEST_CASE_FIXTURE(Garden, "the frames of a moving scene count from one place") {
     }
 }
 
-TEST_CASE_FIXTURE(Garden, "two moving scenes in one folder, and formats that differ, are refused") {
-    place({{"a1.ply", 1}, {"a2.ply", 1}});
-    CHECK(error().empty());
-    place({{"b1.ply", 1}, {"b2.ply", 1}});
-    CHECK(contains(error(), "expected one moving scene"));
-    place({{"b3.ply", 3}});  // now one is the larger
-    CHECK(counts() == std::vector<std::size_t>{1, 1, 3});
-    // In the middle, where nobody has looked yet.
+TEST_CASE_FIXTURE(Garden, "a frame of another format is refused when it is looked at, and the next one is shown") {
+    place({{"b1.ply", 1}, {"b3.ply", 3}});
     (void)write("b2.ply", std::string(320, '\0'));
     const SceneSeries series(path());
     LoadNotes notes;

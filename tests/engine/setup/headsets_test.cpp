@@ -68,7 +68,17 @@ TEST_CASE("canted eyes turn outwards") {
     CHECK(std::atan((100.0 - middle.cx) / middle.fx) == doctest::Approx(0.9));
 }
 
-TEST_CASE_FIXTURE(AtWork, "a headset's file may name its lenses' centres, and mistakes in it are named with their line") {
+SCRIPT(headsets, "engine/setup/headsets") {
+    const Workplace work;
+    const auto read = [&](const std::string& text) {
+        work.write("h.toml", unescaped(text));
+        (void)readHeadset(work.path / "h.toml");
+        return "";
+    };
+    runScript({[&](const std::string& text, const std::string&) { return tried([&] { return read(text); }); }});
+}
+
+TEST_CASE_FIXTURE(AtWork, "a headset's file may name its lenses' centres") {
     const std::string top = "name = \"a\"\nsource = \"b\"\nsize = \"8x8\"\ncanting_deg = 0\neye_distance_m = 0.06\n";
     const std::string left = "[left]\nleft = -50\nright = 40\nup = 45\ndown = -45\n",
                       right = "[right]\nleft = -40\nright = 50\nup = 45\ndown = -45\n";
@@ -80,17 +90,6 @@ TEST_CASE_FIXTURE(AtWork, "a headset's file may name its lenses' centres, and mi
     const Headset named = read(top + left + "lens_centre = [-3, 2.5]\n" + right);
     CHECK(these(named.lens_centres[kLeft].x, named.lens_centres[kLeft].y, named.lens_centres[kRight]) ==
           these(doctest::Approx(-std::tan(glm::radians(3.0))), doctest::Approx(-std::tan(glm::radians(2.5))), glm::dvec3(0.0, 0.0, 1.0)));
-    const std::pair<std::string, const char*> mistakes[]{
-        {top + left + "lens_centre = 3\n" + right, "h.toml:11: left.lens_centre must be two angles"},
-        {top + left + "lens_centre = [1, 2, 3]\n" + right, "must be two angles"},
-        {top + left + "lens_centre = [-51, 0]\n" + right, "h.toml:11: left.lens_centre is -51, must be a number from -50 to 40"},
-        {top + left + "lens_centre = [0, nan]\n" + right, "left.lens_centre is nan, must be a number from -45 to 45"},
-        {top + left, "[right] is missing"},
-        {top + "[left]\nleft = -50\n", "left.right is missing"},
-        {top + "[left]\nleft = 95\nright = 40\nup = 45\ndown = -45\n", "h.toml:7: left.left is 95"},
-        {top + "[left]\nleft = 45\nright = 40\nup = 45\ndown = -45\n", "must be less than"},
-        {"colour = 1\n", "h.toml:1: colour is not a key"}};
-    for (const auto& [text, message] : mistakes) { CHECK_THROWS_WITH_AS((void)read(text), doctest::Contains(message), Error); }
 }
 
 }  // SUITE(headsets)

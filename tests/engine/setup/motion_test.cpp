@@ -1,5 +1,6 @@
 // Facts about recorded head motion.
 #include "engine/setup/head_motion.h"
+#include "tests/script.h"
 #include "tests/shared_data.h"
 
 SUITE(motion) {
@@ -78,48 +79,18 @@ TEST_CASE("times are seconds or ticks, by their size or by the header") {
     checkRefused("1700000000000000000" + pose, "unit in a header");
 }
 
-TEST_CASE("mistakes are named with their line") {
-    const std::string good = "0,0,0,0,0,0,0,1\n";
-    const std::pair<std::string, const char*> mistakes[]{
-        {"", "m.csv: holds no poses"},
-        {kHeader, "m.csv: holds no poses"},
-        {kHeader + good + "1,0,0,0,0,0,1\n2,0,0,0,0,0,0,1\n", "m.csv:3: 7 columns, must be 8"},
-        {good + "1,,,,,,,\n2,0,0,0,0,0,0,1\n", "m.csv:2: x is empty"},
-        {good + "1,0,0,0,0,0,0,1,\n", "m.csv:2: 9 columns"},
-        {good + "1,0,nan,0,0,0,0,1\n", "m.csv:2: y is nan, must be a finite number"},
-        {good + "1,0,0,inf,0,0,0,1\n", "m.csv:2: z is inf"},
-        {good + "1,0,0,0,0,,0,1\n", "m.csv:2: qy is empty"},
-        {good + "x,0,0,0,0,0,0,1\n", "m.csv:2: time is x"},
-        {"nan,0,0,0,0,0,0,1\n", "m.csv:1: time is nan"},
-        {kHeader + kHeader, "m.csv:2: time is timestamp"},
-        {good + good, "m.csv:2: time is 0, must be after the pose before"},
-        {"5,0,0,0,0,0,0,1\n4,0,0,0,0,0,0,1\n", "m.csv:2: time is 4"},
-        {good + "1,0,0,0,0,0,0,0\n", "m.csv:2: the orientation's length is 0"},
-        {good + "1,0,0,0,0.5,0.5,0.5,0.8\n", "must be 1"}};
-    for (const auto& [text, message] : mistakes) { checkRefused(text, message); }
-    CHECK_THROWS_AS(readHeadMotion("/nowhere/motion.csv", MotionAxes::kOpenXr), Error);
-    CHECK_THROWS_AS(readHeadMotion("/", MotionAxes::kOpenXr), Error);
+SCRIPT(motion, "engine/setup/motion") {
+    const auto read = [](const std::string& text) {
+        const HeadMotion motion = parse(unescaped(text));
+        CHECK(motion.startingAt(0.5 * motion.duration_s()).note() == motion.note());
+        return fmt::format("{} s\n{}{}", motion.duration_s(), motion.note(), motion.note().empty() ? "" : "\n");
+    };
+    runScript({[&](const std::string& text, const std::string&) { return tried([&] { return read(text); }); }});
 }
 
-TEST_CASE("a last row that the recorder was stopped in is left out, with a note") {
-    const std::string good = "0,0,0,0,0,0,0,1\n1,0,0,0,0,0,0,1\n";
-    const std::pair<std::string, const char*> ends[]{{"2", "m.csv:3: 1 columns, must be 8"},
-                                                     {"2,0,0.5,0\n\n", "m.csv:3: 4 columns"},
-                                                     {"2,,,,,,,\n", "m.csv:3: x is empty"},
-                                                     {", , , , , , , \r\n", "m.csv:3: time is empty"},
-                                                     {std::string(9, '\0'), "m.csv:3: 1 columns"},
-                                                     {"2,0,0,0,0,0,0,", "m.csv:3: qw is empty"},
-                                                     {"2,0,0,0,0,0,0,0.", "m.csv:3: the orientation's length is 0"}};
-    for (const auto& [end, message] : ends) {
-        const HeadMotion motion = parse(good + end);
-        CHECK(motion.duration_s() == 1.0);
-        CHECK(motion.note().starts_with(message));
-        CHECK(motion.note().ends_with("; the last row, cut off, is left out"));
-        CHECK(motion.startingAt(0.5).note() == motion.note());
-    }
-    CHECK(parse(good + "2,0,0,0,0,0,0,1").note().empty());
-    for (const char* end : {"2,0,0,0,0,0,0,x\n", "2,x,0,0,0,0,0,1", "2,0,0,0,0,0,0,1,"}) { checkRefused(good + end, "m.csv:3: "); }
-    checkRefused("2,0,0", "m.csv:1: 3 columns");
+TEST_CASE("what is no file is no recording") {
+    CHECK_THROWS_AS(readHeadMotion("/nowhere/motion.csv", MotionAxes::kOpenXr), Error);
+    CHECK_THROWS_AS(readHeadMotion("/", MotionAxes::kOpenXr), Error);
 }
 
 TEST_CASE("poses between samples lie on the way") {
