@@ -1,4 +1,5 @@
 // Facts about the simulated runtime's log of frames.
+#include "tests/script.h"
 #include "tests/xr/simulated/folder.h"
 #include "xr/simulated/compose/old_output.h"
 #include "xr/simulated/log/frame_log.h"
@@ -52,94 +53,38 @@ TEST_CASE_FIXTURE(InFolder, "lines are there before the log is closed") {
     CHECK(std::filesystem::file_size(path) > 0);
 }
 
-// A folder that an earlier run wrote to, among others.
-struct UsedFolder : Folder {
-    explicit UsedFolder(const std::set<std::string>& names) {
-        for (const std::string& name : names) { write(name, "x"); }
-    }
-
-    void log(const std::vector<std::string>& pictures) const {
-        std::string lines;
-        for (const std::string& picture : pictures) { lines += frameLine(picture); }
-        write(kLogName, lines);
-    }
-    void checkRefuses(const std::string& name, const FrameChoice& frames = {}) const {
-        const std::set<std::string> before = names();
-        CHECK_THROWS_WITH_AS(removeOldOutput(path, true, frames),
-                             ((path / name).string() + ": not what an earlier run left here, must be moved elsewhere").c_str(),
-                             std::runtime_error);
-        CHECK(names() == before);
-    }
-};
-
-TEST_CASE("a folder is emptied of what an earlier run's log names and of nothing else") {
-    const std::set<std::string> others{"frame_12.png",      "frame_00000a.png", "frame_000000.jpg", "my_frame_000000.png",
-                                       "frame_0000007.png", "notes.txt",        "frame_000001.png", ".frame_000005.unfinished.png"};
-    std::set<std::string> all = others;
-    all.insert({"frame_000000.png", "frame_1234567.png", ".frame_000002.unfinished.png"});
-    const UsedFolder folder(all);
-    folder.log({"frame_000000.png", "", "frame_000002.png", "frame_1234567.png", "notes.txt",
-                "../" + folder.path.filename().string() + "/notes.txt"});
-    std::ofstream(folder.path / kLogName, std::ios::app)
-        << "{\"picture\":7}\n[\"picture\":]\n[{\"picture\":1}]\n{\"picture\":\"frame_000001.p";
-    // The last run had every third picture; this one has none.
-    removeOldOutput(folder.path, false, {});
-    CHECK(folder.names() == others);
-    removeOldOutput(folder.path / "nowhere", true, {});
-}
-
-TEST_CASE("a run's files do not replace others") {
-    SUBCASE("a log, or an unfinished picture") {
-        const UsedFolder folder({"frame_000000.png"});
-        folder.write(kLogName, "somebody else's log\n");
-        folder.checkRefuses(kLogName);
-        fs::remove(folder.path / kLogName);
-        folder.write(".frame_000001.unfinished.png", "x");
-        folder.checkRefuses(".frame_000001.unfinished.png", {1, 1, 1});
-    }
+SCRIPT(simulated_log, "xr/simulated/log/simulated_log") {
+    const Folder folder;
+    const auto begin = [&](const std::string& words, const std::string&) -> Outcome {
+        FrameChoice frames;
+        if (words != "all" && words != "none") { std::istringstream(words) >> frames.first >> frames.last >> frames.every; }
+        try {
+            removeOldOutput(folder.path, words != "none", frames);
+            return {0, "", ""};
+        } catch (const std::runtime_error& error) { return {1, "", error.what() + std::string("\n")}; }
+    };
+    ScriptHost host{begin, folder.path};
+    host.names = {{"FOLDER", folder.path.string()}, {"FOLDER_NAME", folder.path.filename().string()}};
 #ifndef _WIN32  // where links take a privilege
-    SUBCASE("a link to a log, or to nothing") {
-        const UsedFolder folder({"frame_000000.png"});
-        folder.log({"frame_000000.png"});
-        fs::rename(folder.path / kLogName, folder.path / "log");
-        for (const char* target : {"log", "nothing"}) {
-            fs::create_symlink(target, folder.path / kLogName);
-            folder.checkRefuses(kLogName);
-            fs::remove(folder.path / kLogName);
-        }
-    }
+    host.features = {"posix"};
 #endif
-    SUBCASE("pictures that no log names, as far as this run writes such ones") {
-        const UsedFolder folder({"frame_000003.png"});
-        folder.checkRefuses("frame_000003.png");
-        // Nor does a log from before logs named pictures.
-        folder.log({""});
-        folder.checkRefuses("frame_000003.png");
-        folder.checkRefuses("frame_000003.png", {0, 100, 3});
-        removeOldOutput(folder.path, true, {0, 100, 2});
-        removeOldOutput(folder.path, false, {});
-        CHECK(folder.names() == std::set<std::string>{"frame_000003.png"});
-    }
-#ifndef _WIN32
-    SUBCASE("links and folders that bear a picture's name, though the log names it") {
-        const UsedFolder folder({"elsewhere"});
-        fs::create_symlink("elsewhere", folder.path / "frame_000002.png");
-        folder.log({"frame_000002.png", "frame_000009.png"});
-        folder.checkRefuses("frame_000002.png");
-        fs::remove(folder.path / "frame_000002.png");
-        fs::create_directory(folder.path / "frame_000009.png");
-        folder.checkRefuses("frame_000009.png");
-    }
-#endif
-    SUBCASE("but a log may begin with a frame that was refused, or with a session's states, or be empty") {
-        for (const std::string& text : {makeBetweenLine({"XR_ERROR_TIME_INVALID", "", 0, true, "READY", {}}) + "\n",
-                                        makeBetweenLine({"", "", 0, true, "IDLE", {"state IDLE"}}) + "\n", std::string()}) {
-            const UsedFolder folder({});
-            folder.write(kLogName, text);
-            removeOldOutput(folder.path, true, {});
-            CHECK(folder.names().empty());
-        }
-    }
+    host.verbs["touch"] = [&](const std::string& names) {
+        for (const std::string& name : wordsIn(names)) { folder.write(name, "x"); }
+    };
+    host.verbs["log"] = [&](const std::string& pictures) {
+        std::string lines;
+        for (const std::string& picture : wordsIn(pictures)) { lines += frameLine(picture == "-" ? "" : picture); }
+        folder.write(kLogName, lines);
+    };
+    host.verbs["append"] = [&](const std::string& text) { std::ofstream(folder.path / kLogName, std::ios::app) << unescaped(text); };
+    host.verbs["begun"] = [&](const std::string& kind) {
+        const std::string refused = makeBetweenLine({"XR_ERROR_TIME_INVALID", "", 0, true, "READY", {}}) + "\n",
+                          states = makeBetweenLine({"", "", 0, true, "IDLE", {"state IDLE"}}) + "\n";
+        folder.write(kLogName, kind == "refused" ? refused : kind == "states" ? states : "");
+    };
+    host.verbs["remove"] = [&](const std::string& name) { CHECK(fs::remove(folder.path / name)); };
+    host.verbs["nowhere"] = [&](const std::string&) { removeOldOutput(folder.path / "nowhere", true, {}); };
+    runScript(host);
 }
 
 }  // SUITE(simulated_log)
