@@ -1,8 +1,8 @@
 // `binosplat compare`, run as a program. Pictures are PFM and PPM, which every build reads.
 #include "engine/picture/netpbm.h"
+#include "tests/app/program_script.h"
 #include "tests/app/scores/lpips_weights.h"
 #include "tests/engine/picture/pictures.h"
-#include "tests/run_program.h"
 
 SUITE(compare) {
 
@@ -17,6 +17,8 @@ struct Pictures : Workplace {
         Image broken = makeWaves({40, 30}, 0.0);
         broken.values[5] = std::numeric_limits<float>::quiet_NaN();
         writePfm(path / "nan.pfm", broken);
+        writePnm(path / "a.ppm", makeFlat({20, 20}, glm::vec3(0.2f, 0.4f, 0.6f)));
+        writePfm(path / "a_as_floats.pfm", readPnm(path / "a.ppm"));
         writeFloats(path / "w.bin", makeLpipsWeights(7));
     }
 
@@ -51,56 +53,17 @@ TEST_CASE_FIXTURE(Pictures, "each score is a line with its name, LPIPS comes wit
     CHECK(scores("a.pfm b.pfm --pixels-per-degree 500").at(2).second < 0.8 * three[2].second);
 }
 
-TEST_CASE("equal pictures have infinite PSNR, whatever their format, and a value that is not finite is as far off as can be") {
+SCRIPT(compare, "app/compare") {
     const Pictures pictures;
-    CHECK(pictures.go("compare a.pfm a.pfm --lpips w.bin").output == "psnr inf\nssim 1.000000\nflip 0.000000\nlpips 0.000000\n");
-    writePnm(pictures.path / "a.ppm", makeFlat({20, 20}, glm::vec3(0.2f, 0.4f, 0.6f)));
-    writePfm(pictures.path / "c.pfm", readPnm(pictures.path / "a.ppm"));
-    CHECK(pictures.go("compare a.ppm c.pfm").output == "psnr inf\nssim 1.000000\nflip 0.000000\n");
+    runScript(programIn(pictures));
+}
+
+TEST_CASE("a value that is not finite is as far off as can be") {
+    const Pictures pictures;
     const auto broken = pictures.scores("a.pfm nan.pfm --lpips w.bin");
     REQUIRE(broken.size() == 4);
     CHECK(broken[0].second == -std::numeric_limits<double>::infinity());
     CHECK(broken[3].second == std::numeric_limits<double>::infinity());
-}
-
-TEST_CASE("of two paths come the mean, the worst frame, and how much more one changes than the other") {
-    const Pictures pictures;
-    for (const char* folder : {"still", "flickers", "empty", "short"}) { std::filesystem::create_directory(pictures.path / folder); }
-    const auto write = [&](const std::string& name, float grey) {
-        writePfm(pictures.path / (name + ".pfm"), makeFlat({20, 20}, glm::vec3(grey)));
-    };
-    for (const char* eye : {"left", "right"}) {
-        for (int frame = 0; frame < 3; ++frame) {
-            const std::string name = fmt::format("/frame_00000{}_{}", frame, eye);
-            write("still" + name, 0.5f + 0.1f * static_cast<float>(frame));
-            write("flickers" + name, frame == 1 ? 0.8f : 0.5f + 0.1f * static_cast<float>(frame));
-        }
-    }
-    // Off by 0.2 in one frame of three; changes by 0.3 and -0.1 instead of 0.1 twice.
-    const auto scores = pictures.scores("flickers still");
-    REQUIRE(scores.size() == 4);
-    CHECK(scores[0] == std::pair(std::string("pictures"), 6.0));
-    CHECK(scores[1].second == doctest::Approx(-10.0 * std::log10(0.04 / 3.0)));
-    CHECK(scores[2].second == doctest::Approx(-10.0 * std::log10(0.04)));
-    CHECK(scores[3].second == doctest::Approx(std::sqrt(5.0)));
-    CHECK(pictures.go("compare still still").output == "pictures 6\npsnr inf\npsnr_least inf\nchange 1.000000\n");
-    write("short/frame_000000_left", 0.5f);
-    pictures.checkRefused("compare still short", 1, "short/frame_000001_left.pfm: cannot be read");
-    pictures.checkRefused("compare empty still", 1, "empty: has no frames of a path");
-}
-
-TEST_CASE("what cannot be compared is refused in one line") {
-    const Pictures pictures;
-    for (const auto& [arguments, part] : std::vector<std::pair<std::string, std::string>>{
-             {"a.pfm wide.pfm", "wide.pfm: has 41x30 pixels, must have 40x30 like a.pfm"},
-             {"a.pfm grey.pfm", "grey.pfm: number of channels is 1, must be 3 or more"},
-             {"none.pfm a.pfm", "none.pfm: cannot be read"},
-             {"a.pfm w.bin", "w.bin: cannot be read"},
-             {"small.pfm small.pfm --lpips w.bin", "LPIPS: pictures have 40x16 pixels, must have at least 17 a side"},
-             {"a.pfm b.pfm --lpips none.bin", "none.bin: cannot be read"},
-             {"a.pfm b.pfm --lpips a.pfm", "a.pfm: has 14414 bytes, must have the 2898944"}}) {
-        pictures.checkRefused("compare " + arguments, 1, part);
-    }
 }
 
 }  // SUITE(compare)

@@ -1,6 +1,6 @@
 // `binosplat convert`, run as a program.
 #include "engine/files/load_scene.h"
-#include "tests/run_program.h"
+#include "tests/app/program_script.h"
 
 SUITE(convert) {
 
@@ -49,8 +49,6 @@ TEST_CASE("a scene goes through every format within what the line says that it l
     static_cast<void>(work.convert("a.sog d.ply"));
     static_cast<void>(work.convert("d.ply d.sog"));
     CHECK(these(work.load("d.sog").size(), work.load("d.sog").isGaussian3d()) == these(made.size(), false));
-#else
-    work.checkRefused("convert builtin:one-splat a.sog", 1, "a.sog: this build cannot write SOG");
 #endif
 }
 
@@ -75,47 +73,6 @@ TEST_CASE_FIXTURE(Converted, "a sphere can be cut out of a scene, and keeps all 
     CHECK(files() == Files{"a.ply"});
 }
 
-TEST_CASE_FIXTURE(Converted, "a share, a number or a size of the splats can be kept, the same bytes on every run") {
-    write("cameras.json", R"([{"position":[0,0,0],"rotation":[[1,0,0],[0,1,0],[0,0,1]],"width":64,"height":64,"fx":40,"fy":40}])");
-    const std::string wall = "convert builtin:slanted-wall ", cameras = " --cameras cameras.json";
-    const Outcome outcome = go(wall + "a.ply --keep 0.25" + cameras);
-    CHECK(outcome.output.find("420 of 1681 splats are kept, those that show most") != std::string::npos);
-    static_cast<void>(go(wall + "b.ply --keep 420" + cameras));
-    CHECK(bytesOf("a.ply") == bytesOf("b.ply"));
-    static_cast<void>(go(wall + "b.ply --keep 20KB" + cameras));
-    CHECK(std::filesystem::file_size(path / "b.ply") <= 20000);
-    CHECK(std::filesystem::file_size(path / "b.ply") > 18000);
-    const std::string expected = ", must be a share of the splats up to 1, a number of them, or a size such as 50MB";
-    for (const char* wrong : {"0", "1.5", "-3", "half", "MB"}) {
-        checkRefused(fmt::format("{}c.ply --keep={}", wall, wrong), 1, fmt::format("--keep is {}{}", wrong, expected));
-    }
-    checkRefused(wall + "c.ply" + cameras, 2, "--cameras is given without --keep");
-    checkRefused(wall + "c.ply --levels 2", 2, "--levels is given, but OUT is not a lod-meta.json");
-#ifdef BINOSPLAT_SOG
-    static_cast<void>(go(wall + "scene/lod-meta.json --levels 3" + cameras));
-    for (const auto& [level, splats] : {std::pair("0", 1681), std::pair("1", 840), std::pair("2", 420)}) {
-        CHECK(go(fmt::format("info scene --lod {}", level)).output.find(fmt::format("{} ", splats)) != std::string::npos);
-    }
-    checkRefused(wall + "scene/lod-meta.json", 1, "scene: is there already, must be absent or empty");
-    std::filesystem::remove_all(path / "scene");
-#endif
-    CHECK(files() == Files{"a.ply", "b.ply", "cameras.json"});
-}
-
-TEST_CASE_FIXTURE(Converted, "what cannot be converted leaves nothing behind") {
-    std::filesystem::create_directory(path / "folder.spz");
-    write("file", "");
-    checkRefused("convert builtin:one-splat a.obj", 1, "a.obj: must be a file whose name ends in .ply, .spz or .sog");
-    checkRefused("convert builtin:one-splat nowhere/a.ply", 1, "nowhere must be a directory");
-    checkRefused("convert absent.ply a.ply", 1, "absent.ply: no such file");
-    checkRefused("convert builtin:one-splat folder.spz", 1, "folder.spz: is a directory");
-#ifdef BINOSPLAT_SOG
-    std::filesystem::create_directory(path / "folder.sog");
-    checkRefused("convert builtin:one-splat file/c.sog", 1, "file must be a directory");
-    checkRefused("convert builtin:one-splat folder.sog", 1, "folder.sog: is a directory");
-    std::filesystem::remove(path / "folder.sog");
-#endif
-    CHECK(files() == Files{"file", "folder.spz"});
-}
+SCRIPT(convert, "app/convert") { runProgramScript(); }
 
 }  // SUITE(convert)

@@ -3,17 +3,9 @@
 #include "engine/builtin/procedural.h"
 #include "engine/files/ply.h"
 #include "engine/places/standpoint.h"
-#include "tests/run_program.h"
+#include "tests/app/program_script.h"
 
 SUITE(fault) {
-
-const std::string kShared = "render builtin:slanted-wall --size 64x48 --out out/pictures --mode shared";
-const std::string kRender = "render builtin:slanted-wall --size 64x48 --out out/pictures --mode mono";
-const std::string kTiny = "render builtin:fence --size 1x1 --out out/pictures --mode mono";
-const std::string kBench = "bench builtin:slanted-wall --size 64x48 --out out/tables --config one.toml";
-const std::string kLost = "the device was lost";
-const std::string kFull = "MiB of device memory, which is more than it has free";
-const std::string kStopped = "stopped by SIGINT, nothing was written", kEnded = "stopped by SIGTERM, nothing was written";
 
 // The Nth call fails, or a signal comes with it.
 std::string fault(const std::string& call, int number, const std::string& what) {
@@ -22,71 +14,28 @@ std::string fault(const std::string& call, int number, const std::string& what) 
                        call, number, what);
 }
 
-// Files of so many blocks (512 bytes) at most: what goes beyond fails as on a full disk, if with another reason.
-std::string filesOf(int blocks) { return fmt::format("ulimit -f {};", blocks); }
-
 struct Machine : Workplace {
     Machine() {
         write("one.toml", "[bench]\nmodes = [\"shared\"]\nscores = [\"psnr\"]\nwarm-up = 1\nrepeats = 2\n");
         write("full.toml", "[run]\nmemory_limit = 1\n");
         write("small.script", "size 64 64\n");
     }
-
-    // One line on stderr that holds `part`, and of the output nothing.
-    void checkFails(const std::string& arguments, const std::string& environment, int exit_code, const std::string& part) const {
-        checkRefused(arguments, exit_code, part, environment);
-        CHECK(files() == std::set<std::string>{"full.toml", "one.toml", "small.script"});
-    }
 };
 
-// Of `render`: while the scene is uploaded, in a frame, while pictures are read.
-void checkFaults(const Machine& machine, const std::string& render) {
-    machine.checkFails(render, fault("submit", 1, "lost"), 3, kLost);
-    machine.checkFails(render, fault("submit", 3, "lost"), 3, kLost);
-    machine.checkFails(render, fault("wait", 3, "lost"), 3, kLost);
-    machine.checkFails(render, fault("allocate", 1, "no-device-memory"), 1, kFull);
-    machine.checkFails(render, fault("allocate", 8, "no-host-memory"), 1, kFull);
-    machine.checkFails(render, fault("submit", 2, "no-device-memory"), 1, "not enough memory for this scene and picture size");
-    machine.checkFails(render, fault("submit", 1, "SIGINT"), 130, kStopped);
-    machine.checkFails(render, fault("submit", 2, "SIGTERM"), 143, kEnded);
-    machine.checkFails(render, fault("submit", 4, "SIGINT"), 130, kStopped);
-}
-
-TEST_CASE("a lost device ends a program with three, one without memory with one and the buffer's name, and a signal as a shell expects") {
+SCRIPT(fault, "app/fault") {
     const Machine machine;
-    checkFaults(machine, kRender);
-    machine.checkFails(kBench, fault("wait", 6, "lost"), 3, kLost);
-    machine.checkFails(kBench, fault("submit", 5, "SIGINT"), 130, kStopped);
-}
-
-TEST_CASE("so do they at other places, and where there are two eyes" * nightly()) {
-    const Machine machine;
-    checkFaults(machine, kShared);
-    for (const int number : {4, 12}) { machine.checkFails(kShared, fault("allocate", number, "no-device-memory"), 1, kFull); }
-    for (const std::string& render : {kRender, kShared}) {
-        machine.checkFails(render, fault("wait", 1, "lost"), 3, kLost);
-        machine.checkFails(render, fault("submit", 2, "SIGINT"), 130, kStopped);
-        machine.checkFails(render, filesOf(4), 1, BINOSPLAT_FLOAT_EXTENSION ": cannot be written (");
-    }
-    machine.checkFails(kBench, fault("allocate", 30, "no-device-memory"), 1, kFull);
-    machine.checkFails(kBench, fault("submit", 12, "SIGTERM"), 143, kEnded);
-    machine.checkFails("scene atelier --splats 20000 --out atelier.ply", filesOf(4000), 1, "atelier.ply: writing failed: ");
-    machine.checkFails("convert builtin:fence fence.ply", filesOf(1), 1, "fence.ply: writing failed: ");
-}
-
-TEST_CASE("a limit of device memory is kept, and named where it does not suffice, and without a fault the layer changes nothing") {
-    const Machine machine;
-    const std::string large = "render builtin:fence --size 512x512 --out out/pictures";
-    machine.checkFails(large + " --memory-limit 1", "", 1, "MiB in use, the limit is 1.0 MiB (memory-limit)");
-    machine.checkFails(kBench + " --memory-limit 1", "", 1, "MiB in use, the limit is 1.0 MiB (memory-limit)");
-    machine.checkFails(large + " --config full.toml", "", 1, "the limit is 1.0 MiB (memory-limit)");
-    machine.go(kRender + " --memory-limit 200", fault("submit", 1000000, "lost"));
-    CHECK(machine.holds("out/pictures/mono" BINOSPLAT_FLOAT_EXTENSION));
-}
-
-TEST_CASE_FIXTURE(Machine, "where one type of memory is full, another serves that a buffer may lie in as well") {
-    go(kRender, fault("allocate", 3, "type-full"));
-    CHECK(holds("out/pictures/mono" BINOSPLAT_FLOAT_EXTENSION));
+    const std::string render = "render builtin:slanted-wall --size 64x48 --out out/pictures --mode ";
+    ScriptHost host = programIn(machine);
+    host.names.merge(
+        std::map<std::string, std::string>{{"MONO", render + "mono"},
+                                           {"SHARED", render + "shared"},
+                                           {"BENCH", "bench builtin:slanted-wall --size 64x48 --out out/tables --config one.toml"},
+                                           {"LOST", "the device was lost"},
+                                           {"FULL", "MiB of device memory, which is more than it has free"},
+                                           {"STOPPED", "stopped by SIGINT, nothing was written"},
+                                           {"ENDED", "stopped by SIGTERM, nothing was written"},
+                                           {"KEPT", "files full.toml one.toml small.script"}});
+    runScript(host);
 }
 
 #ifdef BINOSPLAT_LIBRARY_USER
@@ -147,14 +96,6 @@ TEST_CASE("wherever the memory for it ends it does so" * nightly()) {
     CHECK(failed >= 3);
 }
 #endif
-
-TEST_CASE_FIXTURE(Machine, "on a full disk the message names the file, and no file is left") {
-    checkFails(kRender, filesOf(1), 1, "mono" BINOSPLAT_FLOAT_EXTENSION ": cannot be written (");
-    checkFails(kTiny, filesOf(2), 1, "report.json: cannot be written (");
-    checkFails(kBench, filesOf(1), 1, "bench.json: cannot be written (");
-    checkFails("scene fence --out fence.ply", filesOf(1), 1, "fence.ply: writing failed: ");
-    checkFails("convert builtin:fence fence.spz", filesOf(1), 1, "fence.spz: writing failed: ");
-}
 
 #ifdef BINOSPLAT_OPENXR
 TEST_CASE_FIXTURE(Machine, "faults end the viewer in its own line, behind what the runtime says, and SIGTERM ends it as its wearer would") {
