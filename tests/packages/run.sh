@@ -99,7 +99,7 @@ tryPackages() {
     mkdir "$tree/tmp/packages"
     cp build/packages/*.{deb,tar.gz} "$tree/tmp/packages/"
     rm -rf "$tree/tmp/examples"
-    cp -r examples "$tree/tmp/examples"
+    cp -r docs/examples "$tree/tmp/examples"
     enter "$tree" <<'END'
 # Those of an earlier run may be newer, or of the same version.
 dpkg --remove python3-binosplat libbinosplat-dev libbinosplat0 binosplat binosplat-simulated-runtime

@@ -279,7 +279,7 @@ TEST_CASE_FIXTURE(AtWork, "evaluate.py finds no more between a photograph and th
     work.write("cameras.json", R"([{"img_name": "mono.png", "width": 96, "height": 64, "fx": 48, "fy": 48, "position": [0.1, -0.2, -1],
                                   "rotation": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]}])");
     fs::remove(work.path / "photos" / ("mono" BINOSPLAT_FLOAT_EXTENSION));
-    const auto output = outputOf(work, "../examples/evaluate.py", "builtin:fence cameras.json photos");
+    const auto output = outputOf(work, "../docs/examples/evaluate.py", "builtin:fence cameras.json photos");
     if (!output) { return; }
     REQUIRE(output->ends_with(" dB of 1 test cameras\n"));
     CHECK(std::atof(output->substr(output->find("mean ") + 5).c_str()) > 50.0);
