@@ -1,3 +1,5 @@
+// For what blends by cells: after lib/outline.glsl.
+
 // The cells of the tile that the splat meets, a bit each.
 uint cellsOf(ProjectedSplat splat, uvec2 tile_px, float low_pass) {
     const Outline outline = outlineOfProjected(splat, low_pass);

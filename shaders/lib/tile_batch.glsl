@@ -7,22 +7,6 @@ shared vec4 batch_depth[kBatchSize + 1];      // 1/z there, its slopes, -log2(op
 shared uvec2 batch_colour[kBatchSize + 1];
 shared uint cell_splats[kCellsPerTile][kBatchSize / 32];  // four words: blendBatch holds them in registers
 
-// The cells of the tile that the splat meets, a bit each.
-uint cellsOf(ProjectedSplat splat, uvec2 tile_px, float low_pass) {
-    const Outline outline = outlineOfProjected(splat, low_pass);
-    if (!outline.ellipse) { return 15; }
-    uint cells = 0;
-    for (uint row = 0; row < 2; ++row) {
-        const float first_row = float(tile_px.y + row * kCellSize) + 0.5;
-        vec2 bounds = boundsBetweenRows(outline, first_row - kOutlinePadding, first_row + float(kCellSize - 1) + kOutlinePadding);
-        bounds += vec2(-kOutlinePadding, kOutlinePadding) - (float(tile_px.x) + 0.5);
-        // Pixel columns 0 to 7 and 8 to 15 of the tile.
-        if (bounds.x <= float(kCellSize - 1) && bounds.y >= 0) { cells |= 1u << (2 * row); }
-        if (bounds.x <= float(2 * kCellSize - 1) && bounds.y >= float(kCellSize)) { cells |= 2u << (2 * row); }
-    }
-    return cells;
-}
-
 void loadSplat(uint slot, uint lanes_in_subgroup, uint rank, uvec2 tile_px, bool is_coarse) {
     const vec2 middle_px = vec2(pass.eyes.at[gl_WorkGroupID.z].size_px) * 0.5;
     const float low_pass = pass.eyes.at[gl_WorkGroupID.z].low_pass * (kMeasures && is_wider ? kWiderLowPass : 1);
