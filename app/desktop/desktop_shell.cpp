@@ -21,7 +21,8 @@ constexpr double kLoadingSeconds = 0.05;  // how often to check for results of t
 constexpr double kGamepadSeconds = 1.0 / 60.0, kNoPictureSeconds = 0.002;
 constexpr double kUsualAngleDeg = 60.0;
 constexpr double kTourWaySeconds = 4.0;  // from one viewpoint to the next
-// The panel's size: of its own pixels, on a desktop that does not magnify; and at most of the window's width.
+// The panel's size: in its own pixels, on a desktop without magnification; and at most this share of the
+// window's width.
 constexpr double kPanelScale = 0.7, kPanelShare = 0.6;
 constexpr double kNearShare = 0.05;  // of the distance to the centre: closer than the usual near plane if the camera goes close
 

@@ -107,7 +107,7 @@ private:
     Clock::time_point pressed_at_{}, changed_at_{}, last_step_ = Clock::now();
     SceneNotes notes_;
     ViewpointList viewpoints_;
-    FileWorker dialogs_, files_;  // their threads end before the users of their results
+    FileWorker dialogs_, files_;  // their threads end before the objects that use their results
     ShownScene scenes_;           // last: the loading thread ends first
 };
 

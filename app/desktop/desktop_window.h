@@ -20,8 +20,8 @@ struct DesktopEvent {
     enum class Kind { kMove, kPress, kRelease, kWheel, kKey, kText, kDrop, kLeave } kind;
     glm::dvec2 place_px{0.0};
     int code = 0;        // GLFW's number of a key or a button
-    double steps = 0.0;  // of the wheel, away from oneself
-    std::string path;    // that was dropped, or a letter that was written, in UTF-8
+    double steps = 0.0;  // of the wheel, away from the user
+    std::string path;    // that was dropped, or a letter that was typed, in UTF-8
 };
 
 class DesktopWindow {

@@ -31,6 +31,7 @@ Viewer::Viewer(const ViewOptions& options, const ViewSettings& settings, xr::Ins
       commands_(context_),
       probe_(context_),
       notes_(files_, [this](const std::string& message) { say(message); }),
+      first_steps_(files_, settings.first_steps),
       viewpoints_(files_, [this](const std::string& message) { say(message); }),
       scenes_(context_, options_, log_,
               FramesAhead{settings.stereo, renderer_.sizePx(settings), instance.takesDepth(), settings.tint, {}}) {

@@ -123,13 +123,14 @@ private:
     PictureWriter pictures_;
     bool picture_asked_ = false;  // for the next frame
     std::uint64_t frames_of_scene_ = 0;
-    bool said_there_ = false;  // that all of the first view of a streamed scene is there
+    bool said_there_ = false;  // everything in the first view of a streamed scene is loaded, and that was reported
     Pose room_from_head_;      // as last known
     Ruler ruler_;
     std::array<bool, 2> clicked_{};  // by hand, in the frame before
     bool recentre_asked_ = false, leaving_ = false, waits_for_kernels_ = false;
     std::chrono::steady_clock::time_point last_alone_{};
     SceneNotes notes_;
+    FirstSteps first_steps_;
     ViewpointList viewpoints_;
     FileWorker files_;   // its thread ends before the users of its results
     ShownScene scenes_;  // last: the loading thread ends first

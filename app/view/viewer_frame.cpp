@@ -5,6 +5,7 @@
 #include "app/view/placement/view_eyes.h"
 #include "app/view/wearer/follow_ground.h"
 #include "engine/error.h"
+#include "engine/places/standpoint.h"
 
 #include <algorithm>
 #include <utility>
@@ -64,7 +65,7 @@ void Viewer::drawFrame() {
     wearer.scene_floor_m = sceneFloorMetres();
     controls_.update(wearer, panel_.inRoom(), state_);
     measure(wearer.hands);
-    probeScene();
+    probeScene(wearer.floor_m.value_or(kUsualFloorMetres));
     if (const double clear_deg = state_.settings().stereo.foveation_deg; clear_deg > 0.0 && !views.insets) {
         views.gazes = gaze_.update(headset().input.gaze(), views.room_from_eyes, glm::radians(clear_deg), step_seconds);
     } else {

@@ -1,4 +1,4 @@
-// The wearer's place in the scene, and what the viewer keeps of it.
+// The wearer's place in the scene, and what the viewer stores about it.
 #include "app/view/panel/measure.h"
 #include "app/view/placement/placement.h"
 #include "app/view/scenes/viewpoints.h"
@@ -65,8 +65,8 @@ void Viewer::measure(const std::array<xr::Hand, 2>& hands) {
         const std::optional<Pose> aim = panel_.inRoom().missesWith(h);
         if (!begins || !ruler_.isOpen() || !aim || scenes_.get() == nullptr) { continue; }
         std::optional<glm::dvec3> place;
-        if (paths_seen_[at].meets) {
-            place = transform(state_.sceneFromRoom(), transform(*aim, {0.0, 0.0, probeMetres(*paths_seen_[at].meets)}));
+        if (probes_seen_.hands[at].meets) {
+            place = transform(state_.sceneFromRoom(), transform(*aim, {0.0, 0.0, probeMetres(*probes_seen_.hands[at].meets)}));
         }
         say(measureAt(place, ruler_, state_.sceneFromRoom().scale, panel_.entry()));
         if (!ruler_.isOpen()) { showPanel(); }

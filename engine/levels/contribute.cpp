@@ -20,7 +20,7 @@ void recordContributions(PassKernels& kernels, Commands& commands, const GpuScen
         pass.wanted = wanted->colours.address<gpu::vec4>();
     }
     commands.beginPass({Role::kNone, ContributeKernel::kStage, ContributeKernel::kShader});
-    commands.dispatch(kernels.get(contributeKernel(kernels.threadsPerCell(), scene.splatShape(), wanted != nullptr)), pass,
+    commands.dispatch(kernels.get(contributeKernel(kernels.threadsPerCell(), scene.splatKind(), wanted != nullptr)), pass,
                       targets.size_tiles.x, targets.size_tiles.y);
 }
 

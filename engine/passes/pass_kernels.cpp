@@ -76,7 +76,7 @@ KernelTable allKernels(const Context& context, const Sort& sort, std::uint32_t t
     KernelTable table = frameKernels(threads_per_cell);
     append(table, sort.kernels());
     append(table, warpKernels(context));
-    append(table, pastKernels(loadsByAddress(context)));
+    append(table, pastKernels(context.isSoftware()));
     for (std::uint32_t choices = 0; choices < 4; ++choices) {
         table.push_back(variantOf(contributeKernel(threads_per_cell, choices >> 1, (choices & 1) != 0)));
     }
@@ -94,14 +94,14 @@ PassKernels::PassKernels(const Context& context, const Sort& sort, std::uint32_t
 PassKernels::PassKernels(const Context& context, std::uint32_t threads_per_cell)
     : PassKernels(context, Sort(context), cellThreads(context, threads_per_cell)) {}
 
-ContributeKernel contributeKernel(std::uint32_t threads_per_cell, std::uint32_t splat_shape, bool fits) {
+ContributeKernel contributeKernel(std::uint32_t threads_per_cell, std::uint32_t splat_kind, bool fits) {
     return {.threads_per_cell = threads_per_cell,
-            .splat_kind = splat_shape,
+            .splat_kind = splat_kind,
             .fits = fits,
             .local_size_x = gpu::kCellsPerTile * threads_per_cell};
 }
 
-// With coarse tiles there is one kernel for all that a picture may keep.
+// With coarse tiles there is one kernel for all that a picture may keep, and so there is where meshes cut.
 RasterizeKernel rasterizeKernel(std::uint32_t threads_per_cell, const Kept& kept, std::uint32_t splat_shape, bool masked, bool coarse) {
     const bool moves_by_depth = kept.moving && kept.depth_choice != gpu::kDepthInverse;
     return {.threads_per_cell = threads_per_cell,

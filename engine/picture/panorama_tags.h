@@ -1,5 +1,5 @@
-// What a file says of the picture in it, for galleries and players of headsets: GPano in the XMP of a PNG or a JPEG, and the boxes of
-// Google's Spherical Video V2 (docs/spherical-video-v2-rfc.md of its spatial-media) in an MP4.
+// What a file says about its picture, for galleries and headset players: GPano in the XMP of a PNG or a JPEG, and
+// the boxes of Google's Spherical Video V2 (docs/spherical-video-v2-rfc.md in its spatial-media) in an MP4.
 #pragma once
 
 #include "engine/picture/panorama.h"

@@ -23,7 +23,7 @@ void writePng(const std::filesystem::path& path, const Image& rgb);
 // The same as JPEG; false if this build cannot.
 bool writeJpegFile(const std::filesystem::path& path, const Image& rgb);
 
-// `file` is the file `path`, at its beginning. Throws Error.
+// `file` is the file at `path`, at its beginning. Throws Error.
 Image readPictureFile(const std::filesystem::path& path, std::FILE* file);
 
 }  // namespace binosplat

@@ -66,4 +66,30 @@ TEST_CASE("a value that is not finite is as far off as can be") {
     CHECK(broken[3].second == std::numeric_limits<double>::infinity());
 }
 
+TEST_CASE("of two paths come the mean, the worst frame, and how much more one changes than the other") {
+    const Pictures pictures;
+    for (const char* folder : {"still", "flickers", "empty", "short"}) { std::filesystem::create_directory(pictures.path / folder); }
+    const auto write = [&](const std::string& name, float grey) {
+        writePfm(pictures.path / (name + ".pfm"), makeFlat({20, 20}, glm::vec3(grey)));
+    };
+    for (const char* eye : {"left", "right"}) {
+        for (int frame = 0; frame < 3; ++frame) {
+            const std::string name = fmt::format("/frame_00000{}_{}", frame, eye);
+            write("still" + name, 0.5f + 0.1f * static_cast<float>(frame));
+            write("flickers" + name, frame == 1 ? 0.8f : 0.5f + 0.1f * static_cast<float>(frame));
+        }
+    }
+    // Off by 0.2 in one frame of three; changes by 0.3 and -0.1 instead of 0.1 twice.
+    const auto scores = pictures.scores("flickers still");
+    REQUIRE(scores.size() == 4);
+    CHECK(scores[0] == std::pair(std::string("pictures"), 6.0));
+    CHECK(scores[1].second == doctest::Approx(-10.0 * std::log10(0.04 / 3.0)));
+    CHECK(scores[2].second == doctest::Approx(-10.0 * std::log10(0.04)));
+    CHECK(scores[3].second == doctest::Approx(std::sqrt(5.0)));
+    CHECK(pictures.go("compare still still").output == "pictures 6\npsnr inf\npsnr_least inf\nchange 1.000000\n");
+    write("short/frame_000000_left", 0.5f);
+    pictures.checkRefused("compare still short", 1, "short/frame_000001_left.pfm: cannot be read");
+    pictures.checkRefused("compare empty still", 1, "empty: has no frames of a path");
+}
+
 }  // SUITE(compare)

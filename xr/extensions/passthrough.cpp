@@ -14,6 +14,7 @@ bool findsPassthrough(const Instance& instance) {
 
 void Passthrough::make() {
     auto info = structure<XrPassthroughCreateInfoFB>(XR_TYPE_PASSTHROUGH_CREATE_INFO_FB);
+    info.flags = XR_PASSTHROUGH_IS_RUNNING_AT_CREATION_BIT_FB;
     const auto create = instance_.function<PFN_xrCreatePassthroughFB>("xrCreatePassthroughFB");
     checkResult(create(session_, &info, &passthrough_), "xrCreatePassthroughFB");
     auto of_layer = structure<XrPassthroughLayerCreateInfoFB>(XR_TYPE_PASSTHROUGH_LAYER_CREATE_INFO_FB);
@@ -34,8 +35,11 @@ void Passthrough::run(bool runs) const {
 void Passthrough::show(bool shown) {
     if (fails_ || std::exchange(is_shown_, shown) == shown) { return; }
     fails_ = !instance_.troubles().tryFor("passthrough", [&] {
-        if (passthrough_ == XR_NULL_HANDLE) { make(); }
-        run(shown);
+        if (passthrough_ == XR_NULL_HANDLE) {
+            make();
+        } else {
+            run(shown);
+        }
     });
     is_shown_ = shown && !fails_;
 }

@@ -12,8 +12,9 @@ namespace binosplat {
 
 namespace {
 
-// A tenth of the period is left free, since we cannot know what the compositor and the machine do besides. Settings that are still
-// unproven, and calm changes, must need even less; so must a change after one that was not enough.
+// A tenth of the period is left free, since we cannot know what else the compositor and the machine do.
+// Settings that are still unproven, and calm changes, must need even less; so must a change after one that
+// was not enough.
 constexpr double kTarget = 0.9, kCalmly = 0.85, kAgain = 0.8;  // kAgain: times as much for each
 // A smaller rise of the budget is not worth a change; if a smaller share of it is spent, it does not determine the frame time.
 constexpr double kLeastRise = 1.1, kSpent = 0.75;

@@ -76,7 +76,7 @@ private:
     [[nodiscard]] GovernedSettings bestWithin(double most_ms) const;
     [[nodiscard]] GovernedSettings with(const Knobs& knobs) const;
     [[nodiscard]] KnobLimits knobLimits() const;
-    // True if they are worth a change: clearly less is off, or both knobs are higher.
+    // True if they are worth a change: clearly less error, or both knobs higher.
     [[nodiscard]] bool isBetter(const GovernedSettings& to) const;
     [[nodiscard]] bool turnsKnobs() const { return mode_ == Mode::kTemporal && quality_ != Quality::kOff; }
     [[nodiscard]] Knobs knobs() const { return {settings_.resolution_scale, settings_.error_bound_db}; }

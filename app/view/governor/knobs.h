@@ -38,7 +38,7 @@ public:
     void add(const Knobs& knobs, const KnobFrame& frame);
 
     [[nodiscard]] bool knows() const { return !visits_.empty(); }
-    // What a frame with such knobs is expected to take and to be off by, while the head moves as it did lately.
+    // The expected time and error of a frame with such knobs, while the head moves as it did recently.
     [[nodiscard]] double expectedMs(const Knobs& knobs) const { return msBy(shares_, knobs); }
     [[nodiscard]] double expectedError(const Knobs& knobs) const;
     // Among the knobs within the limits whose frames take at most this long, those with the least error; if

@@ -104,9 +104,9 @@ void drawMoving(PanelWidgets& widgets, ViewSettings& settings, const std::vector
     widgets.checkbox("Hands", &settings.hands);
     float place = 0.43f;
     const auto tick = [&](const char* words, bool& chosen) {
-        if (place < 0.8f) { ImGui::SameLine(place * width); }
+        if (place < 0.7f) { ImGui::SameLine(place * width); }
         widgets.checkbox(words, &chosen);
-        place = place < 0.8f ? place + 0.31f : 0.31f;
+        place = place < 0.7f ? place + 0.31f : 0.31f;
     };
     for (const ToolChoice& tool : tools) {
         if (tool.names[0] == nullptr) { tick(tool.words, settings.*tool.chosen); }

@@ -257,10 +257,10 @@ TEST_CASE("the first start shows three gestures one after the other, and no othe
         return runClean(work, name, script, kOneSplat + " --mode mono" + withConfig(work, "[view]\nfirst-steps = \"" + when + "\"\n"));
     };
     // Three times seven seconds, but for the first frames, which wait for a file to be read.
-    CHECK(shownIn(run("first", "once")) == between(std::size_t{380}, std::size_t{423}));
+    CHECK(shownIn(run("first", "once")) == between(std::size_t{380}, std::size_t{430}));
     CHECK(shownIn(run("second", "once")) == 0);
     CHECK(shownIn(run("never", "never")) == 0);
-    CHECK(shownIn(run("always", "always")) == between(std::size_t{380}, std::size_t{423}));
+    CHECK(shownIn(run("always", "always")) == between(std::size_t{380}, std::size_t{430}));
 }
 
 }  // SUITE(view_panel)

@@ -194,6 +194,36 @@ TEST_CASE_FIXTURE(AtWork, "the room shows behind the scene where the headset and
     CHECK(isCorner(additive, 0.2, kLeft, green));
 }
 
+TEST_CASE_FIXTURE(AtWork, "where the room is a layer, it lies below the scene while the wearer wants it, and its cameras rest otherwise") {
+    const std::string ahead = kWall + " --mode mono --eye 0,0,-6 --look 0,0,3 --up 0,-1,0 --background 1,0,0";
+    Acts acts("rate 50\nsize 128 128\nframes every 5\npassthrough on\nroom-colour 0.2 0.9 0.4\n");
+    const double opaque = acts.look();
+    const double through = acts.click(placeOf("Passthrough", true)).look();
+    const double again = acts.click(placeOf("Passthrough", true)).look();
+    // The validation layer of OpenXR's SDK refuses layers that it does not know.
+    const ViewRun run =
+        runView(work, "run", acts.script(), ahead, "XDG_CONFIG_HOME=\"$PWD/../config\" DISPLAY= WAYLAND_DISPLAY= BINOSPLAT_VALIDATION=1");
+    INFO(run.outcome.output);
+    CHECK(these(run.outcome.exit_code, run.outcome.errors) == these(0, ""));
+    const auto corner = [&](double seconds) { return colourAt(run.eye(run.pictureAt(seconds), kLeft), {0, 0}); };
+    const auto isNear = [](const Colour& a, const glm::vec3& b) { return glm::length(glm::vec3(a[0], a[1], a[2]) - b) < 0.02f; };
+    for (const double seconds : {opaque, through, again}) {
+        CAPTURE(seconds);
+        const nlohmann::json& frame = run.frames.at(run.pictureAt(seconds));
+        const bool sees = seconds == through;
+        CHECK(frame.at("blend_mode") == "OPAQUE");
+        CHECK(frame.at("layers").at(0).at("type") == (sees ? "passthrough" : "projection"));
+        CHECK(run.layers(run.pictureAt(seconds), "projection").at(0).at("flags").empty() == !sees);
+        CHECK(isNear(corner(seconds), sees ? glm::vec3(0.2f, 0.9f, 0.4f) : glm::vec3(1.0f, 0.0f, 0.0f)));
+    }
+    // Of a headset whose pictures cover the room by their alpha, that is used.
+    const ViewRun alpha =
+        runClean(work, "alpha", "rate 50\nsize 128 128\nframes none\npassthrough on\nblend-modes opaque alpha-blend\nat 0.3 exit\n",
+                 ahead + withConfig(work, "[view]\npassthrough = true\n"));
+    CHECK(alpha.frames.at(10).at("blend_mode") == "ALPHA_BLEND");
+    CHECK(alpha.layers(10, "passthrough").empty());
+}
+
 TEST_CASE_FIXTURE(AtWork, "a picture that cannot be written is a message, and no end") {
     fs::create_directories(work.base / "config");
     std::ofstream(work.base / "config" / "user-dirs.dirs") << "XDG_PICTURES_DIR=\"/proc/no-such-folder\"\n";

@@ -192,7 +192,7 @@ inline void runFaults(const std::string& good, const std::function<std::string(c
     }});
 }
 
-// Of a good file `from` is replaced by `to`; what reading it then says holds `message`.
+// In a good file `from` is replaced by `to`; the error on reading it must contain `message`.
 struct Fault {
     std::string from, to, message;
 };
