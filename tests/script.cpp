@@ -72,7 +72,8 @@ public:
     void runLines(std::size_t begin, std::size_t end) {
         for (at_ = begin; at_ < end;) {
             const std::string text = lineAt(at_);
-            INFO(script_.path, ":", script_.lines[at_].number, ": ", text);
+            const std::size_t number = script_.lines[at_].number;
+            INFO(script_.path, ":", number, ": ", text);
             if (const auto loop = behind(text, "for")) {
                 const std::size_t first = at_ + 1, behind_end = endOfLoop(first);
                 const std::string name = loop->substr(0, loop->find(' '));

@@ -59,7 +59,7 @@ TEST_CASE_FIXTURE(AtWork, "info says what a scene is made of, and what would tak
     for (double& x : far["x"].values) { x += 4e5; }
     far["x"].type = "double";
     work.write("far.ply", far.bytes());
-    CHECK(contains(work.go("info far.ply").output, "origin             400001,0,0: in memory"));
+    CHECK(contains(work.go("info far.ply").output, "origin             400001,0,0: positions in memory"));
     CHECK(contains(work.go("convert far.ply far.spz").output, "; that its positions count from 400001,0,0"));
     CHECK(contains(work.go("convert far.ply again.ply").output, "loses: nothing"));
     CHECK(contains(work.bytesOf("again.ply"), "property double x"));

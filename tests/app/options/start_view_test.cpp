@@ -163,7 +163,7 @@ TEST_CASE_FIXTURE(AtWork, "one stands at the first camera that sees the scene, u
                         camera("back", "[0, 3, 8]", "[[-1, 0, 0], [0, 1, 0], [0, 0, -1]]") + "]");
     const StartView above = startView(ground);
     CAPTURE(above.up_why);
-    CHECK(above.up_why.starts_with("of the floor beneath the cameras"));
+    CHECK(above.up_why.starts_with("that of the floor beneath the cameras"));
     CHECK(above.up_why.ends_with("; this camera looks along it and keeps its own"));
     CHECK(above.view.eye == glm::dvec3(0, 2, 8));
 }
