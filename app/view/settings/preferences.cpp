@@ -85,10 +85,12 @@ void keepPreferences(const PreferenceLines& changes) {
     const std::filesystem::path file = preferencesFile();
     check(!file.empty(), "preferences cannot be kept: neither XDG_CONFIG_HOME nor HOME is set");
     PreferenceLines lines;
+    std::error_code ignored;
     try {
-        std::error_code ignored;
         if (std::filesystem::exists(file, ignored)) { lines = readPreferences(readSettingsFile(file)); }
-    } catch (const Error&) {}  // was said at the start
+    } catch (const Error&) {  // was said at the start
+        std::filesystem::rename(file, file.string() + ".unread", ignored);
+    }
     for (const auto& [place, value] : changes) { lines[place] = value; }
     OutputFiles files(file.parent_path());
     writeText(files.staging() / file.filename(), preferencesToml(lines));

@@ -34,7 +34,7 @@ private:
     double still_s_ = 0.0;
 };
 
-// Adds them to the file. Throws Error if it cannot be written; one that cannot be read is replaced.
+// Adds them to the file. Throws Error if it cannot be written; one that cannot be read is kept as FILE.unread.
 void keepPreferences(const PreferenceLines& changes);
 
 }  // namespace binosplat

@@ -206,11 +206,12 @@ TEST_CASE("what somebody sets on the panel is kept, key by key, and is there the
     const std::string own = (work.path / "own.toml").string();
     CHECK(settingsOf(parse({"--config", own.c_str()})).quality == Quality::kSharp);
     CHECK(describeChange(begin, settingsOf(parse({"--simulate"}))) == "");
-    // One that is broken keeps nobody out, and is replaced.
+    // One that is broken keeps nobody out, and is put aside.
     std::ofstream(preferencesFile()) << "[view]\nnonsense = 1\n";
     CHECK(describeChange(begin, settingsOf(parse({}))) == "");
     keepPreferences({{{"view", "vignette"}, "false"}});
     CHECK(describeChange(begin, settingsOf(parse({}))) == "vignette = false");
+    CHECK(std::filesystem::file_size(preferencesFile().string() + ".unread") == 20);
     unsetenv("XDG_CONFIG_HOME");
 }
 
