@@ -10,6 +10,8 @@
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_ballot : require
+#extension GL_KHR_shader_subgroup_shuffle : require
+#extension GL_KHR_shader_subgroup_vote : require
 #include "passes.h"
 #include "lib/group.glsl"
 #include "lib/moving_pixel.glsl"
@@ -40,6 +42,8 @@ const bool kPlaced = false;  // no splat of the scene is read
 layout(push_constant, scalar) uniform Push { RasterizePass pass; };
 #include "lib/target.glsl"
 
+const uint kAllLanes = 0xffffffffu;
+const bool kNarrow = kThreadsPerCell <= 16;
 const uint kThreads = kCellsPerTile * kThreadsPerCell;
 const uint kPixels = kCellSize * kCellSize / kThreadsPerCell;  // of a thread: a column
 const float kFar = 3e38;                                       // a rho that is no hit
@@ -63,13 +67,24 @@ float mesh_inverse_depth[kPixels];  // of what cuts through the splats
 float transmittance[kPixels];       // negated once the pixel takes no more light
 bool any_open;
 
-// `first_px`: the middle of the thread's first pixel, relative to the tile; the others lie `apart` below each other.
-void blend(uint slot, vec2 first_px, float apart, uint max_inverse_depth_bits) {
-    const vec4 reference = batch_reference[slot];
-    const vec4 plane = batch_plane[slot];
-    const vec4 depth_form = batch_depth[slot];
-    const vec3 splat_colour = unpackColour(batch_colour[slot]);
+// The numbers of a batch's splat.
+struct BatchSplat {
+    vec4 reference, plane, depth_form;
+    vec3 colour;
+};
 
+BatchSplat splatAt(uint slot) {
+    return BatchSplat(batch_reference[slot], batch_plane[slot], batch_depth[slot], unpackColour(batch_colour[slot]));
+}
+
+BatchSplat splatOf(BatchSplat own, uint lane) {
+    return BatchSplat(subgroupShuffle(own.reference, lane), subgroupShuffle(own.plane, lane),
+                      subgroupShuffle(own.depth_form, lane), subgroupShuffle(own.colour, lane));
+}
+
+// `first_px`: the middle of the thread's first pixel, relative to the tile; the others lie `apart` below each other.
+void blend(BatchSplat splat, vec2 first_px, float apart, uint max_inverse_depth_bits) {
+    const vec4 reference = splat.reference, plane = splat.plane, depth_form = splat.depth_form;
     const vec2 d = first_px - reference.xy;
     const float u = reference.z + plane.x * d.x;
     const float q = depth_form.x + depth_form.y * d.x;
@@ -102,7 +117,7 @@ void blend(uint slot, vec2 first_px, float apart, uint max_inverse_depth_bits) {
         const float weight = closes ? 0 : full_weight;
         transmittance[p] = closes ? -transmittance[p] : after;
         most_open = max(most_open, transmittance[p]);
-        colour[p] += weight * splat_colour;
+        colour[p] += weight * splat.colour;
         if (kDepth) { depth[p] += weight * (kSplatKind != kDiscs || on_disc ? z : centre_z); }
         if (kMoments && (!kEvenRows || (p & 1) == 0)) {
             const float weighted = weight * inverse_z;
@@ -113,13 +128,15 @@ void blend(uint slot, vec2 first_px, float apart, uint max_inverse_depth_bits) {
     any_open = most_open > 0;
 }
 
-// Blends the splats of the batch that meet the cell, in one loop: with a loop over bits inside one over words, NVIDIA's compilers
-// use a fifth more registers, and every pixel's sums would be carried through both. A word without bits blends the splat of no opacity.
+// Blends the splats of the batch that meet the cell, in one loop: with a loop over bits inside one over words,
+// NVIDIA's compilers use a fifth more registers, and every pixel's sums would be carried through both. A word
+// without bits blends the splat of no opacity.
 void blendBatch(uint first_slot, uint end_slot, uint cell, vec2 first_px, float apart, uint max_inverse_depth_bits) {
     uint bits = cell_splats[cell][0];
     uvec3 next = uvec3(cell_splats[cell][1], cell_splats[cell][2], cell_splats[cell][3]);
     [[dont_unroll]] do {
-        blend(bits != 0 ? first_slot + uint(findLSB(bits)) : kNoSplat, first_px, apart, max_inverse_depth_bits);
+        const uint slot = bits != 0 ? first_slot + uint(findLSB(bits)) : kNoSplat;
+        blend(splatAt(slot), first_px, apart, max_inverse_depth_bits);
         bits &= bits - 1;
         if (bits == 0) {
             bits = next.x;
@@ -127,6 +144,32 @@ void blendBatch(uint first_slot, uint end_slot, uint cell, vec2 first_px, float 
             first_slot += 32;
         }
     } while (any_open && first_slot < end_slot);
+}
+
+// The same where a cell's threads are a few narrow subgroups. Each lane reads one of the next splats, and the
+// others have it from there: such devices load from shared memory lane by lane, even if all lanes want the same.
+void blendBatchByLanes(uint lanes, uint first_slot, uint end_slot, uint cell, vec2 first_px, float apart, uint max_inverse_depth_bits) {
+    uint bits = cell_splats[cell][0];
+    uvec3 next = uvec3(cell_splats[cell][1], cell_splats[cell][2], cell_splats[cell][3]);
+    [[dont_unroll]] do {
+        uint own_bits = bits;
+        [[unroll]] for (uint lane = 1; lane < kThreadsPerCell; ++lane) {
+            own_bits &= lane <= gl_SubgroupInvocationID ? own_bits - 1 : kAllLanes;
+        }
+        const BatchSplat own = splatAt(own_bits != 0 ? first_slot + uint(findLSB(own_bits)) : kNoSplat);
+        const uint splats = min(uint(bitCount(bits)), lanes);
+        uint lane = 0;
+        [[dont_unroll]] do {
+            blend(splatOf(own, lane), first_px, apart, max_inverse_depth_bits);
+            ++lane;
+        } while (lane < splats);
+        bits = subgroupShuffle(own_bits & (own_bits - 1), lanes - 1);
+        if (bits == 0) {
+            bits = next.x;
+            next = uvec3(next.yz, 0);
+            first_slot += 32;
+        }
+    } while (first_slot < end_slot && subgroupAny(any_open));
 }
 
 // The pixel as it is going to be warped: at the depth that stands for it, infinitely far where nothing was blended.
@@ -194,7 +237,11 @@ void blendTile(uint lanes, uvec2 range, uvec2 tile_px, vec2 first_px, bool is_co
         const uint splats = min(range.y - min(begin, range.y), slots);
         loadBatch(lanes, begin, first_slot, splats, tile_px, is_coarse);
         barrier();
-        blendBatch(first_slot, first_slot + splats, cellIndex(), first_px, apart, max_inverse_depth_bits);
+        if (kNarrow && gl_SubgroupSize <= kThreadsPerCell) {
+            blendBatchByLanes(lanes, first_slot, first_slot + splats, cellIndex(), first_px, apart, max_inverse_depth_bits);
+        } else {
+            blendBatch(first_slot, first_slot + splats, cellIndex(), first_px, apart, max_inverse_depth_bits);
+        }
         begin += slots;
         goes_on = kCoarse ? begin - range.x < most_pairs : begin < range.y;
     } while (goes_on);
