@@ -42,10 +42,12 @@ public:
     // The runtime refuses depth after all; false: depth was off already.
     bool dropDepth(ConnectedHeadset& headset);
 
-    // Prepares what render() will show, and sets the pictures of `views`. Throws Error if memory is short; then nothing is shown until this
-    // succeeds with less.
+    // Prepares what render() will show of the scene that is drawn, and sets the pictures of `views`. Throws Error if memory is short; then
+    // nothing is shown until this succeeds with less.
     void prepare(ConnectedHeadset& headset, ShownScene& shown, const Similarity& scene_from_room, const ViewSettings& settings,
                  FrameViews& views);
+    // See ShownScene; once that is prepared.
+    void meetOther(const ConnectedHeadset& headset, ShownScene& shown) const;
     // Renders and presents that, in one submission with what `record_panel` records, and does not wait for it. With a `window`, one eye's
     // picture is kept for it.
     void render(ConnectedHeadset& headset, ShownScene& shown, const ViewSettings& settings, MirrorWindow* window,
