@@ -289,7 +289,7 @@ void SceneRenderer::render(ConnectedHeadset& headset, ShownScene& shown, const V
                        .warp_error = last_.warp_error,
                        .half_loss = last_.half_loss});
     sayGoverned();
-    sayCutShort();
+    sayCutShort(shown.drawsOther());
 }
 
 void SceneRenderer::recordEyes(Commands& commands, EyeImages& images, const StereoFrame& frame, bool tint, MirrorWindow* window) {
@@ -322,9 +322,11 @@ void SceneRenderer::sayGoverned() {
     said_beaten_ = governor_.isBeaten() || (said_beaten_ && !is_other);
 }
 
-void SceneRenderer::sayCutShort() {
+void SceneRenderer::sayCutShort(bool of_other) {
     const std::uint64_t now = last_.counters.ahead ? last_.counters.ahead->frames_cut_short : 0;
-    if (now > std::exchange(cut_short_, now)) { log_.say(fmt::format("frames shown incomplete because a list was full: {}", now)); }
+    if (now > std::exchange(cut_short_[of_other ? 1 : 0], now)) {
+        log_.say(fmt::format("frames shown incomplete because a list was full: {}", now));
+    }
 }
 
 void SceneRenderer::sayHidden(const std::array<std::span<const std::uint8_t>, 2>& hidden) {

@@ -107,7 +107,7 @@ private:
     // Fits the splats of a streamed scene to the frame time, unless the user sets a number.
     void fitSplats(SceneStream& stream, double period_ms);
     void sayHidden(const std::array<std::span<const std::uint8_t>, 2>& hidden);
-    void sayCutShort();
+    void sayCutShort(bool of_other);
     void sayGoverned();
 
     const xr::Instance& instance_;
@@ -136,7 +136,7 @@ private:
     std::uint64_t governed_count_ = 0;
     std::uint32_t measured_part_ = 0;
     bool said_beaten_ = false;
-    std::uint64_t cut_short_ = 0;  // frames, as last said
+    std::array<std::uint64_t, 2> cut_short_{};  // frames, as last said: of the scene shown, and of the other one
     FrameResult last_;
     std::array<std::uint32_t, 2> hidden_tiles_{};  // as last said
     bool takes_depth_ = true;
