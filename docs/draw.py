@@ -100,7 +100,7 @@ def draw_side(profile, side):
         svg += label(side, 98 if is_above else 134, -inwards * 12, y, WORDS[menus[side]] + ": the panel goes or comes")
     if plays[side]:
         svg += f'  <circle cx="{x - inwards * 2}" cy="138" r="7" fill="#c4b5d8" {SHAPE}/>\n'
-        svg += label(side, 154, -inwards * 2, 138, WORDS[plays[side]] + ": a moving scene rests or plays")
+        svg += label(side, 154, -inwards * 2, 138, WORDS[plays[side]] + ": pause or play; held: the other scene")
     if squeeze:
         if not is_hand:
             svg += f'  <rect x="{x - inwards * 32 - 9}" y="146" width="18" height="40" rx="6" fill="#a9d89f" {SHAPE}/>\n'

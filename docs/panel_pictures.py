@@ -20,7 +20,7 @@ LEFT_AWAY = "controller left 0 position -0.2 1.2 -0.35 turn 0 -80\n"
 NEXT_SCENE = (
     "controller right 0 position 0.2 1.2 -0.35 look -0.535 1.765 -0.887\npress right trigger 4 7\n"
     "controller right 8 position 0.2 1.2 -0.35 look -0.535 1.765 -0.887\n"
-    "controller right 9 position 0.2 1.2 -0.35 look -0.444 1.384 -0.890\npress right trigger 11 14\n" + LEFT_AWAY
+    "controller right 9 position 0.2 1.2 -0.35 look -0.516 1.384 -0.854\npress right trigger 11 14\n" + LEFT_AWAY
 )
 # Pulls the trigger on the button of another page; x and z of where that is.
 PAGE = "controller right 0 position 0.2 1.2 -0.35 look {0} 1.765 {1}\npress right trigger 4 7\n" + LEFT_AWAY

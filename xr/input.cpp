@@ -25,7 +25,8 @@ Input::Input(const Session& session)
       stick_click_(actions_.make("pad", "Press the pad to move and turn", XR_ACTION_TYPE_BOOLEAN_INPUT, hands_)),
       stick_press_(actions_.make("viewpoint", "Next viewpoint, previous on the left", XR_ACTION_TYPE_BOOLEAN_INPUT, hands_)),
       menu_(actions_.make("menu", "Show or hide the panel", XR_ACTION_TYPE_BOOLEAN_INPUT, hands_)),
-      play_(actions_.make("play", "Pause or play a scene that moves", XR_ACTION_TYPE_BOOLEAN_INPUT, hands_)),
+      play_(actions_.make("play", "Pause or play; while two scenes are compared, hold to see the other", XR_ACTION_TYPE_BOOLEAN_INPUT,
+                          hands_)),
       haptic_(actions_.make("pulse", "Feel the panel", XR_ACTION_TYPE_VIBRATION_OUTPUT, hands_)),
       gamepad_(actions_),
       gaze_(session, actions_) {

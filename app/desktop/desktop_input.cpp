@@ -40,6 +40,7 @@ void DesktopShell::handle(const DesktopEvent& event) {
         pointer_.wheel = 0.0;
         return;
     }
+    if (moveCurtain(event)) { return; }
     switch (event.kind) {
         case Kind::kMove:
             pointer_.place_px.reset();
@@ -63,7 +64,7 @@ void DesktopShell::handle(const DesktopEvent& event) {
             pressKey(event.code);
             break;
         case Kind::kDrop:
-            openDropped(event.path);
+            openDropped(event);
             break;
         case Kind::kText:
             break;
@@ -94,7 +95,7 @@ void DesktopShell::press(const DesktopEvent& event) {
             return;
         }
     }
-    const glm::uvec2 part_px = partsOf(state_.settings().window_stereo, areaPx()).front().size_px;
+    const glm::uvec2 part_px = parts().front().size_px;
     const std::vector<Eye> eyes = eyesOf(mover_.camera(), windowSight(), part_px);
     const OrbitCamera& camera = mover_.camera();
     glm::dvec3 pivot = under(event.place_px);
@@ -108,19 +109,20 @@ void DesktopShell::press(const DesktopEvent& event) {
 
 std::optional<glm::dvec3> DesktopShell::seenAt(const glm::dvec2& place_px) {
     if (pictures_.eyes().empty()) { return std::nullopt; }
-    const std::optional<EyePart> part = partAt(partsOf(state_.settings().window_stereo, areaPx()), place_px);
+    const std::optional<EyePart> part = partAt(parts(), place_px);
     if (!part) { return std::nullopt; }
     const int e = pictures_.eyes().size() == 1 ? 0 : part->eye;
     const Eye& eye = pictures_.eyes()[static_cast<std::size_t>(e)];
     const glm::dvec2 pixel = (place_px - glm::dvec2(part->at_px)) * glm::dvec2(eye.size_px) / glm::dvec2(part->size_px);
-    const std::optional<double> depth = scenes_.frame().depthAt(e, glm::min(glm::uvec2(pixel), eye.size_px - 1u));
+    const std::optional<double> depth =
+        (isOtherAt(place_px) ? scenes_.otherFrame() : scenes_.frame()).depthAt(e, glm::min(glm::uvec2(pixel), eye.size_px - 1u));
     return depth ? std::optional(pointAt(eye, pixel, *depth)) : std::nullopt;
 }
 
 glm::dvec3 DesktopShell::under(const glm::dvec2& place_px) {
     const OrbitCamera& camera = mover_.camera();
     if (const std::optional<glm::dvec3> seen = seenAt(place_px)) { return *seen; }
-    const std::optional<EyePart> part = partAt(partsOf(state_.settings().window_stereo, areaPx()), place_px);
+    const std::optional<EyePart> part = partAt(parts(), place_px);
     if (!part) { return camera.centre(); }
     const std::vector<Eye> eyes = eyesOf(camera, windowSight(), part->size_px);
     return pointAt(eyes[eyes.size() == 1 ? 0 : static_cast<std::size_t>(part->eye)], place_px - glm::dvec2(part->at_px), camera.distance());
@@ -146,6 +148,10 @@ void DesktopShell::pressKey(int key) {
             break;
         case GLFW_KEY_O:
             requests.open_file = true;
+            break;
+        case GLFW_KEY_C:
+            if (scenes_.other() != nullptr) { return; }  // held, it shows that one
+            requests.compare = true;
             break;
         case GLFW_KEY_P:
             requests.take_picture = true;

@@ -16,7 +16,10 @@ void DesktopShell::layOutPanel(const PanelPointer& pointer, double seconds) {
     layouts_due_ = std::max(layouts_due_ - 1, 0);
     PanelStatus& status = panel_.status();
     const LoadedScene* const scene = scenes_.get();
-    status.scene = scenes_.name();
+    status.scene = scenes_.names();
+    status.compares = scenes_.other() != nullptr;
+    status.compares_next = scenes_.comparesNext();
+    status.shows_other = status.compares && comparison_->is_whole_asked;
     status.loading = scenes_.loading();
     status.has_scene = scene != nullptr;
     status.time.reset();
@@ -100,6 +103,12 @@ void DesktopShell::openAndSave(const PanelRequests& requests) {
     if (!requests.favourite.empty()) {
         notes_.toggleFavourite(requests.favourite, [this] { panel_.listAnew(); });
     }
+    if (requests.compare) {
+        say(scenes_.toggleComparison());
+        // On the page with the list of scenes one is chosen there.
+        if (scenes_.comparesNext() && state_.settings().page != PanelPage::kScenes) { openFile(); }
+    }
+    if (requests.show_other && comparison_) { comparison_->is_whole_asked = !comparison_->is_whole_asked; }
     if (requests.open_file) { openFile(); }
     if (requests.take_picture && scenes_.get() != nullptr) { writes_picture_ = true, is_refined_ = false; }
 }
@@ -132,8 +141,8 @@ void DesktopShell::openFile() {
     });
 }
 
-void DesktopShell::openDropped(const std::string& path) {
-    path.ends_with(".viewpoints.json") ? viewpoints_.read(path) : scenes_.begin(path);
+void DesktopShell::openDropped(const DesktopEvent& event) {
+    event.path.ends_with(".viewpoints.json") ? viewpoints_.read(event.path) : scenes_.begin(event.path, event.second);
 }
 
 void DesktopShell::takePicture() {
@@ -145,7 +154,10 @@ void DesktopShell::takePicture() {
         FrameSettings settings = frameSettingsNow(true);
         settings.mode = both ? Mode::kShared : Mode::kMono;
         settings.keep_classes = false;
-        writer_.begin(scenes_.picturesOf(eyesOf(mover_.camera(), sight, areaPx()), settings), scenes_.name());
+        // Of the other one, if it fills the window.
+        scenes_.draw(comparison_ && comparison_->is_whole);
+        writer_.begin(scenes_.picturesOf(scenes_.seenFromDrawn(eyesOf(mover_.camera(), sight, areaPx())), settings), scenes_.drawn()->name);
+        scenes_.draw(false);
     } catch (const vk::DeviceLostError&) { throw; } catch (const vk::SystemError& error) {
         say(fmt::format("the picture cannot be rendered: {}", error.what()));
     } catch (const Error& error) { say(error.what()); }

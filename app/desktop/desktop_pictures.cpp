@@ -81,11 +81,13 @@ void DesktopPictures::render(StereoFrame& frame, const std::vector<Eye>& eyes, c
     eyes_ = eyes;
 }
 
-void DesktopPictures::compose(Commands& commands, vk::Image window, const std::vector<EyePart>& parts) {
+void DesktopPictures::compose(Commands& commands, vk::Image window, const std::vector<EyePart>& parts, double from_share) {
     if (eyes_.empty()) { return; }
+    const glm::uvec2 size_px = eyes_.front().size_px;
+    const auto from_x = static_cast<std::uint32_t>(std::lround(from_share * size_px.x));
     for (const EyePart& part : parts) {
         const std::size_t image = eyes_.size() == 1 ? 0 : static_cast<std::size_t>(part.eye);
-        blitInto(commands, *images_[image]->image, eyes_.front().size_px, window, {glm::ivec2(part.at_px), glm::ivec2(part.size_px)});
+        blitInto(commands, *images_[image]->image, size_px, window, {glm::ivec2(part.at_px), glm::ivec2(part.size_px)}, from_x);
     }
 }
 

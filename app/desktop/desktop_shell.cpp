@@ -75,12 +75,14 @@ void DesktopShell::step() {
     dialogs_.deliver();
     if (const std::optional<std::string> outcome = writer_.takeOutcome()) { say(*outcome); }
     if (scenes_.isNextReady()) { takeScene(); }
+    if (scenes_.isOtherReady()) { takeOther(); }
     for (const DesktopEvent& event : window_.takeEvents()) { handle(event); }
     const bool was_on_way = mover_.isGliding();
     mover_.pass(heldMotion(), seconds);
     if (was_on_way && !mover_.isGliding()) { log_.say("arrived"); }
     if (heldMotion().isAny()) { viewpoints_.endTour(); }
     goTo(viewpoints_.pass(seconds, !mover_.isGliding()), kTourWaySeconds);
+    followComparison();
     layOutPanel(pointer_, seconds);
     draw(seconds);
     notes_.keepPreferences(state_.settings(), seconds);
@@ -91,10 +93,10 @@ double DesktopShell::secondsToWait() const {
     if (window_.isMinimized()) { return kIdleSeconds; }
     if (!is_shown_) { return kNoPictureSeconds; }
     if (layouts_due_ > 0 || mover_.isGliding() || heldMotion().isAny()) { return 0.0; }
-    const LoadedScene* const scene = scenes_.get();
-    if (scene != nullptr && scene->live && (!scene->live->isSettled() || (scene->moving != nullptr && scene->clock.plays()))) {
-        return kNoPictureSeconds;
-    }
+    const auto changes = [](const LoadedScene* scene) {
+        return scene != nullptr && scene->live && (!scene->live->isSettled() || (scene->moving != nullptr && scene->clock.plays()));
+    };
+    if (changes(scenes_.get()) || changes(scenes_.other())) { return kNoPictureSeconds; }
     double most = kIdleSeconds;
     if (!is_refined_) { most = std::clamp(kRestSeconds - secondsSince(changed_at_), 0.0, most); }
     if (viewpoints_.isTouring() || scenes_.isLoading() || !files_.now().empty() || !dialogs_.now().empty()) {
@@ -125,7 +127,6 @@ void DesktopShell::takeScene() {
     if (const auto left = left_.find(scene->place); left != left_.end()) { camera = left->second; }
     mover_.set(camera);
     notes_.remember(scene->name, complaint);
-    window_.setTitle(scene->name + " - binosplat");
 }
 
 void DesktopShell::keepPictureOfScene() {
@@ -156,8 +157,7 @@ WindowSight DesktopShell::windowSight() const {
 }
 
 DesktopShell::Sight DesktopShell::sightNow() const {
-    Sight sight{scenes_.get(), mover_.camera(), partsOf(state_.settings().window_stereo, areaPx()).front().size_px, state_.settings(),
-                moment_};
+    Sight sight{scenes_.get(), scenes_.other(), mover_.camera(), parts().front().size_px, state_.settings(), moment_};
     sight.settings.page = {};  // these change nothing in the scene
     sight.settings.panel = {};
     return sight;
@@ -189,14 +189,16 @@ void DesktopShell::draw(double seconds) {
 }
 
 void DesktopShell::drawScene(double seconds) {
-    LoadedScene& scene = *scenes_.get();
-    if (scene.live) {
-        const std::size_t before = scene.clock.frame();
-        const WindowSight sight = windowSight();
-        scene.follow(eyesOf(mover_.camera(), sight, sightNow().part_px), seconds);
-        for (const std::string& line : scene.live->takeLines(Waits::kNever)) { say(line); }
-        if (!scene.live->isSettled() || before != scene.clock.frame()) { ++moment_; }
+    const auto frameOf = [](const LoadedScene* scene) { return scene != nullptr ? scene->clock.frame() : 0; };
+    const std::array before{frameOf(scenes_.get()), frameOf(scenes_.other())};
+    scenes_.follow(eyesOf(mover_.camera(), windowSight(), sightNow().part_px), seconds);
+    bool changes = before != std::array{frameOf(scenes_.get()), frameOf(scenes_.other())};
+    for (LoadedScene* const scene : {scenes_.get(), scenes_.other()}) {
+        if (scene == nullptr || !scene->live) { continue; }
+        for (const std::string& line : scene->live->takeLines(Waits::kNever)) { say(line); }
+        changes = changes || !scene->live->isSettled();
     }
+    if (changes) { ++moment_; }
     const Sight sight = sightNow();
     if (!(sight == drawn_)) {
         drawn_ = sight;
@@ -215,10 +217,12 @@ void DesktopShell::render(double scale, bool at_rest) {
     const glm::uvec2 size_px = glm::max(glm::uvec2(glm::round(scale * glm::dvec2(drawn_.part_px))), glm::uvec2(16));
     FrameSettings settings = frameSettingsNow(at_rest);
     settings.mark = static_cast<std::uint64_t>(std::lround(1000.0 * scale));
-    pictures_.render(scenes_.frame(), eyesOf(mover_.camera(), windowSight(), size_px), settings,
-                     {state_.settings().tint, state_.settings().window_stereo == WindowStereo::kAnaglyph}, at_rest);
+    const std::vector<Eye> eyes = eyesOf(mover_.camera(), windowSight(), size_px);
+    pictures_.render(scenes_.frame(), eyes, settings, look(), at_rest);
+    renderOther(eyes, settings, at_rest);
     const FrameResult& last = pictures_.lastFrame();
-    motion_.measure(0.001 * static_cast<double>(last.mark), last.gpu_total_ms);
+    const double other_ms = scenes_.other() != nullptr ? comparison_->pictures.lastFrame().gpu_total_ms : 0.0;
+    motion_.measure(0.001 * static_cast<double>(last.mark), last.gpu_total_ms + other_ms);
     ++scene_frames_;
     is_shown_ = false;
     layouts_due_ = std::max(layouts_due_, 1);  // its times
@@ -233,7 +237,7 @@ void DesktopShell::show() {
         const WindowPart panel = panelPart();
         if (panel.size_px.x > 0) { panel_.record(commands); }
         clearWindow(commands, target);
-        if (scenes_.get() != nullptr) { pictures_.compose(commands, target, partsOf(state_.settings().window_stereo, areaPx())); }
+        if (scenes_.get() != nullptr) { composeScenes(commands, target); }
         if (panel.size_px.x > 0) { blitInto(commands, panel_.canvas().image(), kPanelPx, target, panel); }
         changeLayout(commands, target, vk::ImageLayout::eTransferDstOptimal, vk::ImageLayout::ePresentSrcKHR);
         commands.submit(drawn);

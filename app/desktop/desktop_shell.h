@@ -2,6 +2,7 @@
 #pragma once
 
 #include "app/desktop/camera_mover.h"
+#include "app/desktop/curtain.h"
 #include "app/desktop/desktop_pictures.h"
 #include "app/desktop/desktop_window.h"
 #include "app/terminal/frame_log.h"
@@ -31,6 +32,7 @@ private:
     // Everything on which the scene's picture depends.
     struct Sight {
         const LoadedScene* scene = nullptr;
+        const LoadedScene* other = nullptr;
         OrbitCamera camera;
         glm::uvec2 part_px{0, 0};
         ViewSettings settings;
@@ -42,11 +44,31 @@ private:
     void step();
     [[nodiscard]] double secondsToWait() const;
     void takeScene();
+    // Another scene to compare with: beside a curtain, or in the whole window while a key is held.
+    struct Comparison {
+        explicit Comparison(const Context& context) : pictures(context), curtain(context) {}
+        DesktopPictures pictures;  // of the other scene
+        Curtain curtain;
+        bool is_whole = false;        // the other scene fills the window
+        bool is_whole_asked = false;  // even if no key is held
+    };
+    void takeOther();
+    void followComparison();
+    // True if the pointer's event was the curtain's.
+    bool moveCurtain(const DesktopEvent& event);
+    [[nodiscard]] bool isOtherAt(const glm::dvec2& place_px) const;
+    // Does nothing if there is no other scene.
+    void renderOther(const std::vector<Eye>& eyes, const FrameSettings& settings, bool at_rest);
+    void composeScenes(Commands& commands, vk::Image window);
     void keepPictureOfScene();
 
     // Pictures.
     [[nodiscard]] WindowPart panelPart() const;
     [[nodiscard]] glm::uvec2 areaPx() const;  // beside the panel
+    [[nodiscard]] std::vector<EyePart> parts() const { return partsOf(state_.settings().window_stereo, areaPx()); }
+    [[nodiscard]] DesktopPictures::Look look() const {
+        return {state_.settings().tint, state_.settings().window_stereo == WindowStereo::kAnaglyph};
+    }
     [[nodiscard]] WindowSight windowSight() const;
     [[nodiscard]] Sight sightNow() const;
     [[nodiscard]] FrameSettings frameSettingsNow(bool at_rest) const;
@@ -78,7 +100,7 @@ private:
     void changeViewpoints(const PanelRequests& requests);
     void load();
     void openFile();
-    void openDropped(const std::string& path);
+    void openDropped(const DesktopEvent& event);
     void takePicture();
     void showPanel();
     void say(const std::string& message);
@@ -89,6 +111,8 @@ private:
     ViewState state_;
     DesktopWindow window_;
     DesktopPictures pictures_;
+    std::string title_;
+    std::optional<Comparison> comparison_;  // from the first one on
     PanelPicture panel_;
     MotionScale motion_;
     CameraMover mover_;

@@ -40,7 +40,8 @@ bool gamepadState(GLFWgamepadstate& state) {
 
 }  // namespace
 
-DesktopWindow::DesktopWindow(const Context& context) : context_(context), window_(nullptr, glfwDestroyWindow) {
+DesktopWindow::DesktopWindow(const Context& context)
+    : context_(context), window_(nullptr, glfwDestroyWindow), sideways_(nullptr, glfwDestroyCursor) {
     const auto require = [](bool condition, const std::string& trouble) {
         if (!condition) { throw Error(ExitCode::kNoDevice, trouble); }
     };
@@ -52,6 +53,7 @@ DesktopWindow::DesktopWindow(const Context& context) : context_(context), window
     require(window_ != nullptr, "the window does not open");
     glfwSetWindowSizeLimits(window_.get(), 320, 240, GLFW_DONT_CARE, GLFW_DONT_CARE);
     glfwSetWindowUserPointer(window_.get(), this);
+    sideways_.reset(glfwCreateStandardCursor(GLFW_HRESIZE_CURSOR));
     makePictures();
     listen();
 }
@@ -106,7 +108,8 @@ void DesktopWindow::listen() {
     glfwSetScrollCallback(window,
                           [](GLFWwindow* w, double, double steps) { self(w).add({.kind = Kind::kWheel, .steps = steps, .path = {}}); });
     glfwSetDropCallback(window, [](GLFWwindow* w, int count, const char** paths) {
-        if (count > 0) { self(w).add({.kind = Kind::kDrop, .path = paths[count - 1]}); }
+        if (count == 2) { self(w).add({.kind = Kind::kDrop, .path = paths[0], .second = paths[1]}); }
+        if (count == 1 || count > 2) { self(w).add({.kind = Kind::kDrop, .path = paths[count - 1]}); }
     });
     glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { self(w).is_damaged_ = true; });
     glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) { self(w).is_damaged_ = true; });
@@ -138,6 +141,13 @@ HeldMotion DesktopWindow::heldMotion() const {
         motion.fast = motion.fast || pad.buttons[GLFW_GAMEPAD_BUTTON_LEFT_BUMPER] == GLFW_PRESS;
     }
     return motion;
+}
+
+bool DesktopWindow::isHeld(int key) const { return glfwGetKey(window_.get(), key) == GLFW_PRESS; }
+
+void DesktopWindow::pointSideways(bool sideways) {
+    if (std::exchange(points_sideways_, sideways) == sideways) { return; }
+    glfwSetCursor(window_.get(), sideways ? sideways_.get() : nullptr);
 }
 
 bool DesktopWindow::isClosed() const { return glfwWindowShouldClose(window_.get()) == GLFW_TRUE; }

@@ -12,6 +12,7 @@
 #include <vector>
 
 struct GLFWwindow;
+struct GLFWcursor;
 
 namespace binosplat {
 
@@ -19,9 +20,10 @@ namespace binosplat {
 struct DesktopEvent {
     enum class Kind { kMove, kPress, kRelease, kWheel, kKey, kText, kDrop, kLeave } kind;
     glm::dvec2 place_px{0.0};
-    int code = 0;        // GLFW's number of a key or a button
-    double steps = 0.0;  // of the wheel, away from the user
-    std::string path;    // that was dropped, or a letter that was typed, in UTF-8
+    int code = 0;          // GLFW's number of a key or a button
+    double steps = 0.0;    // of the wheel, away from the user
+    std::string path;      // that was dropped, or a letter that was typed, in UTF-8
+    std::string second{};  // that was dropped with it, if these were two
 };
 
 class DesktopWindow {
@@ -37,6 +39,7 @@ public:
     // Since the last call.
     [[nodiscard]] std::vector<DesktopEvent> takeEvents();
     [[nodiscard]] HeldMotion heldMotion() const;
+    [[nodiscard]] bool isHeld(int key) const;
     [[nodiscard]] bool hasGamepad() const;
     [[nodiscard]] bool isClosed() const;
     // Nobody sees it.
@@ -48,6 +51,8 @@ public:
     [[nodiscard]] double scale() const;
     void setTitle(const std::string& title);
     void toggleFullScreen();
+    // The pointer is the one for what can be dragged to both sides.
+    void pointSideways(bool sideways);
 
     // Shows what `draw` records, with the image to draw on, once a picture is free; false if none is, or if
     // the window is minimized. A lost surface is remade, once. Throws Error (exit code 3) if the display is
@@ -63,6 +68,8 @@ private:
 
     const Context& context_;
     std::unique_ptr<GLFWwindow, void (*)(GLFWwindow*)> window_;  // outlives everything drawn on it
+    std::unique_ptr<GLFWcursor, void (*)(GLFWcursor*)> sideways_;
+    bool points_sideways_ = false;
     std::unique_ptr<WindowPictures> pictures_;
     std::vector<DesktopEvent> events_;
     glm::dvec2 cursor_{0.0};  // in GLFW's units

@@ -261,6 +261,9 @@ std::span<const OptionRow<BenchOptions>> benchRows() {
 std::span<const OptionRow<ViewOptions>> viewRows() {
     static const std::vector<OptionRow<ViewOptions>> rows{
         {{"out", "", kView, "DIR", "directory for the simulated headset's pictures"}, field::file<&ViewOptions::out>()},
+        {{"compare", "", kView, "SCENE",
+          "another scene of the same place, to compare: in a window beside a curtain, in a headset while X or A is held"},
+         field::file<&ViewOptions::compare>()},
         {{"desktop", "", kView, "", "show the scene in a window, even if there is a headset"}, field::flag<&ViewOptions::desktop>()},
         {{"headset-only", "", kView, "", "end with exit code 3 if there is no headset, instead of showing the scene in a window"},
          field::flag<&ViewOptions::headset_only>()},

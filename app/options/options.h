@@ -113,6 +113,7 @@ struct BenchOptions {
 
 struct ViewOptions {
     std::string scene;
+    std::string compare;                // another scene of the same place, to compare with; empty: none
     RunOptions run;                     // its camera: where the wearer starts, near, background
     std::vector<SettingsTable> tables;  // the config's [view], see view_settings.h
     bool simulate = false;

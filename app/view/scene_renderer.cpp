@@ -164,7 +164,6 @@ FrameSettings SceneRenderer::settingsOfFrame(ConnectedHeadset& headset, const Vi
 
 void SceneRenderer::prepare(ConnectedHeadset& headset, ShownScene& shown, const Similarity& scene_from_room, const ViewSettings& settings,
                             FrameViews& views) {
-    LoadedScene& scene = *shown.get();
     frame_ = settingsOfFrame(headset, settings, scene_from_room.scale, views);
     eyes_.clear();
     inset_eyes_.clear();
@@ -181,7 +180,7 @@ void SceneRenderer::prepare(ConnectedHeadset& headset, ShownScene& shown, const 
     if (headset.inset) { aimInsets(headset, scene_from_room, views); }
     std::vector<Eye> all = eyes_;
     all.insert(all.end(), inset_eyes_.begin(), inset_eyes_.end());
-    scene.follow(all, headset.session.stepSeconds());
+    shown.follow(all, headset.session.stepSeconds());
     try {
         shown.frame().makeRoom(eyes_, frame_);
         glm::uvec2 largest_px = headset.images->partPx();
@@ -227,6 +226,10 @@ void SceneRenderer::aimInsets(const ConnectedHeadset& headset, const Similarity&
     }
 }
 
+void SceneRenderer::meetOther(const ConnectedHeadset& headset, ShownScene& shown) const {
+    shown.meetOther(eyes_, frame_, headset.inset ? inset_eyes_ : std::vector<Eye>(), inset_frame_);
+}
+
 std::vector<Image> SceneRenderer::takePictures(ShownScene& shown, const Similarity& scene_from_room, const ViewSettings& settings,
                                                const FrameViews& views) const {
     StereoOptions stereo = settings.stereo;
@@ -262,6 +265,7 @@ void SceneRenderer::render(ConnectedHeadset& headset, ShownScene& shown, const V
     } else {
         insets_ms_ = 0.0;
     }
+    shown.passOver();
     std::optional<FrameResult> known = shown.frame().renderAhead(
         eyes_, frame_,
         [&](Commands& commands) {
@@ -274,7 +278,7 @@ void SceneRenderer::render(ConnectedHeadset& headset, ShownScene& shown, const V
         last_ = std::move(*known);
         last_.gpu_total_ms += insets_ms_;
     }
-    LoadedScene& scene = *shown.get();
+    LoadedScene& scene = *shown.drawn();
     scene.count(last_.counters);
     if (known && scene.stream) { fitSplats(*scene.stream, headset.session.periodMs()); }
     governor_.measure({.gpu_ms = last_.gpu_total_ms,
@@ -285,7 +289,7 @@ void SceneRenderer::render(ConnectedHeadset& headset, ShownScene& shown, const V
                        .warp_error = last_.warp_error,
                        .half_loss = last_.half_loss});
     sayGoverned();
-    sayCutShort();
+    sayCutShort(shown.drawsOther());
 }
 
 void SceneRenderer::recordEyes(Commands& commands, EyeImages& images, const StereoFrame& frame, bool tint, MirrorWindow* window) {
@@ -318,9 +322,11 @@ void SceneRenderer::sayGoverned() {
     said_beaten_ = governor_.isBeaten() || (said_beaten_ && !is_other);
 }
 
-void SceneRenderer::sayCutShort() {
+void SceneRenderer::sayCutShort(bool of_other) {
     const std::uint64_t now = last_.counters.ahead ? last_.counters.ahead->frames_cut_short : 0;
-    if (now > std::exchange(cut_short_, now)) { log_.say(fmt::format("frames shown incomplete because a list was full: {}", now)); }
+    if (now > std::exchange(cut_short_[of_other ? 1 : 0], now)) {
+        log_.say(fmt::format("frames shown incomplete because a list was full: {}", now));
+    }
 }
 
 void SceneRenderer::sayHidden(const std::array<std::span<const std::uint8_t>, 2>& hidden) {

@@ -42,10 +42,12 @@ public:
     // The runtime refuses depth after all; false: depth was off already.
     bool dropDepth(ConnectedHeadset& headset);
 
-    // Prepares what render() will show, and sets the pictures of `views`. Throws Error if memory is short; then nothing is shown until this
-    // succeeds with less.
+    // Prepares what render() will show of the scene that is drawn, and sets the pictures of `views`. Throws Error if memory is short; then
+    // nothing is shown until this succeeds with less.
     void prepare(ConnectedHeadset& headset, ShownScene& shown, const Similarity& scene_from_room, const ViewSettings& settings,
                  FrameViews& views);
+    // See ShownScene; once that is prepared.
+    void meetOther(const ConnectedHeadset& headset, ShownScene& shown) const;
     // Renders and presents that, in one submission with what `record_panel` records, and does not wait for it. With a `window`, one eye's
     // picture is kept for it.
     void render(ConnectedHeadset& headset, ShownScene& shown, const ViewSettings& settings, MirrorWindow* window,
@@ -105,7 +107,7 @@ private:
     // Fits the splats of a streamed scene to the frame time, unless the user sets a number.
     void fitSplats(SceneStream& stream, double period_ms);
     void sayHidden(const std::array<std::span<const std::uint8_t>, 2>& hidden);
-    void sayCutShort();
+    void sayCutShort(bool of_other);
     void sayGoverned();
 
     const xr::Instance& instance_;
@@ -134,7 +136,7 @@ private:
     std::uint64_t governed_count_ = 0;
     std::uint32_t measured_part_ = 0;
     bool said_beaten_ = false;
-    std::uint64_t cut_short_ = 0;  // frames, as last said
+    std::array<std::uint64_t, 2> cut_short_{};  // frames, as last said: of the scene shown, and of the other one
     FrameResult last_;
     std::array<std::uint32_t, 2> hidden_tiles_{};  // as last said
     bool takes_depth_ = true;

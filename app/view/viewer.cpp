@@ -48,9 +48,10 @@ Viewer::Viewer(const ViewOptions& options, const ViewSettings& settings, xr::Ins
 
 void Viewer::run() {
     try {
-        while (options_.load_first && !scenes_.get() && !leaving_) {
+        while (options_.load_first && !scenes_.isComplete() && !leaving_) {
             if (isInterrupted()) { leave(); }
             if (scenes_.isNextReady()) { takeScene(); }
+            if (scenes_.isOtherReady()) { takeOther(); }
             drawWindowAlone("Loading the scene");
             std::this_thread::sleep_for(kIdle);
         }

@@ -74,6 +74,11 @@ private:
     void moveTime(bool play, int step, std::optional<std::size_t> frame);
     void followPanel(const PanelRequests& requests);
     void openAndSave(const PanelRequests& requests);
+    // The other scene of a comparison: takes it once it is loaded, and shows it while a button is held.
+    void takeOther();
+    void showOther();
+    // Once frames can show it; it goes if they cannot.
+    void meetOther();
     // The wearer's place in numbers, and changes to it.
     [[nodiscard]] ShownPlace shownPlace() const;
     [[nodiscard]] std::optional<double> sceneFloorMetres() const;
@@ -127,6 +132,7 @@ private:
     Pose room_from_head_;      // as last known
     Ruler ruler_;
     std::array<bool, 2> clicked_{};  // by hand, in the frame before
+    bool other_asked_ = false;       // by the panel: it stays in sight
     bool recentre_asked_ = false, leaving_ = false, waits_for_kernels_ = false;
     std::chrono::steady_clock::time_point last_alone_{};
     SceneNotes notes_;

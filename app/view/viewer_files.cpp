@@ -26,11 +26,38 @@ void Viewer::takeScene() {
     notes_.remember(scenes_.name(), complaint);
 }
 
+void Viewer::takeOther() {
+    if (const std::string complaint = scenes_.takeOther(); !complaint.empty()) { return say(complaint); }
+    other_asked_ = false;
+    notes_.remember(scenes_.other()->name, {});
+    say(fmt::format("hold X or A, or press Other on the page Scenes, to see {}", scenes_.other()->name));
+}
+
+void Viewer::showOther() {
+    const std::array<bool, 2>& held = controls_.playHeld();
+    const bool before = scenes_.drawsOther();
+    scenes_.draw(other_asked_ != (held[kLeft] || held[kRight]));
+    if (scenes_.drawsOther() == before) { return; }
+    probe_.forget();
+    log_.say(fmt::format("shows {}", scenes_.drawn()->name));
+    for (const int h : {kLeft, kRight}) {
+        if (held[static_cast<std::size_t>(h)]) { headset().input.pulse(h); }
+    }
+}
+
+void Viewer::meetOther() {
+    try {
+        renderer_.meetOther(headset(), scenes_);
+    } catch (const Error& error) { say(scenes_.goOnAlone(error)); }
+}
+
 void Viewer::openAndSave(const PanelRequests& requests) {
     if (requests.save && scenes_.get() != nullptr) { notes_.save(scenes_.name(), savedPlace(state_, *scenes_.get())); }
     if (requests.load) { load(); }
     if (requests.scene_step != 0) { scenes_.beginBeside(requests.scene_step, files_); }
     if (!requests.chosen_scene.empty()) { scenes_.begin(requests.chosen_scene); }
+    if (requests.compare) { say(scenes_.toggleComparison()); }
+    if (requests.show_other) { other_asked_ = !other_asked_; }
     picture_asked_ = picture_asked_ || requests.take_picture;
     if (requests.last_scene && scenes_.get() != nullptr) {
         notes_.openLast(*scenes_.get(), [this](const std::string& scene) { scenes_.begin(scene); });
@@ -69,7 +96,8 @@ void Viewer::reloadShaders() {
 void Viewer::takePicture(const FrameViews& views) {
     try {
         sayPicture(pictures_.finish());
-        pictures_.begin(renderer_.takePictures(scenes_, state_.sceneFromRoom(), state_.settings(), views), scenes_.name());
+        pictures_.begin(renderer_.takePictures(scenes_, scenes_.drawnFrom(state_.sceneFromRoom()), state_.settings(), views),
+                        scenes_.drawn()->name);
     } catch (const vk::DeviceLostError&) { throw; } catch (const vk::SystemError& error) {
         say(fmt::format("the picture cannot be rendered: {}", error.what()));
     } catch (const Error& error) { say(error.what()); }

@@ -57,6 +57,7 @@ void Viewer::drawFrame() {
     renderer_.meetDisplay(headset().session);
     files_.deliver();
     if (scenes_.isNextReady()) { takeScene(); }
+    if (scenes_.isOtherReady()) { takeOther(); }
     FrameViews& views = *located;
     room_from_head_ = views.room_from_head;
     const double step_seconds = headset().session.stepSeconds();
@@ -77,7 +78,11 @@ void Viewer::drawFrame() {
     }
     // A wearer is not moved smoothly: the tour jumps, with a fade.
     goTo(viewpoints_.pass(kTourPace * step_seconds, true));
-    moveTime(controls_.playPressed(), 0, {});
+    if (scenes_.other() != nullptr) {
+        showOther();
+    } else {
+        moveTime(controls_.playPressed(), 0, {});
+    }
     chooseThings(wearer, views);
     takeWindowInput(step_seconds);
     if (const std::string complaint = headset().session.askForRate(state_.settings().refresh_rate); !complaint.empty()) { say(complaint); }
@@ -95,13 +100,16 @@ void Viewer::drawFrame() {
     headset().things.darken(fade_.darkness(), coverMetres(views.eyes));
     onWindow(&MirrorWindow::acquire);
     const bool takes_picture = std::exchange(picture_asked_, false) && scenes_.get() != nullptr && fits;
-    if (LoadedScene* scene = scenes_.get(); scene != nullptr && fits) {
+    if (scenes_.get() != nullptr && fits) {
+        meetOther();
         renderer_.render(headset(), scenes_, drawn_, window_.get(), [this](Commands& commands) {
             recordPanel(commands);
             recordProbe(commands);
         });
         ++frames_of_scene_;
-        if (scene->live) { sayLive(*scene); }
+        for (LoadedScene* const scene : {scenes_.get(), scenes_.other()}) {
+            if (scene != nullptr && scene->live) { sayLive(*scene); }
+        }
     } else {
         renderWaiting();
     }
@@ -137,10 +145,14 @@ bool Viewer::prepareScene(FrameViews& views) {
     drawn_ = waits ? drawable : state_.settings();
     try {
         renderer_.govern(headset(), drawn_, views);
-        if (scenes_.get() != nullptr) { renderer_.prepare(headset(), scenes_, state_.sceneFromRoom(), drawn_, views); }
+        if (scenes_.get() != nullptr) { renderer_.prepare(headset(), scenes_, scenes_.drawnFrom(state_.sceneFromRoom()), drawn_, views); }
         state_.keepFitting(drawn_);
         return true;
     } catch (const Error& error) {
+        if (scenes_.drawsOther()) {
+            say(scenes_.goOnAlone(error));
+            return false;
+        }
         const std::string change = state_.changeSinceFitting();
         if (change.empty()) { throw; }
         say(fmt::format("{} does not fit: {}", change, error.what()));
@@ -173,7 +185,7 @@ void Viewer::chooseThings(const WearerNow& wearer, const FrameViews& views) {
 
 void Viewer::probeScene(double feet_m) {
     std::array<std::optional<ProbePath>, kProbePaths> paths;
-    if (state_.settings().follow_ground) { paths[kGroundPath] = groundAhead(room_from_head_, feet_m); }
+    if (state_.settings().follow_ground && !scenes_.drawsOther()) { paths[kGroundPath] = groundAhead(room_from_head_, feet_m); }
     for (const int h : {kLeft, kRight}) {
         if (!state_.settings().hands) { break; }  // hidden hands point at nothing
         if (const std::optional<Pose> aim = panel_.inRoom().missesWith(h)) { paths[static_cast<std::size_t>(h)] = probeRay(*aim); }
@@ -189,7 +201,8 @@ void Viewer::probeScene(double feet_m) {
 
 void Viewer::recordProbe(Commands& commands) {
     const std::size_t eye = drawn_.showsOneEye() ? 0 : static_cast<std::size_t>(drawn_.stereo.dominant);
-    probe_.record(commands, scenes_.frame().picture(static_cast<int>(eye)), renderer_.pictures().at(eye), state_.sceneFromRoom());
+    probe_.record(commands, scenes_.frame().picture(static_cast<int>(eye)), renderer_.pictures().at(eye),
+                  scenes_.drawnFrom(state_.sceneFromRoom()));
 }
 
 void Viewer::showMessage(RoomSight& sight, double step_seconds) {

@@ -44,6 +44,7 @@ void Viewer::drawWindowAlone(const std::string& why) {
     last_alone_ = now;
     files_.deliver();
     if (scenes_.isNextReady()) { takeScene(); }
+    if (scenes_.isOtherReady()) { takeOther(); }
     takeWindowInput(step_seconds);
     panel_.status().state = why;
     layOutPanel(false, step_seconds);
@@ -80,7 +81,10 @@ void Viewer::takeWindowInput(double step_seconds) {
 
 void Viewer::layOutPanel(bool hung, double step_seconds) {
     PanelStatus& status = panel_.status();
-    status.scene = scenes_.name();
+    status.scene = scenes_.names();
+    status.compares = scenes_.other() != nullptr;
+    status.compares_next = scenes_.comparesNext();
+    status.shows_other = status.compares && other_asked_;
     status.loading = scenes_.loading();
     status.rate = renderer_.rate();
     status.has_scene = scenes_.get() != nullptr;

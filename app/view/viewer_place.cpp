@@ -88,7 +88,7 @@ void Viewer::goTo(const Viewpoint* viewpoint) {
 
 void Viewer::keepPictureOfScene() {
     LoadedScene* scene = scenes_.get();
-    if (scene == nullptr || std::exchange(frames_of_scene_, 0) < kLeastFramesSeen) { return; }
+    if (scene == nullptr || std::exchange(frames_of_scene_, 0) < kLeastFramesSeen || scenes_.drawsOther()) { return; }
     try {
         waitForQueue();
         const std::size_t eye = drawn_.showsOneEye() ? 0 : static_cast<std::size_t>(drawn_.stereo.dominant);

@@ -150,6 +150,11 @@ std::optional<FrameResult> StereoFrame::renderAhead(std::span<const Eye> eyes, c
     return result;
 }
 
+void StereoFrame::passOver() {
+    static_cast<void>(land(flight()));
+    turn_ = 1 - turn_;
+}
+
 std::optional<FrameResult> StereoFrame::finish() {
     std::optional<FrameResult> older = land(flights_[turn_]), newer = land(flights_[1 - turn_]);
     return newer ? std::move(newer) : std::move(older);

@@ -31,19 +31,19 @@ struct Part {
     const char* deed;
 };
 
-std::array<Part, 6> partsOf(const xr::ProfileBindings& held, int hand) {
+std::array<Part, 6> partsOf(const xr::ProfileBindings& held, int hand, bool compares) {
     const auto h = static_cast<std::size_t>(hand);
     const bool left = hand == kLeft;
     return {{{{-0.75f, -0.75f}, held.trigger, "click"},
              {{0.35f, -0.45f}, held.menu[h], "the panel"},
-             {{0.45f, 0.15f}, held.play[h], "pause, or play"},
+             {{0.45f, 0.15f}, held.play[h], compares ? "held: the other scene" : "pause, or play"},
              {{-0.3f, -0.1f}, held.stick, left ? "walk, or teleport" : "turn, rise, sink"},
              {{-0.3f, -0.1f}, held.stick_press, left ? "viewpoint before" : "next viewpoint"},
              {{-0.55f, 1.5f}, held.squeeze, "hold the scene"}}};
 }
 
 // Its outline about a point, its parts, and lines to their words on its outer side.
-void drawHeld(const xr::ProfileBindings& held, int hand, const ImVec2& corner, float width) {
+void drawHeld(const xr::ProfileBindings& held, int hand, bool compares, const ImVec2& corner, float width) {
     ImDrawList& list = *ImGui::GetWindowDrawList();
     const ImU32 outline = ImGui::GetColorU32(ImGuiCol_TextDisabled), words = ImGui::GetColorU32(ImGuiCol_Text);
     const ImU32 accent = IM_COL32(255, 220, 80, 255);
@@ -55,7 +55,7 @@ void drawHeld(const xr::ProfileBindings& held, int hand, const ImVec2& corner, f
     const std::array handle{there(-0.4f, 0.92f), there(-0.3f, 2.4f), there(0.3f, 2.4f), there(0.4f, 0.92f)};
     list.AddPolyline(handle.data(), static_cast<int>(handle.size()), outline, 0, 2.5f);
     float y = corner.y;
-    for (const auto& [place, input, deed] : partsOf(held, hand)) {
+    for (const auto& [place, input, deed] : partsOf(held, hand, compares)) {
         if (input == nullptr) { continue; }
         const bool is_press = input == held.stick_press;
         const std::string first = is_press ? "pressed in" : xr::inputName(input);
@@ -78,7 +78,7 @@ void drawHelpPage(PanelWidgets& widgets, const PanelStatus& status, PanelRequest
     const float width = ImGui::GetContentRegionAvail().x;
     for (const int hand : {kLeft, kRight}) {
         const xr::ProfileBindings* const held = status.held[static_cast<std::size_t>(hand)];
-        drawHeld(held != nullptr ? *held : xr::usualBindings(), hand, corner, width);
+        drawHeld(held != nullptr ? *held : xr::usualBindings(), hand, status.compares, corner, width);
     }
     ImGui::Dummy(ImVec2(width, kDrawnHighPx));
     const float left = ImGui::GetCursorPosX() + kWhatShare * width;

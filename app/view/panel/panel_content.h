@@ -57,6 +57,9 @@ struct ShownWindow {
 // The panel's content.
 struct PanelStatus {
     std::string scene;
+    bool compares = false;                                   // there is another one, to compare with
+    bool compares_next = false;                              // the next one that is chosen is to be compared with it
+    bool shows_other = false;                                // the other one stays in sight, without a button held
     std::string state;                                       // why the headset shows nothing; empty: it shows something
     bool has_scene = false;                                  // there is something to see
     std::optional<double> loading;                           // share done, while a scene is loading
@@ -88,7 +91,7 @@ struct PanelRequests {
     bool save = false, load = false, reset_scene = false, quit = false, reload_shaders = false, recentre = false, level_scene = false,
          take_picture = false, natural_size = false, keep_viewpoint = false, last_scene = false, play = false, show_whole = false,
          open_file = false, fill_screen = false, help = false, tour = false, rename_viewpoint = false, forget_viewpoint = false,
-         share_viewpoints = false, read_viewpoints = false, measure = false;
+         share_viewpoints = false, read_viewpoints = false, measure = false, compare = false, show_other = false;
     double growth = 1.0;               // of the scene, around the wearer's feet
     double rise_m = 0.0;               // of the wearer
     int scene_step = 0;                // to the previous or next scene

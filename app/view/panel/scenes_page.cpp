@@ -13,6 +13,7 @@ namespace binosplat {
 
 namespace {
 
+constexpr float kScenesShare = 0.68f;  // of a row, before the buttons of a comparison
 constexpr float kRowPx = 66.0f, kStarPx = 60.0f;
 
 void drawPlaces(PanelWidgets& widgets, SceneChooser& chooser) {
@@ -70,6 +71,17 @@ void drawEntries(PanelWidgets& widgets, SceneChooser& chooser, const PicturePlac
     ImGui::EndChild();
 }
 
+// Two buttons, at the end of a row: which may stand out at once.
+void drawComparison(PanelWidgets& widgets, const PanelStatus& status, PanelRequests& requests) {
+    const float gap = 0.5f * ImGui::GetStyle().ItemSpacing.x;
+    const float width = 0.5f * (ImGui::GetContentRegionAvail().x - gap);
+    requests.compare = widgets.button("Compare", status.compares || status.compares_next, {width, kTargetPx});
+    ImGui::SameLine(0.0f, gap);
+    ImGui::BeginDisabled(!status.compares);
+    requests.show_other = widgets.button("Other", status.shows_other, {width, kTargetPx});
+    ImGui::EndDisabled();
+}
+
 void drawViewpoints(PanelWidgets& widgets, const PanelStatus& status, PanelRequests& requests) {
     static constexpr std::array kSteps{"Previous viewpoint", "Next viewpoint", "Keep this one"};
     if (const auto pressed = widgets.row(kSteps, {}, kTabPx)) {
@@ -98,10 +110,12 @@ void drawScenesPage(PanelWidgets& widgets, SceneChooser& chooser, const PanelSta
     drawPlaces(widgets, chooser);
     drawEntries(widgets, chooser, status.pictures, requests);
     static constexpr std::array kScenes{"Previous scene", "Next scene", "Last shown"};
-    if (const auto pressed = widgets.row(kScenes, {}, kTargetPx)) {
+    if (const auto pressed = widgets.row(kScenes, {}, kTargetPx, kScenesShare)) {
         requests.scene_step = *pressed == 0 ? -1 : *pressed == 1 ? 1 : 0;
         requests.last_scene = *pressed == 2;
     }
+    ImGui::SameLine();
+    drawComparison(widgets, status, requests);
     drawViewpoints(widgets, status, requests);
     drawSaid(status);
 }

@@ -24,9 +24,9 @@ constexpr std::array<std::pair<const char*, const char*>, 13> kKeys{{
     {"F, R", "the whole scene; the start view"},
     {"1 to 9", "viewpoints"},
     {"Space, comma, full stop", "a moving scene: play, step"},
-    {"Tab", "this panel"},
-    {"F11", "full screen"},
+    {"Tab, F11", "this panel; full screen"},
     {"O, P", "open a file; write a picture"},
+    {"C", "compare with a file; held: the other scene"},
     {"H, Escape", "this help; quit"},
 }};
 
@@ -62,11 +62,13 @@ void drawStereo(PanelWidgets& widgets, ViewSettings& settings) {
 }  // namespace
 
 void drawWindowPage(PanelWidgets& widgets, ViewSettings& settings, const PanelStatus& status, PanelRequests& requests) {
-    static constexpr std::array kPlaces{"Open", "Whole scene", "Start view", "True size"};
-    if (const auto pressed = widgets.row(kPlaces, {}, kLargeTargetPx)) {
+    static constexpr std::array kPlaces{"Open", "Compare", "Whole scene", "Start view", "True size"};
+    const bool compares = status.compares || status.compares_next;
+    if (const auto pressed = widgets.row(kPlaces, compares ? std::optional<std::size_t>(1) : std::nullopt, kLargeTargetPx)) {
         (*pressed == 0   ? requests.open_file
-         : *pressed == 1 ? requests.show_whole
-         : *pressed == 2 ? requests.reset_scene
+         : *pressed == 1 ? requests.compare
+         : *pressed == 2 ? requests.show_whole
+         : *pressed == 3 ? requests.reset_scene
                          : requests.measure) = true;
     }
     drawStereo(widgets, settings);

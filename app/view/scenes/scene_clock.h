@@ -24,6 +24,8 @@ public:
     }
 
     void pass(double step_seconds) { time_s_ += plays_ ? step_seconds : 0.0; }
+    // As another scene's does, from now on.
+    void goWith(const SceneClock& other) { time_s_ = other.time_s_, plays_ = other.plays_; }
     void togglePlaying() { plays_ = !plays_; }
     // Steps `frames` on or, below 0, back, around the scene's end, and pauses there.
     void step(std::ptrdiff_t frames) {

@@ -12,29 +12,44 @@ namespace binosplat {
 
 ShownScene::ShownScene(const Context& context, const ViewOptions& options, const FrameLog& log, std::optional<FramesAhead> ahead)
     : context_(context), options_(options), log_(log), ahead_(std::move(ahead)) {
-    begin(options.scene);
+    begin(options.scene, options.compare);
 }
+
+std::string ShownScene::names() const { return other_.scene ? fmt::format("{} | {}", name(), other_.scene->name) : name(); }
 
 std::optional<double> ShownScene::loading() const {
     if (loader_) { return loader_->progress(); }
-    if (!scene_ || !scene_->live || scene_->live->share() >= 1.0) { return std::nullopt; }
-    return scene_->live->share();
+    if (other_loader_) { return other_loader_->progress(); }
+    const LoadedScene* const scene = drawn();
+    if (scene == nullptr || !scene->live || scene->live->share() >= 1.0) { return std::nullopt; }
+    return scene->live->share();
 }
 
 bool ShownScene::isLoading() const {
-    return loader_ || maker_ ||
+    return loader_ || other_loader_ || maker_ ||
            std::ranges::any_of(given_up_, [](const std::unique_ptr<SceneLoader>& loader) { return !loader->isDone(); });
 }
 
-void ShownScene::begin(const std::string& scene) {
-    // Loaders that are giving up are not waited for.
-    std::erase_if(given_up_, [](const std::unique_ptr<SceneLoader>& loader) { return loader->isDone(); });
-    if (loader_) {
-        loader_->cancel();
-        given_up_.push_back(std::move(loader_));
-    }
+void ShownScene::begin(const std::string& scene, const std::string& compared) {
+    if (shown_.scene && std::exchange(compares_next_, false)) { return beginOther(scene); }
+    load(scene);
+    compared_next_ = compared;
+}
+
+void ShownScene::giveUp(std::unique_ptr<SceneLoader>& loader) {
+    // Those that are giving up are not waited for.
+    std::erase_if(given_up_, [](const std::unique_ptr<SceneLoader>& earlier) { return earlier->isDone(); });
+    if (!loader) { return; }
+    loader->cancel();
+    given_up_.push_back(std::move(loader));
+}
+
+void ShownScene::load(const std::string& scene) {
+    giveUp(loader_);
+    giveUp(other_loader_);
     ++asked_count_;
     asked_ = scene;
+    compared_next_.clear();
     RunOptions run = options_.run;
     if (scene != options_.scene) {  // a given place belongs to the first one
         run.camera.cameras_file.clear();
@@ -66,36 +81,53 @@ void ShownScene::expect(const StereoOptions& stereo, glm::uvec2 size_px, bool ti
     FramesAhead wanted{stereo, size_px, ahead_->with_depth, tint, {}};
     if (!ahead_->isLike(wanted)) {
         ahead_ = std::move(wanted);
-        if (loader_) { loader_->expect(*ahead_); }
+        for (SceneLoader* const loader : {loader_.get(), other_loader_.get()}) {
+            if (loader != nullptr) { loader->expect(*ahead_); }
+        }
     }
-    if (!scene_ || options_.load_first) { return; }
+    if (!shown_.scene || options_.load_first) { return; }
     if (maker_ && maker_->isDone()) {
-        if (StereoFrame* const made = maker_->made()) { frame_->takeKernels(*made); }
-        if (!maker_->hasGivenUp()) { haveReady(maker_->ahead()); }
+        if (StereoFrame* const made = maker_->made()) { takeKernels(*made); }
+        if (!maker_->hasGivenUp()) { haveReady(*made_for_, maker_->ahead()); }
         maker_.reset();
     }
+    const bool loads = loader_ || other_loader_;
     if (maker_) {
-        if (!maker_->ahead().isLike(*ahead_) || loader_) { maker_->cancel(); }
-    } else if (!loader_ && !ready_->isLike(*ahead_)) {
-        maker_ = std::make_unique<KernelMaker>(context_, scene_->gpu_scene, options_.run.camera, *ahead_);
+        if (!maker_->ahead().isLike(*ahead_) || loads) { maker_->cancel(); }
+        return;
+    }
+    for (Held* const held : {&drawing(), &resting()}) {
+        if (loads || maker_ || !held->scene || held->ready->isLike(*ahead_)) { continue; }
+        made_for_ = held;
+        maker_ = std::make_unique<KernelMaker>(context_, held->scene->gpu_scene, options_.run.camera, *ahead_);
     }
 }
 
-void ShownScene::haveReady(const FramesAhead& ahead) {
-    ready_ = ahead;
-    if (ahead_->isLike(ahead)) { ahead_->known.insert(kindOf(*scene_)); }
+void ShownScene::haveReady(Held& held, const FramesAhead& ahead) {
+    held.ready = ahead;
+    if (ahead_->isLike(ahead)) { ahead_->known.insert(kindOf(*held.scene)); }
+}
+
+void ShownScene::takeKernels(StereoFrame& from) {
+    // All frames share them, and none may be on the device with one that goes.
+    for (const Held* const held : {&shown_, &other_}) {
+        if (held->frame) { (void)held->frame->finish(); }
+        if (held->insets) { (void)held->insets->finish(); }
+    }
+    shown_.frame->takeKernels(from);
 }
 
 ViewSettings ShownScene::drawable(ViewSettings settings) const {
-    if (!scene_ || !ready_ || options_.load_first) { return settings; }
-    FramesAhead wanted = *ready_;  // another size needs no new kernels to wait for
+    const std::optional<FramesAhead>& ready = drawing().ready;
+    if (!drawn() || !ready || options_.load_first) { return settings; }
+    FramesAhead wanted = *ready;  // another size needs no new kernels to wait for
     wanted.stereo = settings.stereo;
     wanted.tint = settings.tint;
-    if (!wanted.isLike(*ready_)) {
+    if (!wanted.isLike(*ready)) {
         const Axes axes = settings.stereo.axes;  // which take no other kernels
-        settings.stereo = ready_->stereo;
+        settings.stereo = ready->stereo;
         settings.stereo.axes = axes;
-        settings.tint = ready_->tint;
+        settings.tint = ready->tint;
     }
     return settings;
 }
@@ -105,43 +137,46 @@ std::string ShownScene::take(ViewState& state) {
     try {
         std::unique_ptr<LoadedScene> taken = loader->take();
         maker_.reset();
-        if (scene_) { left_[scene_->place] = state.sceneFromRoom(); }
+        dropOther();
+        if (shown_.scene) { left_[shown_.scene->place] = state.sceneFromRoom(); }
         showInFrames(*taken);
-        scene_ = std::move(taken);
-        if (const auto kernels = std::exchange(scene_->kernels, nullptr)) { frame_->takeKernels(*kernels); }
-        if (ahead_) { haveReady(loader->madeFor()); }
+        shown_.scene = std::move(taken);
+        if (const auto kernels = std::exchange(shown_.scene->kernels, nullptr)) { takeKernels(*kernels); }
+        if (ahead_) { haveReady(shown_, loader->madeFor()); }
     } catch (const vk::DeviceLostError&) { throw; } catch (const DeviceError& error) {
         const bool lacks_memory = error.kind() == DeviceError::Kind::kMemory;
-        return lacks_memory && scene_ ? makeWay(state) : goOnWithout(error.what());
+        return lacks_memory && shown_.scene ? makeWay(state) : goOnWithout(error.what());
     } catch (const vk::SystemError& error) { return goOnWithout(error.what()); } catch (const Error& error) {
         return goOnWithout(error.what());
     }
     gone_first_.clear();
-    log_.say("shows " + scene_->name);
+    log_.say("shows " + shown_.scene->name);
     const std::string complaint = place(state);
-    for (const std::string& line : scene_->notes.lines) { log_.print("note: " + line); }
+    for (const std::string& line : shown_.scene->notes.lines) { log_.print("note: " + line); }
+    if (!compared_next_.empty()) { beginOther(std::exchange(compared_next_, {})); }
     return complaint;
 }
 
 void ShownScene::showInFrames(const LoadedScene& scene) {
     // Each waits for its own frames in flight; after that nothing reads the previous scene.
-    if (frame_) {
-        frame_->show(scene.gpu_scene);
+    if (shown_.frame) {
+        shown_.frame->show(scene.gpu_scene);
     } else {
-        frame_ = std::make_unique<StereoFrame>(context_, scene.gpu_scene);
+        shown_.frame = std::make_unique<StereoFrame>(context_, scene.gpu_scene);
     }
     try {
-        if (insets_) { insets_->show(scene.gpu_scene); }
-    } catch (const Error&) { insets_.reset(); }  // reported when a headset takes insets
+        if (shown_.insets) { shown_.insets->show(scene.gpu_scene); }
+    } catch (const Error&) { shown_.insets.reset(); }  // reported when a headset takes insets
 }
 
 StereoFrame& ShownScene::insets() {
-    if (!insets_) { insets_ = StereoFrame::beside(*frame_); }
-    return *insets_;
+    Held& held = drawing();
+    if (!held.insets) { held.insets = StereoFrame::beside(*held.frame); }
+    return *held.insets;
 }
 
 std::vector<Image> ShownScene::picturesOf(std::span<const Eye> eyes, const FrameSettings& settings) {
-    const std::unique_ptr<StereoFrame> frame = StereoFrame::beside(*frame_);
+    const std::unique_ptr<StereoFrame> frame = StereoFrame::beside(this->frame());
     frame->render(eyes, settings);
     std::vector<Image> pictures;
     for (std::size_t e = 0; e < eyes.size(); ++e) { pictures.push_back(frame->readPicture(static_cast<int>(e))); }
@@ -149,47 +184,53 @@ std::vector<Image> ShownScene::picturesOf(std::span<const Eye> eyes, const Frame
 }
 
 void ShownScene::rebuildKernels() {
-    if (insets_) { (void)insets_->finish(); }  // it shares the kernels
-    frame_->rebuildKernels();
+    // They share the kernels.
+    for (StereoFrame* const frame : {shown_.insets.get(), other_.insets.get(), other_.frame.get()}) {
+        if (frame != nullptr) { (void)frame->finish(); }
+    }
+    shown_.frame->rebuildKernels();
 }
 
 std::string ShownScene::goOnWithout(const std::string& why) {
-    if (scene_) { return why; }
+    if (shown_.scene) { return why; }
     const std::string instead = gone_first_.empty() ? options_.scene : gone_first_;  // which another one had displaced
     if (asked_ == instead) { throw; }                                                // nothing to show instead
-    begin(instead);
+    load(instead);
     return why;
 }
 
 std::string ShownScene::makeWay(const ViewState& state) {
-    left_[scene_->place] = state.sceneFromRoom();
-    gone_first_ = scene_->name;
+    left_[shown_.scene->place] = state.sceneFromRoom();
+    gone_first_ = shown_.scene->name;
+    const std::string compared = compared_next_;
     maker_.reset();
-    insets_.reset();
+    dropOther();
+    shown_.insets.reset();
     // Its kernels stay.
     if (!nothing_) { nothing_ = std::make_unique<GpuScene>(context_, Scene{}); }
-    frame_->show(*nothing_);
-    scene_.reset();
-    begin(std::string(asked_));
+    shown_.frame->show(*nothing_);
+    shown_.scene.reset();
+    load(std::string(asked_));
+    compared_next_ = compared;
     return fmt::format("{} and {} do not fit into the device's memory together: the first one goes first", gone_first_, asked_);
 }
 
 std::string ShownScene::place(ViewState& state) {
-    state.countFrom(scene_->origin);
-    if (const auto left = left_.find(scene_->place); left != left_.end()) {
+    state.countFrom(shown_.scene->origin);
+    if (const auto left = left_.find(shown_.scene->place); left != left_.end()) {
         state.place(left->second);
         return {};
     }
     const CameraOptions& camera = options_.run.camera;
     const std::optional<Similarity> asked = state.takeAsked();
-    state.place(asked.value_or(scene_->start));
+    state.place(asked.value_or(shown_.scene->start));
     const bool is_given = camera.eye || camera.look || camera.up || !camera.cameras_file.empty();
-    if (asked || (is_given && scene_->name == options_.scene)) { return {}; }
-    if (scene_->remembered) {
-        state.place(*scene_->remembered);
+    if (asked || (is_given && shown_.scene->name == options_.scene)) { return {}; }
+    if (shown_.scene->remembered) {
+        state.place(*shown_.scene->remembered);
         log_.say("the wearer stands where this scene was saved");
     }
-    return scene_->remembering_trouble;
+    return shown_.scene->remembering_trouble;
 }
 
 }  // namespace binosplat

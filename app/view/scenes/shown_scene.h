@@ -1,10 +1,11 @@
-// The scene that is shown, and the one that is loading to replace it.
+// The scene that is shown, another one that it is compared with, and those that are loading to replace them.
 #pragma once
 
 #include "app/terminal/frame_log.h"
 #include "app/view/files/file_worker.h"
 #include "app/view/scenes/scene_loader.h"
 #include "app/view/settings/view_state.h"
+#include "engine/error.h"
 
 #include <map>
 #include <memory>
@@ -21,19 +22,22 @@ public:
     ShownScene(const Context& context, const ViewOptions& options, const FrameLog& log, std::optional<FramesAhead> ahead = {});
 
     // Null until the first scene is loaded.
-    [[nodiscard]] LoadedScene* get() const { return scene_.get(); }
-    // The frame of whatever scene is shown, once there is one; and another one, made at the first call, for the insets of a headset that
+    [[nodiscard]] LoadedScene* get() const { return shown_.scene.get(); }
+    // The one that frames draw: the same, or the other one of a comparison, see draw().
+    [[nodiscard]] LoadedScene* drawn() const { return drawing().scene.get(); }
+    // The frame of the scene that is drawn, once there is one; and another one, made at the first call, for the insets of a headset that
     // has them. Throws Error if the device lacks the memory.
-    [[nodiscard]] StereoFrame& frame() const { return *frame_; }
+    [[nodiscard]] StereoFrame& frame() const { return *drawing().frame; }
     [[nodiscard]] StereoFrame& insets();
-    void dropInsets() { insets_.reset(); }
-    // What these eyes see of the scene now, by a frame of its own: those under way go on as they were. Waits for the device. Throws Error
-    // if it lacks the memory.
+    void dropInsets() { shown_.insets.reset(), other_.insets.reset(); }
+    // What these eyes see of the drawn scene now, by a frame of its own: those under way go on as they were. Waits for the device. Throws
+    // Error if it lacks the memory.
     [[nodiscard]] std::vector<Image> picturesOf(std::span<const Eye> eyes, const FrameSettings& settings);
     // Makes their kernels anew, see StereoFrame.
     void rebuildKernels();
-    // The scene's name or, until it is loaded, that of the requested one.
-    [[nodiscard]] const std::string& name() const { return scene_ ? scene_->name : asked_; }
+    // The scene's name or, until it is loaded, that of the requested one; with the other one's, if there is one.
+    [[nodiscard]] const std::string& name() const { return shown_.scene ? shown_.scene->name : asked_; }
+    [[nodiscard]] std::string names() const;
     // The share done of the next scene or, if none is loading, of the visible part of a streamed one; empty
     // if all of that is loaded.
     [[nodiscard]] std::optional<double> loading() const;
@@ -41,6 +45,12 @@ public:
     [[nodiscard]] bool isLoading() const;
     // True if it can be taken, and no thread makes kernels for the current one any more.
     [[nodiscard]] bool isNextReady() const { return loader_ && loader_->isDone() && (!maker_ || maker_->isDone()); }
+    // The same for the other scene of a comparison.
+    [[nodiscard]] bool isOtherReady() const {
+        return shown_.scene && other_loader_ && other_loader_->isDone() && (!maker_ || maker_->isDone());
+    }
+    // Nothing of what was asked for at the start is missing.
+    [[nodiscard]] bool isComplete() const { return shown_.scene && compared_next_.empty() && !other_loader_; }
     // True while kernels for drawable() are being made.
     [[nodiscard]] bool isMakingKernels() const { return maker_ != nullptr; }
 
@@ -50,8 +60,9 @@ public:
     // `settings`, with the method replaced by one that can be drawn until its kernels are ready.
     [[nodiscard]] ViewSettings drawable(ViewSettings settings) const;
 
-    // Begins to load another scene; the current one stays until that is loaded.
-    void begin(const std::string& scene);
+    // Begins to load another scene, and then `compared`, if given, to compare with it; the current one stays until that is loaded. If
+    // the next scene is to be compared with the current one, it does that instead.
+    void begin(const std::string& scene, const std::string& compared = {});
     // The same for the scene `step` further on in the folder of the last requested one, once `files` has found it.
     void beginBeside(int step, FileWorker& files);
     // Waits for the next scene, shows it (or, where it lacks memory beside the one shown, has that one go and begins again: then there is
@@ -60,13 +71,57 @@ public:
     // other to stay with.
     [[nodiscard]] std::string take(ViewState& state);
 
+    // A scene of the same place that the shown one is compared with; null: none. It goes when another scene is shown.
+    [[nodiscard]] LoadedScene* other() const { return other_.scene.get(); }
+    [[nodiscard]] StereoFrame& otherFrame() const { return *other_.frame; }
+    // Of the shown scene's eyes and placements, in the coordinates of the other one: both count from origins of their own.
+    [[nodiscard]] glm::dvec3 otherFromShown() const { return shown_.scene->origin - other_.scene->origin; }
+    // Ends the comparison or, if there is none, has the next scene that is begun compared with this one, or no more. Says so in a line.
+    [[nodiscard]] std::string toggleComparison();
+    [[nodiscard]] bool comparesNext() const { return compares_next_; }
+    // Waits for the other scene. Returns what went wrong, and then there is no comparison, or empty.
+    [[nodiscard]] std::string takeOther();
+    // The other one cannot be drawn after all, and goes. Returns why, in a line.
+    [[nodiscard]] std::string goOnAlone(const Error& error);
+    // Before frames of it are shown: makes what such frames take, and draws two, so that showing it needs no wait. Does nothing if there is
+    // no other scene, or if frames are as they were. The eyes are those of the shown one. Throws Error if the device lacks the memory.
+    void meetOther(std::span<const Eye> eyes, const FrameSettings& frame, std::span<const Eye> inset_eyes, const FrameSettings& inset);
+    // From now on frames draw the other scene, if there is one, or the shown one again. No frame has a history across such a cut.
+    void draw(bool other);
+    [[nodiscard]] bool drawsOther() const { return draws_other_; }
+    // As the drawn scene counts.
+    [[nodiscard]] Similarity drawnFrom(Similarity scene_from_room) const;
+    [[nodiscard]] std::vector<Eye> seenFromDrawn(std::vector<Eye> eyes) const;
+    // Before a frame of these eyes of the drawn scene: both request what they need, and both move on. Never waits.
+    void follow(std::span<const Eye> eyes, double step_seconds);
+    // In each frame: the scene that is not drawn waits for its own frame before the last, as the drawn one does.
+    void passOver();
+
 private:
+    // A scene, and the frames that show it.
+    struct Held {
+        std::unique_ptr<LoadedScene> scene;
+        std::unique_ptr<StereoFrame> frame, insets;
+        std::optional<FramesAhead> ready;  // the frames that there are kernels for
+        glm::uvec3 met{0};                 // what it has drawn frames for: their size, and of how many tiles it is known whether they show
+    };
+    [[nodiscard]] const Held& drawing() const { return draws_other_ ? other_ : shown_; }
+    [[nodiscard]] Held& drawing() { return draws_other_ ? other_ : shown_; }
+    [[nodiscard]] Held& resting() { return draws_other_ ? shown_ : other_; }
+    void load(const std::string& scene);
+    // Nobody waits for that loader.
+    void giveUp(std::unique_ptr<SceneLoader>& loader);
+    void beginOther(const std::string& scene);
+    void dropOther();
     [[nodiscard]] std::string place(ViewState& state);
     void showInFrames(const LoadedScene& scene);
     // By place: where the wearer stood when another scene replaced this one.
     std::map<std::string, Similarity> left_;
     void lookBeside(FileWorker& files);
-    void haveReady(const FramesAhead& ahead);
+    void haveReady(Held& held, const FramesAhead& ahead);
+    void takeKernels(StereoFrame& from);
+    // Eyes of the drawn scene, as the other one counts.
+    [[nodiscard]] std::vector<Eye> seenFromResting(std::span<const Eye> eyes) const;
     // Within a handler: the next scene cannot be shown. Returns `why`, or rethrows.
     [[nodiscard]] std::string goOnWithout(const std::string& why);
     // What is shown goes, so that the scene that was asked for has its memory, and that one is loaded again; says so.
@@ -76,18 +131,20 @@ private:
     const ViewOptions& options_;
     const FrameLog& log_;
     std::optional<FramesAhead> ahead_;
-    std::optional<FramesAhead> ready_;  // the frames that the current scene has kernels for
-    std::string asked_;                 // the scene asked for last, even if it could not be loaded
+    std::string asked_;          // the scene asked for last, even if it could not be loaded
+    std::string compared_next_;  // with it, once it is shown; empty: none
     std::uint64_t asked_count_ = 0;
     int steps_asked_ = 0;  // from that one, not looked for yet
     bool is_looking_ = false;
     std::string gone_first_;             // the scene that made way for that one, if any
     std::unique_ptr<GpuScene> nothing_;  // that frames show meanwhile
-    std::unique_ptr<LoadedScene> scene_;
-    std::unique_ptr<StereoFrame> frame_, insets_;  // of the current scene
-    std::unique_ptr<KernelMaker> maker_;           // for the current scene
+    std::string other_name_;
+    bool compares_next_ = false, draws_other_ = false;
+    Held shown_, other_;                  // the other one's frames use the kernels of the shown one's
+    Held* made_for_ = nullptr;            // the one of these that kernels are made for
+    std::unique_ptr<KernelMaker> maker_;  // for that one
     std::vector<std::unique_ptr<SceneLoader>> given_up_;
-    std::unique_ptr<SceneLoader> loader_;  // last: its thread ends first
+    std::unique_ptr<SceneLoader> loader_, other_loader_;  // last: their threads end first
 };
 
 }  // namespace binosplat

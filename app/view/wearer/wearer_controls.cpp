@@ -57,7 +57,8 @@ void WearerControls::pressButtons(const WearerNow& now, PanelInRoom& panel, View
         state.togglePanel();
         if (state.settings().panel) { panel.hangBefore(now.room_from_head); }
     }
-    const bool play = now.hands[kLeft].play || now.hands[kRight].play;
+    play_held_ = {now.hands[kLeft].play, now.hands[kRight].play};
+    const bool play = play_held_[kLeft] || play_held_[kRight];
     play_pressed_ = !std::exchange(play_, play) && play;
     viewpoint_step_ = 0;
     for (const int h : {kLeft, kRight}) {

@@ -19,6 +19,9 @@ public:
     // True if a hand has just pressed the button that plays or pauses a scene.
     [[nodiscard]] bool playPressed() const { return play_pressed_; }
 
+    // The same button, while it is held: by hand.
+    [[nodiscard]] const std::array<bool, 2>& playHeld() const { return play_held_; }
+
     // For all tools, see WearerTool.
     void letGo();
     [[nodiscard]] bool isMoving() const;
@@ -32,7 +35,7 @@ private:
 
     std::vector<std::unique_ptr<WearerTool>> tools_;
     bool menu_ = false, play_ = false, play_pressed_ = false;
-    std::array<bool, 2> stick_presses_{};
+    std::array<bool, 2> play_held_{}, stick_presses_{};
     int viewpoint_step_ = 0;
 };
 

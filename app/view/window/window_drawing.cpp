@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace binosplat {
 
@@ -29,10 +30,14 @@ WindowPart fittedInto(glm::uvec2 from_px, const WindowPart& part) {
     return {part.at_px + (part.size_px - size_px) / 2, size_px};
 }
 
-void blitInto(Commands& commands, vk::Image from, glm::uvec2 from_px, vk::Image window, const WindowPart& part) {
-    const glm::ivec2 low = part.at_px, high = low + part.size_px;
+void blitInto(Commands& commands, vk::Image from, glm::uvec2 from_px, vk::Image window, const WindowPart& part, std::uint32_t from_x) {
+    if (from_x >= from_px.x) { return; }
+    const glm::ivec2 high = part.at_px + part.size_px;
+    const double left_px = part.size_px.x * static_cast<double>(from_x) / from_px.x;
+    const glm::ivec2 low(std::min(part.at_px.x + static_cast<int>(std::lround(left_px)), high.x - 1), part.at_px.y);
     const vk::ImageSubresourceLayers layers(vk::ImageAspectFlagBits::eColor, 0, 0, 1);
-    const std::array source{vk::Offset3D(0, 0, 0), vk::Offset3D(static_cast<int>(from_px.x), static_cast<int>(from_px.y), 1)};
+    const std::array source{vk::Offset3D(static_cast<int>(from_x), 0, 0),
+                            vk::Offset3D(static_cast<int>(from_px.x), static_cast<int>(from_px.y), 1)};
     const std::array target{vk::Offset3D(low.x, low.y, 0), vk::Offset3D(high.x, high.y, 1)};
     commands.buffer().blitImage(from, vk::ImageLayout::eTransferSrcOptimal, window, vk::ImageLayout::eTransferDstOptimal,
                                 vk::ImageBlit(layers, source, layers, target), vk::Filter::eLinear);

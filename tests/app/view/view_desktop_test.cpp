@@ -151,7 +151,7 @@ TEST_CASE("a runtime that hangs keeps no window from opening; what is dropped on
     const unsigned long number = numberOfWindow("^builtin:slanted-wall - binosplat$", "WINDOW");
     desk().connection.minimize(number, true);
     const std::uint64_t before = window.help();
-    desk().connection.drop(number, work.path / "one.ply");
+    desk().connection.drop(number, {work.path / "one.ply"});
     REQUIRE(window.program().waitFor("one.ply") != "");
     CHECK(window.help() == before);
     desk().connection.minimize(number, false);
@@ -211,6 +211,65 @@ TEST_CASE(
     CHECK(readPicture(window.picture()).size_px == glm::uvec2(2560, 720));
     hands("key 2");
     window.waitFor("viewpoint 2 of 2: door");
+    window.checkEnd();
+}
+
+TEST_CASE(
+    "two scenes are left and right of a curtain that can be dragged; a held key shows the other one whole, and in pictures; two that are "
+    "dropped are compared") {
+    if (!haveScreen()) { return; }
+    const Workplace work;
+    work.go("scene one-splat --out one.ply");
+    work.go("scene fence --out fence.ply");
+    const std::string view = " --eye 0,0,-1 --look 0,0,3 --up 0,-1,0";
+    const std::string drawing = view + " --mode mono --order distance --size 1280x720 --fov-x 60 --out ";
+    const auto draw = [&](const std::string& scene, const std::string& name) {
+        work.go("render " + scene + drawing + name);
+        return readPicture(work.path / name / "mono.png");
+    };
+    const Image wall = draw("builtin:slanted-wall", "wall"), fence = draw("fence.ply", "fence");
+    REQUIRE(compare(wall, fence).psnrDb() < 25.0);
+    Window window(work, "--desktop --hide-panel --compare fence.ply" + view);
+    window.waitFor("compares builtin:slanted-wall with fence.ply");
+    // Which part of the window is the one scene, and which is the other.
+    const auto check = [&](const Image& image, std::uint32_t from, std::uint32_t to) {
+        CAPTURE(from);
+        const auto part = [&](const Image& picture) { return partOf(picture, {from, 0}, {to, 720}); };
+        CHECK(compare(part(desk().screen.picture()), part(image)).psnrDb() > 40.0);
+    };
+    window.rest();
+    check(wall, 0, 636);
+    check(fence, 644, 1280);
+    CHECK(compare(readPicture(window.picture()), wall).psnrDb() > 45.0);
+    const Image screen = desk().screen.picture();
+    const auto [low, high] = std::ranges::minmax(partOf(screen, {637, 0}, {643, 720}).values);
+    CHECK(low < 0.2f);
+    CHECK(high > 0.9f);
+
+    // Dragging moves the line alone.
+    hands(moveTo({641.0, 200.0}));
+    window.drag(1, {641.0, 200.0}, {320.0, 250.0});
+    window.waitFor("the curtain hangs at 25 %");
+    window.rest();
+    check(wall, 0, 314);
+    check(fence, 326, 1280);
+    hands("keydown c");
+    window.waitFor("shows fence.ply");
+    window.rest();
+    check(fence, 0, 1280);
+    CHECK(compare(readPicture(window.picture()), fence).psnrDb() > 45.0);
+    hands("keyup c");
+    window.waitFor("the curtain is back");
+    window.rest();
+    check(wall, 0, 314);
+
+    const unsigned long number = numberOfWindow("^builtin:slanted-wall . fence.ply - binosplat$", "WINDOW");
+    desk().connection.drop(number, {work.path / "one.ply", work.path / "fence.ply"});
+    window.waitFor("compares " + (work.path / "one.ply").string() + " with " + (work.path / "fence.ply").string());
+    // It ends with the scene that it is a comparison of.
+    desk().connection.drop(number, {work.path / "one.ply"});
+    window.waitFor("shows " + (work.path / "one.ply").string());
+    CHECK(numberOfWindow("one.ply - binosplat$", "WINDOW") == number);
     window.checkEnd();
 }
 

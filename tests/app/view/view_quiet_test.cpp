@@ -54,6 +54,25 @@ TEST_CASE("no frame of a running viewer waits or makes anything after the first 
     }
 }
 
+TEST_CASE("the cut to the other scene of a comparison, and back, waits for nothing") {
+    // In the first second everything is made, for both.
+    const std::string script =
+        "rate 45\nsize 64 64\nframes none\nhead 0 position 0 1.6 0\npress right a 1.4 1.8\npress right a 2 2.4\nat 3 exit\n";
+    for (const std::string mode : {"temporal", "predicted", "shared"}) {
+        CAPTURE(mode);
+        const Workplace work;
+        const ViewRun run =
+            runView(work, "cut", script, "builtin:slanted-wall --compare builtin:fence --load-first --hide-hands --mode " + mode, kWatched);
+        INFO(run.outcome.output << run.outcome.errors);
+        CHECK(these(run.outcome.exit_code, run.outcome.errors.empty()) == these(0, true));
+        CHECK(run.lines("shows builtin:fence").size() == 2);
+        std::ifstream file(work.path / "waits.txt");
+        std::size_t frames = 0;
+        for (std::string line; std::getline(file, line); ++frames) { CHECK_MESSAGE((frames < 45 || line == std::to_string(frames)), line); }
+        CHECK(frames == run.frames.size());
+    }
+}
+
 TEST_CASE("new letters come without a wait") {
     const Workplace work;
     REQUIRE(work.run("scene one-splat --out '\u05d7\u05d3\u05e8.ply'").exit_code == 0);

@@ -77,7 +77,8 @@ public:
     // It first complains about display numbers that are taken.
     explicit Screen(const std::filesystem::path& folder)
         : folder_(folder),
-          server_(folder, fmt::format("Xvfb -terminate -displayfd 1 -screen 0 {}x{}x24 -fbdir . 2> /dev/null", kScreenPx.x, kScreenPx.y)),
+          server_(folder, fmt::format("sh -c 'exec Xvfb -terminate -displayfd 1 -screen 0 {}x{}x24 -fbdir . 2> /dev/null'", kScreenPx.x,
+                                      kScreenPx.y)),
           name(":" + std::to_string(std::stoi(server_.waitFor("\n")))) {}
 
     [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
@@ -138,9 +139,10 @@ public:
         const std::array<unsigned long, 2> state{is_gone ? 3ul : 1ul, 0};
         change(window, atomOf("WM_STATE"), atomOf("WM_STATE"), 32, state.data(), 2);
     }
-    // The end of dragging a file to a window: the file's name is at the window, which is told so.
-    void drop(unsigned long window, const fs::path& file) const {
-        const std::string uri = "file://" + file.string() + "\r\n";
+    // The end of dragging files to a window: their names are at the window, which is told so.
+    void drop(unsigned long window, const std::vector<fs::path>& files) const {
+        std::string uri;
+        for (const fs::path& file : files) { uri += "file://" + file.string() + "\r\n"; }
         const unsigned long place = atomOf("XdndSelection"), kind = atomOf("text/uri-list");
         change(window, place, kind, 8, uri.data(), uri.size());
         // Xlib's XSelectionEvent: its kind (31), sent, to which window, what, as what, where it lies, when.

@@ -20,6 +20,7 @@ TEST_CASE("on each page every widget lies on the panel, none on another, 1.5 deg
     for (const bool all : {false, true}) {
         PanelSketch sketch;
         sketch.status.can_reload_shaders = sketch.status.can_pass_through = all;
+        sketch.status.compares = true;
         if (all) { sketch.status.refresh_rates = {72.0, 80.0, 90.0, 120.0, 144.0}; }
         if (all) { sketch.status.time = ShownTime{11, 60, 30.0, true, 3}; }
         const auto hoveredAt = [&](glm::dvec2 place, double down_px) {
@@ -202,6 +203,20 @@ TEST_CASE_FIXTURE(PanelSketch, "the help page draws what the hands hold: no stic
     status.held = {};  // as most people have
     draw();
     CHECK(ImGui::GetDrawData()->TotalVtxCount == touch);
+}
+
+TEST_CASE_FIXTURE(
+    PanelSketch,
+    "a comparison is asked for and ended on the pages Scenes and View; only during it is there another scene to keep in sight") {
+    settings.page = PanelPage::kScenes;
+    CHECK(click("Compare").compare);
+    CHECK_FALSE(click("Other").show_other);
+    status.compares = true;
+    CHECK(click("Other").show_other);
+    CHECK(click("Compare").compare);
+    settings.page = PanelPage::kView;
+    status.window.emplace();
+    CHECK(click("Compare").compare);
 }
 
 TEST_CASE_FIXTURE(PanelSketch, "a scene that moves has a page of its own, with what lets it rest, step, and go to a frame") {
@@ -451,7 +466,7 @@ TEST_CASE_FIXTURE(AtWork, "names of any bytes and of any length are shown, and a
     PanelSketch sketch;
     sketch.settings.page = Page::kScenes;
     sketch.chooser.showFolder(work.path.string());
-    CHECK(sketch.draw().places.size() == 24 + 2 * 5);
+    CHECK(sketch.draw().places.size() == 26 + 2 * 5);
     CHECK(sketch.click(longest).chosen_scene == (work.path / longest).string());
     CHECK(asShown("a\nb\x1b[1m\x7f") ==
           "a\xef\xbf\xbd"

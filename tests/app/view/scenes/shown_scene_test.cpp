@@ -8,6 +8,7 @@
 #include "app/view/settings/view_files.h"
 #include "engine/builtin/procedural.h"
 #include "engine/files/load_scene.h"
+#include "engine/files/ply.h"
 #include "tests/engine/gpu/device_image.h"
 #include "tests/run_program.h"
 
@@ -251,6 +252,45 @@ TEST_CASE_FIXTURE(Gpu, "the panel has the same colours where the runtime has no 
         CHECK(colours.size() > 20);
         CHECK(farthest < 1.0);
     }
+}
+
+TEST_CASE_FIXTURE(Shown,
+                  "two scenes are compared where their files say they are; another scene ends that, and so does one that cannot be read") {
+    Scene far = loadScene("builtin:one-splat");
+    far.origin = {500'000.0, 0.0, -300'000.0};
+    writePly(far, (path / "far.ply").string());
+    options.compare = (path / "far.ply").string();
+    ShownScene scenes(context(), options, log);
+    REQUIRE(scenes.take(state).empty());
+    CHECK(scenes.other() == nullptr);
+    REQUIRE(scenes.takeOther().empty());
+    CHECK(scenes.names() == "builtin:step-edge | " + options.compare);
+    const glm::dvec3 from = scenes.get()->origin, to = scenes.other()->origin;
+    CHECK(glm::length(to - from) > 400'000.0);
+    const Similarity place{{1, 0, 0, 0}, {1, 2, 3}, 2.0};
+    CHECK(scenes.drawnFrom(place).position == place.position);
+    CHECK(&scenes.frame() != &scenes.otherFrame());
+    scenes.draw(true);
+    CHECK(scenes.drawn() == scenes.other());
+    CHECK(&scenes.frame() == &scenes.otherFrame());
+    CHECK(glm::length(scenes.drawnFrom(place).position + to - (place.position + from)) < 1e-6);
+    CHECK(scenes.drawnFrom(place).scale == place.scale);
+    // The next one that is asked for is compared, not shown; that it cannot be read leaves the first one alone.
+    CHECK(scenes.toggleComparison().find("no longer compared") != std::string::npos);
+    CHECK(scenes.drawn() == scenes.get());
+    CHECK(scenes.toggleComparison().find("to compare with builtin:step-edge") != std::string::npos);
+    scenes.begin((path / "gone.ply").string());
+    CHECK(scenes.takeOther().find("no such file") != std::string::npos);
+    CHECK(scenes.names() == "builtin:step-edge");
+    scenes.begin("builtin:fence", "builtin:slanted-wall");
+    REQUIRE(scenes.take(state).empty());
+    REQUIRE(scenes.takeOther().empty());
+    CHECK(scenes.names() == "builtin:fence | builtin:slanted-wall");
+    scenes.draw(true);
+    scenes.begin("builtin:step-edge");
+    REQUIRE(scenes.take(state).empty());
+    CHECK(scenes.names() == "builtin:step-edge");
+    CHECK(scenes.drawn() == scenes.get());
 }
 
 TEST_CASE_FIXTURE(

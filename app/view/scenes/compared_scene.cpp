@@ -1,0 +1,122 @@
+// Another scene of the same place, to compare with the one that is shown.
+#include "app/view/scenes/shown_scene.h"
+#include "engine/gpu/device_error.h"
+
+#include <utility>
+
+namespace binosplat {
+
+std::string ShownScene::toggleComparison() {
+    if (other_.scene || other_loader_) {
+        const std::string was = other_.scene ? other_.scene->name : other_loader_->scene();
+        giveUp(other_loader_);
+        dropOther();
+        return fmt::format("{} is no longer compared with", was);
+    }
+    compares_next_ = !compares_next_ && shown_.scene;
+    return compares_next_ ? fmt::format("choose, open or drop a scene to compare with {}", shown_.scene->name) : "nothing is compared";
+}
+
+void ShownScene::beginOther(const std::string& scene) {
+    dropOther();  // never more than two
+    giveUp(other_loader_);
+    ++asked_count_;
+    RunOptions run = options_.run;  // a given place belongs to the first one
+    run.camera.cameras_file.clear();
+    run.camera.eye = run.camera.look = run.camera.up = std::nullopt;
+    other_loader_ = std::make_unique<SceneLoader>(context_, scene, std::move(run), ahead_, options_.load_first);
+}
+
+void ShownScene::dropOther() {
+    draw(false);
+    if (maker_ && made_for_ == &other_) { maker_.reset(); }
+    // Frames wait for the device before the scene that they read goes.
+    other_.insets.reset();
+    other_.frame.reset();
+    other_ = {};
+}
+
+std::string ShownScene::takeOther() {
+    const std::unique_ptr<SceneLoader> loader = std::move(other_loader_);
+    other_name_ = loader->scene();
+    try {
+        std::unique_ptr<LoadedScene> taken = loader->take();
+        maker_.reset();
+        other_.frame = StereoFrame::beside(*shown_.frame);
+        other_.frame->show(taken->gpu_scene);
+        other_.scene = std::move(taken);
+        if (const auto kernels = std::exchange(other_.scene->kernels, nullptr)) { takeKernels(*kernels); }
+        if (ahead_) { haveReady(other_, loader->madeFor()); }
+    } catch (const vk::DeviceLostError&) { throw; } catch (const vk::SystemError& error) {
+        dropOther();
+        return error.what();
+    } catch (const Error& error) { return goOnAlone(error); }
+    log_.say(fmt::format("compares {} with {}", shown_.scene->name, other_.scene->name));
+    for (const std::string& line : other_.scene->notes.lines) { log_.print("note: " + line); }
+    return {};
+}
+
+std::string ShownScene::goOnAlone(const Error& error) {
+    dropOther();
+    const auto* const of_device = dynamic_cast<const DeviceError*>(&error);
+    if (of_device == nullptr || of_device->kind() != DeviceError::Kind::kMemory) { return error.what(); }
+    return fmt::format("{} and {} do not fit into the device's memory together: the first one stays", shown_.scene->name, other_name_);
+}
+
+void ShownScene::meetOther(std::span<const Eye> eyes, const FrameSettings& frame, std::span<const Eye> inset_eyes,
+                           const FrameSettings& inset) {
+    if (!other_.scene || draws_other_) { return; }
+    const glm::uvec3 shape(eyes.front().size_px, frame.hidden_tiles[0].size());
+    if (std::exchange(other_.met, shape) == shape) { return; }
+    const auto meet = [&](StereoFrame& other, std::span<const Eye> seen, const FrameSettings& settings) {
+        const std::vector<Eye> there = seenFromResting(seen);
+        other.makeRoom(there, settings);
+        for (int turn = 0; turn < 2; ++turn) { (void)other.renderAhead(there, settings); }  // each has memory of its own
+    };
+    meet(*other_.frame, eyes, frame);
+    if (inset_eyes.empty()) { return; }
+    if (!other_.insets) { other_.insets = StereoFrame::beside(*other_.frame); }
+    meet(*other_.insets, inset_eyes, inset);
+}
+
+void ShownScene::draw(bool other) {
+    other = other && other_.scene;
+    if (std::exchange(draws_other_, other) == other) { return; }
+    for (StereoFrame* const frame : {drawing().frame.get(), drawing().insets.get()}) {
+        if (frame != nullptr) { frame->forgetPast(); }
+    }
+}
+
+Similarity ShownScene::drawnFrom(Similarity scene_from_room) const {
+    if (draws_other_) { scene_from_room.position += otherFromShown(); }
+    return scene_from_room;
+}
+
+std::vector<Eye> ShownScene::seenFromDrawn(std::vector<Eye> eyes) const {
+    for (Eye& eye : eyes) { eye.world_from_camera.position += draws_other_ ? otherFromShown() : glm::dvec3(0.0); }
+    return eyes;
+}
+
+std::vector<Eye> ShownScene::seenFromResting(std::span<const Eye> eyes) const {
+    std::vector<Eye> there(eyes.begin(), eyes.end());
+    for (Eye& eye : there) { eye.world_from_camera.position += (draws_other_ ? -1.0 : 1.0) * otherFromShown(); }
+    return there;
+}
+
+void ShownScene::follow(std::span<const Eye> eyes, double step_seconds) {
+    LoadedScene& scene = *drawn();
+    scene.follow(eyes, step_seconds);
+    LoadedScene* const rests = resting().scene.get();
+    if (rests == nullptr || !rests->live) { return; }
+    const bool keeps_time = rests->moving != nullptr && scene.moving != nullptr;
+    if (keeps_time) { rests->clock.goWith(scene.clock); }
+    rests->follow(seenFromResting(eyes), keeps_time ? 0.0 : step_seconds);
+}
+
+void ShownScene::passOver() {
+    for (StereoFrame* const frame : {resting().frame.get(), resting().insets.get()}) {
+        if (frame != nullptr) { frame->passOver(); }
+    }
+}
+
+}  // namespace binosplat
