@@ -137,18 +137,13 @@ void DesktopShell::openDropped(const std::string& path) {
 }
 
 void DesktopShell::takePicture() {
-    try {
-        if (const std::optional<std::string> outcome = writer_.finish()) { say(*outcome); }
-        const bool both = state_.settings().picture_both_eyes;
-        WindowSight sight = windowSight();
-        sight.stereo = both ? WindowStereo::kSideBySide : WindowStereo::kMono;
-        FrameSettings settings = frameSettingsNow(true);
-        settings.mode = both ? Mode::kShared : Mode::kMono;
-        settings.keep_classes = false;
-        writer_.begin(scenes_.picturesOf(eyesOf(mover_.camera(), sight, areaPx()), settings), scenes_.name());
-    } catch (const vk::DeviceLostError&) { throw; } catch (const vk::SystemError& error) {
-        say(fmt::format("the picture cannot be rendered: {}", error.what()));
-    } catch (const Error& error) { say(error.what()); }
+    const bool both = state_.settings().picture_both_eyes;
+    WindowSight sight = windowSight();
+    sight.stereo = both ? WindowStereo::kSideBySide : WindowStereo::kMono;
+    FrameSettings settings = frameSettingsNow(true);
+    settings.mode = both ? Mode::kShared : Mode::kMono;
+    settings.keep_classes = false;
+    writer_.begin(scenes_.shotOf(eyesOf(mover_.camera(), sight, areaPx()), settings), scenes_.name());
 }
 
 }  // namespace binosplat

@@ -140,14 +140,6 @@ StereoFrame& ShownScene::insets() {
     return *insets_;
 }
 
-std::vector<Image> ShownScene::picturesOf(std::span<const Eye> eyes, const FrameSettings& settings) {
-    const std::unique_ptr<StereoFrame> frame = StereoFrame::beside(*frame_);
-    frame->render(eyes, settings);
-    std::vector<Image> pictures;
-    for (std::size_t e = 0; e < eyes.size(); ++e) { pictures.push_back(frame->readPicture(static_cast<int>(e))); }
-    return pictures;
-}
-
 void ShownScene::rebuildKernels() {
     if (insets_) { (void)insets_->finish(); }  // it shares the kernels
     frame_->rebuildKernels();

@@ -3,13 +3,13 @@
 
 #include "app/terminal/frame_log.h"
 #include "app/view/files/file_worker.h"
+#include "app/view/files/picture_shot.h"
 #include "app/view/scenes/scene_loader.h"
 #include "app/view/settings/view_state.h"
 
 #include <map>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -27,9 +27,10 @@ public:
     [[nodiscard]] StereoFrame& frame() const { return *frame_; }
     [[nodiscard]] StereoFrame& insets();
     void dropInsets() { insets_.reset(); }
-    // What these eyes see of the scene now, by a frame of its own: those under way go on as they were. Waits for the device. Throws Error
-    // if it lacks the memory.
-    [[nodiscard]] std::vector<Image> picturesOf(std::span<const Eye> eyes, const FrameSettings& settings);
+    // To be taken before another scene is.
+    [[nodiscard]] PictureShot shotOf(std::vector<Eye> eyes, const FrameSettings& settings) const {
+        return {context_, scene_->gpu_scene, std::move(eyes), settings};
+    }
     // Makes their kernels anew, see StereoFrame.
     void rebuildKernels();
     // The scene's name or, until it is loaded, that of the requested one.
