@@ -78,7 +78,6 @@ private:
     void openAndSave(const PanelRequests& requests);
     // The wearer's place in numbers, and changes to it.
     [[nodiscard]] ShownPlace shownPlace() const;
-    [[nodiscard]] std::optional<double> sceneFloorMetres() const;
     void movePlace(const PanelRequests& requests);
     void goTo(const Viewpoint* viewpoint);  // null: stays
     // While the ruler is open, a trigger says where the ray meets the scene.

@@ -62,7 +62,9 @@ void Viewer::drawFrame() {
     const double step_seconds = headset().session.stepSeconds();
     WearerNow wearer{headset().input.read(), room_from_head_, headset().session.floorBelowMetres(), step_seconds, probes_seen_.hands};
     wearer.ground_scene = std::move(probes_seen_.ground);
-    wearer.scene_floor_m = sceneFloorMetres();
+    if (const LoadedScene* const scene = scenes_.get(); scene != nullptr && scene->floor) {
+        wearer.scene_floor = SceneFloor{scene->up, *scene->floor};
+    }
     controls_.update(wearer, panel_.inRoom(), state_);
     measure(wearer.hands);
     probeScene(wearer.floor_m.value_or(kUsualFloorMetres));

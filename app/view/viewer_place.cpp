@@ -30,11 +30,6 @@ ShownPlace Viewer::shownPlace() const {
     return place;
 }
 
-std::optional<double> Viewer::sceneFloorMetres() const {
-    if (scenes_.get() == nullptr || !scenes_.get()->floor) { return std::nullopt; }
-    return room_from_head_.position.y + shownPlace().eyes_m;
-}
-
 void Viewer::movePlace(const PanelRequests& requests) {
     LoadedScene& scene = *scenes_.get();
     if (requests.reset_scene) { state_.place(scene.start); }
