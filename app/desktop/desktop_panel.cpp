@@ -146,21 +146,16 @@ void DesktopShell::openDropped(const DesktopEvent& event) {
 }
 
 void DesktopShell::takePicture() {
-    try {
-        if (const std::optional<std::string> outcome = writer_.finish()) { say(*outcome); }
-        const bool both = state_.settings().picture_both_eyes;
-        WindowSight sight = windowSight();
-        sight.stereo = both ? WindowStereo::kSideBySide : WindowStereo::kMono;
-        FrameSettings settings = frameSettingsNow(true);
-        settings.mode = both ? Mode::kShared : Mode::kMono;
-        settings.keep_classes = false;
-        // Of the other one, if it fills the window.
-        scenes_.draw(comparison_ && comparison_->is_whole);
-        writer_.begin(scenes_.picturesOf(scenes_.seenFromDrawn(eyesOf(mover_.camera(), sight, areaPx())), settings), scenes_.drawn()->name);
-        scenes_.draw(false);
-    } catch (const vk::DeviceLostError&) { throw; } catch (const vk::SystemError& error) {
-        say(fmt::format("the picture cannot be rendered: {}", error.what()));
-    } catch (const Error& error) { say(error.what()); }
+    const bool both = state_.settings().picture_both_eyes;
+    WindowSight sight = windowSight();
+    sight.stereo = both ? WindowStereo::kSideBySide : WindowStereo::kMono;
+    FrameSettings settings = frameSettingsNow(true);
+    settings.mode = both ? Mode::kShared : Mode::kMono;
+    settings.keep_classes = false;
+    // Of the other one, if it fills the window.
+    scenes_.draw(comparison_ && comparison_->is_whole);
+    writer_.begin(scenes_.shotOf(scenes_.seenFromDrawn(eyesOf(mover_.camera(), sight, areaPx())), settings), scenes_.drawn()->name);
+    scenes_.draw(false);
 }
 
 }  // namespace binosplat

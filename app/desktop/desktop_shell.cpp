@@ -59,7 +59,7 @@ DesktopShell::DesktopShell(const ViewOptions& options, const ViewSettings& setti
 
 void DesktopShell::run() {
     while (!leaving_) { step(); }
-    if (const std::optional<std::string> outcome = writer_.finish()) { say(*outcome); }
+    while (const std::optional<std::string> outcome = writer_.finish()) { say(*outcome); }
     keepPictureOfScene();
     notes_.keepPreferences(state_.settings(), 0.0, true);
     files_.finish();
@@ -74,8 +74,8 @@ void DesktopShell::step() {
     files_.deliver();
     dialogs_.deliver();
     if (const std::optional<std::string> outcome = writer_.takeOutcome()) { say(*outcome); }
-    if (scenes_.isNextReady()) { takeScene(); }
-    if (scenes_.isOtherReady()) { takeOther(); }
+    if (scenes_.isNextReady() && !writer_.isTaking()) { takeScene(); }
+    if (scenes_.isOtherReady() && !writer_.isTaking()) { takeOther(); }
     for (const DesktopEvent& event : window_.takeEvents()) { handle(event); }
     const bool was_on_way = mover_.isGliding();
     mover_.pass(heldMotion(), seconds);
@@ -132,7 +132,7 @@ void DesktopShell::takeScene() {
 void DesktopShell::keepPictureOfScene() {
     if (scenes_.get() == nullptr || pictures_.eyes().empty()) { return; }
     try {
-        notes_.keepPicture(*scenes_.get(), scenes_.frame().readPicture(0));
+        notes_.keepPicture(*scenes_.get(), [picture = scenes_.frame().readPicture(0)] { return picture; });
     } catch (const vk::DeviceLostError&) { throw; } catch (const vk::SystemError&) {
         // A missing picture is not worth a message.
     } catch (const Error&) {}

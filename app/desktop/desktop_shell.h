@@ -118,7 +118,6 @@ private:
     CameraMover mover_;
     std::map<std::string, OrbitCamera> left_;  // by place: where another scene replaced this one
     std::array<Commands, 2> commands_;         // that compose the window, taking turns
-    PictureWriter writer_;
 
     PanelPointer pointer_;  // on the panel
     double angle_rad_;      // of view
@@ -132,7 +131,8 @@ private:
     SceneNotes notes_;
     ViewpointList viewpoints_;
     FileWorker dialogs_, files_;  // their threads end before the objects that use their results
-    ShownScene scenes_;           // last: the loading thread ends first
+    ShownScene scenes_;           // its loading thread ends before them
+    PictureWriter writer_;        // last: it shows scenes
 };
 
 }  // namespace binosplat

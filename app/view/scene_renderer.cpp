@@ -152,6 +152,7 @@ FrameSettings SceneRenderer::settingsOfFrame(ConnectedHeadset& headset, const Vi
     frame.mark = governed_count_;
     frame.measured_part = measured_part_ = (measured_part_ + 1) % gpu::kMeasuredParts;
     frame.keep_past = true;
+    frame.waits_after_jump = false;
     frame.background = backgroundOf(settings, frame.background);
     // If both eyes share a picture, it is seen through either lens.
     if (!settings.showsOneEye() && settings.visibility_mask) {
@@ -230,8 +231,8 @@ void SceneRenderer::meetOther(const ConnectedHeadset& headset, ShownScene& shown
     shown.meetOther(eyes_, frame_, headset.inset ? inset_eyes_ : std::vector<Eye>(), inset_frame_);
 }
 
-std::vector<Image> SceneRenderer::takePictures(ShownScene& shown, const Similarity& scene_from_room, const ViewSettings& settings,
-                                               const FrameViews& views) const {
+PictureShot SceneRenderer::shotOf(const ShownScene& shown, const Similarity& scene_from_room, const ViewSettings& settings,
+                                  const FrameViews& views) const {
     StereoOptions stereo = settings.stereo;
     stereo.mode = settings.picture_both_eyes ? Mode::kShared : Mode::kMono;
     stereo.foveation_deg = 0.0;
@@ -246,7 +247,7 @@ std::vector<Image> SceneRenderer::takePictures(ShownScene& shown, const Similari
         const auto at = static_cast<std::size_t>(e);
         eyes.push_back(eyeInScene(scene_from_room, views.room_from_eyes[at], views.eyes[at].fov, instance_.recommendedSizePx()));
     }
-    return shown.picturesOf(eyes, frame);
+    return shown.shotOf(std::move(eyes), frame);
 }
 
 void SceneRenderer::render(ConnectedHeadset& headset, ShownScene& shown, const ViewSettings& settings, MirrorWindow* window,
@@ -324,9 +325,8 @@ void SceneRenderer::sayGoverned() {
 
 void SceneRenderer::sayCutShort(bool of_other) {
     const std::uint64_t now = last_.counters.ahead ? last_.counters.ahead->frames_cut_short : 0;
-    if (now > std::exchange(cut_short_[of_other ? 1 : 0], now)) {
-        log_.say(fmt::format("frames shown incomplete because a list was full: {}", now));
-    }
+    was_cut_short_ = now > std::exchange(cut_short_[of_other ? 1 : 0], now);
+    if (was_cut_short_) { log_.say(fmt::format("frames shown incomplete because a list was full: {}", now)); }
 }
 
 void SceneRenderer::sayHidden(const std::array<std::span<const std::uint8_t>, 2>& hidden) {

@@ -54,8 +54,8 @@ public:
                 const std::function<void(Commands&)>& record_panel);
 
     // What the eyes see, or the dominant one, in full at the headset's size, without a mask, whatever the frames are.
-    [[nodiscard]] std::vector<Image> takePictures(ShownScene& shown, const Similarity& scene_from_room, const ViewSettings& settings,
-                                                  const FrameViews& views) const;
+    [[nodiscard]] PictureShot shotOf(const ShownScene& shown, const Similarity& scene_from_room, const ViewSettings& settings,
+                                     const FrameViews& views) const;
 
     // True if the wearer wants the room behind the scene, and the headset can show it.
     [[nodiscard]] bool seesThrough(const ViewSettings& settings) const { return settings.passthrough && instance_.canSeeThrough(); }
@@ -64,6 +64,8 @@ public:
     // For the prepared pictures, and for what their eyes see of them.
     [[nodiscard]] const std::vector<Eye>& pictures() const { return eyes_; }
     [[nodiscard]] const std::vector<Eye>& views() const { return seen_; }
+    // True if the eyes saw background in the last two frames because a list was full.
+    [[nodiscard]] bool wasCutShort() const { return was_cut_short_; }
     // Another scene is shown: counters and costs of the previous one do not apply.
     void forgetScene() {
         last_ = {};
@@ -137,6 +139,7 @@ private:
     std::uint32_t measured_part_ = 0;
     bool said_beaten_ = false;
     std::array<std::uint64_t, 2> cut_short_{};  // frames, as last said: of the scene shown, and of the other one
+    bool was_cut_short_ = false;
     FrameResult last_;
     std::array<std::uint32_t, 2> hidden_tiles_{};  // as last said
     bool takes_depth_ = true;

@@ -30,6 +30,7 @@ Viewer::Viewer(const ViewOptions& options, const ViewSettings& settings, xr::Ins
       panel_(context, connection_.format()),
       commands_(context_),
       probe_(context_),
+      copy_(context_),
       notes_(files_, [this](const std::string& message) { say(message); }),
       first_steps_(files_, settings.first_steps),
       viewpoints_(files_, [this](const std::string& message) { say(message); }),
@@ -50,7 +51,7 @@ void Viewer::run() {
     try {
         while (options_.load_first && !scenes_.isComplete() && !leaving_) {
             if (isInterrupted()) { leave(); }
-            if (scenes_.isNextReady()) { takeScene(); }
+            if (canTakeScene()) { takeScene(); }
             if (scenes_.isOtherReady()) { takeOther(); }
             drawWindowAlone("Loading the scene");
             std::this_thread::sleep_for(kIdle);
@@ -68,8 +69,8 @@ void Viewer::run() {
         log_.print(fmt::format("{} frames; {}", log_.frame, lost.what()));
         throw;
     }
-    sayPicture(pictures_.finish());
-    keepPictureOfScene();
+    while (const std::optional<std::string> outcome = pictures_.finish()) { say(*outcome); }
+    keepPictureAtOnce();
     keepPreferences(0.0, true);
     files_.finish();
     if (const LoadedScene* const scene = scenes_.get(); scene != nullptr && scene->moving != nullptr) {

@@ -9,6 +9,7 @@
 #include "app/view/room/fade.h"
 #include "app/view/room/vignette.h"
 #include "app/view/scene_renderer.h"
+#include "app/view/scenes/picture_copy.h"
 #include "app/view/scenes/scene_notes.h"
 #include "app/view/scenes/shown_scene.h"
 #include "app/view/scenes/viewpoint_list.h"
@@ -44,7 +45,8 @@ private:
     void drawFrame();
     // Keeps the window alive while no frame is drawn for the headset.
     void drawWindowAlone(const std::string& why);
-    // Shows the next scene, once it is loaded.
+    // True if the next scene is loaded, and nothing is being done with this one.
+    [[nodiscard]] bool canTakeScene() const { return scenes_.isNextReady() && !pictures_.isTaking(); }
     void takeScene();
     // Optional: if drawing in the window fails, a line says why.
     void openWindow(EventWindow& window);
@@ -81,18 +83,22 @@ private:
     void meetOther();
     // The wearer's place in numbers, and changes to it.
     [[nodiscard]] ShownPlace shownPlace() const;
-    [[nodiscard]] std::optional<double> sceneFloorMetres() const;
     void movePlace(const PanelRequests& requests);
     void goTo(const Viewpoint* viewpoint);  // null: stays
     // While the ruler is open, a trigger says where the ray meets the scene.
     void measure(const std::array<xr::Hand, 2>& hands);
     void showPanel();
-    // Saves a small picture of the scene as it was last seen, for the list of scenes.
-    void keepPictureOfScene();
+    // A small picture of the scene as it was last seen is kept for the list of scenes: of what a frame has
+    // copied, for which the scene that comes next is held back some frames, or of the last frame, for which
+    // the last of these waits.
+    [[nodiscard]] bool hasKeptPicture();
+    void recordCopy(Commands& commands);
+    void keepPictureAtOnce();
+    [[nodiscard]] bool isWorthKeeping() const;  // a picture of the scene
+    // In frames, and so in the renderer's pictures and views.
+    [[nodiscard]] std::size_t eyeOfPicture() const { return drawn_.showsOneEye() ? 0 : static_cast<std::size_t>(drawn_.stereo.dominant); }
     void load();
     void reloadShaders();
-    // Writes what the eyes see to a file, and reports the outcome.
-    void takePicture(const FrameViews& views);
     void sayPicture(const std::optional<std::string>& outcome);
     // In the log and on the panel.
     void say(const std::string& message);
@@ -125,7 +131,7 @@ private:
     Commands commands_;
     SceneProbe probe_;
     ProbesSeen probes_seen_;  // where hands point, and the ground
-    PictureWriter pictures_;
+    PictureCopy copy_;
     bool picture_asked_ = false;  // for the next frame
     std::uint64_t frames_of_scene_ = 0;
     bool said_there_ = false;  // everything in the first view of a streamed scene is loaded, and that was reported
@@ -138,8 +144,9 @@ private:
     SceneNotes notes_;
     FirstSteps first_steps_;
     ViewpointList viewpoints_;
-    FileWorker files_;   // its thread ends before the users of its results
-    ShownScene scenes_;  // last: the loading thread ends first
+    FileWorker files_;        // its thread ends before the users of its results
+    ShownScene scenes_;       // its loading thread ends before them
+    PictureWriter pictures_;  // last: it shows scenes
 };
 
 }  // namespace binosplat

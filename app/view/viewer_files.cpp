@@ -9,7 +9,6 @@ namespace binosplat {
 
 void Viewer::takeScene() {
     const LoadedScene* before = scenes_.get();
-    keepPictureOfScene();
     const std::string complaint = scenes_.take(state_);
     if (!complaint.empty()) { say(complaint); }
     if (scenes_.get() == before) { return; }
@@ -82,25 +81,15 @@ void Viewer::load() {
 
 void Viewer::reloadShaders() {
     if (scenes_.get() == nullptr || !panel_.status().can_reload_shaders) { return; }
-    // The loading thread may be making kernels.
-    if (scenes_.isLoading()) {
-        say("shaders stay as they are until the next scene is loaded");
+    // Their threads may be making kernels.
+    if (scenes_.isLoading() || pictures_.isTaking()) {
+        say(fmt::format("shaders stay as they are until {}", pictures_.isTaking() ? "the picture is written" : "the next scene is loaded"));
         return;
     }
     say(binosplat::reloadShaders(context_, shaderFolder(options_.shaders), [&] {
         scenes_.rebuildKernels();
         renderer_.presenter().rebuildKernels();
     }));
-}
-
-void Viewer::takePicture(const FrameViews& views) {
-    try {
-        sayPicture(pictures_.finish());
-        pictures_.begin(renderer_.takePictures(scenes_, scenes_.drawnFrom(state_.sceneFromRoom()), state_.settings(), views),
-                        scenes_.drawn()->name);
-    } catch (const vk::DeviceLostError&) { throw; } catch (const vk::SystemError& error) {
-        say(fmt::format("the picture cannot be rendered: {}", error.what()));
-    } catch (const Error& error) { say(error.what()); }
 }
 
 void Viewer::sayPicture(const std::optional<std::string>& outcome) {

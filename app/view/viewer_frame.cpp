@@ -56,14 +56,16 @@ void Viewer::drawFrame() {
     }
     renderer_.meetDisplay(headset().session);
     files_.deliver();
-    if (scenes_.isNextReady()) { takeScene(); }
+    if (canTakeScene() && hasKeptPicture()) { takeScene(); }
     if (scenes_.isOtherReady()) { takeOther(); }
     FrameViews& views = *located;
     room_from_head_ = views.room_from_head;
     const double step_seconds = headset().session.stepSeconds();
     WearerNow wearer{headset().input.read(), room_from_head_, headset().session.floorBelowMetres(), step_seconds, probes_seen_.hands};
     wearer.ground_scene = std::move(probes_seen_.ground);
-    wearer.scene_floor_m = sceneFloorMetres();
+    if (const LoadedScene* const scene = scenes_.get(); scene != nullptr && scene->floor) {
+        wearer.scene_floor = SceneFloor{scene->up, *scene->floor};
+    }
     controls_.update(wearer, panel_.inRoom(), state_);
     measure(wearer.hands);
     probeScene(wearer.floor_m.value_or(kUsualFloorMetres));
@@ -96,8 +98,6 @@ void Viewer::drawFrame() {
     }
     // Last, since the panel and the window may change the settings.
     const bool fits = prepareScene(views);
-    fade_.update(state_.sceneFromRoom(), room_from_head_, std::exchange(is_new_view_, false), step_seconds);
-    headset().things.darken(fade_.darkness(), coverMetres(views.eyes));
     onWindow(&MirrorWindow::acquire);
     const bool takes_picture = std::exchange(picture_asked_, false) && scenes_.get() != nullptr && fits;
     if (scenes_.get() != nullptr && fits) {
@@ -105,6 +105,7 @@ void Viewer::drawFrame() {
         renderer_.render(headset(), scenes_, drawn_, window_.get(), [this](Commands& commands) {
             recordPanel(commands);
             recordProbe(commands);
+            recordCopy(commands);
         });
         ++frames_of_scene_;
         for (LoadedScene* const scene : {scenes_.get(), scenes_.other()}) {
@@ -113,10 +114,17 @@ void Viewer::drawFrame() {
     } else {
         renderWaiting();
     }
+    // What was cut short comes out of the dark, too.
+    const bool is_new = std::exchange(is_new_view_, false) || renderer_.wasCutShort();
+    fade_.update(state_.sceneFromRoom(), room_from_head_, is_new, step_seconds);
+    headset().things.darken(fade_.darkness(), coverMetres(views.eyes));
     sayPicture(pictures_.takeOutcome());
     onWindow(&MirrorWindow::show);
     showFrame(views);
-    if (takes_picture) { takePicture(views); }  // which holds up the next frame
+    if (takes_picture) {
+        pictures_.begin(renderer_.shotOf(scenes_, scenes_.drawnFrom(state_.sceneFromRoom()), state_.settings(), views),
+                        scenes_.drawn()->name);
+    }
     sayChange();
     panel_.keepFrameTime();
 }
@@ -200,7 +208,7 @@ void Viewer::probeScene(double feet_m) {
 }
 
 void Viewer::recordProbe(Commands& commands) {
-    const std::size_t eye = drawn_.showsOneEye() ? 0 : static_cast<std::size_t>(drawn_.stereo.dominant);
+    const std::size_t eye = eyeOfPicture();
     probe_.record(commands, scenes_.frame().picture(static_cast<int>(eye)), renderer_.pictures().at(eye),
                   scenes_.drawnFrom(state_.sceneFromRoom()));
 }

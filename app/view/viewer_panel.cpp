@@ -43,7 +43,10 @@ void Viewer::drawWindowAlone(const std::string& why) {
     const double step_seconds = std::min(std::chrono::duration<double>(now - last_alone_).count(), 0.1);
     last_alone_ = now;
     files_.deliver();
-    if (scenes_.isNextReady()) { takeScene(); }
+    if (canTakeScene()) {
+        keepPictureAtOnce();
+        takeScene();
+    }
     if (scenes_.isOtherReady()) { takeOther(); }
     takeWindowInput(step_seconds);
     panel_.status().state = why;

@@ -30,11 +30,6 @@ ShownPlace Viewer::shownPlace() const {
     return place;
 }
 
-std::optional<double> Viewer::sceneFloorMetres() const {
-    if (scenes_.get() == nullptr || !scenes_.get()->floor) { return std::nullopt; }
-    return room_from_head_.position.y + shownPlace().eyes_m;
-}
-
 void Viewer::movePlace(const PanelRequests& requests) {
     LoadedScene& scene = *scenes_.get();
     if (requests.reset_scene) { state_.place(scene.start); }
@@ -86,15 +81,30 @@ void Viewer::goTo(const Viewpoint* viewpoint) {
     log_.say(viewpoints_.words());
 }
 
-void Viewer::keepPictureOfScene() {
-    LoadedScene* scene = scenes_.get();
-    if (scene == nullptr || std::exchange(frames_of_scene_, 0) < kLeastFramesSeen || scenes_.drawsOther()) { return; }
+bool Viewer::isWorthKeeping() const { return scenes_.get() != nullptr && frames_of_scene_ >= kLeastFramesSeen && !scenes_.drawsOther(); }
+
+void Viewer::recordCopy(Commands& commands) {
+    if (scenes_.drawsOther()) { return; }
+    const std::size_t eye = eyeOfPicture();
+    copy_.record(commands, scenes_.frame().picture(static_cast<int>(eye)), renderer_.pictures().at(eye), renderer_.views().at(eye));
+}
+
+bool Viewer::hasKeptPicture() {
+    if (!isWorthKeeping()) { return true; }
+    if (!copy_.ask()) { return false; }
+    frames_of_scene_ = 0;
+    if (std::function<Image()> view = copy_.take()) { notes_.keepPicture(*scenes_.get(), std::move(view)); }
+    return true;
+}
+
+void Viewer::keepPictureAtOnce() {
+    const std::size_t eye = eyeOfPicture();
+    if (!isWorthKeeping() || eye >= renderer_.pictures().size()) { return; }
+    frames_of_scene_ = 0;
     try {
         waitForQueue();
-        const std::size_t eye = drawn_.showsOneEye() ? 0 : static_cast<std::size_t>(drawn_.stereo.dominant);
-        if (eye >= renderer_.pictures().size()) { return; }
-        const Image picture = scenes_.frame().readPicture(static_cast<int>(eye));
-        notes_.keepPicture(*scene, showTurned(picture, renderer_.pictures().at(eye), renderer_.views().at(eye)));
+        notes_.keepPicture(*scenes_.get(), [picture = scenes_.frame().readPicture(static_cast<int>(eye)), of = renderer_.pictures().at(eye),
+                                            view = renderer_.views().at(eye)] { return showTurned(picture, of, view); });
     } catch (const vk::DeviceLostError&) { throw; } catch (const vk::SystemError&) {
         // A missing picture is not worth a message.
     } catch (const Error&) {}

@@ -119,7 +119,10 @@ std::optional<FrameResult> StereoFrame::renderAhead(std::span<const Eye> eyes, c
     const bool was_warped = std::ranges::any_of(plan_.targets, [](const TargetPlan& target) { return target.past.has_value(); });
     const bool loses_past =
         has_past && (!pastsFor(eyes, settings).of_eyes[0] || (was_warped && changedShare(eyes, settings) > kMostChanged));
-    bool waits = room_.isFirstFrame() || loses_past || isUnlikeLast(eyes, settings) || FrameRoom::isCutShort(state_);
+    const Likeness likeness = likenessToLast(eyes, settings);
+    const bool jumps = loses_past || likeness == Likeness::kJumps;
+    bool waits =
+        room_.isFirstFrame() || likeness == Likeness::kOther || (jumps && settings.waits_after_jump) || FrameRoom::isCutShort(state_);
     // Lists fill up gradually: they are made longer before they are full, while nothing uses them.
     const bool is_short = result && room_.fitsAhead() && !room_.hasRoom(plan_, stateAhead(), kRoomAhead);
     if (waits || is_short) {
@@ -271,16 +274,18 @@ void StereoFrame::planAnew(const FrameSettings& settings) {
     room_.fitPictures(plan_, settings.hidden_tiles);
 }
 
-bool StereoFrame::isUnlikeLast(std::span<const Eye> eyes, const FrameSettings& settings) const {
-    if (shapeOf(eyes, settings) != shape_ || jumps(eyes_, eyes, settings.units_per_metre)) { return true; }
+StereoFrame::Likeness StereoFrame::likenessToLast(std::span<const Eye> eyes, const FrameSettings& settings) const {
+    if (shapeOf(eyes, settings) != shape_) { return Likeness::kOther; }
+    bool jumps = binosplat::jumps(eyes_, eyes, settings.units_per_metre);
     for (std::size_t e = 0; e < eyes.size(); ++e) {
         const double before = plan_.targets[e].tiles_hidden, now = countHidden(settings.hidden_tiles[e]);
+        if ((before > 0) != (now > 0)) { return Likeness::kOther; }
         const glm::uvec2 tiles = tilesOf(eyes[e].size_px);
         // A view that turns over its picture shows another row and another column.
         const double most = std::max(kMostHiddenDiffer * tiles.x * tiles.y, static_cast<double>(tiles.x + tiles.y));
-        if ((before > 0) != (now > 0) || std::abs(now - before) > most) { return true; }
+        jumps = jumps || std::abs(now - before) > most;
     }
-    return false;
+    return jumps ? Likeness::kJumps : Likeness::kAlike;
 }
 
 void StereoFrame::prepare(std::span<const Eye> eyes, const FrameSettings& settings) {

@@ -36,15 +36,17 @@ public:
     // if the device lacks the memory. `append` records what becomes of the pictures, in the same submission;
     // it is called again if the frame is done again.
     FrameResult render(std::span<const Eye> eyes, const FrameSettings& settings, const std::function<void(Commands&)>& append = {});
-    // For showing frame after frame: returns once the frame is on its way to the device, and waits only for
-    // the one before the last, whose result it returns (empty if there is none). So the device draws one
-    // frame while the next is prepared. Lists have more capacity than the last frame needed. A frame whose
-    // lists are still too short shows background once and is counted ("frames_cut_short"), and the frame
-    // after it is waited for. So is a frame that has little in common with the one before: the first one, one
-    // of another size or mode, and one after a jump of the eyes. If a list is too short in a frame that is
-    // waited for, the frame is done again, once, before it is shown ("frames_done_again"). What it needs is
-    // counted or, if that is not possible, guessed, so even then it is seldom cut short. `signals`, if given,
-    // is signalled when the frame is done.
+    // For showing frame after frame: returns once the frame is on its way to the device, and
+    // waits only for the one before the last, whose result it returns (empty if there is
+    // none). So the device draws one frame while the next is prepared. Lists have more
+    // capacity than the last frame needed. A frame whose lists are still too short shows
+    // background once and is counted ("frames_cut_short"), and the frame after it is waited
+    // for. So is a frame that has little in common with the one before: the first one, one
+    // of another size or mode, and one after a jump of the eyes, unless the settings say
+    // otherwise (FrameSettings::waits_after_jump). If a list is too short in a frame that is
+    // waited for, the frame is done again, once, before it is shown ("frames_done_again").
+    // What it needs is counted or, if that is not possible, guessed, so even then it is
+    // seldom cut short. `signals`, if given, is signalled when the frame is done.
     std::optional<FrameResult> renderAhead(std::span<const Eye> eyes, const FrameSettings& settings,
                                            const std::function<void(Commands&)>& append = {}, vk::Semaphore signals = {});
     // In place of a frame, while those of another StereoFrame are shown: waits for the frame before the last, as renderAhead does.
@@ -163,8 +165,13 @@ private:
     // Counts the splats that the eyes see, which costs little: if their list is too short, nothing is known
     // about what follows.
     void makeRoomForVisible();
-    // True if the frame has little in common with the one before.
-    [[nodiscard]] bool isUnlikeLast(std::span<const Eye> eyes, const FrameSettings& settings) const;
+    // How much a frame has in common with the one before.
+    enum class Likeness {
+        kAlike,
+        kJumps,  // lists may be too short
+        kOther,  // it takes other memory
+    };
+    [[nodiscard]] Likeness likenessToLast(std::span<const Eye> eyes, const FrameSettings& settings) const;
     template <typename T>
     [[nodiscard]] std::vector<T> readBuffer(const Buffer& buffer, std::uint64_t most_bytes = UINT64_MAX, std::uint64_t from_byte = 0);
 

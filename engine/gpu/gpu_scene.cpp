@@ -97,6 +97,22 @@ GpuScene::GpuScene(const Context& context, const Scene& scene, const Progress& p
     for (const Buffer& buffer : buffers_) { bytes_ += buffer.bytes(); }
 }
 
+GpuScene GpuScene::asItIs() const {
+    GpuScene scene;
+    scene.traits_ = traits_;
+    scene.splat_count_ = splat_count_;
+    scene.splats_held_ = splats_held_;
+    scene.splats_coming_ = splats_coming_;
+    scene.pages_held_ = pages_held_;
+    scene.chunk_bits_ = chunk_bits_;
+    scene.chunk_count_ = chunk_count_;
+    scene.chunks_ = chunks_;
+    scene.pages_ = pages_;
+    scene.bytes_ = bytes_;
+    scene.is_placed_ = is_placed_;
+    return scene;
+}
+
 void GpuScene::keepTable(const Scene& scene, const std::vector<gpu::SceneChunk>& chunks) {
     const std::uint64_t sh_words = ChunkLayout(1, traits_).sh_bytes_per_splat / sizeof(std::uint32_t);
     for (std::uint64_t first = 0; first < splat_count_; first += gpu::kPageSplats) {

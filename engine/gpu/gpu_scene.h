@@ -34,6 +34,10 @@ public:
     // cannot hold it. `keeps_table`: it may be placed among others.
     GpuScene(const Context& context, const Scene& scene, const Progress& progress = {}, bool keeps_table = false);
 
+    // What frames read of it, for those of a thread of its own: counts as they are now, and memory that stays
+    // this one's, which outlives it. Brings no changes.
+    [[nodiscard]] GpuScene asItIs() const;
+
     // Capacity in splats; in a scene of pages some places may be free.
     [[nodiscard]] std::uint32_t splatCount() const { return splat_count_; }
     // Splats that are there.

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <utility>
 
 namespace binosplat::reference {
 namespace {
@@ -68,12 +70,39 @@ void keepBits(std::span<std::uint32_t> words, std::span<const std::uint32_t> bef
     for (std::size_t i = 0; i < words.size(); ++i) { words[i] = (words[i] & ~kept_bits) | (before[i] & kept_bits); }
 }
 
-std::vector<double> presentDepths(std::span<const glm::dvec4> rgba, std::span<const double> depth_sums, const Presentation& presentation) {
+std::vector<double> presentDepths(std::span<const glm::dvec4> rgba, std::span<const double> depth_sums, std::uint32_t width,
+                                  const Presentation& presentation) {
+    const auto inverseAt = [&](std::size_t i) { return depth_sums[i] > 0.0 ? rgba[i].a / depth_sums[i] : 0.0; };
+    const std::ptrdiff_t columns = width, rows = std::ssize(rgba) / columns;
+    // 1/z of the pixels from one on to the end of the picture.
+    const auto profile = [&](std::ptrdiff_t x, std::ptrdiff_t y, std::ptrdiff_t dx, std::ptrdiff_t dy) {
+        std::vector<double> values;
+        for (; x >= 0 && y >= 0 && x < columns && y < rows; x += dx, y += dy) {
+            values.push_back(inverseAt(static_cast<std::size_t>(y * columns + x)));
+        }
+        return values;
+    };
     std::vector<double> shares;
     for (std::size_t i = 0; i < rgba.size(); ++i) {
-        const bool anything = rgba[i].a >= 1.0 / 255.0 && depth_sums[i] > 0.0;
-        const double own = anything ? presentation.near * rgba[i].a / depth_sums[i] : 0.0;
-        shares.push_back(std::clamp(own + presentation.depth_offset, 0.0, 1.0));
+        double own = rgba[i].a >= 0.5 ? inverseAt(i) : 0.0;
+        std::vector<double> ends;
+        for (const auto& [dx, dy] : {std::pair(1, 0), std::pair(-1, 0), std::pair(0, 1), std::pair(0, -1)}) {
+            const std::vector<double> values =
+                profile(static_cast<std::ptrdiff_t>(i) % columns, static_cast<std::ptrdiff_t>(i) / columns, dx, dy);
+            for (std::size_t k = 0; k < 16 && k + 1 < values.size(); ++k) {
+                if (std::abs(values[k + 1] - values[k]) > 0.02 * values[k]) { continue; }
+                const double end = values[k == 0 ? 0 : k + 1];  // no step; or the last one, which is smaller
+                if (end > 0.0) { ends.push_back(end); }
+                break;
+            }
+        }
+        if (own > 0.0 && !ends.empty()) {
+            const auto [back, front] = std::ranges::minmax(ends);
+            const auto scaled = [&](double inverse) { return presentation.by_inverse ? inverse : -1.0 / inverse; };
+            const double of_front = (scaled(own) - scaled(back)) / (scaled(front) - scaled(back));
+            if (front > 1.1 * back) { own = of_front * rgba[i].a >= 0.5 ? front : back; }
+        }
+        shares.push_back(std::clamp(presentation.near * own + presentation.depth_offset, 0.0, 1.0));
     }
     return shares;
 }

@@ -3,6 +3,7 @@
 // program's depth says so: by the depth that stands for all splats of a pixel, unless each was tested by itself.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #include "passes.h"
 
 layout(constant_id = 0) const bool kHalfColours = false;
@@ -48,10 +49,42 @@ vec4 unpackBehind(uint bytes) {
 }
 
 // Of all that a pixel shows: of D/A, or as its word has it.
-float inverseDepthAt(uint i, float alpha) {
-    if (!isThere(uvec2(pass.words))) { return alpha / pass.depths.at[i]; }
+float inverseDepthAt(uint i) {
+    if (!isThere(uvec2(pass.words))) { return colourAt(pass.colours, pass.half_colours, i).a / pass.depths.at[i]; }
     const uint word = pass.words.at[i];
     return word == 0 ? 0 : inverseDepthOf(word);
+}
+
+// From pixel to pixel depths of one surface differ by less than this share, and those of two by more than
+// that.
+const float kOnSurface = 0.02, kBetweenSurfaces = 0.1;
+const int kSilhouettePx = 16;  // on each side of a silhouette
+
+// Where the slope of depths ends that leads away from a pixel: on the surface there; 0: none is near.
+float surfaceAlong(ivec2 at, ivec2 way, float inverse_depth) {
+    [[dont_unroll]] for (int step = 0; step < kSilhouettePx; ++step) {
+        at += way;
+        if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, ivec2(pass.size_px)))) { return 0; }
+        const float next = inverseDepthAt(uint(at.y) * pass.size_px.x + uint(at.x));
+        if (abs(next - inverse_depth) <= kOnSurface * inverse_depth) { return step == 0 ? inverse_depth : next; }
+        inverse_depth = next;
+    }
+    return 0;
+}
+
+// At a silhouette a pixel blends two surfaces, and its mean depth lies between them, where nothing is: of the
+// surface at which blending passes half of the light. Elsewhere the pixel's own.
+float surfaceDepth(ivec2 at, float inverse_depth, float alpha) {
+    float front = 0, back = 3e38;
+    [[dont_unroll]] for (int w = 0; w < 4; ++w) {
+        const float found = surfaceAlong(at, ivec2(w & 1, 1 - (w & 1)) * (w < 2 ? 1 : -1), inverse_depth);
+        front = max(front, found);
+        back = found > 0 ? min(back, found) : back;
+    }
+    if (!(front > (1 + kBetweenSurfaces) * back)) { return inverse_depth; }
+    const bool is_of_inverse = isThere(uvec2(pass.words));  // the mean
+    const float share = is_of_inverse ? (inverse_depth - back) / (front - back) : (1 / back - 1 / inverse_depth) / (1 / back - 1 / front);
+    return share * alpha >= 0.5 ? front : back;
 }
 
 void main() {
@@ -60,7 +93,7 @@ void main() {
     const uint i = at.y * pass.size_px.x + at.x;
     vec4 pixel = colourAt(pass.colours, pass.half_colours, i);
     const bool has_mesh = isThere(uvec2(pass.mesh_depths)), has_depth = has_mesh || isThere(uvec2(pass.device_depths));
-    const float inverse_depth = has_depth ? inverseDepthAt(i, pixel.a) : 0;
+    float inverse_depth = has_depth ? inverseDepthAt(i) : 0;
     const float mesh_depth = has_mesh ? pass.mesh_depths.at[i] : 0;
     if (has_mesh && pass.is_cut == 0 && !(inverse_depth > (mesh_depth - pass.depth_offset) / pass.depth_scale)) { pixel = vec4(0); }
     vec3 colour = clampToDisplay(pixel.rgb);
@@ -83,8 +116,10 @@ void main() {
     const uint kept = pass.kept_bits;
     pass.pixels.at[i] = kept == 0 ? word : (word & ~kept) | (pass.pixels.at[i] & kept);
     if (isThere(uvec2(pass.device_depths))) {
-        // Infinitely far where there is nothing; of a pixel with a mesh, the depth of what is more of it.
-        const bool is_shown = inverse_depth > 0 && pixel.a >= (has_mesh ? 0.5 : kMinAlpha);
+        // Of what is more of the pixel: infinitely far where that is nothing, and the mesh's depth where
+        // there is one.
+        const bool is_shown = inverse_depth > 0 && pixel.a >= 0.5;
+        if (is_shown && !has_mesh) { inverse_depth = surfaceDepth(ivec2(at), inverse_depth, pixel.a); }
         const float own = clamp((is_shown ? inverse_depth * pass.depth_scale : 0) + pass.depth_offset, 0, 1);
         pass.device_depths.at[i] = has_mesh && !is_shown ? mesh_depth : own;
     }

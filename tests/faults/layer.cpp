@@ -97,6 +97,7 @@ VKAPI_ATTR VkResult VKAPI_CALL submit(VkQueue queue, std::uint32_t count, const 
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL present(VkQueue queue, const VkPresentInfoKHR* info) {
+    faults::notePresented();
     const VkResult result = strike("present");
     return result != VK_SUCCESS ? result : BINOSPLAT_NEXT(vkQueuePresentKHR)(queue, info);
 }

@@ -2,6 +2,7 @@
 // BINOSPLAT_FAULT_WAITS=FILE: a line for each frame, its number from 0 and how many calls of which kind it made: "7 memory 2 queue 1".
 // A frame lasts from the xrEndFrame before it to its own, the first one from the first xrWaitFrame. What a runtime does while one of its
 // functions is called is its own. This takes both layers, Vulkan's and OpenXR's.
+// Without OpenXR's, a frame ends as a window gets a picture, and begins with the one before.
 // The kinds are those of `watchedCalls`, and waits for a fence, signalled or not, with a timeout, if its work was submitted last in this
 // frame ("fence-of-this-frame"), in the one before, so that the device runs dry ("fence-of-last-frame"), or by another thread or nobody
 // ("fence-of-others"). A frame may wait for what its own thread submitted two frames ago.
@@ -25,6 +26,7 @@ inline std::recursive_mutex waits_mutex;
 inline std::map<std::string_view, unsigned> waits_of_frame;
 inline std::map<VkFence, unsigned> fences_in_frames;  // in which frame its thread submitted them
 inline unsigned frame_now = 0;
+inline bool has_runtime = false;
 inline thread_local bool shows_frames = false, is_in_runtime = false;
 
 inline std::FILE* waitsFile() {
@@ -52,22 +54,31 @@ inline void noteFenceWait(VkFence fence, std::uint64_t timeout) {
                                               : "fence-of-last-frame");
 }
 
+inline void endFrame() {
+    const std::lock_guard lock(waits_mutex);
+    std::fprintf(waitsFile(), "%u", frame_now++);
+    for (const auto& [kind, count] : std::exchange(waits_of_frame, {})) { std::fprintf(waitsFile(), " %s %u", kind.data(), count); }
+    std::fprintf(waitsFile(), "\n");
+    std::fflush(waitsFile());
+}
+
+// A window gets a picture.
+inline void notePresented() {
+    if (waitsFile() == nullptr || has_runtime) { return; }
+    if (std::exchange(shows_frames, true)) { endFrame(); }
+}
+
 // A call of OpenXR, in which a runtime may use the device.
 template <typename Call>
 auto runInRuntime(std::string_view name, const Call& call) {
     if (waitsFile() == nullptr) { return call(); }
+    has_runtime = true;
     shows_frames = shows_frames || name == "xrWaitFrame";
     if (name == "xrCreateSwapchain") { countWait("swapchain"); }
     is_in_runtime = true;
     const auto result = call();
     is_in_runtime = false;
-    if (name == "xrEndFrame" && result >= 0) {
-        const std::lock_guard lock(waits_mutex);
-        std::fprintf(waitsFile(), "%u", frame_now++);
-        for (const auto& [kind, count] : std::exchange(waits_of_frame, {})) { std::fprintf(waitsFile(), " %s %u", kind.data(), count); }
-        std::fprintf(waitsFile(), "\n");
-        std::fflush(waitsFile());
-    }
+    if (name == "xrEndFrame" && result >= 0) { endFrame(); }
     return result;
 }
 

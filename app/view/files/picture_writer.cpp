@@ -32,8 +32,9 @@ std::string freeName(const fs::path& folder, const std::string& name) {
 }
 
 // Returns a message about the outcome.
-std::string write(const std::vector<Image>& eyes, const std::string& name) {
+std::string write(const PictureShot& shot, const std::string& name) {
     try {
+        const std::vector<Image> eyes = shot.take();
         const fs::path folder = userPicturesFolder();
         check(!folder.empty(), "the picture cannot be written: there is no folder for pictures, since HOME is not set");
         OutputFiles files(folder);
@@ -41,6 +42,8 @@ std::string write(const std::vector<Image>& eyes, const std::string& name) {
         const auto written = writePicture(files.staging() / freeName(folder, name), PictureKind::kDisplay, picture);
         files.publish();
         return "picture " + (folder / written.front().filename()).string();
+    } catch (const vk::DeviceLostError&) { throw; } catch (const vk::SystemError& error) {
+        return fmt::format("the picture cannot be rendered: {}", error.what());
     } catch (const Error& error) { return error.what(); } catch (const std::bad_alloc&) {
         return "the picture cannot be written: there is not enough memory";
     }
@@ -70,18 +73,28 @@ std::string pictureName(const std::string& scene, const std::tm& when) {
                        when.tm_mday, when.tm_hour, when.tm_min, when.tm_sec);
 }
 
-void PictureWriter::begin(std::vector<Image> eyes, const std::string& scene) {
-    if (under_way_.valid()) { under_way_.wait(); }
+void PictureWriter::begin(PictureShot shot, const std::string& scene) {
     const std::time_t now = std::time(nullptr);
-    under_way_ = std::async(std::launch::async,
-                            [eyes = std::move(eyes), name = pictureName(scene, *std::localtime(&now))] { return write(eyes, name); });
+    waiting_.push_back({std::move(shot), pictureName(scene, *std::localtime(&now))});
+    beginNext();
+}
+
+void PictureWriter::beginNext() {
+    if (under_way_.valid() || waiting_.empty()) { return; }
+    under_way_ = std::async(std::launch::async, [task = std::move(waiting_.front())] { return write(task.shot, task.name); });
+    waiting_.pop_front();
 }
 
 std::optional<std::string> PictureWriter::takeOutcome() {
     const bool is_done = under_way_.valid() && under_way_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
-    return is_done ? std::optional(under_way_.get()) : std::nullopt;
+    return is_done ? finish() : std::nullopt;
 }
 
-std::optional<std::string> PictureWriter::finish() { return under_way_.valid() ? std::optional(under_way_.get()) : std::nullopt; }
+std::optional<std::string> PictureWriter::finish() {
+    if (!under_way_.valid()) { return std::nullopt; }
+    std::string outcome = under_way_.get();
+    beginNext();
+    return outcome;
+}
 
 }  // namespace binosplat

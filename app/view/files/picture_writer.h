@@ -1,32 +1,42 @@
 // Pictures that somebody took, as files.
 #pragma once
 
-#include "engine/picture/image.h"
+#include "app/view/files/picture_shot.h"
 
 #include <ctime>
+#include <deque>
 #include <filesystem>
 #include <future>
 #include <optional>
 #include <string>
-#include <vector>
 
 namespace binosplat {
 
 // "garden-2026-05-31-142530" for a picture of a file, a folder, an address or a built-in scene.
 std::string pictureName(const std::string& scene, const std::tm& when);
 
-// Writes pictures on a thread of its own: frames must not wait for files.
+// Takes pictures and writes them, one after the other, on a thread of its own: frames must wait neither for
+// the device nor for files.
 class PictureWriter {
 public:
-    // Begins to write one eye's picture, or both side by side, into the user's folder of pictures. Waits for the
-    // previous picture.
-    void begin(std::vector<Image> eyes, const std::string& scene);
-    // The name of a picture that has been written since, or why it was not; once.
+    // Begins to take one eye's picture, or both side by side, and to write it into the user's folder of
+    // pictures.
+    void begin(PictureShot shot, const std::string& scene);
+    // True until that is done: scenes and shaders stay as they are meanwhile.
+    [[nodiscard]] bool isTaking() const { return under_way_.valid() || !waiting_.empty(); }
+    // The name of a picture that has been written since, or why it was not; once. Throws vk::DeviceLostError.
     [[nodiscard]] std::optional<std::string> takeOutcome();
-    // The same, but waits for it.
+    // The same, but waits for it; empty: there is none.
     [[nodiscard]] std::optional<std::string> finish();
 
 private:
+    struct Task {
+        PictureShot shot;
+        std::string name;
+    };
+    void beginNext();
+
+    std::deque<Task> waiting_;
     std::future<std::string> under_way_;
 };
 

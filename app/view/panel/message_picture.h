@@ -8,8 +8,6 @@
 
 namespace binosplat {
 
-inline constexpr glm::uvec2 kMessagePx(768, 104);
-
 // A point of a drawing: its light, not premultiplied by alpha.
 struct DrawnPoint {
     glm::dvec3 light{0.0};

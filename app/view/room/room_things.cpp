@@ -21,13 +21,14 @@ constexpr const char *kHands = "pictures of hands", *kArcs = "arcs", *kMessages 
 }  // namespace
 
 RoomThings::RoomThings(const xr::Session& session, const Context& context, vk::Format format)
-    : session_(session), context_(context), format_(format), troubles_(session.instance().troubles()), layout_(texelLayoutOf(format)) {
+    : troubles_(session.instance().troubles()), layout_(texelLayoutOf(format)) {
     if (!troubles_.tryFor("rays, controllers and the vignette", [&] { makeSheet(session, context, format); })) { sheet_ = {}; }
     const auto make = [&](DrawnImage& image, const char* name, glm::uvec2 size_px) {
         image.images = xr::Swapchain(session, name, size_px, format, xr::ImageUse::kDraw);
         image.texels = Buffer(context, name, std::uint64_t{size_px.x} * size_px.y * sizeof(std::uint32_t));
     };
     troubles_.tryFor(kArcs, [&] { make(arc_, "an arc", kArcPx); });
+    troubles_.tryFor(kMessages, [&] { make(message_, "a message", kMessagePx); });
     if (!session.instance().tracksHands()) { return; }
     for (DrawnImage& hand : hands_) {
         troubles_.tryFor(kHands, [&] { make(hand, "a hand", kHandPicturePx); });
@@ -87,18 +88,11 @@ void RoomThings::choose(const RoomSight& sight) {
 }
 
 void RoomThings::chooseMessage(const std::optional<TexelPicture>& picture) {
-    if (picture) {
-        const bool is_there = troubles_.tryFor(kMessages, [&] {
-            if (message_.texels.bytes() == 0) {
-                message_.images = xr::Swapchain(session_, "a message", picture->size_px, format_, xr::ImageUse::kDraw);
-                message_.texels = Buffer(context_, "a message", picture->texels.size() * sizeof(std::uint32_t));
-            }
-            message_.now = message_.images.acquire();
-        });
-        if (!is_there) { message_ = {}; }
+    if (picture && message_.texels.bytes() > 0) {
+        if (!troubles_.tryFor(kMessages, [&] { message_.now = message_.images.acquire(); })) { message_ = {}; }
         message_.picture = *picture;
     }
-    if (message_.texels.bytes() == 0) { return; }
+    if (message_.texels.bytes() == 0 || message_.picture.texels.empty()) { return; }
     const glm::dvec2 size_px(message_.picture.size_px);
     const Pose ahead{glm::dquat(1.0, 0.0, 0.0, 0.0), kMessagePlace};
     quads_.push_back({ahead,

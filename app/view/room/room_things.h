@@ -62,15 +62,12 @@ private:
     [[nodiscard]] xr::LayerQuad quadOf(const Thing& thing) const;
     void add(const Thing& thing);
 
-    const xr::Session& session_;
-    const Context& context_;
-    vk::Format format_;
     xr::Troubles& troubles_;
     TexelLayout layout_;
     xr::Swapchain sheet_;  // none: nothing is drawn from it
     std::array<DrawnImage, 2> hands_;
     DrawnImage arc_;
-    DrawnImage message_;                // once there was one
+    DrawnImage message_;
     std::vector<xr::LayerQuad> quads_;  // before the panel
     std::optional<xr::LayerQuad> vignette_;
 };

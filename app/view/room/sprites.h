@@ -22,6 +22,7 @@ enum class Sprite {
     kShade,      // black, and transparent: the first of kShades, from the faintest to the darkest
 };
 inline constexpr int kShades = 16;
+inline constexpr glm::uvec2 kMessagePx(768, 104);
 inline constexpr glm::dvec3 kRayLight(1.0, 0.7, 0.1), kBlockedLight(1.0, 0.05, 0.02);
 
 // A sprite that hangs in the room.

@@ -56,10 +56,10 @@ void SceneNotes::toggleFavourite(const std::string& scene, std::function<void()>
     });
 }
 
-void SceneNotes::keepPicture(const LoadedScene& scene, Image view) {
+void SceneNotes::keepPicture(const LoadedScene& scene, std::function<Image()> view) {
     files_.write("keeping a picture of the scene",
                  [name = scene.name, about = describeBriefly(scene.facts), view = std::move(view)]() -> FileWorker::Done {
-                     keepSeenScene(name, makeScenePicture(view), about);
+                     keepSeenScene(name, makeScenePicture(view()), about);
                      return {};
                  });
 }

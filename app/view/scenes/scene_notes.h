@@ -25,8 +25,8 @@ public:
     void keepPreferences(const ViewSettings& now, double step_seconds, bool at_once = false);
     // Marks a favourite, or unmarks it, and then calls `done`.
     void toggleFavourite(const std::string& scene, std::function<void()> done);
-    // A small picture of the scene, for the list of scenes.
-    void keepPicture(const LoadedScene& scene, Image view);
+    // A small picture of the scene, for the list of scenes, of what `view` returns on another thread.
+    void keepPicture(const LoadedScene& scene, std::function<Image()> view);
     // Finds the scene that was shown before this one, and opens it.
     void openLast(const LoadedScene& now, std::function<void(const std::string&)> open);
 

@@ -175,14 +175,6 @@ StereoFrame& ShownScene::insets() {
     return *held.insets;
 }
 
-std::vector<Image> ShownScene::picturesOf(std::span<const Eye> eyes, const FrameSettings& settings) {
-    const std::unique_ptr<StereoFrame> frame = StereoFrame::beside(this->frame());
-    frame->render(eyes, settings);
-    std::vector<Image> pictures;
-    for (std::size_t e = 0; e < eyes.size(); ++e) { pictures.push_back(frame->readPicture(static_cast<int>(e))); }
-    return pictures;
-}
-
 void ShownScene::rebuildKernels() {
     // They share the kernels.
     for (StereoFrame* const frame : {shown_.insets.get(), other_.insets.get(), other_.frame.get()}) {

@@ -3,6 +3,7 @@
 
 #include "app/terminal/frame_log.h"
 #include "app/view/files/file_worker.h"
+#include "app/view/files/picture_shot.h"
 #include "app/view/scenes/scene_loader.h"
 #include "app/view/settings/view_state.h"
 #include "engine/error.h"
@@ -10,7 +11,6 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -30,9 +30,10 @@ public:
     [[nodiscard]] StereoFrame& frame() const { return *drawing().frame; }
     [[nodiscard]] StereoFrame& insets();
     void dropInsets() { shown_.insets.reset(), other_.insets.reset(); }
-    // What these eyes see of the drawn scene now, by a frame of its own: those under way go on as they were. Waits for the device. Throws
-    // Error if it lacks the memory.
-    [[nodiscard]] std::vector<Image> picturesOf(std::span<const Eye> eyes, const FrameSettings& settings);
+    // Of the drawn scene; to be taken before another one is.
+    [[nodiscard]] PictureShot shotOf(std::vector<Eye> eyes, const FrameSettings& settings) const {
+        return {context_, drawing().scene->gpu_scene, std::move(eyes), settings};
+    }
     // Makes their kernels anew, see StereoFrame.
     void rebuildKernels();
     // The scene's name or, until it is loaded, that of the requested one; with the other one's, if there is one.

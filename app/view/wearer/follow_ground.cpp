@@ -22,6 +22,13 @@ bool isHeldByHand(const WearerNow& now, const PanelInRoom& panel) {
     return rises || now.hands[kLeft].grabs || now.hands[kRight].grabs;
 }
 
+// Below the wearer, as the room's y.
+std::optional<double> floorMetres(const WearerNow& now, const Similarity& scene_from_room) {
+    if (!now.scene_floor) { return std::nullopt; }
+    const glm::dvec3& head = now.room_from_head.position;
+    return head.y + (glm::dot(now.scene_floor->up, transform(scene_from_room, head)) - now.scene_floor->height) / scene_from_room.scale;
+}
+
 }  // namespace
 
 ProbePath groundAhead(const Pose& room_from_head, double feet_m) {
@@ -68,16 +75,17 @@ void FollowGround::update(const WearerNow& now, const PanelInRoom& panel, ViewSt
     if (now.hands[kLeft].grabs || now.hands[kRight].grabs) { return; }
     const glm::dvec3& head = now.room_from_head.position;
     const glm::dvec3 feet(head.x, now.floor_m.value_or(kUsualFloorMetres), head.z);
+    const std::optional<double> floor_m = floorMetres(now, state.sceneFromRoom());
     double step_m = 0.0;  // downwards
     if (!isHeldByHand(now, panel)) {
         std::optional<double> ground_m = groundAt(feet, state.sceneFromRoom());
-        const bool is_near_floor = now.scene_floor_m && std::abs(*now.scene_floor_m - feet.y) <= kStepMetres;
-        if (!ground_m && is_near_floor) { ground_m = now.scene_floor_m; }
+        const bool is_near_floor = floor_m && std::abs(*floor_m - feet.y) <= kStepMetres;
+        if (!ground_m && is_near_floor) { ground_m = floor_m; }
         const double most_m = kMostMetresPerSecond * now.step_seconds;
         const double share = 1.0 - std::exp(-now.step_seconds / kSmoothSeconds);
         if (ground_m) { step_m = std::clamp(share * (*ground_m - feet.y), -most_m, most_m); }
     }
-    if (now.scene_floor_m) { step_m = std::min(step_m, *now.scene_floor_m - feet.y); }
+    if (floor_m) { step_m = std::min(step_m, *floor_m - feet.y); }
     if (step_m != 0.0) { state.place(movedBy(state.sceneFromRoom(), {0.0, step_m, 0.0})); }
 }
 

@@ -19,15 +19,21 @@ inline constexpr double kUsualFloorMetres = 1.6;
 // One walks up and down so much.
 inline constexpr double kStepMetres = 0.35;
 
+// The floor of a scene: its height along `up`, in scene units.
+struct SceneFloor {
+    glm::dvec3 up;
+    double height;
+};
+
 // The wearer in a frame.
 struct WearerNow {
     std::array<xr::Hand, 2> hands;
     Pose room_from_head;
     std::optional<double> floor_m;  // the floor's y in the room, if the runtime knows
     double step_seconds = 0.0;
-    std::array<PathSeen, 2> paths{};         // of the hands' arcs a moment ago, and how they met the scene
-    std::vector<glm::dvec3> ground_scene{};  // what was seen a moment ago where the ground may be, in the scene
-    std::optional<double> scene_floor_m{};   // the scene's floor as the room's y, if it is known
+    std::array<PathSeen, 2> paths{};          // of the hands' arcs a moment ago, and how they met the scene
+    std::vector<glm::dvec3> ground_scene{};   // what was seen a moment ago where the ground may be, in the scene
+    std::optional<SceneFloor> scene_floor{};  // if it is known; tools before may have moved the room in this frame
 };
 
 // A widget of a tool: a choice of two after `words`, or a check box if there are no names.

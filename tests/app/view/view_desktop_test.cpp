@@ -116,6 +116,31 @@ TEST_CASE("without a runtime the scene is in a window, as render draws it; mouse
     window.checkEnd();
 }
 
+TEST_CASE("in the window a picture is taken beside its frames: they wait for the one that shows all pixels, and make nothing") {
+    if (!haveScreen()) { return; }
+    const Workplace work;
+    Window window(work, "--desktop --hide-panel", withFaults("BINOSPLAT_FAULT_WAITS=waits.txt ", ""));
+    const auto linesOf = [&] {
+        std::vector<std::string> lines;
+        std::ifstream file(work.path / "waits.txt");
+        for (std::string line; std::getline(file, line);) { lines.push_back(line); }
+        return lines;
+    };
+    window.help();
+    window.help();
+    window.rest();  // at its full size
+    const std::size_t before = linesOf().size();
+    window.rest();
+    window.help();
+    const std::vector<std::string> lines = linesOf();
+    REQUIRE(lines.size() > before);
+    for (std::size_t i = before; i < lines.size(); ++i) {
+        std::istringstream words(lines[i].substr(lines[i].find(' ') + 1));
+        for (std::string kind, count; words >> kind >> count;) { CHECK_MESSAGE(kind.starts_with("fence-of-"), lines[i]); }
+    }
+    window.checkEnd();
+}
+
 TEST_CASE("a window whose surface is lost goes on, and in another size, too; for crossed eyes both pictures change places") {
     if (!haveScreen()) { return; }
     std::vector<Image> left, right;

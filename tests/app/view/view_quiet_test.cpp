@@ -1,5 +1,5 @@
 // Facts about what frames do that may wait, as two layers count it (tests/faults/waits.h): those of a viewer that runs do nothing.
-#include "tests/app/view/view_runs.h"
+#include "tests/app/view/view_acts.h"
 
 SUITE(view_quiet) {
 
@@ -24,10 +24,25 @@ struct Known {
 constexpr Known kKnown[]{
     // Images are made once the eyes' angles are known.
     {0.0, 1.0, "buffer fence-of-this-frame memory swapchain"},
-    // Of what a snap turn brings into view nothing is known: what is visible is counted first, with the device at rest.
-    {1.2, 1.3, "fence-of-last-frame fence-of-this-frame"},
     {3.2, 9.0, "buffer fence-of-this-frame memory queue swapchain"},
 };
+
+// By frame, what it did that may wait.
+std::vector<std::set<std::string>> waitsOf(const Workplace& work) {
+    std::vector<std::set<std::string>> kinds;
+    std::ifstream file(work.path / "waits.txt");
+    for (std::string line; std::getline(file, line);) {
+        std::istringstream words(line);
+        std::string number, kind, count;
+        words >> number;
+        CHECK(number == std::to_string(kinds.size()));
+        kinds.emplace_back();
+        while (words >> kind >> count) { kinds.back().insert(kind); }
+    }
+    return kinds;
+}
+
+std::string listed(const std::set<std::string>& kinds) { return fmt::format("{}", fmt::join(kinds, " ")); }
 
 TEST_CASE("no frame of a running viewer waits or makes anything after the first second, until its session is lost") {
     for (const std::string mode : {"temporal", "predicted"}) {
@@ -37,20 +52,18 @@ TEST_CASE("no frame of a running viewer waits or makes anything after the first 
         INFO(run.outcome.output << run.outcome.errors);
         CHECK(these(run.outcome.exit_code, run.outcome.errors.empty()) == these(0, true));
         std::map<const Known*, std::set<std::string>> found;
-        std::ifstream file(work.path / "waits.txt");
-        std::size_t frames = 0;
-        for (std::string line; std::getline(file, line); ++frames) {
-            const double time_s = static_cast<double>(frames) / 45.0;
+        const std::vector<std::set<std::string>> waits = waitsOf(work);
+        for (std::size_t frame = 0; frame < waits.size(); ++frame) {
+            const double time_s = static_cast<double>(frame) / 45.0;
             const Known* const known =
                 std::ranges::find_if(kKnown, [&](const Known& one) { return time_s >= one.begin_s && time_s < one.end_s; });
-            std::istringstream words(line.substr(line.find(' ') + 1));
-            CHECK_MESSAGE((known != std::end(kKnown) || line == std::to_string(frames)), line);
-            for (std::string kind, count; words >> kind >> count;) { found[known].insert(kind); }
+            CHECK_MESSAGE((known != std::end(kKnown) || waits[frame].empty()), frame, ": ", listed(waits[frame]));
+            found[known].insert(waits[frame].begin(), waits[frame].end());
         }
-        CHECK(frames == run.frames.size());
-        CHECK(run.panels(frames * 2 / 3).empty());
+        CHECK(waits.size() == run.frames.size());
+        CHECK(run.panels(waits.size() * 2 / 3).empty());
         // All of it, or it is known no more.
-        for (const Known& known : kKnown) { CHECK(fmt::format("{}", fmt::join(found[&known], " ")) == known.kinds); }
+        for (const Known& known : kKnown) { CHECK(listed(found[&known]) == known.kinds); }
     }
 }
 
@@ -71,6 +84,71 @@ TEST_CASE("the cut to the other scene of a comparison, and back, waits for nothi
         for (std::string line; std::getline(file, line); ++frames) { CHECK_MESSAGE((frames < 45 || line == std::to_string(frames)), line); }
         CHECK(frames == run.frames.size());
     }
+}
+
+// A wall with viewpoints: one beside the start, one that looks the other way.
+std::string wallWithViewpoints(const Workplace& work) {
+    REQUIRE(work.run("scene slanted-wall --out wall.ply").exit_code == 0);
+    work.write("wall.viewpoints.json", R"({"viewpoints": [
+        {"name": "beside", "eye": [0.6, 0, -0.4], "look": [0, 0, 3], "up": [0, -1, 0]},
+        {"name": "away", "eye": [0, 0, 0], "look": [0, 0, -3], "up": [0, -1, 0]}]})");
+    return "wall.ply";
+}
+
+TEST_CASE("nor does one while pictures are taken, a message appears, and the wearer jumps, turns and comes back") {
+    for (const std::string mode : {"temporal", "predicted", "shared"}) {
+        CAPTURE(mode);
+        const Workplace work;
+        picturesInto(work);
+        const std::string scene = wallWithViewpoints(work);
+        Acts acts("rate 45\nsize 64 64\nframes none\n");
+        acts.wait(1.0).click(placeOf("Picture")).click(placeOf("Picture")).press("left y").move("controller right", kRightDown);
+        for (int round = 0; round < 3; ++round) { acts.press("right thumbstick").wait(0.2); }  // from one viewpoint to the next
+        for (const double aside : {1.0, -1.0}) { acts.push("right thumbstick", {aside, 0.0}, 0.1).wait(0.2); }
+        acts.press("left y").click(placeOf("Picture")).wait(0.2);
+        const ViewRun run = runView(work, "jumps", acts.script(), scene + " --load-first --hide-hands --mode " + mode, kWatched);
+        INFO(run.outcome.output << run.outcome.errors);
+        CHECK(these(run.outcome.exit_code, run.outcome.errors.empty()) == these(0, true));
+        checkOrder(run, {"viewpoint 1 of 2: beside", "viewpoint 2 of 2: away", "viewpoint 1 of 2: beside"});
+        CHECK(run.lines("picture " + work.path.string() + "/pictures/wall-20").size() == 3);
+        CHECK_FALSE(run.says("frames shown incomplete"));
+        const std::vector<std::set<std::string>> waits = waitsOf(work);
+        REQUIRE(waits.size() > 4 * 45 / 2);
+        for (std::size_t frame = 45; frame < waits.size(); ++frame) {
+            CHECK_MESSAGE(waits[frame].empty(), frame, ": ", listed(waits[frame]));
+        }
+    }
+}
+
+TEST_CASE("a picture of a scene that goes is kept without a wait") {
+    const Workplace work;
+    std::filesystem::create_directory(work.path / "scenes");
+    for (const char* const scene : {"slanted-wall", "one-splat"}) {
+        REQUIRE(work.run(fmt::format("scene {0} --out scenes/{0}.ply", scene)).exit_code == 0);
+    }
+    Acts acts("rate 45\nsize 64 64\nframes none\n");
+    // Frames may be late, and the scene must have been seen in thirty of them.
+    acts.wait(4.0).point(placeOfScene("Next scene", (work.path / "scenes").string())).wait(0.25).press("right trigger", 0.3).wait(2.0);
+    const ViewRun run =
+        runView(work, "goes", acts.script(),
+                "scenes/slanted-wall.ply --load-first --hide-hands --mode shared" + withConfig(work, "[view]\npanel-page = \"scenes\"\n"),
+                kWatched + " SIMULATED_OPENXR_CLOCK=real");
+    INFO(run.outcome.output << run.outcome.errors);
+    CHECK(these(run.outcome.exit_code, run.outcome.errors.empty()) == these(0, true));
+    checkOrder(run, {"shows scenes/slanted-wall.ply", "shows scenes/one-splat.ply"});
+    const std::vector<std::set<std::string>> waits = waitsOf(work);
+    // The first frame of the next one, for which lists and pictures are made.
+    std::vector<std::size_t> busy;
+    for (std::size_t frame = 20; frame < waits.size(); ++frame) {
+        if (!waits[frame].empty()) { busy.push_back(frame); }
+    }
+    REQUIRE(busy.size() == 1);
+    CHECK(listed(waits[busy[0]]) == "buffer fence-of-last-frame fence-of-this-frame memory");
+    std::size_t pictures = 0;
+    for (const auto& file : std::filesystem::recursive_directory_iterator(work.base / "config" / "binosplat")) {
+        pictures += file.path().extension() == ".png" ? 1 : 0;
+    }
+    CHECK(pictures > 0);
 }
 
 TEST_CASE("new letters come without a wait") {

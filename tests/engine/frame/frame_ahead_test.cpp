@@ -179,6 +179,37 @@ TEST_CASE_FIXTURE(Atelier, "after a jump a frame is waited for, and done again o
     }
 }
 
+TEST_CASE_FIXTURE(Atelier,
+                  "where a jump may be seen, no frame after it is waited for: it is whole if lists have room, and else one soon is") {
+    const auto there = eyesAt(view.eye, 0), before = eyesAt(turned(view.eye, 0.5), 0), nowhere = eyesAt(awayFrom(view.eye), 0);
+    for (const Mode mode : {Mode::kShared, Mode::kTemporal}) {
+        for (const bool has_room : {true, false}) {
+            CAPTURE(nameOf(mode));
+            CAPTURE(has_room);
+            KeptFrame frame(context(), scene, kNoRoom);
+            const auto waited = StereoFrame::beside(frame);
+            FrameSettings settings = makeSettings(mode);
+            settings.keep_past = hasPast(mode);
+            settings.waits_after_jump = false;
+            if (has_room) { frame.renderAhead(there, settings); }
+            goAhead(frame, has_room ? before : nowhere, settings, 3);
+            settings.mark = 1;
+            const std::optional<FrameResult> told = frame.renderAhead(there, settings);
+            CHECK_FALSE((told && told->mark == 1));
+            FrameResult last{};
+            if (has_room) {
+                last = frame.finish().value();
+            } else {
+                last = goAhead(frame, there, settings, 3);
+                frame.finish();
+            }
+            CHECK((countOf(last, "frames_cut_short") > 0) == !has_room);
+            waited->render(there, settings);
+            CHECK(shownBy(frame) == shownBy(*waited));
+        }
+    }
+}
+
 TEST_CASE_FIXTURE(Atelier, "kernels that were made before change nothing in a picture") {
     for (const Mode mode : {Mode::kShared, Mode::kPaper, Mode::kPredicted}) {
         KeptFrame plain(context(), scene);

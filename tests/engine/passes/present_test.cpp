@@ -157,17 +157,88 @@ TEST_CASE_FIXTURE(Gpu, "depth is near over depth, and nothing is infinitely far,
                        .words = {packMoving(0.25, true, 3), packMoving(1.0 / 3.0, true, 31), packMoving(9.0, true, 0),
                                  packMoving(0.0, true, 0), 0, packMoving(0.25, true, 0)}};
     for (const Shown* shown : {&summed, &moving}) {
-        const reference::Presentation how{false, false, 0.25};
+        reference::Presentation how{false, false, 0.25};
+        how.by_inverse = shown == &moving;
         std::vector<double> sums(shown->depth_sums.begin(), shown->depth_sums.end());
         for (std::size_t i = 0; i < shown->words.size(); ++i) {
             sums.push_back(static_cast<double>(shown->colours[i].a) / unpackArrival(shown->words[i]).inverse_depth);
         }
-        const std::vector<double> expected = reference::presentDepths(asDoubles(shown->colours), sums, how);
+        const std::vector<double> expected = reference::presentDepths(asDoubles(shown->colours), sums, shown->size_px.x, how);
         if (shown == &summed) { CHECK(expected == std::vector<double>{0.0625, 1.0, 1.0, 0.0, 0.0, 0.0}); }
         CHECK(expected[0] == 0.0625);
         CHECK(expected[2] == 1.0);
         const Presented presented = runPresent(*this, *shown, how);
         for (std::size_t i = 0; i < sums.size(); ++i) { CHECK(presented.depths[i] == doctest::Approx(expected[i]).epsilon(1e-6)); }
+    }
+}
+
+// A pane in front of a slanted wall. Its edge, which is not straight, takes `soft_px` from opaque to nothing.
+struct Silhouette {
+    static constexpr glm::uvec2 kSizePx{48, 40};
+    explicit Silhouette(double soft_px, bool by_words) {
+        for (std::uint32_t i = 0; i < kSizePx.x * kSizePx.y; ++i) {
+            const glm::dvec2 at(i % kSizePx.x, i / kSizePx.x);
+            const double beyond_px = at.x - 20.3 - 0.3 * at.y - 2.0 * std::sin(0.3 * at.y);
+            front.push_back(1.0 / 2.0);
+            back.push_back(1.0 / 7.0 + 0.0004 * at.x - 0.0003 * at.y);
+            share.push_back(std::clamp(0.5 - beyond_px / std::max(soft_px, 1e-9), 0.0, 1.0));
+            const double mean_inverse = glm::mix(back[i], front[i], share[i]), mean = glm::mix(1.0 / back[i], 1.0 / front[i], share[i]);
+            shown.colours.emplace_back(0.0f, 0.0f, 0.0f, 1.0f);
+            if (by_words) {
+                shown.words.push_back(packMoving(mean_inverse, true, 0));
+                sums.push_back(1.0 / unpackArrival(shown.words[i]).inverse_depth);
+            } else {
+                shown.depth_sums.push_back(static_cast<float>(mean));
+                sums.push_back(static_cast<double>(shown.depth_sums[i]));
+            }
+        }
+    }
+
+    std::vector<double> front, back, share, sums;
+    Shown shown{.size_px = kSizePx, .colours = {}};
+};
+
+TEST_CASE_FIXTURE(Gpu,
+                  "the depth at a silhouette is that of one of both surfaces, the one that makes up half of the pixel, and never between") {
+    for (const bool by_words : {false, true}) {
+        for (const double soft_px : {0.0, 1.0, 2.5, 4.0, 8.0}) {
+            CAPTURE(by_words);
+            CAPTURE(soft_px);
+            const Silhouette silhouette(soft_px, by_words);
+            reference::Presentation how{false, false, 0.25};
+            how.by_inverse = by_words;
+            const std::vector<double> expected =
+                reference::presentDepths(asDoubles(silhouette.shown.colours), silhouette.sums, Silhouette::kSizePx.x, how);
+            const Presented presented = runPresent(*this, silhouette.shown, how);
+            std::size_t mixed = 0;
+            for (std::size_t i = 0; i < expected.size(); ++i) {
+                CHECK(presented.depths[i] == doctest::Approx(expected[i]).epsilon(1e-5));
+                const double mean = how.near / silhouette.sums[i], front = how.near * silhouette.front[i],
+                             back = how.near * silhouette.back[i];
+                mixed += mean < 0.95 * front && mean > 1.05 * back ? 1 : 0;
+                const double share = silhouette.share[i];
+                if (std::abs(share - 0.5) < 0.03) { continue; }  // half of either, or so: the wall is slanted
+                CHECK(expected[i] == doctest::Approx(share > 0.5 ? front : back).epsilon(0.03));
+            }
+            CHECK((mixed > 0) == (soft_px > 0.0));
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu,
+                  "a surface that is seen at a low angle, and what is thinner than a silhouette is soft, keep the depth that they have") {
+    const glm::uvec2 size_px(40, 30);
+    Shown shown{.size_px = size_px, .colours = Colours(size_px.x * size_px.y, glm::vec4(0.0f, 0.0f, 0.0f, 1.0f))};
+    for (std::uint32_t i = 0; i < size_px.x * size_px.y; ++i) {
+        const double row = i / size_px.x, column = i % size_px.x;
+        // A floor up to its horizon; or a pole that blurs over three pixels and never covers one.
+        shown.words.push_back(
+            packMoving(row > 15.0 ? 0.01 * (row - 15.0) : 0.05 + 0.2 * std::max(0.0, 0.6 - 0.3 * std::abs(column - 20.0)), true, 0));
+    }
+    const Presented presented = runPresent(*this, shown, {false, false, 0.25});
+    for (std::size_t i = 0; i < shown.words.size(); ++i) {
+        if (i / size_px.x == 15 || i / size_px.x == 16) { continue; }  // between both
+        CHECK(presented.depths[i] == doctest::Approx(0.25 * unpackArrival(shown.words[i]).inverse_depth).epsilon(1e-6));
     }
 }
 
@@ -187,7 +258,7 @@ TEST_CASE_FIXTURE(Gpu, "a picture lies over a program's own bytes, in any order,
         const Bytes expected = reference::presentOver(asDoubles(shown.colours), sums, shown.behind, meshes, how);
         const Presented presented = runPresent(*this, shown, how);
         CHECK(countOff(presented.pixels, expected, 1) == 0);
-        const std::vector<double> own = reference::presentDepths(asDoubles(shown.colours), sums, how);
+        const std::vector<double> own = reference::presentDepths(asDoubles(shown.colours), sums, shown.size_px.x, how);
         for (std::size_t i = 0; i < own.size(); ++i) {
             const bool is_splats = (how.is_cut || own[i] > meshes[i]) && shown.colours[i].a >= 0.5f;
             CHECK(presented.depths[i] == doctest::Approx(is_splats ? own[i] : meshes[i]).epsilon(1e-6));

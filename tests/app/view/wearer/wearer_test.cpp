@@ -279,12 +279,13 @@ TEST_CASE_FIXTURE(Wearer, "nobody gets under the floor, which holds where nothin
     settings.follow_ground = true;
     state = ViewState(settings);
     now.floor_m = 1.6;
-    const auto floorAt = [&](double scene_y) { now.scene_floor_m = scene_y - place().y; };
+    const auto floorAt = [&](double scene_y) { now.scene_floor = SceneFloor{{0.0, -1.0, 0.0}, -scene_y}; };
+    floorAt(1.6);
+    // Not for one frame, either, while the stick sinks them.
     for (const double sinks : {-1.0, 0.0}) {
-        floorAt(1.6);
         push(kRight, {0.0, sinks});
+        CHECK(std::abs(place().y) < 1e-9);
     }
-    CHECK(std::abs(place().y) < 1e-9);
     floorAt(1.2);
     push(kRight, {0.0, 0.0});
     CHECK(place().y == doctest::Approx(-0.4));
@@ -296,7 +297,7 @@ TEST_CASE_FIXTURE(Wearer, "nobody gets under the floor, which holds where nothin
         }
         CHECK(place().y == doctest::Approx(end_y).epsilon(0.01));
     }
-    now.scene_floor_m.reset();
+    now.scene_floor.reset();
     now.ground_scene = {{0.0, 1.4, 0.0}};
     update();
     now.ground_scene.clear();

@@ -1,0 +1,89 @@
+// Facts about the depth of whole frames that a headset gets.
+#include "engine/passes/present.h"
+#include "tests/engine/frame/frame_runs.h"
+
+SUITE(submitted_depth) {
+
+constexpr float kNear = 0.25f;
+
+// 0 where nothing is.
+std::vector<float> presentDepths(Gpu& gpu, StereoFrame& frame, int eye) {
+    const Picture& picture = frame.picture(eye);
+    const std::size_t count = std::size_t{picture.size_px.x} * picture.size_px.y;
+    const Buffer pixels = gpu.allocate<std::uint32_t>("pixels", count), depths = gpu.allocate<float>("depths", count);
+    gpu::PresentPass pass{};
+    pass.colours = picture.colours.address<gpu::vec4>();
+    pass.half_colours = picture.colours.address<gpu::uvec2>();
+    pass.depths = picture.depths.address<float>();
+    pass.words = picture.words.address<gpu::uint>();
+    pass.pixels = pixels.address<gpu::uint>();
+    pass.device_depths = depths.address<float>();
+    pass.size_px = picture.size_px;
+    pass.depth_scale = kNear;
+    const Kernel& kernel = gpu.kernel(PresentKernel{.half_colours = picture.half_floats});
+    gpu.run([&](Commands& commands) { commands.dispatch(kernel, pass, (picture.size_px.x + 15) / 16, (picture.size_px.y + 7) / 8); });
+    std::vector<float> found = gpu.readBack<float>(depths, count);
+    for (float& depth : found) { depth = depth > 0.0f ? kNear / depth : 0.0f; }
+    return found;
+}
+
+// builtin:step-edge has walls at z 2 and 4: how many pixels have neither's depth, submitted and as the mean
+// of what they blend.
+struct BetweenWalls {
+    std::size_t submitted = 0, mean = 0;
+};
+
+BetweenWalls countBetween(Gpu& gpu, StereoFrame& frame, const Eye& eye, int side) {
+    const std::vector<float> depths = presentDepths(gpu, frame, side);
+    const Image colours = frame.readPicture(side), sums = frame.readDepth(side);
+    BetweenWalls between;
+    for (std::size_t i = 0; i < depths.size(); ++i) {
+        const float alpha = colours.values[4 * i + 3];
+        if (alpha < 0.5f) {
+            CHECK(depths[i] == 0.0f);
+            continue;
+        }
+        const glm::dvec2 at = glm::dvec2(i % eye.size_px.x, i / eye.size_px.x) + 0.5;
+        const glm::dvec3 ray((at.x - eye.intrinsics.cx) / eye.intrinsics.fx, (at.y - eye.intrinsics.cy) / eye.intrinsics.fy, 1.0);
+        const double along = (eye.world_from_camera.orientation * ray).z;
+        const auto isOff = [&](double depth) {
+            const auto isAt = [&](double wall) { return std::abs(depth * along + eye.world_from_camera.position.z - wall) < 0.03 * wall; };
+            return !isAt(2.0) && !isAt(4.0);
+        };
+        between.submitted += isOff(static_cast<double>(depths[i])) ? 1 : 0;
+        between.mean += isOff(static_cast<double>(sums.values[i] / alpha)) ? 1 : 0;
+    }
+    return between;
+}
+
+TEST_CASE_FIXTURE(Gpu,
+                  "a pixel at a wall's edge has the depth of that wall or of the one behind, in tiles that are rendered and reprojected") {
+    const ViewedScene view = test::viewBuiltin("builtin:step-edge", {192, 192});
+    const GpuScene scene(context(), view.scene);
+    for (const Mode mode : {Mode::kShared, Mode::kPredicted, Mode::kTemporal}) {
+        CAPTURE(nameOf(mode));
+        KeptFrame frame(context(), scene);
+        FrameSettings settings;
+        settings.mode = mode;
+        settings.keep_past = hasPast(mode);
+        settings.keep_depth = settings.keep_both_depths = true;
+        settings.half_floats = true;
+        std::array<Eye, 2> eyes{};
+        for (int step = 0; step < 6; ++step) {
+            Eye eye = view.eye;
+            eye.world_from_camera.orientation = eye.world_from_camera.orientation * glm::angleAxis(0.01 * step, glm::dvec3(0, 1, 0));
+            eye.world_from_camera.position.x += 0.004 * step;
+            eyes = stereoPair(eye, 0.063);
+            frame.render(eyes, settings);
+        }
+        for (const int side : {kLeft, kRight}) {
+            CAPTURE(side);
+            const BetweenWalls between = countBetween(*this, frame, eyes[static_cast<std::size_t>(side)], side);
+            CAPTURE(between.submitted);
+            CHECK(between.mean > 100);
+            CHECK(between.submitted * 20 <= between.mean);
+        }
+    }
+}
+
+}  // SUITE(submitted_depth)
