@@ -185,11 +185,11 @@ double ThinOut::errorOf(const Scene& scene) {
     return values > 0 ? sum / static_cast<double>(values) : 0.0;
 }
 
-std::vector<SplatError> ThinOut::splatErrorsOf(const Scene& scene, const Progress& progress) {
+std::vector<SplatError> ThinOut::splatErrorsOf(const Scene& scene, const Progress& progress, std::size_t every) {
     const GpuScene shown(context_, scene);
     meter_.show(shown, false);
     Picture picture;
-    for (std::size_t i = 0; i < eyes_.size(); ++i) {
+    for (std::size_t i = 0; i < eyes_.size(); i += every) {
         meter_.measure(eyes_[i], near_, picture, &wanted_[i]);
         if (progress) { progress(static_cast<double>(i + 1) / static_cast<double>(eyes_.size())); }
     }
