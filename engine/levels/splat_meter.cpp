@@ -46,6 +46,11 @@ void SplatMeter::render(const Eye& eye, double near, Picture& picture) {
         picture.colours = Buffer(context_, "colours", pixels * sizeof(gpu::vec4));
     }
     if (buffers_.tile_ranges.bytes() != range_bytes) { buffers_.tile_ranges = Buffer(context_, "tile ranges", range_bytes); }
+    // A device may leave out parts of a tile of very many splats, as llvmpipe did of 103,999: these are black
+    // then, not what was in memory.
+    commands_.begin();
+    commands_.fillZero(picture.colours);
+    commands_.submitAndWait();
     do { record(eye, near, picture); } while (!hadRoom());
 }
 
