@@ -128,7 +128,7 @@ struct ContributePass {
     Uints order;           // the splats' indices in the scene
     FloatColours picture;  // as rasterized
     FloatColours wanted;
-    Uints sums;  // in and out: of each splat of the scene kErrorSums or kContributionSums of 64 bits, the lower word first, in kContributionSteps
+    Uints sums;  // in and out: kErrorSums or kContributionSums a splat of the scene, of 64 bits, the lower word first
     uint eye;
 };
 
