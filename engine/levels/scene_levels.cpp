@@ -15,9 +15,15 @@ public:
     LevelMaker(const Context& context, const LevelSettings& settings, StreamedWriter& writer)
         : context_(context), settings_(settings), writer_(writer) {}
 
+    struct Judging {
+        std::vector<Eye> eyes;
+        int steps = kFitSteps;
+        std::size_t errors_every = 1;
+    };
+
     // Writes levels `first` (unless it has been written) to `last`; `scene` is level `first`. Returns level
     // `last`.
-    Scene make(const Scene& scene, std::size_t first, std::size_t last, std::vector<Eye> eyes, int steps, const Progress& progress) {
+    Scene make(const Scene& scene, std::size_t first, std::size_t last, Judging judging, const Progress& progress) {
         const auto levels = static_cast<double>(last - first + 1);
         const auto part = [&](std::size_t level, double from, double share) {
             return [=, &progress](double done) {
@@ -26,11 +32,12 @@ public:
         };
         if (first == 0) { writer_.add(0, scene, {}, 0, part(0, 0.0, 0.5)); }
         if (last == first) { return {}; }
-        ThinOut thin_out(context_, scene, std::move(eyes), settings_.near, part(first, 0.5, 0.5), steps);
+        ThinOut thin_out(context_, scene, std::move(judging.eyes), settings_.near, part(first, 0.5, 0.5), judging.steps);
         Scene thin;
         for (std::size_t level = first + 1; level <= last; ++level) {
             thin = thin_out.keep(std::max<std::uint64_t>(scene.size() >> (level - first), 1), part(level, 0.0, 0.7));
-            writer_.add(level, thin, thin_out.splatErrorsOf(thin, part(level, 0.7, 0.2)), first, part(level, 0.9, 0.1));
+            const std::vector<SplatError> errors = thin_out.splatErrorsOf(thin, part(level, 0.7, 0.2), judging.errors_every);
+            writer_.add(level, thin, errors, first, part(level, 0.9, 0.1));
         }
         return thin;
     }
@@ -74,7 +81,7 @@ void writeSceneLevels(const Context& context, const SceneParts& parts, const Lev
     const std::uint64_t splats = spillBlocks(parts, blocks, writer, spill, progress);
     Scene scene;
     if (blocks.count == 1) {
-        (void)maker.make(spill.read(0), 0, last, settings.eyes, kFitSteps, progress);
+        (void)maker.make(spill.read(0), 0, last, {settings.eyes}, progress);
         return;
     }
     std::size_t of_blocks = 0;  // the last level made in blocks
@@ -85,15 +92,15 @@ void writeSceneLevels(const Context& context, const SceneParts& parts, const Lev
             if (progress) { progress(kShareOfBlocks * (static_cast<double>(i) + share) / static_cast<double>(blocks.count)); }
         };
         const Scene block = spill.read(i);
-        const Scene thin = maker.make(block, 0, of_blocks, eyesOnto(block, settings.eyes, settings.block_eyes, settings.block_side_px),
-                                      settings.block_steps, done);
+        std::vector<Eye> eyes = eyesOnto(block, settings.eyes, settings.block_eyes, settings.block_side_px);
+        const Scene thin = maker.make(block, 0, of_blocks, {std::move(eyes), settings.block_steps, settings.block_errors_every}, done);
         if (i == 0) { scene = pickSplats(thin, {}); }
         appendSplats(scene, thin);
     }
     const auto done = [&](double share) {
         if (progress) { progress(kShareOfBlocks + (1.0 - kShareOfBlocks) * share); }
     };
-    (void)maker.make(scene, of_blocks, last, settings.eyes, kFitSteps, done);
+    (void)maker.make(scene, of_blocks, last, {settings.eyes}, done);
 }
 
 }  // namespace binosplat

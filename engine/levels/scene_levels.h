@@ -19,6 +19,7 @@ struct LevelSettings {
     std::size_t block_eyes = 8;
     gpu::uint block_side_px = kJudgingSidePx;
     int block_steps = 4;
+    std::size_t block_errors_every = 2;  // what levels are off by is measured from every other eye
 };
 
 // Calls its argument with parts of a scene that together are all of it, always the same ones.

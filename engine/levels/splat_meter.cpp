@@ -5,7 +5,6 @@
 #include "engine/passes/eye_view.h"
 
 #include <algorithm>
-#include <cassert>
 
 namespace binosplat {
 
@@ -37,11 +36,6 @@ void SplatMeter::show(const GpuScene& scene, bool fits) {
     commands_.submitAndWait();
 }
 
-void SplatMeter::measure(const Eye& eye, double near, Picture& picture, const Picture* wanted) {
-    render(eye, near, picture);
-    add(picture, wanted);
-}
-
 void SplatMeter::render(const Eye& eye, double near, Picture& picture) {
     const std::uint64_t pixels = std::uint64_t{eye.size_px.x} * eye.size_px.y;
     const glm::uvec2 tiles = tilesOf(eye.size_px);
@@ -52,13 +46,18 @@ void SplatMeter::render(const Eye& eye, double near, Picture& picture) {
         picture.colours = Buffer(context_, "colours", pixels * sizeof(gpu::vec4));
     }
     if (buffers_.tile_ranges.bytes() != range_bytes) { buffers_.tile_ranges = Buffer(context_, "tile ranges", range_bytes); }
+    // A device may leave out parts of a tile of very many splats, as llvmpipe did of 103,999: these are black
+    // then, not what was in memory.
+    commands_.begin();
+    commands_.fillZero(picture.colours);
+    commands_.submitAndWait();
     do { record(eye, near, picture); } while (!hadRoom());
 }
 
-void SplatMeter::add(const Picture& picture, const Picture* wanted) {
-    assert(fits_ == (wanted != nullptr));
+void SplatMeter::measure(const Eye& eye, double near, Picture& picture, const Picture* wanted) {
+    render(eye, near, picture);
     commands_.begin();
-    recordContributions(kernels_, commands_, *scene_, buffers_, targets_, picture, wanted, sums_);
+    recordContributions(kernels_, commands_, *scene_, buffers_, targets_, picture, wanted != nullptr ? *wanted : picture, sums_, fits_);
     commands_.endPass();
     commands_.submitAndWait();
 }
@@ -105,17 +104,5 @@ std::vector<T> SplatMeter::read(const Buffer& buffer) {
 std::vector<std::int64_t> SplatMeter::sums() { return read<std::int64_t>(sums_); }
 
 std::vector<float> SplatMeter::pixels(const Picture& picture) { return read<float>(picture.colours); }
-
-Picture SplatMeter::pictureOf(std::span<const float> pixels, glm::uvec2 size_px) {
-    Picture picture;
-    picture.size_px = size_px;
-    picture.colours = Buffer(context_, "colours", pixels.size_bytes());
-    commands_.begin();
-    const Buffer& staging = commands_.staging(pixels.size_bytes());
-    std::ranges::copy(pixels, staging.mapped<float>().begin());
-    commands_.copy(staging, picture.colours, pixels.size_bytes());
-    commands_.submitAndWait();
-    return picture;
-}
 
 }  // namespace binosplat

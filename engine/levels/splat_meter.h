@@ -16,21 +16,17 @@ public:
     SplatMeter(const SplatMeter&) = delete;
     SplatMeter& operator=(const SplatMeter&) = delete;
 
-    // What follows is about this scene, which stays as it is and must outlive it. All sums are zero. `fits`:
-    // see measure.
+    // What follows is about this scene, which stays as it is and must outlive it. All sums are zero:
+    // of each splat its weight and what pictures are off by, or all kContributionSums if it is to be fitted.
     void show(const GpuScene& scene, bool fits);
     // Renders an eye into `picture`, on black, and then adds to the sums how much each splat contributes.
-    // `near` is in scene units. `wanted`: what the picture should be, if the scene is to be fitted.
+    // `near` is in scene units. `wanted`: what the picture should be, if not what it is.
     void measure(const Eye& eye, double near, Picture& picture, const Picture* wanted = nullptr);
     // The same without sums.
     void render(const Eye& eye, double near, Picture& picture);
-    // Adds to the sums for the eye that was rendered last, as measure does.
-    void add(const Picture& picture, const Picture* wanted);
-    // The sums so far, in gpu::kContributionSteps: for each splat its weight alone, or kContributionSums.
+    // The sums so far, in gpu::kContributionSteps.
     [[nodiscard]] std::vector<std::int64_t> sums();
     [[nodiscard]] std::vector<float> pixels(const Picture& picture);
-    // A picture of these pixels, four floats each.
-    [[nodiscard]] Picture pictureOf(std::span<const float> pixels, glm::uvec2 size_px);
 
 private:
     void record(const Eye& eye, double near, const Picture& picture);

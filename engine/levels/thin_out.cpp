@@ -26,7 +26,6 @@ constexpr double kOpacityRate = 0.6, kSizeRate = 0.4;
 constexpr double kMostGrowth = 0.25;   // of a logarithm in a step
 constexpr double kLeastWeight = 0.01;  // in pixels: of splats that show less, little is known
 constexpr double kLeastHold = 1e-3;
-constexpr float kErrorScale = 64.0f;  // of squares: steps of 2^-26, up to 1/16
 constexpr float kFaintest = 1.25f / 255.0f, kDensest = 0.999f;
 
 // The sums of one splat, in pixels.
@@ -121,8 +120,9 @@ ThinOut::ThinOut(const Context& context, const Scene& scene, std::vector<Eye> ey
         meter_.measure(eyes_[i], near_, wanted_[i]);
         if (progress) { progress(static_cast<double>(i + 1) / static_cast<double>(eyes_.size())); }
     }
-    weights_ = meter_.sums();
+    const std::vector<std::int64_t> sums = meter_.sums();
     weights_.resize(scene.size());
+    for (std::size_t i = 0; i < weights_.size(); ++i) { weights_[i] = sums[i * gpu::kErrorSums + gpu::kSumWeight]; }
 }
 
 // Along a curve through the scene each splat adds its share, and one stays wherever these add up to another
@@ -185,29 +185,19 @@ double ThinOut::errorOf(const Scene& scene) {
     return values > 0 ? sum / static_cast<double>(values) : 0.0;
 }
 
-// contribute, with squared errors in a pixel in place of what it lacks.
-std::vector<SplatError> ThinOut::splatErrorsOf(const Scene& scene, const Progress& progress) {
+std::vector<SplatError> ThinOut::splatErrorsOf(const Scene& scene, const Progress& progress, std::size_t every) {
     const GpuScene shown(context_, scene);
-    meter_.show(shown, true);
+    meter_.show(shown, false);
     Picture picture;
-    for (std::size_t i = 0; i < eyes_.size(); ++i) {
-        meter_.render(eyes_[i], near_, picture);
-        const std::vector<float> is = meter_.pixels(picture), should = meter_.pixels(wanted_[i]);
-        std::vector<float> squares = is;
-        for (std::size_t pixel = 0; pixel < is.size(); pixel += 4) {
-            float square = 0.0f;
-            for (std::size_t at = pixel; at < pixel + 3; ++at) { square += (is[at] - should[at]) * (is[at] - should[at]) / 3.0f; }
-            squares[pixel] += kErrorScale * square;
-        }
-        const Picture lacking = meter_.pictureOf(squares, picture.size_px);
-        meter_.add(picture, &lacking);
+    for (std::size_t i = 0; i < eyes_.size(); i += every) {
+        meter_.measure(eyes_[i], near_, picture, &wanted_[i]);
         if (progress) { progress(static_cast<double>(i + 1) / static_cast<double>(eyes_.size())); }
     }
     std::vector<SplatError> errors(scene.size());
     const std::vector<std::int64_t> sums = meter_.sums();
     for (std::size_t i = 0; i < errors.size(); ++i) {
-        const SplatSums of{std::span(sums).subspan(i * gpu::kContributionSums, gpu::kContributionSums)};
-        errors[i] = {of[gpu::kSumWeight], of[gpu::kSumMissing] / static_cast<double>(kErrorScale)};
+        const SplatSums of{std::span(sums).subspan(i * gpu::kErrorSums, gpu::kErrorSums)};
+        errors[i] = {of[gpu::kSumWeight], of[gpu::kSumMissing] / gpu::kSquareScale};
     }
     return errors;
 }

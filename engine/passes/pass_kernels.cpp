@@ -18,6 +18,10 @@ std::uint32_t cellThreads(const Context& context, std::uint32_t wanted) {
     return std::clamp(wanted != 0 ? wanted : context.subgroupSize(), 8u, most);
 }
 
+bool areNarrow(const Context& context, std::uint32_t threads_per_cell) {
+    return Sort::hasNarrowSubgroups(context) && threads_per_cell == context.subgroupSize();
+}
+
 // Of cull to rasterize, without sorting.
 KernelTable frameKernels(std::uint32_t threads) {
     KernelTable table = everyVariantOf<CullPagesKernel, BinKernel, BinLargeKernel>();
@@ -78,7 +82,8 @@ KernelTable allKernels(const Context& context, const Sort& sort, std::uint32_t t
     append(table, warpKernels(context));
     append(table, pastKernels(context.isSoftware()));
     for (std::uint32_t choices = 0; choices < 4; ++choices) {
-        table.push_back(variantOf(contributeKernel(threads_per_cell, choices >> 1, (choices & 1) != 0)));
+        const bool by_lanes = areNarrow(context, threads_per_cell);
+        table.push_back(variantOf(contributeKernel(threads_per_cell, choices >> 1, (choices & 1) != 0, by_lanes)));
     }
     return table;
 }
@@ -88,17 +93,19 @@ KernelTable allKernels(const Context& context, const Sort& sort, std::uint32_t t
 PassKernels::PassKernels(const Context& context, const Sort& sort, std::uint32_t threads_per_cell)
     : KernelCache(context, allKernels(context, sort, threads_per_cell)),
       threads_per_cell_(threads_per_cell),
+      cells_are_narrow_(areNarrow(context, threads_per_cell)),
       by_address_(context.isSoftware()),
       sort_(sort) {}
 
 PassKernels::PassKernels(const Context& context, std::uint32_t threads_per_cell)
     : PassKernels(context, Sort(context), cellThreads(context, threads_per_cell)) {}
 
-ContributeKernel contributeKernel(std::uint32_t threads_per_cell, std::uint32_t splat_kind, bool fits) {
+ContributeKernel contributeKernel(std::uint32_t threads_per_cell, std::uint32_t splat_kind, bool fits, bool by_lanes) {
     return {.threads_per_cell = threads_per_cell,
             .splat_kind = splat_kind,
             .fits = fits,
-            .local_size_x = gpu::kCellsPerTile * threads_per_cell};
+            .local_size_x = gpu::kCellsPerTile * threads_per_cell,
+            .by_lanes = by_lanes};
 }
 
 // With coarse tiles there is one kernel for all that a picture may keep, and so there is where meshes cut.

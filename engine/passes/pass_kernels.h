@@ -17,6 +17,8 @@ public:
         return sort_.record(*this, commands, in, spare, histograms, lists, list_bytes, key_bits);
     }
     [[nodiscard]] std::uint32_t threadsPerCell() const { return threads_per_cell_; }
+    // The threads of a cell are a subgroup of eight lanes.
+    [[nodiscard]] bool cellsAreNarrow() const { return cells_are_narrow_; }
     // How pixels of a history are loaded (lib/past.glsl): by address on software devices.
     [[nodiscard]] bool byAddress() const { return by_address_; }
 
@@ -24,6 +26,7 @@ private:
     PassKernels(const Context& context, const Sort& sort, std::uint32_t threads_per_cell);
 
     std::uint32_t threads_per_cell_;
+    bool cells_are_narrow_;
     bool by_address_;
     Sort sort_;
 };

@@ -63,7 +63,8 @@ struct EyesOfList {
     gpu::DeviceAddress<gpu::uint> first_mask = {}, last_mask = {};  // if only the chosen tiles of each eye count
 };
 
-ContributeKernel contributeKernel(std::uint32_t threads_per_cell, std::uint32_t splat_shape, bool fits);
+// `by_lanes`: only if PassKernels::cellsAreNarrow.
+ContributeKernel contributeKernel(std::uint32_t threads_per_cell, std::uint32_t splat_shape, bool fits, bool by_lanes);
 RasterizeKernel rasterizeKernel(std::uint32_t threads_per_cell, const Kept& kept, std::uint32_t splat_shape, bool masked, bool coarse);
 
 // Only cull: how many splats are visible.

@@ -13,6 +13,10 @@ namespace {
 
 // A step that was chosen the time before counts this much more, and one that was not this much less.
 constexpr double kKept = 1.25;
+// A level that is off by more than this, 36 dB, is not fine enough while its splats are farther apart than this share of
+// the usual limit.
+constexpr float kMostError = 2.5e-4f;
+constexpr double kCloser = 0.5;
 
 struct Sphere {
     glm::dvec3 centre;
@@ -78,7 +82,9 @@ void LevelChooser::addSteps(std::uint32_t leaf, double area_px, double weight, c
         double seen = weight * area_px;
         if (!is_first_) { seen *= before != LevelChoices::kNone && before <= step.level ? kKept : 1.0 / kKept; }
         step.worth = seen / between;
-        if (step.order > 0 && step.worth < settings.finest_px * settings.finest_px) { break; }
+        const bool is_wrong = step.order > 0 && !errors.empty() && errors[level_before] > kMostError;
+        const double finest_px = is_wrong ? kCloser * settings.finest_px : settings.finest_px;
+        if (step.order > 0 && step.worth < finest_px * finest_px) { break; }
         if (step.order > 0 && !errors.empty()) {
             const double less = std::max(0.0, static_cast<double>(errors[level_before]) - static_cast<double>(errors[step.level]));
             step.worth = seen * (rate = std::min(rate, less / static_cast<double>(splats - splats_before)));

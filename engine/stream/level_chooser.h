@@ -5,7 +5,8 @@
 // error of a leaf is its area times the square of the distance. Where the errors of levels were measured, a step is worth what the error
 // falls by, times the area, for each splat that it adds, and no more than the step before it. Steps are taken from the greatest worth down
 // while the budget lasts, and not at all where splats lie closer than pixels; so splats end up as dense on the screen everywhere as the
-// budget allows, or denser where they are missed more.
+// budget allows, or denser where they are missed more: from a level that is known to be off by more than 36 dB steps are taken until its
+// splats are twice as close.
 #pragma once
 
 #include "engine/files/lod_tree.h"
@@ -28,7 +29,7 @@ struct ChoiceSettings {
     std::uint64_t splats = 0;  // at most
     std::uint64_t pages = 0;   // at most, of page_splats; each level of a leaf begins a page of its own
     std::uint32_t page_splats = 512;
-    double finest_px = 0.5;        // splats need not be closer on the screen
+    double finest_px = 0.5;        // splats need not be closer on the screen, or half of it where levels are far off
     double look_ahead_rad = 0.35;  // beyond the edge of the view, the worth of a step falls by a factor of e for each of these
     double nearest = 0.2;          // nothing is nearer to an eye, scene units
     bool operator==(const ChoiceSettings&) const = default;

@@ -126,9 +126,9 @@ struct ContributePass {
     Uints ranks;
     UVec2s ranges;
     Uints order;           // the splats' indices in the scene
-    FloatColours picture;  // as rasterized; null without `wanted`
+    FloatColours picture;  // as rasterized
     FloatColours wanted;
-    Uints sums;  // in and out: of each splat of the scene one or kContributionSums of 64 bits, the lower word first, in kContributionSteps
+    Uints sums;  // in and out: kErrorSums or kContributionSums a splat of the scene, of 64 bits, the lower word first
     uint eye;
 };
 

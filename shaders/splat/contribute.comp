@@ -1,16 +1,24 @@
-// contribute: how much of an eye's picture each splat makes up, a workgroup per tile: it blends as rasterize does,
-// each cell the splats that meet it, and sums for each splat what its weights are and, against a picture that is
-// wanted, what they should be. All sums are of integers, in any order the same.
+// contribute: how much of an eye's picture each splat makes up, a workgroup per tile: it blends as rasterize
+// does, each cell the splats that meet it, and sums for each splat what its weights are and how far the picture
+// is from a wanted one where it shows, or how it should change. What threads sum are integers, in any order the
+// same.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_ballot : require
+#extension GL_KHR_shader_subgroup_shuffle : require
+#extension GL_EXT_subgroup_uniform_control_flow : require
 #include "passes.h"
 
 layout(push_constant, scalar) uniform Push { ContributePass pass; };
 layout(constant_id = 0) const uint kThreadsPerCell = 32;  // as rasterize has them
 layout(constant_id = 1) const uint kSplatKind = kDiscs;   // dimmed or not makes no difference here
-layout(constant_id = 2) const bool kFits = false;         // there is a wanted picture
+layout(constant_id = 2) const bool kFits = false;         // all kContributionSums of a splat, or kErrorSums
 layout(local_size_x_id = 3) in;                           // kCellsPerTile * kThreadsPerCell
+// A cell's threads are a subgroup, of kNarrow lanes. A CPU reads from memory lane by lane, even what is the
+// same for all, and adds to it likewise: so each lane reads one splat for all, and adds one sum of all.
+layout(constant_id = 4) const bool kByLanes = false;
 
 const bool kPlaced = false;  // no splat of the scene is read
 #include "lib/splat.glsl"
@@ -20,7 +28,8 @@ const bool kPlaced = false;  // no splat of the scene is read
 const uint kThreads = kCellsPerTile * kThreadsPerCell;
 const uint kPixels = kCellSize * kCellSize / kThreadsPerCell;  // of a thread: a column
 const uint kWords = kBatchSize / 32;  // of a bit for each splat
-const uint kSums = kFits ? kContributionSums : 1;
+const uint kNarrow = kContributionSums;
+const uint kSums = kFits ? kContributionSums : kErrorSums;
 const float kMostBehind = 4;  // colours that show through nearly nothing are not told apart from rounding
 
 // As rasterize holds them.
@@ -31,6 +40,11 @@ shared uvec2 batch_colour[kBatchSize];
 shared uint cell_splats[kCellsPerTile][kWords];
 shared int sums[kBatchSize][kContributionSums];
 shared uint open_threads;
+
+struct BatchSplat {
+    vec4 reference, plane, depth_form;
+    uvec2 colour;
+};
 
 vec3 missing[kPixels], unblended[kPixels];  // unblended: what the picture still gets, background included
 float transmittance[kPixels];               // not positive once the pixel takes no more light
@@ -51,7 +65,7 @@ void loadSplat(uint slot, uint rank, uvec2 tile_px) {
     }
 }
 
-int inSteps(float value) { return int(round(clamp(value, -kMaxPixelError, kMaxPixelError) * kContributionSteps)); }
+float limit(float value) { return clamp(value, -kMaxPixelError, kMaxPixelError); }
 
 // A splat's rho at `d` from its reference, in units of log2, and whether its size makes it: the low-pass has
 // none.
@@ -68,51 +82,95 @@ float rhoAt(vec2 d, vec2 at_reference, vec4 plane, vec4 depth_form, out bool by_
     return min(rho3, rho2);
 }
 
-// Blends a splat into the thread's pixels, the first of which lies at `first_px` of the tile, and adds to its
-// sums. False once they take no more light.
-bool blend(uint slot, vec2 first_px) {
-    const vec4 reference = batch_reference[slot], plane = batch_plane[slot], depth_form = batch_depth[slot];
-    const vec3 colour = kFits ? unpackColour(batch_colour[slot]) : vec3(0);
-    int own[kContributionSums];
-    for (uint s = 0; s < kSums; ++s) { own[s] = 0; }
-    bool any_open = false;
+// Blends a splat into the thread's pixels, the first of which lies at `first_px` of the tile: what that adds
+// to its sums. Without branches: pixels that the splat does not reach blend it with weight 0.
+int[kContributionSums] blend(BatchSplat splat, vec2 first_px) {
+    const vec3 colour = kFits ? unpackColour(splat.colour) : vec3(0);
+    float own[kContributionSums];
+    [[unroll]] for (uint s = 0; s < kContributionSums; ++s) { own[s] = 0; }
     [[unroll]] for (uint p = 0; p < kPixels; ++p) {
         bool by_size;
-        const vec2 d = first_px + vec2(0, p) - reference.xy;
-        const float rho = rhoAt(d, reference.zw, plane, depth_form, by_size);
-        const float exponent = depth_form.w + rho;
-        if (transmittance[p] > 0 && exponent <= kLog2Of255) {
-            const float opacity = exp2(-exponent), after = transmittance[p] * max(1 - opacity, kMinPassing);
-            if (after < kMinTransmittance) {
-                transmittance[p] = 0;
-            } else {
-                const float weight = min(kMaxAlpha, opacity) * transmittance[p];
-                transmittance[p] = after;
-                own[kSumWeight] += inSteps(weight);
-                if (kFits) {
-                    unblended[p] -= weight * colour;
-                    for (uint channel = 0; channel < 3; ++channel) {
-                        own[kSumMissing + channel] += inSteps(weight * missing[p][channel]);
-                    }
-                    if (opacity < kMaxAlpha) {  // else more of it would not show
-                        const vec3 behind = clamp(unblended[p] / after, vec3(-kMostBehind), vec3(kMostBehind));
-                        const vec3 off = colour - behind;
-                        const float pull = weight * dot(off, missing[p]), hold = weight * dot(off, off);
-                        const float growth = by_size ? rho / kLog2PerRho : 0;
-                        own[kSumOpacityPull] += inSteps(pull);
-                        own[kSumOpacityHold] += inSteps(hold);
-                        own[kSumSizePull] += inSteps(pull * growth);
-                        own[kSumSizeHold] += inSteps(hold * growth * growth);
-                    }
-                }
-            }
-        }
-        any_open = any_open || transmittance[p] > 0;
+        const vec2 d = first_px + vec2(0, p) - splat.reference.xy;
+        const float rho = rhoAt(d, splat.reference.zw, splat.plane, splat.depth_form, by_size);
+        const float exponent = splat.depth_form.w + rho, opacity = exp2(-exponent);
+        const bool shows = transmittance[p] > 0 && exponent <= kLog2Of255;
+        const float after = transmittance[p] * max(1 - opacity, kMinPassing);
+        const bool counts = shows && after >= kMinTransmittance;
+        const float weight = counts ? min(kMaxAlpha, opacity) * transmittance[p] : 0;
+        transmittance[p] = counts ? after : shows ? 0 : transmittance[p];
+        own[kSumWeight] += weight;
+        own[kSumMissing] += limit(weight * missing[p].x);
+        if (!kFits) { continue; }
+        own[kSumMissing + 1] += limit(weight * missing[p].y);
+        own[kSumMissing + 2] += limit(weight * missing[p].z);
+        unblended[p] -= weight * colour;
+        const vec3 behind = clamp(unblended[p] * (1 / (counts ? after : 1)), vec3(-kMostBehind), vec3(kMostBehind));
+        const vec3 off = colour - behind;
+        const float varied = opacity < kMaxAlpha ? weight : 0;  // else more of it would not show
+        const float pull = varied * dot(off, missing[p]), hold = varied * dot(off, off);
+        const float growth = counts && by_size ? rho / kLog2PerRho : 0;
+        own[kSumOpacityPull] += limit(pull);
+        own[kSumOpacityHold] += limit(hold);
+        own[kSumSizePull] += limit(pull * growth);
+        own[kSumSizeHold] += limit(hold * growth * growth);
     }
-    if (own[kSumWeight] != 0) {
-        for (uint s = 0; s < kSums; ++s) { atomicAdd(sums[slot][s], own[s]); }
-    }
+    int steps[kContributionSums];
+    [[unroll]] for (uint s = 0; s < kContributionSums; ++s) { steps[s] = s < kSums ? int(round(own[s] * kContributionSteps)) : 0; }
+    return steps;
+}
+
+// Half of the lanes keep one of two values, and half the other: the sum over two lanes, `apart`.
+int halve(int first, int second, uint apart) {
+    const bool keeps_first = (gl_SubgroupInvocationID & apart) == 0;
+    return (keeps_first ? first : second) + subgroupShuffle(keeps_first ? second : first, gl_SubgroupInvocationID ^ apart);
+}
+
+// Lane s returns the sum of own[s] over all lanes.
+int sumLanes(int own[kContributionSums]) {
+    return halve(halve(halve(own[0], own[4], 4), halve(own[2], own[6], 4), 2), halve(halve(own[1], own[5], 4), halve(own[3], own[7], 4), 2), 1);
+}
+
+bool anyOpen() {
+    bool any_open = false;
+    [[unroll]] for (uint p = 0; p < kPixels; ++p) { any_open = any_open || transmittance[p] > 0; }
     return any_open;
+}
+
+BatchSplat splatAt(uint slot) { return BatchSplat(batch_reference[slot], batch_plane[slot], batch_depth[slot], batch_colour[slot]); }
+
+// Blends the splats of a word of the cell's bits.
+void blendWord(uint bits, uint first_slot, vec2 first_px) {
+    while (bits != 0 && anyOpen()) {
+        const uint slot = first_slot + uint(findLSB(bits));
+        const int own[kContributionSums] = blend(splatAt(slot), first_px);
+        if (own[kSumWeight] != 0) {
+            for (uint s = 0; s < kSums; ++s) { atomicAdd(sums[slot][s], own[s]); }
+        }
+        bits &= bits - 1;
+    }
+}
+
+// The same with kByLanes: kNarrow splats at a time, of which each lane reads one.
+void blendByLanes(uint bits, uint first_slot, vec2 first_px) {
+    while (bits != 0 && subgroupBallot(anyOpen()).x != 0) {
+        uint mine = bits;  // from the lane's splat on
+        [[unroll]] for (uint lane = 1; lane < kNarrow; ++lane) {
+            if (gl_SubgroupInvocationID >= lane) { mine &= mine - 1; }
+        }
+        const uint own_slot = first_slot + uint(findLSB(mine != 0 ? mine : bits));
+        const BatchSplat read = splatAt(own_slot);
+        const uint splats = min(uint(bitCount(bits)), kNarrow);
+        uint lane = 0;
+        [[dont_unroll]] do {
+            const BatchSplat splat = BatchSplat(subgroupShuffle(read.reference, lane), subgroupShuffle(read.plane, lane),
+                                                subgroupShuffle(read.depth_form, lane), subgroupShuffle(read.colour, lane));
+            const int sum = sumLanes(blend(splat, first_px));
+            const uint slot = subgroupShuffle(own_slot, lane);
+            if (sum != 0) { atomicAdd(sums[slot][gl_SubgroupInvocationID], sum); }
+            ++lane;
+        } while (lane < splats);
+        bits = subgroupShuffle(mine & (mine - 1), kNarrow - 1);
+    }
 }
 
 void addToScene(uint word, int value) {
@@ -122,50 +180,49 @@ void addToScene(uint word, int value) {
     if (high != 0) { atomicAdd(pass.sums.at[word + 1], high); }
 }
 
-// True if any pixel takes light.
-bool begin(uvec2 first_pixel) {
+void begin(uvec2 first_pixel) {
     const uvec2 size_px = pass.eyes.at[pass.eye].size_px;
-    bool any_open = false;
     for (uint p = 0; p < kPixels; ++p) {
         const uvec2 pixel = first_pixel + uvec2(0, p);
         const bool inside = pixel.x < size_px.x && pixel.y < size_px.y;
-        any_open = any_open || inside;
         transmittance[p] = inside ? 1 : 0;
         missing[p] = unblended[p] = vec3(0);
-        if (kFits && inside) {
+        if (inside) {
             const uint at = pixel.y * size_px.x + pixel.x;
             unblended[p] = pass.picture.at[at].rgb;
             missing[p] = pass.wanted.at[at].rgb - unblended[p];
+            if (!kFits) { missing[p].x = kSquareScale / 3 * dot(missing[p], missing[p]); }
         }
     }
-    return any_open;
 }
 
-void main() {
-    const uint thread = gl_LocalInvocationIndex, tile = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+void main() [[subgroup_uniform_control_flow]] {
+    const uint thread = kByLanes ? gl_SubgroupID * kNarrow + gl_SubgroupInvocationID : gl_LocalInvocationIndex;
+    const uint tile = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
     const uint cell = thread / kThreadsPerCell, in_cell = thread % kThreadsPerCell;
     const uvec2 size_tiles = pass.eyes.at[pass.eye].size_tiles;
     const uvec2 tile_px = uvec2(tile % size_tiles.x, tile / size_tiles.x) * kTileSize;
     const uvec2 range = pass.ranges.at[tile], of_cell = uvec2(cell % 2, cell / 2) * kCellSize;
     const uvec2 first_px = of_cell + uvec2(in_cell % kCellSize, in_cell / kCellSize * kPixels);
-    bool any_open = begin(tile_px + first_px);
+    begin(tile_px + first_px);
     for (uint first = range.x; first < range.y; first += kBatchSize) {
         const uint splats = min(range.y - first, kBatchSize);
         barrier();  // the batch before is still being added
         if (thread == 0) { open_threads = 0; }
         if (thread < kCellsPerTile * kWords) { cell_splats[thread / kWords][thread % kWords] = 0; }
         barrier();
-        if (any_open) { atomicOr(open_threads, 1); }
+        if (anyOpen()) { atomicOr(open_threads, 1); }
         for (uint slot = thread; slot < splats; slot += kThreads) {
             loadSplat(slot, pass.ranks.at[first + slot], tile_px);
         }
         barrier();
         if (open_threads == 0) { break; }
         for (uint word = 0; word < (splats + 31) / 32; ++word) {
-            uint bits = cell_splats[cell][word];
-            while (any_open && bits != 0) {
-                any_open = blend(word * 32 + uint(findLSB(bits)), vec2(first_px) + 0.5);
-                bits &= bits - 1;
+            const uint bits = cell_splats[cell][word];
+            if (kByLanes) {
+                blendByLanes(bits, word * 32, vec2(first_px) + 0.5);
+            } else {
+                blendWord(bits, word * 32, vec2(first_px) + 0.5);
             }
         }
         barrier();

@@ -248,7 +248,7 @@ TEST_CASE_FIXTURE(Gpu, "rasterize leaves the word that each pixel moves by, and 
 
 // Of each splat by rank, from one run of contribute.
 std::vector<std::array<double, gpu::kContributionSums>> contributionsOnDevice(Gpu& gpu, const Raster& raster, const Buffer& wanted,
-                                                                              std::uint32_t threads) {
+                                                                              std::uint32_t threads, bool by_lanes) {
     const std::size_t splats = raster.staged.twin.splats.size();
     std::vector<gpu::uint> order(splats);
     std::iota(order.begin(), order.end(), 0u);
@@ -263,7 +263,7 @@ std::vector<std::array<double, gpu::kContributionSums>> contributionsOnDevice(Gp
                                    wanted.address<gpu::vec4>(),
                                    sums.address<gpu::uint>(),
                                    0};
-    const Kernel& kernel = gpu.kernel(contributeKernel(threads, test::shapeOf(raster.staged.view.scene), true));
+    const Kernel& kernel = gpu.kernel(contributeKernel(threads, test::shapeOf(raster.staged.view.scene), true, by_lanes));
     const glm::uvec2 size_tiles = tilesOf(raster.staged.view.eye.size_px);
     gpu.run([&](Commands& commands) { commands.dispatch(kernel, pass, size_tiles.x, size_tiles.y); });
     std::vector<std::array<double, gpu::kContributionSums>> found(splats);
@@ -287,10 +287,13 @@ TEST_CASE_FIXTURE(Gpu, "contribute finds what each splat makes up of a picture a
         const Buffer picture = upload("wanted", colours);
         const auto expected = reference::contribute(staged.twin.splats, staged.twin.sorted_pairs, staged.twin.ranges, staged.view.eye,
                                                     kSettings, truth, wanted);
-        for (const std::uint32_t threads : {8u, 32u}) {
+        std::vector<std::pair<std::uint32_t, bool>> ways{{8u, false}, {32u, false}};
+        if (PassKernels(context(), 8).cellsAreNarrow()) { ways.emplace_back(8u, true); }
+        for (const auto& [threads, by_lanes] : ways) {
             CAPTURE(threads);
-            const auto found = contributionsOnDevice(*this, raster, picture, threads);
-            CHECK(contributionsOnDevice(*this, raster, picture, threads) == found);
+            CAPTURE(by_lanes);
+            const auto found = contributionsOnDevice(*this, raster, picture, threads, by_lanes);
+            CHECK(contributionsOnDevice(*this, raster, picture, threads, by_lanes) == found);
             std::array<double, gpu::kContributionSums> off{}, all{};
             for (std::size_t i = 0; i < found.size(); ++i) {
                 const reference::Contribution& e = expected[i];

@@ -114,6 +114,33 @@ TEST_CASE("nearer leaves show more, and splats that would lie closer than half a
     CHECK(before > 0);
 }
 
+TEST_CASE("levels that are off by more than 36 dB are chosen only where their splats are twice as close as other levels'") {
+    const Eye eye = eyeAt({0.5, 0.5, -1.0});
+    std::vector<LodLeaf> leaves = makeField(64, 6);
+    const auto levelsOf = [&](const std::vector<float>& errors) {
+        for (LodLeaf& leaf : leaves) { leaf.errors = errors; }
+        return Chooser(leaves).choose(eye, within(1 << 26)).levels;
+    };
+    const std::vector<std::uint32_t> unknown = levelsOf({});
+    // All are within 36 dB; or the second is, and no coarser one.
+    CHECK(levelsOf({0.0f, 1e-5f, 2e-5f, 1e-4f, 2e-4f, 2.4e-4f}) == unknown);
+    const std::vector<std::uint32_t> one = levelsOf({0.0f, 2e-4f, 3e-4f, 4e-4f, 5e-4f, 6e-4f});
+    std::size_t finer = 0;
+    for (std::size_t z = 0; z < 64; ++z) {
+        const std::uint32_t level = one[z * 64 + 32], usual = unknown[z * 64 + 32];
+        CHECK(level <= usual);
+        CHECK(level >= std::min(usual, 1u));
+        finer += level < usual;
+        if (level < 2) { continue; }
+        // A quarter of a pixel.
+        const double size_px = 500.0 * std::sqrt(3.0) / (static_cast<double>(z) + 1.0 + 0.25 * std::sqrt(3.0));
+        const auto& levels = leaves[z * 64 + 32].levels;
+        const double between = static_cast<double>(levels[level].splats.count) * static_cast<double>(levels[level - 1].splats.count);
+        CHECK(size_px / std::pow(between, 0.25) < 0.25);
+    }
+    CHECK(finer > 0);
+}
+
 TEST_CASE("what lies behind is the first to go and the last to come") {
     Chooser field(makeField(16));
     // Splats before and behind somebody in the middle who looks that way.
