@@ -1,4 +1,5 @@
-// Facts about what frames do that may wait, as two layers count it (tests/faults/waits.h): those of a viewer that runs do nothing.
+// Facts about work in frames that could wait, counted by two layers (tests/faults/waits.h): the frames of a
+// running viewer do none.
 #include "tests/app/view/view_runs.h"
 
 SUITE(view_quiet) {
@@ -14,17 +15,18 @@ const std::string kWatched =
     "XDG_CONFIG_HOME=\"$PWD/../config\" DISPLAY= WAYLAND_DISPLAY= BINOSPLAT_VALIDATION=1 VK_ADD_LAYER_PATH='" BINOSPLAT_FAULT_LAYER
     "' VK_INSTANCE_LAYERS=VK_LAYER_BINOSPLAT_faults XR_API_LAYER_PATH='" BINOSPLAT_FAULT_LAYER
     "/openxr' XR_ENABLE_API_LAYERS=XR_APILAYER_BINOSPLAT_faults BINOSPLAT_FAULT_WAITS=waits.txt "
-    "BINOSPLAT_FAULT_TICKS=1";  // frames take no time, so that none is drawn smaller to be quicker
+    "BINOSPLAT_FAULT_TICKS=1";  // frames take no time, so none is drawn smaller to save time
 
-// What frames make or wait for between two times, until somebody mends it.
+// What frames create or wait for between two times, until that is fixed.
 struct Known {
     double begin_s, end_s;
     const char* kinds;
 };
 constexpr Known kKnown[]{
-    // Images are made once the eyes' angles are known.
+    // Images are created once the eyes' angles are known.
     {0.0, 1.0, "buffer fence-of-this-frame memory swapchain"},
-    // Of what a snap turn brings into view nothing is known: what is visible is counted first, with the device at rest.
+    // Nothing is known about what a snap turn brings into view: what is visible is counted first, while the
+    // device idles.
     {1.2, 1.3, "fence-of-last-frame fence-of-this-frame"},
     {3.2, 9.0, "buffer fence-of-this-frame memory queue swapchain"},
 };
@@ -49,7 +51,7 @@ TEST_CASE("no frame of a running viewer waits or makes anything after the first 
         }
         CHECK(frames == run.frames.size());
         CHECK(run.panels(frames * 2 / 3).empty());
-        // All of it, or it is known no more.
+        // All of it must occur, or the entry is out of date.
         for (const Known& known : kKnown) { CHECK(fmt::format("{}", fmt::join(found[&known], " ")) == known.kinds); }
     }
 }
@@ -64,7 +66,7 @@ TEST_CASE("new letters come without a wait") {
     CHECK(these(run.outcome.exit_code, run.outcome.errors.empty()) == these(0, true));
     std::ifstream file(work.path / "waits.txt");
     const std::string waits((std::istreambuf_iterator<char>(file)), {});
-    CHECK(waits.find("image") != std::string::npos);  // that of the letters: nothing else needs one
+    CHECK(waits.find("image") != std::string::npos);  // the letters' image: nothing else needs one
     CHECK_MESSAGE(waits.find("queue") == std::string::npos, waits);
 }
 

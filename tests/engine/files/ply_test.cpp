@@ -1,4 +1,5 @@
-// What a PLY file means: values, encodings, orders, types; what is written reads back; and what is said of a broken one.
+// What a PLY file means: values, encodings, orders, types; that written files read back; and what is reported
+// about broken ones.
 #include "engine/files/ply.h"
 #include "app/summary/describe.h"
 #include "engine/builtin/procedural.h"
@@ -52,7 +53,8 @@ TEST_CASE_FIXTURE(InFolder, "SH bands that are all zero are left out, even if a 
     CHECK(notes.sh_degree_in_file == 3);
     checkSays(notes.lines, "SH bands above degree 0");
 
-    // 700 splats are three blocks; the only coefficient of band 2 is in the last splat, so rows stored before are widened.
+    // 700 splats make three blocks. Only the last splat has a coefficient of band 2, so rows that were stored
+    // before must be widened.
     for (Column& column : ply.columns) { column.values.resize(700, column.values[0]); }
     ply["f_rest_0"].values[3] = 7.0;     // channel 0, k = 1
     ply["f_rest_21"].values[699] = 9.0;  // channel 1, k = 7
@@ -66,7 +68,7 @@ TEST_CASE_FIXTURE(InFolder, "SH bands that are all zero are left out, even if a 
 TEST_CASE("blocks that are read ahead on a thread of their own come all and in order, and what goes wrong in one is said") {
     const Folder folder;
     LoadNotes notes;
-    // Around one block, one batch of eight, and the two from which on there is a thread.
+    // Around one block, one batch of eight, and two batches, from which on a thread is used.
     for (const std::size_t splats : {1u, 255u, 256u, 257u, 2048u, 2049u, 4096u, 4097u, 6145u, 20'000u}) {
         for (const std::size_t without_sh : {splats / 5, splats - 1, splats}) {
             INFO("splats ", splats, ", without_sh ", without_sh);
@@ -89,7 +91,7 @@ TEST_CASE("blocks that are read ahead on a thread of their own come all and in o
         CHECK(contains(loadError(folder, header + rows), fmt::format("splat {} of 20000: property x is 'x'", broken)));
         rows[broken * row.size()] = '0';
     }
-    // Whoever stops taking waits for nothing.
+    // A reader that stops taking blocks waits for nothing.
     (void)folder.write("whole.ply", header + rows);
     checkProgress(2, [&](const Progress& progress) { (void)loadScene(folder.file("whole.ply"), 0, nullptr, progress); });
 }
@@ -126,7 +128,7 @@ TEST_CASE_FIXTURE(InFolder, "splats with NaN, infinity, overflow or no rotation 
     for (const Encoding encoding : kEncodings) {
         for (const std::string name : {"x", "z", "f_dc_1", "f_rest_8", "opacity", "scale_1", "rot_3"}) {
             for (const double bad : {kNan, kInfinity, -kInfinity}) {
-                if (name == "opacity" && bad == kInfinity) { continue; }  // is opacity 1
+                if (name == "opacity" && bad == kInfinity) { continue; }  // this means opacity 1
                 PlyText ply = makeIn(encoding, 9);
                 ply[name].values[1] = bad;
                 const auto [notes, scene] = readScene(folder.write("nan.ply", ply.bytes()));
@@ -138,7 +140,7 @@ TEST_CASE_FIXTURE(InFolder, "splats with NaN, infinity, overflow or no rotation 
         }
     }
     PlyText ply = makePly(9);
-    ply["scale_0"].values[0] = 89.0;  // exp(89) is beyond float32
+    ply["scale_0"].values[0] = 89.0;  // exp(89) exceeds float32
     ply["rot_2"].values[2] = 0.0;
     ply["nx"].values[1] = kNan;  // of no interest
     LoadNotes notes;
