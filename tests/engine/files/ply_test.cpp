@@ -142,7 +142,7 @@ TEST_CASE_FIXTURE(InFolder, "splats with NaN, infinity, overflow or no rotation 
     PlyText ply = makePly(9);
     ply["scale_0"].values[0] = 89.0;  // exp(89) exceeds float32
     ply["rot_2"].values[2] = 0.0;
-    ply["nx"].values[1] = kNan;  // of no interest
+    ply["nx"].values[1] = kNan;  // normals are not read
     LoadNotes notes;
     CHECK(loadScene(folder.write("bad.ply", ply.bytes()), 0, &notes).size() == 1);
     CHECK(these(notes.skipped_not_finite, notes.skipped_zero_rotation, notes.lines.size()) == these(1, 1, 2));
@@ -166,7 +166,7 @@ TEST_CASE_FIXTURE(InFolder, "a logit of infinity is opacity 1; the shortest of t
             const Scene disc = loadScene(folder.write("disc.ply", ply.bytes()), 0, &notes);
             REQUIRE(disc.size() == 3);
             CHECK(disc.thicknesses[0] == 0.0f);
-            const double kept = axis == 0 ? -3.0 : axis == 1 ? -5.0 : 0.0;  // the one that follows in cyclic order
+            const double kept = axis == 0 ? -3.0 : axis == 1 ? -5.0 : 0.0;  // the next axis in cyclic order
             CHECK(disc.scales[0].x == doctest::Approx(std::exp(kept)));
             CHECK(notes.lines.empty());
             CHECK(writtenAndRead(folder, disc).thicknesses[0] == 0.0f);
@@ -204,7 +204,7 @@ TEST_CASE_FIXTURE(InFolder, "a comment asks for antialiasing, the last one count
         CHECK(scene.antialiased == asks);
         CHECK(writtenAndRead(folder, scene).antialiased == asks);
     }
-    CHECK_FALSE(loadWith("comment SplatRenderMode: mip\n", false).antialiased);  // discs are not dimmed
+    CHECK_FALSE(loadWith("comment SplatRenderMode: mip\n", false).antialiased);  // discs do not dim
 }
 
 TEST_CASE_FIXTURE(InFolder, "an empty scene is a scene") {
@@ -247,7 +247,7 @@ TEST_CASE_FIXTURE(InFolder, "loading and writing report progress from 0 to 1, an
     CHECK(contains(errorTo(folder.file("device.ply")), "not a regular file"));
     std::filesystem::remove(folder.file("device.ply"));
 #endif
-    // An old file stays as it was if the new one does not come to its end.
+    // An old file stays as it was if the new one is not completed.
     checkProgress(4, [&](const Progress& progress) {
         writePly(scene, folder.file("kept.ply"));
         writePly(large, folder.file("kept.ply"), progress);
