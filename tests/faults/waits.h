@@ -1,10 +1,12 @@
-// What frames do that may wait: the calls that the thread which shows them makes between two of them.
-// BINOSPLAT_FAULT_WAITS=FILE: a line for each frame, its number from 0 and how many calls of which kind it made: "7 memory 2 queue 1".
-// A frame lasts from the xrEndFrame before it to its own, the first one from the first xrWaitFrame. What a runtime does while one of its
-// functions is called is its own. This takes both layers, Vulkan's and OpenXR's.
-// The kinds are those of `watchedCalls`, and waits for a fence, signalled or not, with a timeout, if its work was submitted last in this
-// frame ("fence-of-this-frame"), in the one before, so that the device runs dry ("fence-of-last-frame"), or by another thread or nobody
-// ("fence-of-others"). A frame may wait for what its own thread submitted two frames ago.
+// Work in frames that could wait: the calls made between two frames by the thread that shows them.
+// BINOSPLAT_FAULT_WAITS=FILE: a line for each frame, with its number from 0 and how many calls of each kind
+// it made: "7 memory 2 queue 1". A frame lasts from the previous xrEndFrame to its own, the first one from
+// the first xrWaitFrame. What a runtime does inside its own functions does not count. This needs both layers,
+// Vulkan's and OpenXR's.
+// The kinds are those of `watchedCalls`, and waits with a timeout for a fence, signalled or not, whose work
+// was last submitted in this frame ("fence-of-this-frame"), in the one before, so that the device runs dry
+// ("fence-of-last-frame"), or by another thread or nobody ("fence-of-others"). A frame may wait for what its
+// own thread submitted two frames ago.
 #pragma once
 
 #include "tests/faults/live.h"
@@ -23,7 +25,7 @@ namespace binosplat::faults {
 
 inline std::recursive_mutex waits_mutex;
 inline std::map<std::string_view, unsigned> waits_of_frame;
-inline std::map<VkFence, unsigned> fences_in_frames;  // in which frame its thread submitted them
+inline std::map<VkFence, unsigned> fences_in_frames;  // the frame in which their thread submitted them
 inline unsigned frame_now = 0;
 inline thread_local bool shows_frames = false, is_in_runtime = false;
 
@@ -52,7 +54,7 @@ inline void noteFenceWait(VkFence fence, std::uint64_t timeout) {
                                               : "fence-of-last-frame");
 }
 
-// A call of OpenXR, in which a runtime may use the device.
+// An OpenXR call, during which a runtime may use the device.
 template <typename Call>
 auto runInRuntime(std::string_view name, const Call& call) {
     if (waitsFile() == nullptr) { return call(); }
@@ -71,7 +73,7 @@ auto runInRuntime(std::string_view name, const Call& call) {
     return result;
 }
 
-// A function of the device that counts its calls, and then is the next one.
+// A device function that counts its calls, and then calls the next one.
 struct WatchedCall {
     std::string_view name;
     PFN_vkVoidFunction call;
@@ -111,7 +113,7 @@ inline const auto& watchedCalls() {
     return calls;
 }
 
-// The function of this name that counts; null: it is not watched, or there is no next one yet.
+// The counting function of this name; null if it is not watched, or if there is no next one yet.
 inline PFN_vkVoidFunction watchedFunction(std::string_view name) {
     const auto found = std::ranges::find(watchedCalls(), name, &WatchedCall::name);
     return waitsFile() != nullptr && found != watchedCalls().end() && *found->next != nullptr ? found->call : nullptr;

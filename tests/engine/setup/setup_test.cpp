@@ -70,7 +70,7 @@ TEST_CASE_FIXTURE(AtWork, "output files appear together or not at all, and a run
 
 TEST_CASE_FIXTURE(AtWork, "an output folder whose path leaves no room for files is refused, and nothing of it stays") {
     fs::path folder = work.path;
-    constexpr std::size_t kLength = PATH_MAX - 50;  // its hidden folder fits, and then 40 letters do not
+    constexpr std::size_t kLength = PATH_MAX - 50;  // its hidden folder fits, but 40 more letters do not
     while (folder.string().size() + 102 < kLength) { folder /= std::string(100, 'x'); }
     folder /= std::string(kLength - folder.string().size() - 1, 'y');
     CHECK_THROWS_WITH_AS(OutputFiles{folder}, doctest::Contains("its path may be too long, with 4046 letters; must be a shorter one"),
@@ -90,7 +90,7 @@ TEST_CASE_FIXTURE(AtWork, "a folder is removed with all in it, and what its link
     CHECK_FALSE(fs::exists(gone));
     CHECK(fs::exists(kept / "1"));
     CHECK(entriesOf(gone).empty());
-    removeFolder(gone);  // as nothing is there
+    removeFolder(gone);  // since there is nothing
 }
 
 }  // SUITE(setup)
