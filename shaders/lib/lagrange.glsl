@@ -1,5 +1,6 @@
-// A kernel for pictures that are resampled again and again: Lagrange's polynomial through six samples. Its weights sum to 1, and no
-// frequency comes out stronger than it went in, for any place between the two middle samples.
+// A kernel for pictures that are resampled again and again: Lagrange's polynomial through six samples. Its
+// weights sum to 1, and no frequency comes out stronger than it went in, for any place between the two middle
+// samples.
 
 const uint kTaps = 6;
 
@@ -15,6 +16,7 @@ void lagrangeWeights(float t, out float weights[kTaps]) {
     weights[5] = low * d * e * (1.0 / 120);
 }
 
-// 32 times the amplitude of what alternates in sign over six consecutive samples, which is lost halfway between them.
+// 32 times the amplitude of what alternates in sign over six consecutive samples, which is lost halfway
+// between them.
 const float kFifthDifference[kTaps] = float[kTaps](-1, 5, -10, 10, -5, 1);
 float lostShare(float t) { return 4 * t * (1 - t) / 32; }

@@ -1,4 +1,5 @@
-// A pixel on its way from one eye to the other, in a word. Of two that meet in a pixel the greater one stays: the nearer.
+// A pixel on its way from one eye to the other, in a word. If two meet in a pixel, the greater word stays:
+// the nearer pixel.
 //
 //   31..6  one more than the upper 26 of the 31 bits of its inverse depth; 0: nothing is there, or it goes nowhere
 //   5      it landed in this pixel; otherwise it lies between two that did

@@ -1,5 +1,5 @@
-// A splat from the scene to the camera: loading, and the ray-disc intersection of 2DGS (Huang et al. 2024, section 4.2) in the form
-// that ProjectedSplat holds. Needs kSplatKind and kPlaced.
+// A splat from the scene to the camera: loading, and the ray-disc intersection of 2DGS (Huang et al. 2024,
+// section 4.2) in the form that ProjectedSplat holds. Needs kSplatKind and kPlaced.
 //
 // A disc point is P(u, v) = u a + v b + c with a = s_u t_u, b = s_v t_v, c in camera space. A pixel's ray is z r with
 // r = ((x - cx)/fx, (y - cy)/fy, 1). From u a + v b + c = z r follows (u, v, 1)/z = [a b c]^-1 r, and with t_w = t_u x t_v and
@@ -81,7 +81,7 @@ CameraSplat loadWorldSplat(SceneChunks chunks, SplatPlace at) {
 }
 
 // From one place in the world, in two floats, to another. Both may be close together and far from the origin:
-// in this order the first difference is exact if it is small compared with its terms.
+// in this order, the first difference is exact if it is small compared with its terms.
 vec3 fromPlace(vec3 from, vec3 from_low, vec3 position) {
     precise const vec3 difference = (position - from) - from_low;
     return difference;

@@ -1,5 +1,6 @@
-// Radix sort, first step of a round: how often each digit occurs in each block. The last workgroup of a run of blocks replaces each count
-// by the sum over the run's earlier blocks; the last workgroup of all does the same over the runs, and finds where each digit begins.
+// Radix sort, first step of a round: how often each digit occurs in each block. The last workgroup of a run
+// of blocks replaces each count by the sum over the run's earlier blocks; the last workgroup of all does the
+// same over the runs, and finds where each digit begins.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -12,7 +13,7 @@ layout(constant_id = 0) const uint kThreads = 128;
 layout(local_size_x_id = 0) in;
 layout(push_constant, scalar) uniform Push { SortCountPass pass; };
 
-const uint kMaxColumn = max(kSortRun, kMaxSortRuns);  // loaded at once, since each load takes as long as all of them
+const uint kMaxColumn = max(kSortRun, kMaxSortRuns);  // loaded at once, since one load takes as long as all of them
 
 shared uint digit_counts[kMaxDigits];
 
