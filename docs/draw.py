@@ -128,7 +128,8 @@ def draw_controls(out):
         (out / f"{name if name != 'controller' else vendor + '_' + name}.svg").write_text(svg)
 
 
-PROGRAM, DEVICE, LEAD = 0.4, 0.7, 2.0  # periods: what a frame takes of either, and how long before its display xrWaitFrame returns
+# periods: what a frame takes of either, and how long before its display xrWaitFrame returns
+PROGRAM, DEVICE, LEAD = 0.4, 0.7, 2.0
 LEFT, PERIOD_PX, ROW_PX, SHOWN = 90.0, 46.0, 22.0, 16
 
 

@@ -29,7 +29,8 @@ DOCTEST_REGISTER_LISTENER("counter", 1, Counter);
 
 int main(int count, char** arguments) {
     doctest::Context context(count, arguments);
-    if (std::getenv("BINOSPLAT_NIGHTLY") != nullptr) { context.setOption("no-skip", true); }  // see nightly() in tests/suite.h
+    // See nightly() in tests/suite.h.
+    if (std::getenv("BINOSPLAT_NIGHTLY") != nullptr) { context.setOption("no-skip", true); }
     const int failed = context.run();
     if (context.shouldExit() || failed != 0) { return failed; }
     if (Counter::cases == 0) {

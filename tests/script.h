@@ -18,8 +18,10 @@ struct ScriptHost {
     std::filesystem::path folder{};              // where a script's files lie
     std::string errors_begin{};                  // every line of error begins with this
     std::map<std::string, std::string> names{};  // values of $NAME
-    std::set<std::string> features{};            // `[NAME] LINE` is for builds that have NAME, `[!NAME] LINE` for others
-    std::map<std::string, std::function<void(const std::string&)>> verbs{};  // additional words that can begin a line
+    // `[NAME] LINE` is for builds that have NAME, `[!NAME] LINE` for others
+    std::set<std::string> features{};
+    // Additional words that can begin a line.
+    std::map<std::string, std::function<void(const std::string&)>> verbs{};
 };
 
 // The result of `action`, or the error that it throws.

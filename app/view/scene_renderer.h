@@ -25,7 +25,8 @@ struct FrameViews {
     Pose room_from_head;
     std::optional<std::array<xr::EyeView, 2>> insets;  // from the same places, if the headset takes insets
     std::array<std::optional<Gaze>, 2> gazes;          // by Side: where the eyes look, if it matters
-    std::array<xr::EyeView, 2> pictures;               // what the frame's pictures show, as the runtime is told
+    // What the frame's pictures show, as the runtime is told.
+    std::array<xr::EyeView, 2> pictures;
 };
 
 class SceneRenderer {
@@ -42,16 +43,17 @@ public:
     // The runtime refuses depth after all; false: depth was off already.
     bool dropDepth(ConnectedHeadset& headset);
 
-    // Prepares what render() will show, and sets the pictures of `views`. Throws Error if memory is short; then nothing is shown until this
-    // succeeds with less.
+    // Prepares what render() will show, and sets the pictures of `views`. Throws Error if memory is short;
+    // then nothing is shown until this succeeds with less.
     void prepare(ConnectedHeadset& headset, ShownScene& shown, const Similarity& scene_from_room, const ViewSettings& settings,
                  FrameViews& views);
-    // Renders and presents that, in one submission with what `record_panel` records, and does not wait for it. With a `window`, one eye's
-    // picture is kept for it.
+    // Renders and presents that, in one submission with what `record_panel` records, and does not wait for
+    // it. With a `window`, one eye's picture is kept for it.
     void render(ConnectedHeadset& headset, ShownScene& shown, const ViewSettings& settings, MirrorWindow* window,
                 const std::function<void(Commands&)>& record_panel);
 
-    // What the eyes see, or the dominant one, in full at the headset's size, without a mask, whatever the frames are.
+    // What the eyes see, or the dominant one, in full at the headset's size, without a mask, whatever the
+    // frames are.
     [[nodiscard]] std::vector<Image> takePictures(ShownScene& shown, const Similarity& scene_from_room, const ViewSettings& settings,
                                                   const FrameViews& views) const;
 
@@ -85,7 +87,8 @@ private:
     };
     void fitImages(ConnectedHeadset& headset, const ViewSettings& settings, const FrameViews& views);
     void makeImages(ConnectedHeadset& headset, glm::uvec2 size_px, glm::uvec2 inset_px);
-    // Whether the pictures' axes stay, in images that must be this large; says once why they do not, if the wearer wants that.
+    // Whether the pictures' axes stay, in images that must be this large; says once why they do not, if the
+    // wearer wants that.
     [[nodiscard]] bool mayStay(const ConnectedHeadset& headset, const ViewSettings& settings, glm::uvec2 cover_px);
     // Prepares pictures whose axes stay, of the eyes that were prepared.
     void keepAxes(ConnectedHeadset& headset, const Similarity& scene_from_room, FrameViews& views);

@@ -1,11 +1,12 @@
 // Which level of detail each leaf of a streamed scene is to show, by how the eyes see it.
 //
-// n splats across a leaf that takes a square of s x s pixels lie s / sqrt(n) pixels apart. A step from a level of m splats to the next
-// finer one, of n, is worth s^2 / sqrt(m n): the mean square of that distance in pixels, which is also what its splats gain each if the
-// error of a leaf is its area times the square of the distance. Where the errors of levels were measured, a step is worth what the error
-// falls by, times the area, for each splat that it adds, and no more than the step before it. Steps are taken from the greatest worth down
-// while the budget lasts, and not at all where splats lie closer than pixels; so splats end up as dense on the screen everywhere as the
-// budget allows, or denser where they are missed more.
+// n splats across a leaf that takes a square of s x s pixels lie s / sqrt(n) pixels apart. A step from a
+// level of m splats to the next finer one, of n, is worth s^2 / sqrt(m n): the mean square of that distance
+// in pixels, which is also what its splats gain each if the error of a leaf is its area times the square of
+// the distance. Where the errors of levels were measured, a step is worth what the error falls by, times the
+// area, for each splat that it adds, and no more than the step before it. Steps are taken from the greatest
+// worth down while the budget lasts, and not at all where splats lie closer than pixels; so splats end up as
+// dense on the screen everywhere as the budget allows, or denser where they are missed more.
 #pragma once
 
 #include "engine/files/lod_tree.h"
@@ -28,9 +29,10 @@ struct ChoiceSettings {
     std::uint64_t splats = 0;  // at most
     std::uint64_t pages = 0;   // at most, of page_splats; each level of a leaf begins a page of its own
     std::uint32_t page_splats = 512;
-    double finest_px = 0.5;        // splats need not be closer on the screen
-    double look_ahead_rad = 0.35;  // beyond the edge of the view, the worth of a step falls by a factor of e for each of these
-    double nearest = 0.2;          // nothing is nearer to an eye, scene units
+    double finest_px = 0.5;  // splats need not be closer on the screen
+    // Beyond the edge of the view, the worth of a step falls by a factor of e for each of these.
+    double look_ahead_rad = 0.35;
+    double nearest = 0.2;  // nothing is nearer to an eye, scene units
     bool operator==(const ChoiceSettings&) const = default;
 };
 
@@ -38,15 +40,17 @@ struct LevelChoices {
     static constexpr std::uint32_t kNone = ~std::uint32_t{0};
     // By leaf, the place of its level in LodLeaf::levels; kNone if not even the coarsest fits.
     std::vector<std::uint32_t> levels;
-    // The levels to load, in order: the coarsest level of every leaf, then the finer ones that leaves are to show.
+    // The levels to load, in order: the coarsest level of every leaf, then the finer ones that leaves are to
+    // show.
     std::vector<LeafLevel> coarsest, finer;
     std::uint64_t splats = 0, pages = 0;  // of `levels`
 };
 
 // The levels to choose from: all except those in files that cannot be loaded, unless they are loaded already.
 struct LevelsThere {
-    std::vector<bool> broken;           // by file; may be shorter than there are files
-    std::vector<std::uint64_t> loaded;  // by leaf, a bit for each of LodLeaf::levels; may be shorter than there are leaves
+    std::vector<bool> broken;  // by file; may be shorter than there are files
+    // By leaf, one bit for each of LodLeaf::levels; may be shorter than there are leaves.
+    std::vector<std::uint64_t> loaded;
 
     [[nodiscard]] bool has(LeafLevel at, std::uint32_t file) const {
         const bool is_loaded = at.leaf < loaded.size() && (loaded[at.leaf] >> at.level & 1) != 0;
@@ -69,7 +73,8 @@ private:
     struct Step {
         double worth = 0.0;
         std::uint32_t leaf = 0, level = 0, order = 0;  // order: its place among those of its leaf
-        std::uint64_t splats = 0, pages = 0;           // beyond those of the step before; all of the level's if order is 0
+        // In addition to the step before; all of the level's if order is 0.
+        std::uint64_t splats = 0, pages = 0;
     };
     void addSteps(std::uint32_t leaf, double area_px, double weight, const ChoiceSettings& settings, const LevelsThere& there);
 

@@ -8,7 +8,8 @@
 layout(local_size_x = 16, local_size_y = 8) in;
 layout(push_constant, scalar) uniform Push { ComponentsPass pass; };
 
-// The steps, each a dispatch over the pixels except the last, which strides over the boxes. resample has made every hole its own parent.
+// The steps, each a dispatch over the pixels except the last, which strides over the boxes. resample has made
+// every hole its own parent.
 const uint kStepUnite = 0, kStepCount = 1, kStepBound = 2, kStepMark = 3;
 layout(constant_id = 0) const uint kStep = kStepUnite;
 

@@ -20,7 +20,8 @@ const uint kBinsPerThread = kDepthBins / kWarpGroup;
 const uint kOutliers = 200;
 
 shared float inverse_depth_bounds[2];  // far, near
-shared vec4 group_low[kWarpGroup];     // least x and y of all samples; greatest of the left and of the top edge
+// Least x and y of all samples; greatest x of the left edge and greatest y of the top edge.
+shared vec4 group_low[kWarpGroup];
 shared vec4 group_high[kWarpGroup];    // greatest x and y of all; least of the right and of the bottom edge
 
 void findDepthBounds() {

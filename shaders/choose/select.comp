@@ -13,7 +13,8 @@
 layout(local_size_x = kWarpGroup) in;
 layout(push_constant, scalar) uniform Push { SelectPass pass; };
 layout(constant_id = 0) const bool kPredicted = false;  // otherwise tile_kinds says which
-layout(constant_id = 1) const bool kPast = false;  // all targets share a budget, and a tile that costs more than is left still gets its turn
+// All targets share a budget, and a tile that costs more than is left still gets its turn.
+layout(constant_id = 1) const bool kPast = false;
 #include "lib/target.glsl"
 
 const uint kTilesPerStep = 8;  // loaded at once, since one load takes as long as all of them

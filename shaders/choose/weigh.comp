@@ -31,7 +31,8 @@ uvec2 middleOf(WarpView warp, uint tile) {
 uint pairsNear(WarpView warp, uvec2 middle, uint moving) {
     const vec2 middle_px = vec2(middle) + 0.5;
     const vec3 moved = movePixel(warp.source_from_target, middle_px, moving == 0 ? 0 : inverseDepthOf(moving));
-    const bool sane = isPositive(moved.z) && isPositive(1e9 - abs(moved.x)) && isPositive(1e9 - abs(moved.y));  // NaN stays where it is
+    // NaN stays where it is
+    const bool sane = isPositive(moved.z) && isPositive(1e9 - abs(moved.x)) && isPositive(1e9 - abs(moved.y));
     const uvec2 range = pass.ranges.at[tileOf(warp.size_tiles, pixelAt(warp.size_px, sane ? moved.xy : middle_px))];
     return range.y - range.x;
 }
@@ -44,7 +45,8 @@ bool movingPays(WarpView warp, uint all_saved, uint picture_cost, uint tiles) {
     const uint saved = mayMove() ? all_saved : all_saved - all_saved / kResumePart;
     const float budget = warp.budget * float(picture_cost);
     const uint mending = budget < 4e9 ? uint(budget) : 4000000000u;
-    // What is left for the shared part, times kMoveSharedPart, against the cost of warping all tiles: in 64 bits.
+    // What is left for the shared part, times kMoveSharedPart, against the cost of warping all tiles: in 64
+    // bits.
     uvec2 gain, cost;
     umulExtended(saved - min(saved, mending), kMoveSharedPart, gain.y, gain.x);
     umulExtended(warp.move_cost, tiles, cost.y, cost.x);

@@ -24,7 +24,8 @@ uint spread(uint i, uint count) {
     return i < even ? 2 * i : 2 * (i - even) + 1;
 }
 
-// Lanes are counted, since gl_SubgroupSize may state more than a subgroup holds. In uniform control flow only.
+// Lanes are counted, since gl_SubgroupSize may state more than a subgroup holds. In uniform control flow
+// only.
 uint laneCount() { return subgroupBallotBitCount(subgroupBallot(true)); }
 
 // The thread's place in the order of summation of the scans below: by subgroup and lane, which the invocation
@@ -34,7 +35,8 @@ uint threadIndex() { return gl_SubgroupID * laneCount() + gl_SubgroupInvocationI
 // One value for each subgroup, of at least four lanes, and one for all.
 shared uint subgroup_sums[kGroupSize / 4 + 1];
 
-// The sum of `value` over the threads before this one; `total` is the sum over all. Every thread must call it.
+// The sum of `value` over the threads before this one; `total` is the sum over all. Every thread must call
+// it.
 uint scanGroup(uint value, out uint total) {
     const uint before_in_subgroup = subgroupExclusiveAdd(value);
     const uint of_subgroup = subgroupAdd(value);

@@ -4,7 +4,8 @@
 
 const uint kTaps = 6;
 
-// Weights of the samples at -2 ... 3 for a place `t` (0 to 1) after sample 0. At t = 0 and 1 they are exactly 0 and 1.
+// Weights of the samples at -2 ... 3 for a place `t` (0 to 1) after sample 0. At t = 0 and 1 they are exactly
+// 0 and 1.
 void lagrangeWeights(float t, out float weights[kTaps]) {
     const float a = t + 2, b = t + 1, c = t, d = t - 1, e = t - 2, f = t - 3;
     const float low = a * b * c, high = d * e * f;

@@ -113,7 +113,8 @@ BINOSPLAT_CONSTANT float kMaxPlaneSlope = 1e15f;
 // px.
 BINOSPLAT_CONSTANT float kOutlinePadding = 1.0f / 64.0f;
 
-// The depth that the reprojection takes for a pixel: D as the paper writes it, D/A, or A/I, from the mean disparity.
+// The depth that the reprojection takes for a pixel: D as the paper writes it, D/A, or A/I, from the mean
+// disparity.
 BINOSPLAT_CONSTANT uint kDepthSum = 0;
 BINOSPLAT_CONSTANT uint kDepthMean = 1;
 BINOSPLAT_CONSTANT uint kDepthInverse = 2;
@@ -179,7 +180,8 @@ BINOSPLAT_CONSTANT uint kCoarseBatch = kBatchSize / kCellsPerTile;
 // It is expected to have lost this fraction of the second differences of its samples, squared and summed over
 // both axes and all channels. Measured on 2DGS scenes as headsets show them: docs/tried.md.
 BINOSPLAT_CONSTANT float kCoarseLoss = 0.3f;
-// The spread of a moving pixel's inverse depth is stored in 31 steps of half an octave, the first at 2^-13 of the inverse depth.
+// The spread of a moving pixel's inverse depth is stored in 31 steps of half an octave, the first at 2^-13 of
+// the inverse depth.
 BINOSPLAT_CONSTANT uint kSpreadCodes = 31;
 BINOSPLAT_CONSTANT float kLeastSpreadLog2 = -13.0f;
 
@@ -203,7 +205,8 @@ BINOSPLAT_CONSTANT uint kDoesAny = 3;
 // Invocations of a workgroup in the passes of warp and choose: as many as every device allows.
 BINOSPLAT_CONSTANT uint kWarpGroup = 128;
 
-// warp_past: the block of pixels that a thread makes: 9x13 source pixels are read for 4x8. A workgroup makes the blocks of a row of tiles.
+// warp_past: the block of pixels that a thread makes: 9x13 source pixels are read for 4x8. A workgroup makes
+// the blocks of a row of tiles.
 BINOSPLAT_CONSTANT uint kPastColumns = 4;
 BINOSPLAT_CONSTANT uint kPastRows = 8;
 BINOSPLAT_CONSTANT uint kPastGroup = 64;
@@ -273,7 +276,8 @@ BINOSPLAT_CONSTANT float kMostSquares = 48.0f;
 // docs/tried.md.
 BINOSPLAT_CONSTANT uint kMeasuredParts = 64;
 BINOSPLAT_CONSTANT float kWiderLowPass = 0.25f;
-BINOSPLAT_CONSTANT uint kMostWaited = 32;  // frames; beyond them, longer waiting no longer raises a tile's weight
+// Frames; beyond them, longer waiting no longer raises a tile's weight.
+BINOSPLAT_CONSTANT uint kMostWaited = 32;
 // The least error of a hole's pixel, since hidden content need not look like what is next to it: (1/100)^2,
 // so little that it only decides between tiles that are otherwise equal.
 BINOSPLAT_CONSTANT float kLeastHoleError = 1e-4f;
@@ -293,12 +297,14 @@ BINOSPLAT_CONSTANT float kInFrontRatio = 1.01f;
 // at most kMaxPixelError, so that a tile's sum stays within 31 bits. A splat's sums are in this order;
 // without a wanted picture there is only the weight.
 BINOSPLAT_CONSTANT float kContributionSteps = 1048576.0f;
-BINOSPLAT_CONSTANT uint kSumWeight = 0;       // w
-BINOSPLAT_CONSTANT uint kSumMissing = 1;      // w times what the pixel lacks: three channels
-BINOSPLAT_CONSTANT uint kSumOpacityPull = 4;  // how much the squared error falls with the logarithm of the opacity: w D . missing,
-BINOSPLAT_CONSTANT uint kSumOpacityHold = 5;  // w D . D, where D is how far the splat's colour is from what lies behind it
-BINOSPLAT_CONSTANT uint kSumSizePull = 6;     // and with that of its size: rho times the former,
-BINOSPLAT_CONSTANT uint kSumSizeHold = 7;     // and rho^2 times
+BINOSPLAT_CONSTANT uint kSumWeight = 0;   // w
+BINOSPLAT_CONSTANT uint kSumMissing = 1;  // w times what the pixel lacks: three channels
+// How much the squared error falls with the logarithm of the opacity: w D . missing,
+BINOSPLAT_CONSTANT uint kSumOpacityPull = 4;
+// w D . D, where D is how far the splat's colour is from what lies behind it
+BINOSPLAT_CONSTANT uint kSumOpacityHold = 5;
+BINOSPLAT_CONSTANT uint kSumSizePull = 6;  // and with that of its size: rho times the former,
+BINOSPLAT_CONSTANT uint kSumSizeHold = 7;  // and rho^2 times
 BINOSPLAT_CONSTANT uint kContributionSums = 8;
 
 // Depths are counted in bins of 1/32 octave, from 2^-16 to 2^16 scene units.

@@ -13,8 +13,9 @@ struct CullPagesPass {
     EyeViews eyes;
     CoherentUints page_bits;     // out: one bit per page
     CoherentUints word_offsets;  // out: visible pages before each word of page_bits
-    CoherentUints page_list;     // out: the visible pages, ascending, and what lib/block.glsl needs to find them
-    ListStates visible_pages;    // out; per_item: one workgroup per page
+    // out: the visible pages, ascending, and what lib/block.glsl needs to find them
+    CoherentUints page_list;
+    ListStates visible_pages;  // out; per_item: one workgroup per page
     uint page_count;
     uint first_eye;
     uint eye_count;
@@ -24,7 +25,8 @@ struct CullPagesPass {
 struct CullPass {
     SceneChunks chunks;
     EyeViews eyes;
-    Uints page_list;             // in a scene of pages: the blocks of kCullBlock splats to examine; otherwise all are
+    // In a scene of pages: the blocks of kCullBlock splats to examine; otherwise all are.
+    Uints page_list;
     ListStates visible_pages;    // and how many there are
     Uints visible_bits;          // out: one bit per splat of these blocks
     CoherentUints group_counts;  // out: visible splats before each block
@@ -39,7 +41,8 @@ struct CullPass {
     Uints last_tile_mask;
 };
 
-// compact: the visible splats in the scene's order, with the depth or the distance of their centres as sort keys.
+// compact: the visible splats in the scene's order, with the depth or the distance of their centres as sort
+// keys.
 struct CompactPass {
     SceneChunks chunks;
     EyeViews eyes;
@@ -63,11 +66,12 @@ struct ProjectPass {
     EyeViews eyes;  // of the targets, from the first on
     Uints order;    // indices into the scene, front to back
     ListStates visible;
-    ProjectedSplats splats;    // out
-    UVec2s tile_sets;          // out: lib/tile_set.glsl
-    Uints tile_counts;         // out
-    CoherentUints group_sums;  // out: tiles before each block of kListBlock splats; one target's blocks after the other's
-    ListStates pairs;          // out: one for each tile that a splat meets
+    ProjectedSplats splats;  // out
+    UVec2s tile_sets;        // out: lib/tile_set.glsl
+    Uints tile_counts;       // out
+    // out: tiles before each block of kListBlock splats; one target's blocks after the other's
+    CoherentUints group_sums;
+    ListStates pairs;  // out: one for each tile that a splat meets
     TargetStates targets;
     uint chunk_bits;
     uint splats_apart;  // from one target's splats, sets and counts to the next one's
@@ -84,9 +88,10 @@ struct BinPass {
     Uints group_sums;
     ListStates visible;
     ListStates pairs;
-    Uints tiles;         // out
-    Uints ranks;         // out: indices into `splats`
-    Uints large_splats;  // out of bin, unordered: what is left for bin_large; for each target where its pairs begin
+    Uints tiles;  // out
+    Uints ranks;  // out: indices into `splats`
+    // out of bin, unordered: what is left for bin_large; for each target where its pairs begin
+    Uints large_splats;
     Uints large_begins;  // out of bin: where the pairs of each begin
     TargetStates targets;
     uint splats_apart;  // as in ProjectPass
@@ -113,8 +118,9 @@ struct RasterizePass {
     UVec2s ranges;
     TargetStates targets;
     vec3 background;
-    uint depth_choice;  // the depth by which a pixel is reprojected: kDepthInverse, or one of those that D gives
-    uint is_light;      // 1: colours and background are light, to be encoded after blending
+    // The depth by which a pixel is reprojected: kDepthInverse, or one of those that D gives.
+    uint depth_choice;
+    uint is_light;  // 1: colours and background are light, to be encoded after blending
 };
 
 // contribute: how much each splat contributes to an eye's picture and, compared with a wanted picture, in
@@ -128,7 +134,9 @@ struct ContributePass {
     Uints order;           // the splats' indices in the scene
     FloatColours picture;  // as rasterized; null without `wanted`
     FloatColours wanted;
-    Uints sums;  // in and out: for each splat of the scene one or kContributionSums sums of 64 bits, lower word first, in kContributionSteps
+    // in and out: for each splat of the scene one or kContributionSums sums of 64 bits, lower word first, in
+    // kContributionSteps
+    Uints sums;
     uint eye;
 };
 
@@ -186,9 +194,11 @@ struct ResamplePass {
     Uints moving;         // the source's pixels or, if reproject ran, its arrivals
     FloatColours target;  // out; `moving` may lie in the same row
     HalfColours half_target;
-    Floats depths;  // out if requested, otherwise null: D, alpha over the inverse depth with which the place was found
+    // out if requested, otherwise null: D, alpha over the inverse depth with which the place was found
+    Floats depths;
     Uints tile_kinds;
-    Uints tile_errors;    // out if errors are predicted, otherwise null; for the odd rows null, or in: kSeenCoarsely by price
+    // out if errors are predicted, otherwise null; for the odd rows null, or in: kSeenCoarsely by price
+    Uints tile_errors;
     Uints pixel_classes;  // out if requested: 2 bits per pixel, kCovered, kGap or kHole
     WarpCounterss counters;
     Uints shown_mask;     // if the source has hidden tiles: the shown ones; otherwise null
@@ -257,9 +267,11 @@ struct MarkChangedPass {
 // price: predicted: the cost of rendering each tile's error away, and how much there is at each price.
 struct PricePass {
     TargetStates targets;
-    ListStates chosen;         // of the first target: counts finished workgroups
-    CoherentUints price_bins;  // cost of the tiles in each bin, without a history as if errors were seen whole; greatest error per pair last
-    uint most_cost;            // under a bound, in pairs: the lists' capacity
+    ListStates chosen;  // of the first target: counts finished workgroups
+    // Cost of the tiles in each bin, without a history as if errors were seen whole; greatest error per pair
+    // last.
+    CoherentUints price_bins;
+    uint most_cost;  // under a bound, in pairs: the lists' capacity
 };
 
 // select: the tiles to render, as a list and as a mask.
@@ -296,13 +308,15 @@ struct SortScatterPass {
 struct PresentPass {
     FloatColours colours;
     HalfColours half_colours;
-    Floats depths;         // D, if its depth is wanted
-    Uints words;           // instead of D, for a picture that later ones are made from: lib/moving_pixel.glsl; otherwise null
+    Floats depths;  // D, if its depth is wanted
+    // Instead of D, for a picture that later ones are made from: lib/moving_pixel.glsl; otherwise null.
+    Uints words;
     Uints tile_kinds;      // for a tint by how each pixel was made; otherwise null
     Uints pixel_classes;   // for the tint, or null
     Uints pixels;          // out: 8 bits per channel; with `over` also in: what is behind the splats
     Floats device_depths;  // out if requested, otherwise null: depth_scale / depth + depth_offset
-    Floats mesh_depths;    // the same for the content of `pixels`, or null: splats behind it do not show; may be device_depths
+    // The same for the content of `pixels`, or null: splats behind it do not show; may be device_depths.
+    Floats mesh_depths;
     uvec2 size_px;
     float depth_scale;
     float depth_offset;

@@ -37,8 +37,9 @@ struct SceneChunk {
     Vec2s scales;
     BINOSPLAT_STORED(Floats) thicknesses;  // of 3D Gaussians: the third scale, along t_u x t_v
     BINOSPLAT_STORED(Floats) opacities;
-    UVec2s base_colours;                     // f_dc: r | g << 16, b, as half floats
-    BINOSPLAT_STORED(Uints) sh;              // f_rest, coefficient by coefficient, rgb interleaved, two half floats per word
+    UVec2s base_colours;  // f_dc: r | g << 16, b, as half floats
+    // f_rest, coefficient by coefficient, rgb interleaved, two half floats per word
+    BINOSPLAT_STORED(Uints) sh;
     BINOSPLAT_STORED(Placements) placement;  // in a scene of placed scenes; otherwise null
     float fade;                              // 0 to 1, multiplies the opacity of each
     uint sh_degree;                          // of `sh`
@@ -96,15 +97,16 @@ struct Place {
 // linear in the pixel.
 // For a 3D Gaussian these are u and v themselves instead of u/z and v/z, so that rho = u^2 + v^2 needs no
 // depth.
-// A disc whose centre is not beyond the near plane has no such reference: then (see `opacity`) reference_px holds the
-// constant terms of u/z and v/z instead, and offsets count from the middle of the image.
+// A disc whose centre is not beyond the near plane has no such reference: then (see `opacity`) reference_px
+// holds the constant terms of u/z and v/z instead, and offsets count from the middle of the image.
 struct ProjectedSplat {
     vec2 reference_px;
     vec3 plane_from_pixel;
     vec2 perspective;
     float inverse_depth;
     float opacity;  // -log2 of it, not negative; its sign bit is set if there is no reference
-    uvec2 colour;   // r | g << 16, b, as half floats; in the last 16 bits the remainder of reference_px, see packRest
+    // r | g << 16, b, as half floats; in the last 16 bits the remainder of reference_px, see packRest
+    uvec2 colour;
 };
 BINOSPLAT_ARRAY_OF(ProjectedSplat, ProjectedSplats);
 
@@ -118,8 +120,9 @@ struct DispatchSize {
 struct ListState {
     uint needed;  // 0xffffffff: more than kMaxItems
     uint count;
-    uint groups_done;             // during a dispatch, see lib/last_group.glsl; otherwise 0
-    uvec4 run_groups_done;        // the same for each run of the dispatch: kMaxSortRuns of a sort, one byte each, or kSumRuns
+    uint groups_done;  // during a dispatch, see lib/last_group.glsl; otherwise 0
+    // The same for each run of the dispatch: kMaxSortRuns of a sort, one byte each, or kSumRuns.
+    uvec4 run_groups_done;
     DispatchSize per_item;        // workgroups of kGroupSize
     DispatchSize per_block;       // workgroups of kListBlock
     DispatchSize per_sort_block;  // workgroups of sortBlockKeys, see lib/list.glsl
@@ -144,17 +147,21 @@ struct WarpView {
     PixelMap source_from_target;
     uvec2 size_px;  // of both eyes
     uvec2 size_tiles;
-    uint row_words;        // from a row of moving pixels or of arrivals to the next
-    uint rows_apart;       // 2: resample takes the even rows first, and the odd ones once tiles are chosen; 1: all at once
-    uint gap_px;           // runs of uncovered pixels up to this long are gaps; longer ones are holes
-    uint margin_px;        // paper: margin around what needs rendering
-    uint edge_samples;     // paper: N, samples along each edge
-    uint tight_edges;      // 1: also bounds of what near content uncovers
-    uint move_cost;        // predicted: the cost of reprojecting a tile, in pairs; tiles with at most that many pairs are rendered
+    uint row_words;  // from a row of moving pixels or of arrivals to the next
+    // 2: resample takes the even rows first, and the odd ones once tiles are chosen; 1: all at once
+    uint rows_apart;
+    uint gap_px;        // runs of uncovered pixels up to this long are gaps; longer ones are holes
+    uint margin_px;     // paper: margin around what needs rendering
+    uint edge_samples;  // paper: N, samples along each edge
+    uint tight_edges;   // 1: also bounds of what near content uncovers
+    // predicted: the cost of reprojecting a tile, in pairs; tiles with at most that many pairs are rendered
+    uint move_cost;
     float budget;          // predicted: the share of an eye's work that is spent on tiles with an error
     float hole_error;      // predicted: the weight of a hole's expected error
     float newcomer_error;  // predicted: the weight of full coverage by splats that the source does not see
-    float error_bound;     // with a history: tiles with a quarter expected to be off by a larger amplitude come first; 0: none do
+    // With a history: tiles with a quarter that is expected to be off by a larger amplitude come first; 0:
+    // none do.
+    float error_bound;
 };
 BINOSPLAT_ARRAY_OF(WarpView, WarpViews);
 
@@ -179,9 +186,11 @@ struct PastTile {
     // By quarters, row by row:
     vec4 growth;  // of the error's amplitude per frame, as measured then
     vec4 errors;  // the amplitude of the expected error (root of the mean square over pixels and channels)
-    uvec4 grown;  // until tiles are chosen: squared errors that this frame is expected to add to the quarters, summed, in kErrorSteps
-    float lost;   // for a coarse tile: the amplitude that it lacks, which its eye did not see then
-    uint unseen;  // by quarters, eight bits each: pixels that the history did not see
+    // Until tiles are chosen: squared errors that this frame is expected to add to the quarters, summed, in
+    // kErrorSteps.
+    uvec4 grown;
+    float lost;             // for a coarse tile: the amplitude that it lacks, which its eye did not see then
+    uint unseen;            // by quarters, eight bits each: pixels that the history did not see
     uint squared_gradient;  // until tiles are chosen: summed over pixels and channels, in kErrorSteps
 };
 BINOSPLAT_ARRAY_OF(PastTile, PastTiles);
@@ -287,35 +296,43 @@ BINOSPLAT_ARRAY_OF(EyeCounters, EyeCounterss);
 struct TargetState {
     BINOSPLAT_STORED(FloatColours) colours;  // for half floats this is their address, too
     BINOSPLAT_STORED(Floats) depths;         // D = sum w z
-    BINOSPLAT_STORED(Floats) mesh_depths;    // where meshes cut through the splats: depth_scale / z + depth_offset
+    // Present where meshes cut through the splats: depth_scale / z + depth_offset.
+    BINOSPLAT_STORED(Floats) mesh_depths;
     BINOSPLAT_STORED(Vec2s) moments;         // I = sum w/z and J = sum w/z^2
     BINOSPLAT_STORED(Uints) moving;          // if the picture is going to be warped: lib/moving_pixel.glsl
     BINOSPLAT_STORED(Uints) arrivals;        // where these will arrive in the other eye
     BINOSPLAT_STORED(PastTiles) past_tiles;  // if it is going to be a history
     BINOSPLAT_STORED(Uints) tile_mask;       // lib/tile_mask.glsl: the tiles that are rendered; null: all
     BINOSPLAT_STORED(Uints) tile_list;       // the same, unordered, if passes chose them
-    BINOSPLAT_STORED(Uints) full_tiles;      // if tiles are chosen or may be coarse: those with pairs, coarse ones from the end backwards
+    // If tiles are chosen or may be coarse: those with pairs, coarse ones from the end backwards.
+    BINOSPLAT_STORED(Uints) full_tiles;
     // If passes choose tiles, for each tile:
     BINOSPLAT_STORED(Uints) tile_kinds;
     BINOSPLAT_STORED(Uints) tile_costs;   // in pairs
     BINOSPLAT_STORED(Uints) tile_errors;  // expected; if an eye does not resolve two rows: kSeenCoarsely
     BINOSPLAT_STORED(Uints) tile_prices;  // bin << 22 | cost
-    ListState pairs;                      // in the first target: those of all targets that are rendered at once
+    // In the first target: those of all targets that are rendered at once.
+    ListState pairs;
     EyeCounters counters;
     WarpView warp;  // if it is made from another
     WarpCounters warp_counters;
     PastView past;  // if it is made from its own history
     PastBlockList past_blocks;
-    ListState chosen_tiles;    // if it is made from either: those that are rendered; in the first target, per_item is for all
+    // If it is made from either: those that are rendered; in the first target, per_item is for all.
+    ListState chosen_tiles;
     ListState chosen_visible;  // its visible splats, or none if there is no such tile
-    uint first_tile;           // the number of its first tile; tiles are numbered through all targets that are rendered at once
-    uint row_words;            // of `moving` and `arrivals`
-    uint measured;             // which of every kMeasuredParts tiles is measured for its loss; kMeasuredParts: none
-    float depth_scale;         // of mesh_depths
+    // The number of its first tile; tiles are numbered through all targets that are rendered at once.
+    uint first_tile;
+    uint row_words;  // of `moving` and `arrivals`
+    // Which of every kMeasuredParts tiles is measured for its loss; kMeasuredParts: none.
+    uint measured;
+    float depth_scale;  // of mesh_depths
     float depth_offset;
-    uint unused;   // a multiple of eight bytes in both languages
-    uint is_made;  // 1: every tile shows a picture warped from a history, which stays if the lists' capacity does not suffice
-    float area;    // of a pixel, in pixels of the eye's own picture: the weight of an error in it
+    uint unused;  // a multiple of eight bytes in both languages
+    // 1: every tile shows a picture warped from a history, which stays if the lists' capacity does not
+    // suffice
+    uint is_made;
+    float area;  // of a pixel, in pixels of the eye's own picture: the weight of an error in it
 };
 BINOSPLAT_ALIGNED_ARRAY_OF(TargetState, 8, TargetStates);
 

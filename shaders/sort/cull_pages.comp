@@ -68,7 +68,8 @@ bool mayShow(ScenePage page, EyeView eye) {
 // would lie. Returns their number.
 uint listPages(uint first_word, uint words) {
     const uint total = sumRange(pass.word_offsets, first_word, first_word + words);
-    memoryBarrierBuffer();  // as in lib/last_group.glsl: the sums are passed from the threads that made them to all
+    // As in lib/last_group.glsl: the sums are passed from the threads that made them to all.
+    memoryBarrierBuffer();
     barrier();
     memoryBarrierBuffer();
     uint word = first_word + gl_LocalInvocationIndex;

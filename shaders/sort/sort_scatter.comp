@@ -13,11 +13,13 @@
 
 layout(constant_id = 0) const uint kThreads = 128;
 layout(constant_id = 1) const uint kMaxSubgroups = 8;
-layout(constant_id = 2) const uint kComparedLanes = 0;  // not 0: the subgroup width, if comparisons are cheaper than ballots
+// Not 0: the subgroup width, if comparisons are cheaper than ballots.
+layout(constant_id = 2) const uint kComparedLanes = 0;
 layout(local_size_x_id = 0) in;
 layout(push_constant, scalar) uniform Push { SortScatterPass pass; };
 
-shared uint subgroup_digits[kMaxSubgroups * kMaxDigits];  // counts, then where the next key of a subgroup's digit goes
+// Counts, then where the next key of a subgroup's digit goes.
+shared uint subgroup_digits[kMaxSubgroups * kMaxDigits];
 
 uint digitOf(uint key) { return (key >> pass.shift) & (pass.digits - 1); }
 

@@ -1,4 +1,5 @@
-// bin, second step: the pairs of the splats that bin listed. A subgroup per splat and a lane per row of tiles.
+// bin, second step: the pairs of the splats that bin listed. A subgroup per splat and a lane per row of
+// tiles.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_buffer_reference_uvec2 : require

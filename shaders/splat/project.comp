@@ -11,7 +11,8 @@
 
 layout(local_size_x = kGroupSize) in;
 layout(push_constant, scalar) uniform Push { ProjectPass pass; };
-layout(constant_id = 1) const bool kMasked = false;  // only tiles of the mask count; splats that meet none cost little
+// Only tiles of the mask count; splats that meet none cost little.
+layout(constant_id = 1) const bool kMasked = false;
 layout(constant_id = 2) const uint kSplatKind = kDiscs;
 layout(constant_id = 3) const bool kPlaced = false;  // scenes placed among others
 
@@ -28,7 +29,8 @@ layout(constant_id = 3) const bool kPlaced = false;  // scenes placed among othe
 
 shared uint group_tiles;
 
-// How many tiles (of the mask, if there is one) the splat meets; `small` has a bit for each if the box is small enough.
+// How many tiles (of the mask, if there is one) the splat meets; `small` has a bit for each if the box is
+// small enough.
 uint countTiles(Outline outline, ivec4 box, uvec2 size_tiles, out uint small) {
     const bool fits = isSmallBox(box);
     uint tiles = 0;

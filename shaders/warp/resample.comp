@@ -47,11 +47,13 @@ shared uint arrived_bits[kPlaced ? 1 : kLongestRow / 32];
 shared uint tile_classes[kClasses ? kLongestRow / 16 : 1];
 const uint kMostTiles = kLongestRow / 16;
 
-shared uint moved_tiles[kMostTiles];  // tiles of this row, unordered; from the end those in which this row is a mean of others
+// Tiles of this row, unordered; from the end those in which this row is a mean of others.
+shared uint moved_tiles[kMostTiles];
 shared uint moved_count;
 shared uint mean_count;
 shared uint hidden_count;
-shared uint open_tiles[kPlaced ? 1 : kMostTiles];  // slots of moved_tiles whose tiles have pixels that nothing reached
+// Slots of moved_tiles whose tiles have pixels that nothing reached.
+shared uint open_tiles[kPlaced ? 1 : kMostTiles];
 shared uint open_bits[kPlaced ? 1 : (kMostTiles + 31) / 32];
 shared uint open_count;
 

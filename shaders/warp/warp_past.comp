@@ -28,7 +28,8 @@ const uvec2 kRegionCells = uvec2(kPastTiles, 1) * (kTileSize / kCellSize);
 const int kColumns = int(kPastColumns), kRows = int(kPastRows);
 
 shared uint listed_count, listed_first;  // this workgroup's part of the list of blocks
-shared uint cell_grown[kRegionCells.x * kRegionCells.y];    // squared errors expected of this step, summed, in kErrorSteps
+// Squared errors expected of this step, summed, in kErrorSteps.
+shared uint cell_grown[kRegionCells.x * kRegionCells.y];
 shared uint tile_squared_gradient[kPastTiles];
 // Where the blocks of a cell come from: squares of the history's errors, and how fast they grow, summed in
 // kCarriedSteps.
@@ -100,7 +101,8 @@ void resampleBlock(PastView view, uvec2 first, BlockMoves moves, ivec2 last) {
         const float beside = float(c) - 0.5 * float(kColumns - 1);
         lagrangeWeights(clamp(moves.mean.y + beside * moves.across.y - float(base_y), 0, 1), weights_y[c]);
     }
-    vec4 sums[kTaps][kColumns];  // of the block's rows to which the source rows so far contribute; the first one is completed first
+    // Sums for the block's rows to which the source rows so far contribute; the first one is completed first.
+    vec4 sums[kTaps][kColumns];
     [[unroll]] for (int k = 0; k < int(kTaps); ++k) {
         [[unroll]] for (int c = 0; c < kColumns; ++c) { sums[k][c] = vec4(0); }
     }

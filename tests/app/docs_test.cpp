@@ -118,7 +118,8 @@ bool isPlaceholder(const std::string& word) {
 // The reason why `binosplat CALL` would be refused, or "". Values are checked only where no word is a
 // placeholder.
 std::string wrongCall(std::vector<std::string> call) {
-    if (call.size() == 1 && std::ranges::find(commands(), call[0], &Command::name) != commands().end()) { return ""; }  // mentioned, not called
+    // Mentioned, not called.
+    if (call.size() == 1 && std::ranges::find(commands(), call[0], &Command::name) != commands().end()) { return ""; }
     // A file in place of a command means `view`.
     if (call[0] == "FILE" || call[0].ends_with(".ply")) { call.insert(call.begin(), "view"); }
     std::erase(call, "OPTIONS");

@@ -64,7 +64,8 @@ int runInFork(const std::string& arguments, const std::string& environment, cons
     const pid_t child = fork();
     if (child < 0) { return -1; }
     if (child == 0) {
-        for (const int signal : {SIGINT, SIGILL, SIGFPE, SIGSEGV, SIGTERM, SIGABRT}) { std::signal(signal, SIG_DFL); }  // instead of the test's handlers
+        // Instead of the test's handlers.
+        for (const int signal : {SIGINT, SIGILL, SIGFPE, SIGSEGV, SIGTERM, SIGABRT}) { std::signal(signal, SIG_DFL); }
         redirect(STDOUT_FILENO, outputs / "output");
         redirect(STDERR_FILENO, outputs / "errors");
         std::filesystem::current_path(folder);

@@ -1,4 +1,5 @@
-// Facts about rendering along a path: numbered frames of both eyes, between poses too, and nothing half-written.
+// Facts about rendering along a path: numbered frames of both eyes, between poses too, and nothing
+// half-written.
 #include "tests/app/program_script.h"
 
 SUITE(path) {

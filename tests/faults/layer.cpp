@@ -1,10 +1,10 @@
 // A Vulkan layer in which a call fails, or a signal arrives, at a point that a test names: machines do this
 // at unknown points.
 // BINOSPLAT_FAULT=CALL:N:FAULT with CALL submit, wait, present or allocate, N from 1, and FAULT lost,
-// surface-lost, surface-lost-once, no-device-memory, no-device-memory-once, no-host-memory, type-full, SIGINT or
-// SIGTERM. From the Nth such call on, what is lost stays lost and memory stays full; signals come once. On a
-// lost device, waiting until it is idle always fails. type-full: buffers may lie in one more type of memory, and
-// the first type is full.
+// surface-lost, surface-lost-once, no-device-memory, no-device-memory-once, no-host-memory, type-full, SIGINT
+// or SIGTERM. From the Nth such call on, what is lost stays lost and memory stays full; signals come once. On
+// a lost device, waiting until it is idle always fails. type-full: buffers may lie in one more type of
+// memory, and the first type is full.
 // BINOSPLAT_FAULT_TICKS=N: timestamps are N ticks apart, however long the work between them took.
 // BINOSPLAT_FAULT_TRACE=FILE: a line for each submission and each wait, in their order, with the fence:
 // "submit 55d0", "wait 55d0"; "wait all" for a wait for the queue or the device.

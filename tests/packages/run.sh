@@ -3,9 +3,10 @@
 #   tests/packages/run.sh [BUILD]
 #       Makes the Debian packages and the tarball of a finished build, and tries each: some ten minutes.
 #   tests/packages/run.sh --whole [options of ctest]
-#       Begins with a clean clone of the last commit in a fresh tree: `./run demo`, `./run test` and `cmake --install`, each tried, then the
-#       packages made there. Hours the first time; the compiler's cache is kept.
-# In build/ stay bare-debian, where packages are tried, bare-whole, the other tree, and bare-ccache.
+#       Starts from a clean clone of the last commit in a fresh tree: tries `./run demo`, `./run test` and
+#       `cmake --install`, then the packages made there. Takes hours the first time; the compiler's cache is
+#       kept.
+# Leaves in build/: bare-debian, where packages are tried; bare-whole, the other tree; and bare-ccache.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 

@@ -1,6 +1,6 @@
-// Reads a streamed SOG folder as PlayCanvas does: lod-meta.json with the engine's own class, and every chunk with
-// splat-transform's reader. Prints what it found; exits with 1 if a leaf names something that does not exist, or
-// if its splats lie elsewhere.
+// Reads a streamed SOG folder as PlayCanvas does: lod-meta.json with the engine's own class, and every chunk
+// with splat-transform's reader. Prints what it found; exits with 1 if a leaf names something that does not
+// exist, or if its splats lie elsewhere.
 //   node read_levels.mjs FOLDER      with both packages in node_modules of the current folder
 import { readFileSync } from 'node:fs';
 import { dirname, join, resolve } from 'node:path';

@@ -74,7 +74,8 @@ pictures() { # WHAT FOLDER PATTERN
         wrong "$1: a picture has ${db:-0} dB only, must be $least_db at least"
     fi
 }
-registerRuntime() { # of the loader: a program of an administrator, as Wine's user is, does not go by XR_RUNTIME_JSON
+# For the loader: a program run by an administrator, as Wine's user is, ignores XR_RUNTIME_JSON.
+registerRuntime() {
     wine reg add 'HKLM\Software\Khronos\OpenXR\1' /v ActiveRuntime /t REG_SZ /d "$(winepath -w "$1")" /f >/dev/null
 }
 forgetRuntime() { wine reg delete 'HKLM\Software\Khronos\OpenXR\1' /v ActiveRuntime /f >/dev/null 2>&1 || true; }

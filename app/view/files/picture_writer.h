@@ -18,8 +18,8 @@ std::string pictureName(const std::string& scene, const std::tm& when);
 // Writes pictures on a thread of its own: frames must not wait for files.
 class PictureWriter {
 public:
-    // Begins to write one eye's picture, or both side by side, into the user's folder of pictures. Waits for the
-    // previous picture.
+    // Begins to write one eye's picture, or both side by side, into the user's folder of pictures. Waits for
+    // the previous picture.
     void begin(std::vector<Image> eyes, const std::string& scene);
     // The name of a picture that has been written since, or why it was not; once.
     [[nodiscard]] std::optional<std::string> takeOutcome();

@@ -17,18 +17,19 @@ namespace binosplat {
 
 class ShownScene {
 public:
-    // Begins to load the scene of the options. `context`, `options` and `log` outlive this. With `ahead` scenes come with their kernels.
+    // Begins to load the scene of the options. `context`, `options` and `log` outlive this. With `ahead`
+    // scenes come with their kernels.
     ShownScene(const Context& context, const ViewOptions& options, const FrameLog& log, std::optional<FramesAhead> ahead = {});
 
     // Null until the first scene is loaded.
     [[nodiscard]] LoadedScene* get() const { return scene_.get(); }
-    // The frame of whatever scene is shown, once there is one; and another one, made at the first call, for the insets of a headset that
-    // has them. Throws Error if the device lacks the memory.
+    // The frame of whatever scene is shown, once there is one; and another one, made at the first call, for
+    // the insets of a headset that has them. Throws Error if the device lacks the memory.
     [[nodiscard]] StereoFrame& frame() const { return *frame_; }
     [[nodiscard]] StereoFrame& insets();
     void dropInsets() { insets_.reset(); }
-    // What these eyes see of the scene now, by a frame of its own: those under way go on as they were. Waits for the device. Throws Error
-    // if it lacks the memory.
+    // What these eyes see of the scene now, by a frame of its own: those under way go on as they were. Waits
+    // for the device. Throws Error if it lacks the memory.
     [[nodiscard]] std::vector<Image> picturesOf(std::span<const Eye> eyes, const FrameSettings& settings);
     // Makes their kernels anew, see StereoFrame.
     void rebuildKernels();
@@ -44,20 +45,22 @@ public:
     // True while kernels for drawable() are being made.
     [[nodiscard]] bool isMakingKernels() const { return maker_ != nullptr; }
 
-    // The wearer's settings of frames. The next scene comes with kernels for them; for the current one they are made beside the frames,
-    // unless the options have the scene loaded first, so that runs are repeatable.
+    // The wearer's settings of frames. The next scene comes with kernels for them; for the current one they
+    // are made beside the frames, unless the options have the scene loaded first, so that runs are
+    // repeatable.
     void expect(const StereoOptions& stereo, glm::uvec2 size_px, bool tint);
     // `settings`, with the method replaced by one that can be drawn until its kernels are ready.
     [[nodiscard]] ViewSettings drawable(ViewSettings settings) const;
 
     // Begins to load another scene; the current one stays until that is loaded.
     void begin(const std::string& scene);
-    // The same for the scene `step` further on in the folder of the last requested one, once `files` has found it.
+    // The same for the scene `step` further on in the folder of the last requested one, once `files` has
+    // found it.
     void beginBeside(int step, FileWorker& files);
-    // Waits for the next scene, shows it (or, where it lacks memory beside the one shown, has that one go and begins again: then there is
-    // none for a while) and places the wearer: where they left it, where `state` was asked for (only for the first scene),
-    // or where the scene was saved. Returns what went wrong, or empty; throws it if the options' scene cannot be loaded and there is no
-    // other to stay with.
+    // Waits for the next scene, shows it (or, where it lacks memory beside the one shown, has that one go and
+    // begins again: then there is none for a while) and places the wearer: where they left it, where `state`
+    // was asked for (only for the first scene), or where the scene was saved. Returns what went wrong, or
+    // empty; throws it if the options' scene cannot be loaded and there is no other to stay with.
     [[nodiscard]] std::string take(ViewState& state);
 
 private:
@@ -69,7 +72,8 @@ private:
     void haveReady(const FramesAhead& ahead);
     // Within a handler: the next scene cannot be shown. Returns `why`, or rethrows.
     [[nodiscard]] std::string goOnWithout(const std::string& why);
-    // What is shown goes, so that the scene that was asked for has its memory, and that one is loaded again; says so.
+    // What is shown goes, so that the scene that was asked for has its memory, and that one is loaded again;
+    // says so.
     [[nodiscard]] std::string makeWay(const ViewState& state);
 
     const Context& context_;

@@ -25,9 +25,10 @@ struct WearerNow {
     Pose room_from_head;
     std::optional<double> floor_m;  // the floor's y in the room, if the runtime knows
     double step_seconds = 0.0;
-    std::array<PathSeen, 2> paths{};         // of the hands' arcs a moment ago, and how they met the scene
-    std::vector<glm::dvec3> ground_scene{};  // what was seen a moment ago where the ground may be, in the scene
-    std::optional<double> scene_floor_m{};   // the scene's floor as the room's y, if it is known
+    std::array<PathSeen, 2> paths{};  // of the hands' arcs a moment ago, and how they met the scene
+    // What was seen a moment ago where the ground may be, in the scene.
+    std::vector<glm::dvec3> ground_scene{};
+    std::optional<double> scene_floor_m{};  // the scene's floor as the room's y, if it is known
 };
 
 // A widget of a tool: a choice of two after `words`, or a check box if there are no names.

@@ -83,7 +83,8 @@ TEST_CASE("axes stay until the view leaves the picture, then move ahead of a hea
     }
     REQUIRE(moves.size() >= 3);
     CHECK(moves.size() <= 4);
-    CHECK(moves[2] - moves[1] > 1.5 * kMarginDegrees / 0.5);  // nearly twice the margin, since they moved ahead of the head
+    // Nearly twice the margin, since they moved ahead of the head.
+    CHECK(moves[2] - moves[1] > 1.5 * kMarginDegrees / 0.5);
     // Other angles get a picture of their own.
     for (Eye& view : views) { view.size_px.x += 16; }
     CHECK(axes.follow(views)[0].size_px.x != 0);

@@ -44,8 +44,8 @@ struct Known {
 
 double hyab(const glm::dvec3& a, const glm::dvec3& b) { return std::abs(a.x - b.x) + std::hypot(a.y - b.y, a.z - b.z); }
 
-// HyAB of hunt-adjusted green and blue, from the textbook Lab of sRGB's primaries: green (87.735, -86.183, 83.180) and blue
-// (32.299, 79.191, -107.865).
+// HyAB of hunt-adjusted green and blue, from the textbook Lab of sRGB's primaries: green (87.735, -86.183,
+// 83.180) and blue (32.299, 79.191, -107.865).
 const double kLargest = std::pow(hyab({87.735, 0.87735 * -86.183, 0.87735 * 83.180}, {32.299, 0.32299 * 79.191, 0.32299 * -107.865}), 0.7);
 
 double colourScore(double distance) {
@@ -221,7 +221,8 @@ TEST_CASE("colours have the figures of their standards, there and back") {
     }
     CHECK(isNear(ycxczFromXyz(xyzFromLinear(glm::vec3(1.0f))), {100.0f, 0.0f, 0.0f}, 1e-4f));
     CHECK(isNear(ycxczFromXyz(glm::vec3(0.0f)), {-16.0f, 0.0f, 0.0f}, 1e-6f));
-    // Encoded 0.5 is linear 0.21404; middle grey 119/255 is 0.1845; the straight part ends at 0.04045 / 12.92.
+    // Encoded 0.5 is linear 0.21404; middle grey 119/255 is 0.1845; the straight part ends at 0.04045 /
+    // 12.92.
     CHECK(isNear(linearFromEncoded({0.0f, 0.5f, 1.0f}), {0.0f, 0.21404f, 1.0f}, 1e-5f));
     CHECK(isNear(linearFromEncoded({0.04045f, 0.04046f, 119.0f / 255.0f}), {0.0031308f, 0.0031316f, 0.18447f}, 1e-5f));
     for (const glm::vec3& rgb : {glm::vec3(0.1f, 0.5f, 0.9f), {1.0f, 0.0f, 0.3f}, {0.0f, 0.0f, 0.0f}}) {

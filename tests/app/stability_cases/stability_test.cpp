@@ -38,7 +38,8 @@ TEST_CASE_FIXTURE(Gpu, "every case is finite, repeats and keeps to its bounds be
     CaseRunner runner(context());
     for (const Case& one : makeCatalogue()) {
         CHECK(names.insert(one.name()).second);
-        CHECK(std::min(one.rendered.psnr_db, one.moved.psnr_db) > 10.0);  // anything less would not be a bound
+        // Anything less would not be a bound.
+        CHECK(std::min(one.rendered.psnr_db, one.moved.psnr_db) > 10.0);
         if (one.large) { continue; }
         const CaseScore score = runner.run(one);
         CHECK(score.pictures.size() == 11);
@@ -92,7 +93,8 @@ TEST_CASE_FIXTURE(Gpu,
 
 TEST_CASE_FIXTURE(Gpu, "rotations of any length are those of length one" * nightly()) {
     const auto unit = render(context(), makeQuaternions(1.0), Mode::kShared);
-    for (const double length : {std::ldexp(1.0, -60), 0.25, std::ldexp(1.0, 60)}) {  // powers of two cause no rounding
+    // Powers of two cause no rounding.
+    for (const double length : {std::ldexp(1.0, -60), 0.25, std::ldexp(1.0, 60)}) {
         CHECK(render(context(), makeQuaternions(length), Mode::kShared) == unit);
     }
 }

@@ -250,7 +250,8 @@ TEST_CASE("two ends that a ray clicks on, and a number, give the scene its true 
     PanelSketch sketch;
     sketch.status.entry = &entry;
     const WidgetPlaces keys = sketch.draw().places;
-    Acts acts(kSmall + "extension XR_EXT_hand_tracking off\n");  // with hands, a palm that faces the eyes would point at nothing
+    // With hands, a palm that faces the eyes would point at nothing.
+    Acts acts(kSmall + "extension XR_EXT_hand_tracking off\n");
     acts.click(placeOf("True size"));
     for (const double x : {0.05, 0.65}) {
         acts.move("controller right", lookingAt({x, 1.2, -0.4}, {x, 1.2, -1.0})).wait(0.1).press("right trigger").wait(0.05);

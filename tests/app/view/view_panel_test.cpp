@@ -239,7 +239,8 @@ TEST_CASE_FIXTURE(AtWork, "a runtime with no more than OpenXR 1.0 and Vulkan sho
     const std::size_t frame = run.pictureAt(shared);
     CHECK_FALSE(run.view(frame).contains("depth"));
     checkAgreesWithRender(work, run, frame, {}, "--mode shared" + kAsHeadset);
-    CHECK(run.layers(run.frameAt(aiming), "quad").size() > 10);  // rays, controllers and an arc beside the panel
+    // Rays, controllers and an arc beside the panel.
+    CHECK(run.layers(run.frameAt(aiming), "quad").size() > 10);
     // Without a floor, the target is as far below as people are tall.
     const auto targets = run.quadsAsWide(run.frameAt(aiming), 0.5);
     REQUIRE(targets.size() == 1);

@@ -184,7 +184,8 @@ inline void checkClean(const ViewRun& run) {
     INFO("stdout: " << run.outcome.output);
     INFO("stderr: " << run.outcome.errors);
     CHECK(run.outcome.exit_code == 0);
-    CHECK(run.outcome.errors == "Core Validation output type: text, first time = true\n");  // the layer was loaded, and reported nothing else
+    // The layer was loaded, and reported nothing else.
+    CHECK(run.outcome.errors == "Core Validation output type: text, first time = true\n");
     CHECK(these(run.outcome.output.find("VUID"), run.outcome.output.find("ERROR")) == these(std::string::npos, std::string::npos));
 }
 

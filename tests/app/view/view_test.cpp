@@ -1,4 +1,5 @@
-// Facts about `binosplat view`, driven through the standard OpenXR loader by scripts of the simulated headset: what is seen, and where.
+// Facts about `binosplat view`, driven through the standard OpenXR loader by scripts of the simulated
+// headset: what is seen, and where.
 #include "engine/picture/turned.h"
 #include "tests/app/view/view_acts.h"
 
@@ -57,8 +58,8 @@ void checkEdge(const ViewRun& run, std::size_t frame, bool made) {
     CHECK(std::abs(left.x) < 0.06);
 }
 
-// For pictures from where the wearer begins. Two of the same view may differ a little, since the runtime turns
-// them by the last digit of a float.
+// For pictures from where the wearer begins. Two of the same view may differ a little, since the runtime
+// turns them by the last digit of a float.
 const std::string kBeginning = "rate 100\nsize 128 128\nframes every 5\n";
 constexpr double kSamePictureDb = 28.0, kOtherPictureDb = 25.0;
 

@@ -47,7 +47,8 @@ TEST_CASE("whatever becomes of the session, the head, the hands and the view, it
     for (const double seconds : {shown, hidden - 0.03, unseen - 0.02, off - 0.02, lost - 0.02, turning, other, end}) {
         CAPTURE(seconds);
         REQUIRE(run.layers(run.frameAt(seconds), "projection").size() == 1);
-        CHECK(run.view(run.frameAt(seconds)).contains("depth"));  // the scene, not the colour shown while waiting
+        // The scene, not the colour shown while waiting.
+        CHECK(run.view(run.frameAt(seconds)).contains("depth"));
     }
     CHECK(run.frames.at(run.frameAt(hidden + 0.03)).at("session_state") == "SYNCHRONIZED");
     CHECK(run.frames.at(run.frameAt(unfocused + 0.03)).at("session_state") == "VISIBLE");
@@ -291,7 +292,8 @@ TEST_CASE_FIXTURE(AtWork, "events that the runtime loses are made up for: what t
     };
     // The mask for the new angles, announced by an event (XrEventDataVisibilityMaskChangedKHR).
     const std::vector<std::string> told = lines("told", "");
-    CHECK(told.size() == 3);  // for the old angles, for the new ones with the old mask, and with their own mask
+    // For the old angles, for the new ones with the old mask, and with their own mask.
+    CHECK(told.size() == 3);
     CHECK(lines("lost", fmt::format("BINOSPLAT_XR_LOSE={}", 1000031001)) == told);
 }
 

@@ -133,7 +133,8 @@ public:
     }
     // What a window manager does when the user clicks the cross: it sends a message that the window may obey.
     void clickCross(unsigned long window) const {
-        // Xlib's XClientMessageEvent: its kind (33), sent, to which window, a message, bits of a number, a number.
+        // Xlib's XClientMessageEvent: its kind (33), sent, to which window, a message, bits of a number, a
+        // number.
         send(window, {33, 0, 1, reinterpret_cast<unsigned long>(display_), window, atomOf("WM_PROTOCOLS"), 32, atomOf("WM_DELETE_WINDOW")});
     }
     // What a window manager records on a window that it takes off the screen (3), or brings back (1).

@@ -1,4 +1,5 @@
-// Facts about the window beside the headset: what mouse, keys and files do there, what it shows, and how it ends.
+// Facts about the window beside the headset: what mouse, keys and files do there, what it shows, and how it
+// ends.
 #include "tests/app/view/view_window.h"
 #include "app/view/window/mirror_window.h"
 #include "tests/app/view/unchanged_shaders.h"

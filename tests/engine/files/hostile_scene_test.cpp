@@ -17,7 +17,8 @@ struct Target {
     std::size_t numbers = 0, lines = 0;  // in this many bytes, numbers are replaced and lines shuffled
     bool must_be_whole = true;           // it is refused whatever length it is cut to
     std::function<std::string(const std::string&)> wrap = [](const std::string& bytes) { return bytes; };
-    std::string file = "broken", source = "broken";  // the file that is written, and the one that is then loaded
+    // The file that is written, and the one that is then loaded.
+    std::string file = "broken", source = "broken";
     std::size_t most_splats = 1000;
     std::vector<std::string> more{};
 };
@@ -51,11 +52,13 @@ void attack(const Folder& folder, const std::vector<Target>& targets, std::size_
     for (const Target& target : targets) {
         (void)folder.write(target.file, target.wrap(target.good));
         CHECK_MESSAGE(loadError(folder.file(target.source)).empty(), target.name);
-        if (const char* const seeds = std::getenv("BINOSPLAT_WRITE_SEEDS")) {  // a folder, for tests/fuzz/run.sh --keep
+        // A folder, for tests/fuzz/run.sh --keep.
+        if (const char* const seeds = std::getenv("BINOSPLAT_WRITE_SEEDS")) {
             std::ofstream(std::filesystem::path(seeds) / target.name, std::ios::binary) << target.wrap(target.good);
         }
         Tally tally;
-        std::size_t count = 0, step = stride * (1 + target.good.size() / 2000);  // a long file is cut at fewer lengths
+        // A long file is cut at fewer lengths.
+        std::size_t count = 0, step = stride * (1 + target.good.size() / 2000);
         const Attempt attempt = [&](const std::string& what, const std::string& bytes) {
             if (count++ % step != 0) { return; }
             (void)folder.write(target.file, target.wrap(bytes));
@@ -202,7 +205,8 @@ std::vector<Target> sogTargets(const Folder& folder) {
                            .good = makeZip(withShortText(makeSog(2, false)), are_deflated),
                            .most_splats = 9};
         targets.push_back(whole);
-        targets.push_back(partOf(whole, whole.good.find("PK\x01\x02")));  // most of the damage is done in the directory at the end
+        // Most of the damage is done in the directory at the end.
+        targets.push_back(partOf(whole, whole.good.find("PK\x01\x02")));
         targets.back().changes = 800;
     }
     // As `convert` writes them, alone and as chunks.

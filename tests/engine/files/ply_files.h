@@ -19,7 +19,8 @@ public:
     Folder& operator=(const Folder&) = delete;
     [[nodiscard]] std::string file(const std::string& name) const { return (path_ / name).string(); }
     [[nodiscard]] std::string write(const std::string& name, const std::string& bytes) const {
-        std::filesystem::remove(file(name));  // some file systems wait for the disk when a file is truncated and rewritten
+        // Some file systems wait for the disk when a file is truncated and rewritten.
+        std::filesystem::remove(file(name));
         std::ofstream(file(name), std::ios::binary) << bytes;
         return file(name);
     }

@@ -62,7 +62,8 @@ TEST_CASE_FIXTURE(InFolder, "SH bands that are all zero are left out, even if a 
     REQUIRE(scene.sh_degree == 2);
     REQUIRE(scene.sh.size() == 700 * 27);
     CHECK(these(scene.sh[3 * 27 + 3 * 1 + 0], scene.sh[699 * 27 + 3 * 7 + 1]) == these(7.0f, 9.0f));
-    CHECK(std::count(scene.sh.begin(), scene.sh.end(), 0.0f) == 700 * 25 - 2 + 0);  // f_dc_1 and f_dc_2 are not zero
+    // f_dc_1 and f_dc_2 are not zero
+    CHECK(std::count(scene.sh.begin(), scene.sh.end(), 0.0f) == 700 * 25 - 2 + 0);
 }
 
 TEST_CASE("blocks that are read ahead on a thread of their own come all and in order, and what goes wrong in one is said") {
@@ -109,7 +110,8 @@ TEST_CASE_FIXTURE(InFolder, "of three scales the shortest becomes the last, the 
         const int u = static_cast<int>((shortest + 1) % 3), v = static_cast<int>((shortest + 2) % 3);
         CHECK(glm::length(kept[0] - trained[u]) < 1e-6f);
         CHECK(glm::length(kept[1] - trained[v]) < 1e-6f);
-        CHECK(glm::length(kept[2] - trained[static_cast<int>(shortest)]) < 1e-6f);  // the normal lies along the shortest axis
+        // The normal lies along the shortest axis.
+        CHECK(glm::length(kept[2] - trained[static_cast<int>(shortest)]) < 1e-6f);
         CHECK(glm::determinant(kept) == doctest::Approx(1.0));
         CHECK(these(scene.scales[0].x, scene.scales[0].y) == these(doctest::Approx(std::exp(logs[u])), doctest::Approx(std::exp(logs[v]))));
         CHECK(notes.three_scales);

@@ -64,7 +64,8 @@ TEST_CASE("every built-in scene is sound, repeats exactly and has a view") {
     for (const BuiltinInfo& info : listBuiltins()) {
         CAPTURE(info.name);
         LoadNotes notes;
-        const std::uint64_t splats = std::min<std::uint64_t>(info.default_splats, 20'000);  // baking light takes a while
+        // Baking light takes a while.
+        const std::uint64_t splats = std::min<std::uint64_t>(info.default_splats, 20'000);
         const Scene scene = loadScene("builtin:" + info.name, splats == info.default_splats ? 0 : splats, &notes);
         checkSound(scene, splats);
         CHECK(scene.name == "builtin:" + info.name);
@@ -91,7 +92,8 @@ TEST_CASE("the atelier has exactly the splats asked for, its light is baked alik
         if (splats < 50'000) { continue; }
         const SceneSummary summary = describeScene(scene);
         for (const std::size_t band : {1u, 2u, 3u}) { CHECK(summary.splats_using_band[band] == between(50, 5'000)); }
-        CHECK(summary.max_position.y < 50.0f);  // y points down: the feet of the hills lie slightly below, the sky far above
+        // y points down: the feet of the hills lie slightly below, the sky far above
+        CHECK(summary.max_position.y < 50.0f);
         CHECK(summary.min_position.y < -100.0f);
         CHECK(summary.max_position.z > 300.0f);
     }

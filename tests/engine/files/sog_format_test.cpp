@@ -7,7 +7,8 @@ void checkContents(const Scene& scene, const LoadNotes& notes, bool version1) {
     REQUIRE(scene.size() == 8);
     CHECK(notes.skipped_not_finite + notes.skipped_zero_rotation == 0);
     for (std::size_t i = 0; i < 8; ++i) {
-        const double x = -1.0 + 2.0 * (32.0 * static_cast<double>(i) * 256.0 / 65535.0);  // in logarithmic space
+        // In logarithmic space.
+        const double x = -1.0 + 2.0 * (32.0 * static_cast<double>(i) * 256.0 / 65535.0);
         CHECK(these(scene.positions[i].x, scene.positions[i].y, scene.positions[i].z) ==
               these(doctest::Approx(std::copysign(std::expm1(std::abs(x)), x)), doctest::Approx(-std::expm1(2.0)), doctest::Approx(1.0)));
         // The first of three growing scales is dropped.
@@ -35,7 +36,8 @@ TEST_CASE("a WebP picture among other chunks is found, and gives back the bytes 
     for (const glm::uvec2 size_px : {glm::uvec2(1, 1), glm::uvec2(5, 7), glm::uvec2(192, 7)}) {
         std::vector<std::uint8_t> rgba;
         for (std::uint32_t i = 0; i < 4 * size_px.x * size_px.y; ++i) { rgba.push_back(static_cast<std::uint8_t>(random())); }
-        for (std::size_t i = 3; i < rgba.size(); i += 8) { rgba[i] = 0; }  // colours under an alpha of zero are data, too
+        // Colours under an alpha of zero are data, too.
+        for (std::size_t i = 3; i < rgba.size(); i += 8) { rgba[i] = 0; }
         const std::string plain = makeWebp(size_px.x, size_px.y, rgba);
         const std::string chunks = "WEBPVP8X" + littleWord(10) + littleWord(0x10) + littleWord(size_px.x - 1, 3) +
                                    littleWord(size_px.y - 1, 3) + "ICCP" + littleWord(3) + std::string(4, 'i') + plain.substr(12);
@@ -85,7 +87,8 @@ TEST_CASE_FIXTURE(InFolder, "rotations name their largest component; splats that
         }
     }
     files["q.webp"] = makeNine([](int i) { return std::array{128, 128, 128, i < 3 ? 251 : 252}; });
-    files["meta.json"] = replaced(files["meta.json"], "\"count\":128", "\"count\":65");  // even splats use entry 65
+    // Even splats use entry 65.
+    files["meta.json"] = replaced(files["meta.json"], "\"count\":128", "\"count\":65");
     LoadNotes notes;
     CHECK(loadScene(writeSogFolder(folder, "scene", files), 0, &notes).size() == 3);  // 3, 5, 7
     CHECK(these(notes.skipped_not_finite, notes.skipped_zero_rotation) == these(4, 1));

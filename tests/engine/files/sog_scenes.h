@@ -53,7 +53,8 @@ inline SogText makeSog(int version = 2, bool with_palette = true) {
             for (std::uint8_t k = 0; k < 3; ++k) { centroids.insert(centroids.end(), {entry, k, 100, 255}); }
         }
         files["p.webp"] = makeWebp(192, 2, centroids);
-        files["n.webp"] = makeNine([](int i) { return Rgba{i % 2 == 0 ? 65 : 1, 0, 0, 0}; });  // from the palette's second row, or from the first
+        // An entry in the palette's second row, or in the first.
+        files["n.webp"] = makeNine([](int i) { return Rgba{i % 2 == 0 ? 65 : 1, 0, 0, 0}; });
         palette = version == 2
                       ? R"(,"shN":{"count":128,"bands":1,"codebook":)" + codebook(-2, 1.0 / 64) + R"(,"files":["p.webp","n.webp"]})"
                       : R"(,"shN":{"shape":[8,9],"mins":-2,"maxs":1.984375,"quantization":8,"files":["p.webp","n.webp"]})";

@@ -123,7 +123,8 @@ TEST_CASE_FIXTURE(InFolder, "writing and reading back keeps every attribute with
         const auto [colour, sh] = shDifferences(scene, back, order);
         CHECK(position < 0.6f);
         CHECK(opacity < 0.5f / 255.0f + 1e-5f);
-        CHECK(shape < 0.05);  // 256 scales within a factor of 100, plus half a step of 1/(255 sqrt(2)) in three components
+        // 256 scales within a factor of 100, plus half a step of 1/(255 sqrt(2)) in three components
+        CHECK(shape < 0.05);
         CHECK(colour < 0.02f);
         CHECK(sh < (degree == 1 ? 0.11f : 0.25f));  // 4096 rows for 5000 splats of noise
         // The same scene gives the same file.

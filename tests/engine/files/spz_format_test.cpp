@@ -32,7 +32,8 @@ TEST_CASE_FIXTURE(InFolder, "both versions give what their bytes mean, in axes r
         REQUIRE(scene.sh_degree == 1);
         for (int i = 0; i < 9; ++i) {
             const float stored = static_cast<float>(4 * i) / 128.0f;
-            CHECK(scene.sh[static_cast<std::size_t>(3 + i)] == (i < 6 ? 0.0f - stored : stored));  // y and z change sign, x does not
+            // y and z change sign, x does not
+            CHECK(scene.sh[static_cast<std::size_t>(3 + i)] == (i < 6 ? 0.0f - stored : stored));
         }
         CHECK(std::abs(scene.rotations[0].w) == doctest::Approx(1.0).epsilon(1e-4));
         // The normal of the second splat is its own x axis, rotated.

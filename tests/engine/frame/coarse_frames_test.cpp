@@ -164,7 +164,8 @@ TEST_CASE_FIXTURE(Gpu, "a coarse tile leaves its samples' depths, a quarter of i
         const test::EyeOnDevice in_full = test::readEye(*this, other, 0, view.eye);
         for (std::size_t t = 0; t < twin.coarse.size(); ++t) {
             const std::uint64_t pairs = in_full.past.tiles[t].cost;
-            const bool is_coarse = eye.past.tiles[t].lost > 0.0 || twin.coarse[t] != 0;  // a flat tile loses nothing
+            // A flat tile loses nothing.
+            const bool is_coarse = eye.past.tiles[t].lost > 0.0 || twin.coarse[t] != 0;
             CHECK(eye.past.tiles[t].cost == (is_coarse ? pairs / 4 : pairs));
         }
     }
@@ -172,7 +173,8 @@ TEST_CASE_FIXTURE(Gpu, "a coarse tile leaves its samples' depths, a quarter of i
 
 TEST_CASE_FIXTURE(Gpu,
                   "what a coarse tile lacks counts as soon as it would be seen, and so an eye that turns to such tiles sees them in full") {
-    const reference::PastTile lacks{100, 1, {}, {0.1, 0.2, 0.3, 0.4}, {}, 0.02};  // with a squared error of 0.3072
+    // With a squared error of 0.3072.
+    const reference::PastTile lacks{100, 1, {}, {0.1, 0.2, 0.3, 0.4}, {}, 0.02};
     CHECK(reference::withLoss(lacks, 0.08).errors == lacks.errors);
     CHECK(reference::withLoss(lacks, 0.09).errors[3] == doctest::Approx(0.42));
     const ViewedScene view = viewRoom({176, 144}, 20000);

@@ -66,7 +66,8 @@ TEST_CASE_FIXTURE(Atelier, "a frame that is not waited for is the one that is, t
         for (int step = 0; step < (settings.keep_past ? 12 : 4); ++step) {
             const auto eyes = eyesAt(ofSize(view.eye, step / 4 == 1 ? glm::uvec2(64, 80) : glm::uvec2(96, 96)), step);
             ahead.renderAhead(eyes, settings);
-            if (settings.keep_past || step >= 2) { waited->render(eyes, settings); }  // `predicted` uses the frame before
+            // `predicted` uses the frame before
+            if (settings.keep_past || step >= 2) { waited->render(eyes, settings); }
             if (step % 4 == 3) { CHECK(shownBy(ahead) == shownBy(*waited)); }
         }
     }
@@ -195,7 +196,8 @@ TEST_CASE_FIXTURE(Atelier, "kernels that were made before change nothing in a pi
 
 TEST_CASE_FIXTURE(Atelier, "a frame that finds no room is whole after a jump; otherwise it is counted, and the next one is whole") {
     const auto eyes = eyesAt(view.eye, 0);
-    for (const bool jumps : {true, false}) {  // or nothing moves but a wall of splats that comes through the near plane
+    // Or nothing moves but a wall of splats that comes through the near plane.
+    for (const bool jumps : {true, false}) {
         CAPTURE(jumps);
         KeptFrame frame(context(), scene, kNoRoom);
         const auto waited = StereoFrame::beside(frame);
@@ -226,7 +228,8 @@ TEST_CASE_FIXTURE(Atelier, "lists that the device has no memory for cost the pic
     CHECK(cut_short > 0);
     CHECK(countOf(last, "tile_pairs_left") == 0);
     // Once everything fits, it is shown again.
-    CHECK(countOf(goAhead(frame, eyes, blind(), 4), "frames_cut_short") <= cut_short + 2);  // two were in flight
+    // Two were in flight.
+    CHECK(countOf(goAhead(frame, eyes, blind(), 4), "frames_cut_short") <= cut_short + 2);
     // Another scene, which fits, starts afresh in the same frame object.
     const ViewedScene splat = test::viewBuiltin("builtin:one-splat", {96, 96});
     const GpuScene splat_scene(tight, splat.scene), roomy_splat(context(), splat.scene);

@@ -14,8 +14,8 @@ FrameSettings makeSettings(Mode mode, double budget = 0.2) {
 
 ViewedScene viewAtelier() { return test::viewBuiltin("builtin:atelier", {208, 176}, 20000); }
 
-// With coarse tiles where the eyes do not look: a picture this small shows more than the eye resolves only far
-// from the gaze.
+// With coarse tiles where the eyes do not look: a picture this small shows more than the eye resolves only
+// far from the gaze.
 FrameSettings withCoarse(Mode mode) {
     FrameSettings settings = makeSettings(mode);
     settings.keep_past = mode != Mode::kMono;
@@ -106,7 +106,8 @@ TEST_CASE_FIXTURE(Gpu, "a head that stands still sees the full render within 30 
 TEST_CASE_FIXTURE(Gpu, "with work for nearly all both eyes are nearly the full render, parallel or canted, whatever room lists had") {
     const ViewedScene view = viewAtelier();
     const GpuScene scene(context(), view.scene);
-    for (const double cant : {0.0, 0.05}) {  // parallel eyes are rendered side by side, canted ones one after the other
+    // Parallel eyes are rendered side by side, canted ones one after the other.
+    for (const double cant : {0.0, 0.05}) {
         CAPTURE(cant);
         KeptFrame frame(context(), scene, {.first_capacity = {1, 1}, .threads_per_cell = 0});
         const auto full = StereoFrame::beside(frame);
@@ -240,7 +241,8 @@ TEST_CASE_FIXTURE(Gpu, "with coarse tiles, both eyes are as alone without a past
         CHECK(countOf(result, "tiles_coarse") > 50);
         const auto shown = walk.shown(), alone = walk.alone();
         CHECK(shown[kLeft].values == alone[kLeft].values);
-        CHECK(compare(shown[kRight], alone[kRight]).psnrDb() > 80.0);  // in the left eye's order, which may differ by rounding
+        // in the left eye's order, which may differ by rounding
+        CHECK(compare(shown[kRight], alone[kRight]).psnrDb() > 80.0);
         CHECK(walk.psnr() > 40.0);
         CHECK(std::ranges::any_of(result.left_out, [](const std::string& sentence) { return sentence.starts_with("reprojection: "); }));
     }

@@ -301,7 +301,8 @@ TEST_CASE_FIXTURE(Gpu, "where a part is exchanged, pictures that are made from t
             resident.remove(there[5]);
         }
         for (int frame = 0; frame < 8; ++frame) { after = psnrs(); }
-        CHECK(after[0] >= before[0] - 3.0);  // if changes were not announced: 17.5 dB lower, and 2.9 lower while it fades
+        // If changes were not announced: 17.5 dB lower, and 2.9 lower while it fades.
+        CHECK(after[0] >= before[0] - 3.0);
         CHECK(after[1] == doctest::Approx(after[0]).epsilon(1e-6));
     }
 }

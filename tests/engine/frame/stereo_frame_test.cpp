@@ -86,7 +86,8 @@ TEST_CASE_FIXTURE(Gpu, "while an eye turns, what it sees along a ray stays by di
         settings.order = order;
         for (const int tenths : {-1, 0, 1}) {
             CAPTURE(tenths);
-            Eye eye = test::makeEye({101, 101});  // with a focal length of 100 px, so the ray passes through a pixel's centre again
+            // With a focal length of 100 px, so the ray passes through a pixel's centre again.
+            Eye eye = test::makeEye({101, 101});
             eye.world_from_camera.orientation = glm::angleAxis(std::atan(0.1 * tenths), glm::dvec3(0.0, 1.0, 0.0));
             const Image picture = renderMono(context(), scene, eye, settings).picture;
             const float* pixel = &picture.values[4 * (50 * 101 + 50 - 10 * static_cast<std::size_t>(tenths))];
@@ -234,7 +235,8 @@ TEST_CASE_FIXTURE(Gpu, "memory keeps to its bounds a splat, a visible splat, a p
         CHECK(static_cast<double>(counters.at("scene_bytes")) <= most_bytes * splats);
         // Lists grow in steps of 1024.
         CHECK(counters.at("visible_bytes") <= 64 * (counters.at("splats_visible") + 1024));
-        CHECK(counters.at("pair_bytes") <= 4 * counters.at("tile_pairs") + 16 * 1024);  // three words of a pair are stored in the picture
+        // Three words of a pair are stored in the picture.
+        CHECK(counters.at("pair_bytes") <= 4 * counters.at("tile_pairs") + 16 * 1024);
         // The sort's histograms, half a byte per pair, fit into what a visible splat leaves free of its 64
         // bytes.
         CHECK(counters.at("visible_bytes") + counters.at("pair_bytes") + counters.at("scratch_bytes") <=

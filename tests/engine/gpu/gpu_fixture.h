@@ -7,7 +7,8 @@
 
 namespace binosplat::test {
 
-inline constexpr bool kValidation = BINOSPLAT_TEST_VALIDATION;  // whether programs can have the validation layers at all
+// Whether programs can have the validation layers at all.
+inline constexpr bool kValidation = BINOSPLAT_TEST_VALIDATION;
 
 // Fixture for test cases. All tests of a program share one device. If there is none, every test fails. Any
 // message of the validation layers during a test makes it fail, too.

@@ -144,7 +144,8 @@ TEST_CASE("every shader's structs have the fields, offsets and sizes that C++ gi
     for (const Layout& layout : host) {
         CAPTURE(layout.name);
         CHECK(seen.contains(layout.name));
-        if (layout.name.ends_with("Pass")) { CHECK(layout.bytes <= 128); }  // every device has this many bytes of push constants
+        // Every device has this many bytes of push constants.
+        if (layout.name.ends_with("Pass")) { CHECK(layout.bytes <= 128); }
     }
 }
 

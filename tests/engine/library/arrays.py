@@ -48,7 +48,8 @@ again, depth_again = of_arrays.render(view, background=(0.5, 0, 0))
 assert np.array_equal(seen, again) and np.array_equal(depth, depth_again)
 assert len(of_arrays) == len(of_file) and np.array_equal(of_arrays.bounds, of_file.bounds)
 
-# A camera given by its matrix and intrinsics is the same; a turned one equals the one given by its quaternion.
+# A camera given by its matrix and intrinsics is the same; a turned one equals the one given by its
+# quaternion.
 f = 32 / np.tan(0.6)
 same = binosplat.View.from_intrinsics(view.world_from_camera, f, f, 32, 24, 64, 48)
 assert np.abs(of_file.render(same, background=(0.5, 0, 0))[0] - seen).max() < 1e-3

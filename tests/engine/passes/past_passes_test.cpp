@@ -32,7 +32,8 @@ std::size_t countOtherDepths(const Image& depths, const reference::Past& past) {
     for (std::size_t i = 0; i < past.rgba.size(); ++i) {
         const double inverse_depth = past.pixels[i] ? past.pixels[i]->inverse_depth : 0.0;
         const double expected = inverse_depth > 0.0 ? past.rgba[i].a / inverse_depth : 0.0;
-        other += test::isNear(static_cast<double>(depths.values[i]), expected, 1e-3, 1e-6) ? 0 : 1;  // half floats
+        // Depths are half floats.
+        other += test::isNear(static_cast<double>(depths.values[i]), expected, 1e-3, 1e-6) ? 0 : 1;
     }
     return other;
 }
@@ -76,7 +77,8 @@ void checkWarped(Gpu& gpu, const Way& way) {
     std::array<EyeOnDevice, 2> before{walk.read(kLeft), walk.read(kRight)};
     WarpDifferences all;
     std::size_t one_by_one = 0, blocks = 0;
-    for (const double step : {1.0, 2.0, 10.0}) {  // the last is so large that the blocks of a cell come from two
+    // The last is so large that the blocks of a cell come from two.
+    for (const double step : {1.0, 2.0, 10.0}) {
         walk.go(step, 0.0);
         for (const std::size_t e : {0, 1}) {
             EyeOnDevice made = walk.read(static_cast<int>(e));

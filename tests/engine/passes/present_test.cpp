@@ -118,7 +118,8 @@ TEST_CASE_FIXTURE(Gpu, "tints say what made a pixel, and nothing of tiles that n
     const Bytes shown = runPresent(*this, {.size_px = size_px,
                                            .colours = Colours(size_px.x * size_px.y, glm::vec4(0.0f, 0.0f, 0.0f, 1.0f)),
                                            .tile_kinds = {gpu::kTileHidden, gpu::kTileEdge, 0},
-                                           .pixel_classes = std::vector<gpu::uint>(3 * gpu::kTileSize, 0xaaaaaaaa)})  // all are holes
+                                           // All are holes.
+                                           .pixel_classes = std::vector<gpu::uint>(3 * gpu::kTileSize, 0xaaaaaaaa)})
                             .pixels;
     CHECK(shown[0] == 0xff000000);
     CHECK(shown[gpu::kTileSize] == 0xff662400);      // 0.4 of 0, 0.35, 1

@@ -27,7 +27,8 @@ struct FieldErrors {
         noteColour(packed, truth, view.scene, i);
         const glm::dvec2 focal(view.eye.intrinsics.fx, view.eye.intrinsics.fy), principal(view.eye.intrinsics.cx, view.eye.intrinsics.cy);
         const glm::dvec3 position(view.scene.positions[i]), from_eye = position - view.eye.world_from_camera.position;
-        const double rounding = test::kEpsilon * test::distanceToRound(position, view.eye);  // of the centre in camera space
+        // Rounding of the centre in camera space.
+        const double rounding = test::kEpsilon * test::distanceToRound(position, view.eye);
         const double z = truth.depth;
         if (truth.low_pass) {
             const glm::dvec2 c = (truth.reference_px - principal) / focal * z;

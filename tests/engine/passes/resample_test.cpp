@@ -23,7 +23,8 @@ struct Way {
     int gap_px;
     Rows rows;
     Parts parts = {};
-    bool apart = false, coarse = false;  // odd rows later; the eye does not tell rows apart in every other tile
+    // Odd rows later; the eye does not tell rows apart in every other tile.
+    bool apart = false, coarse = false;
 };
 
 // What the twin makes of the arrivals.

@@ -40,7 +40,8 @@ Tiles drawPast(glm::uvec2 size, std::mt19937& random) {
             tile.grown[q] = is_still || random() % 4 == 0 ? 0 : static_cast<gpu::uint>(random()) >> (4 + random() % 28);
             tile.unseen |= random() % 4 == 0 ? static_cast<gpu::uint>(random() % 65) << (8 * q) : 0;
         }
-        tile.squared_gradient = static_cast<gpu::uint>(random() % 4'000'000);  // up to 1.4 times what masks errors
+        // Up to 1.4 times what masks errors.
+        tile.squared_gradient = static_cast<gpu::uint>(random() % 4'000'000);
         drawn.past.push_back(tile);
         kind = random() % 12 == 0 ? gpu::kTileHidden : 0;
     }

@@ -28,7 +28,8 @@ Values makeKeys(int pattern, std::size_t size, unsigned key_bits) {
     for (std::size_t i = 0; i < size; ++i) {
         const double share = (static_cast<double>(i) + 0.5) / static_cast<double>(size), top = maskOf(key_bits);
         const auto drawn = static_cast<std::uint32_t>(random());
-        const std::array<std::uint32_t, kPatternCount> of_patterns{drawn,  // bits above the key's must be ignored
+        // Bits above the key's must be ignored.
+        const std::array<std::uint32_t, kPatternCount> of_patterns{drawn,
                                                                    0x5a5a5a5au,
                                                                    0x01010101u * (drawn % 5),
                                                                    static_cast<std::uint32_t>(share * top),

@@ -83,7 +83,8 @@ TEST_CASE_FIXTURE(Gpu, "depth_bounds counts depths beyond its range as the last,
     StereoOnDevice device = toDevice(*this, c);
     device.boundDepths();
     std::vector<gpu::uint> expected(gpu::kDepthBins, 0);
-    expected[16 * 32] = expected[gpu::kDepthBins - 1] = expected[0] = expected[18 * 32] = 10;  // from five rows
+    // These come from five rows.
+    expected[16 * 32] = expected[gpu::kDepthBins - 1] = expected[0] = expected[18 * 32] = 10;
     CHECK(device.readBins() == expected);
     CHECK(reference::boundDepths(c.dominant, DepthChoice::kInverse) == expected);
 }

@@ -27,7 +27,8 @@ struct TextAttempts {
 
     void attempt(const std::string& what, const std::string& bytes) {
         const std::string path = (work.path / "broken.toml").string();
-        std::filesystem::remove(path);  // some file systems wait for the disk when a file is truncated and rewritten
+        // Some file systems wait for the disk when a file is truncated and rewritten.
+        std::filesystem::remove(path);
         std::ofstream(path, std::ios::binary) << bytes;
         tally.attempt(name + ", " + what, [&] { read(path); });
     }

@@ -56,7 +56,8 @@ TEST_CASE("headers, blanks and comments are optional, and orientations are norma
     }
     const double half = std::sqrt(0.5);
     const std::string values = fmt::format("0,0,0,0,{},{},0,0\n", half, half);
-    CHECK(near(forwardOf(parse("time_s,x,y,z,qw,qx,qy,qz\n" + values).poseAt(0.0)), {0.0, -1.0, 0.0}));  // w first
+    // Here w comes first.
+    CHECK(near(forwardOf(parse("time_s,x,y,z,qw,qx,qy,qz\n" + values).poseAt(0.0)), {0.0, -1.0, 0.0}));
     CHECK_FALSE(near(forwardOf(parse(kHeader + values).poseAt(0.0)), {0.0, -1.0, 0.0}));
 }
 

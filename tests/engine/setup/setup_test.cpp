@@ -18,7 +18,8 @@ fs::path writeFile(const fs::path& path, const std::string& text) {
 }
 
 TEST_CASE_FIXTURE(AtWork, "a camera file is world-from-camera, its rows as they are written, and resizing an eye keeps what it sees") {
-    // The camera stands at (1, 2, 3) and looks along world x: its z axis is the third column, (1, 0, 0); its x axis is (0, 0, -1).
+    // The camera stands at (1, 2, 3) and looks along world x: its z axis is the third column, (1, 0, 0); its
+    // x axis is (0, 0, -1).
     const auto cameras = readCameraFile(writeFile(work.path / "c.json", R"([
         {"id": 0, "img_name": "a", "width": 640, "height": 480, "fx": 500, "fy": 510,
          "position": [1, 2, 3], "rotation": [[0, 0, 1], [0, 1, 0], [-1, 0, 0]]},

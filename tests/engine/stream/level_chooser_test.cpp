@@ -212,7 +212,8 @@ TEST_CASE("levels in broken files are passed over, unless they are loaded") {
 TEST_CASE("leaves of odd shape, count and place are no trouble") {
     Chooser odd({{glm::vec3(0), glm::vec3(0), {{0, 0, {0, 1}}}},
                  {glm::vec3(-1e6f), glm::vec3(1e6f), {{0, 1, {0, 100}}}},
-                 {glm::vec3(1), glm::vec3(2), {{0, 0, {1, 5}}, {1, 2, {0, 5}}, {2, 3, {0, 9}}}},  // coarser levels do not have fewer splats
+                 // Coarser levels do not have fewer splats.
+                 {glm::vec3(1), glm::vec3(2), {{0, 0, {1, 5}}, {1, 2, {0, 5}}, {2, 3, {0, 9}}}},
                  {glm::vec3(3e38f), glm::vec3(3e38f), {{0, 0, {6, 1ull << 40}}, {1, 2, {5, 1}}}}});
     const LevelChoices& choices = odd.choose(eyeAt(glm::dvec3(0.0)), within(1000));
     CHECK(these(choices.levels, choices.splats) == these(std::vector<std::uint32_t>{0, 0, 0, 1}, 107));

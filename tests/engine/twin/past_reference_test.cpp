@@ -191,7 +191,8 @@ TEST_CASE("the colour of what was hidden does not leak into the pixels beside it
     for (std::size_t y = 16; y < 32; ++y) {
         for (std::size_t x = 32; x < 48; ++x) { past.rgba[y * 96 + x] = glm::dvec4(0.0); }
     }
-    const WarpedPast warped = warpPast(past, moved(eye, {0.01, 0.01, 0.0}));  // by half a pixel in each direction
+    // By half a pixel in each direction.
+    const WarpedPast warped = warpPast(past, moved(eye, {0.01, 0.01, 0.0}));
     for (std::size_t i = 0; i < warped.unseen.size(); ++i) {
         if (warped.unseen[i] == 0) { CHECK(warped.picture.rgba[i].r == doctest::Approx(0.5)); }
     }

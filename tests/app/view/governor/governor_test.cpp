@@ -40,7 +40,8 @@ struct Machine {
     Over ms = [](double) { return 7.0; };
     double fixed = 0.8;
     Over period_ms = [](double) { return kPeriodMs; };
-    std::function<double(double time_s, double gpu_ms)> lost = {};  // periods that each frame lost, as the runtime reports it
+    // Periods that each frame lost, as the runtime reports it.
+    std::function<double(double time_s, double gpu_ms)> lost = {};
     Mode mode = Mode::kTemporal;
     GovernedSettings wish = kAll;
 };

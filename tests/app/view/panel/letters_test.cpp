@@ -62,7 +62,8 @@ TEST_CASE("names bring their letters along, those that no font has stay boxes, a
     PanelSketch sketch;
     const WidgetPlaces before = sketch.draw().places;
     CHECK_FALSE(isThere(0x5d0));
-    sketch.status.message = "\xd7\x90 \xe1\x83\x90 \xef\xb7\xbf\xef\xa3\xbf";  // Hebrew, Georgian, private letters
+    // Hebrew, Georgian, private letters
+    sketch.status.message = "\xd7\x90 \xe1\x83\x90 \xef\xb7\xbf\xef\xa3\xbf";
     CHECK(sketch.draw().places == before);
     CHECK(isThere(0x5d0));
     CHECK(isThere(0x10d0));

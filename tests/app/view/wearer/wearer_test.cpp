@@ -147,7 +147,8 @@ TEST_CASE_FIXTURE(Pointing, "a ray meets the panel where it points, from the fro
     REQUIRE(seen.size() == 1);
     CHECK(these(seen[0].sprite, seen[0].strip.size_m.y) == these(Sprite::kRay, doctest::Approx(0.5)));
     CHECK(glm::distance(seen[0].strip.room_from_strip.position, transform(panel.roomFromPanel(), {0.2, 0.1, -0.25})) < 1e-9);
-    hands[kRight].aim = compose(panel.roomFromPanel(), {glm::dquat(0, 0, 1, 0), {0.2, 0.1, 0.5}});  // from behind the panel, towards it
+    // From behind the panel, towards it.
+    hands[kRight].aim = compose(panel.roomFromPanel(), {glm::dquat(0, 0, 1, 0), {0.2, 0.1, 0.5}});
     CHECK(at() < 0.0);
     // The ray fades before it reaches the panel.
     const auto behind = panel.rays(glm::dvec3(0.0), std::nullopt);

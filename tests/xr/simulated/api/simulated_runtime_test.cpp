@@ -195,7 +195,8 @@ TEST_CASE("hello_xr looks as it did, and a lock-step run writes the same files a
     if (!haveHelloXr()) { return; }
     const Run run(kLooking), again(kLooking);
     REQUIRE_MESSAGE(run.exit_status == 0, run.output);
-    CHECK(std::distance(std::filesystem::directory_iterator(run.written), {}) == 3);  // two pictures and the log
+    // Two pictures and the log.
+    CHECK(std::distance(std::filesystem::directory_iterator(run.written), {}) == 3);
     CHECK(std::system(("diff -r " + run.written.string() + " " + again.written.string()).c_str()) == 0);
     const auto eye = [&](std::size_t frame, simulated::Side side) { return run.part(frame, side, {0, 0}, {240, 200}); };
     const RgbPicture left = eye(20, kLeft);

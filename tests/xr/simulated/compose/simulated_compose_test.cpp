@@ -135,7 +135,8 @@ TEST_CASE("halves beyond white are white and NaN is black") {
     const EyeView eye = eyeOf({2, 2});
     for (const glm::vec4& odd : {glm::vec4(-1.0f, 7.0f, 0.5f, 1.0f), glm::vec4(std::nanf(""), INFINITY, 0.5f, 1.0f)}) {
         const Canvas canvas = halves({2, 2}, odd);
-        CHECK(at(compose(eye, {projection(canvas, eye)}), 0, 0) == Rgb{0, 255, 188});  // half the light is 188
+        // Half the light is 188.
+        CHECK(at(compose(eye, {projection(canvas, eye)}), 0, 0) == Rgb{0, 255, 188});
     }
 }
 
@@ -266,7 +267,8 @@ TEST_CASE("a cylinder's picture lies on its arc about the middle") {
     CHECK(these(at(far_away, 10, 100), at(far_away, 190, 100)) == these(Rgb{255, 0, 0}, Rgb{0, 0, 255}));
     CHECK(at(far_away, 99, 23)[0] > 100);
     CHECK(at(far_away, 99, 20) == kBlack);
-    // At 45 degrees to the side, the wall's depth z is smaller by sqrt(2), so its edge is at pi/4 * sqrt(2) > 1.
+    // At 45 degrees to the side, the wall's depth z is smaller by sqrt(2), so its edge is at pi/4 * sqrt(2) >
+    // 1.
     CHECK(at(far_away, 1, 1)[0] > 100);
     // From its axis it looks the same, whatever its size; from a point nearer to its wall it is wider than
     // the view.
