@@ -11,8 +11,8 @@ namespace binosplat {
 // The window is 11x11, Gaussian with sigma 1.5 px; constants (K1 L)^2 and (K2 L)^2 with K1 = 0.01, K2 = 0.03,
 // L = 1. The paper leaves out windows that reach beyond the border. Here every pixel has a score, and the
 // border is one of two:
-//   kCutWindow  only the part of the window inside counts, with its weights scaled to sum 1: no pixel knows of
-//               the border;
+//   kCutWindow  only the part of the window inside counts, with its weights scaled to sum 1: no pixel knows
+//               of the border;
 //   kZero       zeros beyond the border in both pictures, as the evaluations of 3DGS and 2DGS do: for
 //               comparison with their figures.
 //

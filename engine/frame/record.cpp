@@ -1,8 +1,8 @@
 // The steps of a plan as passes. A frame of `temporal` has these, if one order of the splats serves both eyes
 // (planTemporal in plan.cpp):
 //
-//   kPast       for each eye: what its last picture shows of the new one, and the error to expect of each tile
-//               (recordFromPast)
+//   kPast       for each eye: what its last picture shows of the new one, and the error to expect of each
+//               tile (recordFromPast)
 //   kChoose     the tiles of both that are rendered again (recordChoice)
 //   kList       the splats that touch these, front to back (recordCull, recordOrder)
 //   kRenderAll  the chosen tiles, and what the next frame is told of them (recordPictures)

@@ -4,9 +4,9 @@
 //   31..6  one more than the upper 26 of the 31 bits of its inverse depth; 0: nothing is there, or it goes
 //          nowhere
 //   5      it landed in this pixel; otherwise it lies between two that did
-//   4..0   how far its inverse depth spreads, as the standard deviation's share of the mean: 2^((code - 1)/2 - 13),
-//          or nothing; where colours are copied, which pixel it is: bit 0 of its column, and in the next place
-//          that of its row
+//   4..0   how far its inverse depth spreads, as the standard deviation's share of the mean:
+//          2^((code - 1)/2 - 13), or nothing; where colours are copied, which pixel it is: bit 0 of its
+//          column, and in the next place that of its row
 //
 // Rounding costs up to 2^-19 of the inverse depth: 1e-4 px where the eyes see a point 50 px apart.
 

@@ -2,7 +2,7 @@
 // for each tile that it meets (under a mask: only tiles of the mask). Otherwise where the box ends, half
 // open; the outline must then tell again which rows meet which tiles.
 //
-//   x0 | y0 << 16,   x1 | y1 << 16                                  a large box: tile coordinates are below 2^11
+//   x0 | y0 << 16,   x1 | y1 << 16                                  a large box; coordinates are below 2^11
 //   x0 | y0 << 16,   1 << 31 | 1 << (column + 4 row) for each tile  a small one
 
 const int kSmallBox = 4;

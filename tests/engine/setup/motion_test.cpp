@@ -23,11 +23,11 @@ TEST_CASE("the axes of OpenXR and of Unity become the camera's") {
         MotionAxes axes;
         glm::dvec3 about;                    // a positive quarter turn about this axis of the recording
         glm::dvec3 forward, up_of_the_head;  // the directions that result, in the camera's axes
-    } const turns[]{// In a right-handed system, a turn about y (up) looks left, one about x looks up, and one about z tilts to the left.
+    } const turns[]{                         // Right-handed: a turn about y (up) looks left, about x up, about z tilts to the left.
                     {MotionAxes::kOpenXr, up, {-1.0, 0.0, 0.0}, {0.0, -1.0, 0.0}},
                     {MotionAxes::kOpenXr, right, {0.0, -1.0, 0.0}, {0.0, 0.0, -1.0}},
                     {MotionAxes::kOpenXr, back, {0.0, 0.0, 1.0}, {-1.0, 0.0, 0.0}},
-                    // In a left-handed system, they look right, look down, and tilt to the left.
+                    // Left-handed: they look right, look down, and tilt to the left.
                     {MotionAxes::kUnity, up, {1.0, 0.0, 0.0}, {0.0, -1.0, 0.0}},
                     {MotionAxes::kUnity, right, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}},
                     {MotionAxes::kUnity, back, {0.0, 0.0, 1.0}, {-1.0, 0.0, 0.0}}};

@@ -22,9 +22,9 @@ struct MotionFile {
 // Lines of eight comma-separated numbers: time, position x, y, z in metres, orientation x, y, z, w; blanks
 // around numbers, empty lines and lines that begin with # do not count. The first line may be a header; then
 // it says what it can:
-//   - time_s, time_ms, time_us, time_ns or time_ticks (of 100 ns), or timestamp_..., is the unit of time. Without
-//     one, numbers under 1e12 are seconds and those from 1e16 to 1e18 ticks, as Windows counts them; for others,
-//     the unit must be stated;
+//   - time_s, time_ms, time_us, time_ns or time_ticks (of 100 ns), or timestamp_..., is the unit of time.
+//     Without one, numbers under 1e12 are seconds and those from 1e16 to 1e18 ticks, as Windows counts them;
+//     for others, the unit must be stated;
 //   - a fifth column called w or qw means that the orientation is w, x, y, z.
 // At least one sample, times strictly increasing from 0. Throws Error with file and line: other numbers of
 // columns, numbers that are not finite, times that do not increase, orientations whose length is not 1 to 5
