@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Which room may include which: `.ci/arrows.py` lists what goes against it, and ends with 1 then.
+"""Which room may include which: `.ci/arrows.py` lists violations, and exits with 1 if there are any.
 
-A room is a folder, with those in it that have no line of their own, or the files of one name. What it sees is on its right, and stands above
-it, so that no room sees one that sees it; tests see everything."""
+A room is a folder, including its subfolders that have no line of their own, or the files of one name. The rooms
+it sees are on its right and stand above it, so no two rooms see each other; tests see everything."""
 
 import pathlib
 import re

@@ -1,4 +1,5 @@
-// The subcommands except `bench` and `view`, which have folders of their own. Each throws Error; none catches one.
+// The subcommands except `bench` and `view`, which have folders of their own. Each throws Error; none catches
+// one.
 #pragma once
 
 #include "app/options/options.h"

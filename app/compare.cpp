@@ -1,4 +1,5 @@
-// `binosplat compare`: the difference of two pictures, in the same scores as `bench`, or of two paths' frames.
+// `binosplat compare`: the difference of two pictures, in the same scores as `bench`, or of two paths'
+// frames.
 #include "app/commands.h"
 #include "app/scores/flip.h"
 #include "app/scores/lpips.h"

@@ -1,4 +1,5 @@
-// `binosplat convert`: any scene that can be read, as a PLY, an SPZ or a SOG file, or with levels of detail as a streamed SOG scene.
+// `binosplat convert`: any scene that can be read, as a PLY, an SPZ or a SOG file, or with levels of detail
+// as a streamed SOG scene.
 #include "app/commands.h"
 #include "app/convert_levels.h"
 #include "app/keep.h"

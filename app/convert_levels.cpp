@@ -23,8 +23,8 @@ namespace {
 constexpr std::uint64_t kFewSplats = 50000;  // no level halves fewer
 constexpr std::uint32_t kMostLevels = 10;
 constexpr std::uint64_t kPartSplats = LevelSettings{}.block_splats;
-constexpr std::uint64_t kSampleSplats =
-    600'000;  // a sample that tells where one could stand as well as all splats do, and fills a chunk of the usual size
+// A sample that tells as well as all splats where one could stand, and that fills a chunk of the usual size.
+constexpr std::uint64_t kSampleSplats = 600'000;
 
 std::uint32_t levelsFor(std::uint64_t splats) {
     std::uint32_t levels = 1;

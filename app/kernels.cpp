@@ -1,5 +1,5 @@
-// `binosplat kernels`: the driver's statistics of every kernel in every specialization that a mode uses, or of some, as they are made.
-// Makes only pipelines, so that it also runs on drivers without their GPU.
+// `binosplat kernels`: the driver's statistics of every kernel in every specialization that a mode uses, or
+// of some, as they are made. Makes only pipelines, so that it also runs on drivers without their GPU.
 #include "app/commands.h"
 #include "app/terminal/interrupt.h"
 #include "engine/error.h"
@@ -68,8 +68,8 @@ void runKernels(const KernelsOptions& options) {
     const Context context({.device = options.device, .device_extensions = {VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME}});
     const bool has_statistics = context.hasKernelStatistics();
     Json kernels = Json::array();
-    // Lives until the next one is made: RADV frees its code memory once no kernel is left in it, and would allocate another 8 MiB for the
-    // next kernel.
+    // Lives until the next one is made: RADV frees its code memory once no kernel is left in it, and would
+    // allocate another 8 MiB for the next kernel.
     Kernel last;
     for (const KernelVariant& variant : chosenKernels(context, options.filter)) {
         stopIfInterrupted();

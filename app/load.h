@@ -18,11 +18,12 @@ namespace binosplat {
 // the limit.
 LevelChoice levelChoice(const LoadOptions& options, std::uint64_t memory_limit_mib);
 
-// Limits the SH degree, flattens 3D Gaussians to discs, or dims them, if the options say so; a file may itself ask for dimming.
+// Limits the SH degree, flattens 3D Gaussians to discs, or dims them, if the options say so; a file may
+// itself ask for dimming.
 void drawAs(const LoadOptions& options, Scene& scene, LoadNotes& notes);
 
-// SCENE of any command: a file, a folder, a built-in scene (then `builtin_splats` sets the size, 0 for its default), or an address.
-// `memory_limit_mib` limits device memory, 0: no limit.
+// SCENE of any command: a file, a folder, a built-in scene (then `builtin_splats` sets the size, 0 for its
+// default), or an address. `memory_limit_mib` limits device memory, 0: no limit.
 Scene loadAsAsked(const std::string& source, const LoadOptions& options, std::uint64_t memory_limit_mib, LoadNotes& notes,
                   const Progress& progress = {}, std::uint64_t builtin_splats = 0);
 
@@ -41,8 +42,9 @@ enum class StreamFor {
     kPictures,  // loaded whole if the finest level fits and no budget is set
     kFrames,    // loaded while it is shown
 };
-// True if `source` is streamed or moving, unless the options name a level, which is loaded whole. Throws Error if the options set a splat
-// budget for a scene without levels to choose from, or together with a level.
+// True if `source` is streamed or moving, unless the options name a level, which is loaded whole. Throws
+// Error if the options set a splat budget for a scene without levels to choose from, or together with a
+// level.
 bool mayLive(const std::string& source, const LoadOptions& options);
 // Opens such a source; empty if it should be loaded whole after all.
 std::optional<OpenedScene> openLive(const Context& context, const std::string& source, const RunOptions& run, StreamFor purpose,

@@ -1,5 +1,6 @@
 # What `cmake --install` puts where, and the packages that `cpack` makes of it: .deb files and a .tar.gz.
-# The viewer's component is here; the simulated runtime's, "runtime", is in xr/simulated, those of the library in engine/library.
+# The viewer's component is here; the simulated runtime's, "runtime", is in xr/simulated, those of the library
+# in engine/library.
 if(WIN32)
     include(${CMAKE_CURRENT_LIST_DIR}/windows/package.cmake)
     return()
@@ -10,8 +11,10 @@ install(TARGETS binosplat RUNTIME COMPONENT viewer)
 install(DIRECTORY configs DESTINATION ${CMAKE_INSTALL_DATADIR}/binosplat COMPONENT viewer)
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT viewer PATTERN "*.py" EXCLUDE)
 install(FILES README.md CONTRIBUTING.md CHANGELOG.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT viewer)
-install(FILES third_party/NOTICES.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/third_party COMPONENT viewer)  # where the pages link to it
-install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT viewer)             # where Debian looks for it
+# The documents link to it there.
+install(FILES third_party/NOTICES.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/third_party COMPONENT viewer)
+# Debian looks for it there.
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT viewer)
 
 # Menus, file managers and software centres: opening a scene by a double click.
 set(desktop ${CMAKE_CURRENT_LIST_DIR}/linux/org.binosplat.viewer)

@@ -1,5 +1,6 @@
-# The version of the packages, read by cpack each time it makes them: PROJECT_VERSION where the source is tagged so or is no checkout; otherwise
-# with the number of commits and the last one, so that a later build counts as newer, and with "~" before the tag is there, as older than it.
+# The version of the packages, read by cpack each time it makes them: PROJECT_VERSION where the source is
+# tagged so or is no checkout; otherwise with the number of commits and the last one, so that a later build
+# counts as newer, and with "~" before the tag is there, as older than it.
 set(source ${CMAKE_CURRENT_LIST_DIR}/..)
 execute_process(COMMAND git -C ${source} describe --tags --always --dirty OUTPUT_VARIABLE described OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
 if(described AND NOT described STREQUAL "v${CPACK_PACKAGE_VERSION}")

@@ -131,7 +131,8 @@ void runRender(const RenderOptions& options) {
     if (live == nullptr) { whole.emplace(context, scene, ProgressLine("uploading " + options.scene).progress()); }
     const GpuScene& gpu_scene = whole ? *whole : live->scene();
     const RenderOptions used = asUsed(options, scene, notes, live);
-    const std::vector<glm::vec3> positions = std::move(scene.positions);  // for the warning if a camera sees none of them
+    // For the warning if a camera sees none of them.
+    const std::vector<glm::vec3> positions = std::move(scene.positions);
     scene = {};
 
     StereoFrame frame(context, gpu_scene);

@@ -36,7 +36,8 @@ NamedPictures namedPictures(std::vector<Image> eyes, PictureLayout layout);
 // Display-encoded, to `stem` plus the extension. If the format is PNG, a panorama of one eye is tagged for
 // galleries.
 void writeDisplay(const std::filesystem::path& stem, const Image& image, const std::optional<Panorama>& panorama);
-// A panorama of one eye as JPEG, too, with the tags: many galleries take no other. Nothing in a build that cannot write it.
+// A panorama of one eye as JPEG, too, with the tags: many galleries take no other. Nothing in a build that
+// cannot write it.
 void writeForGalleries(const std::filesystem::path& stem, const Image& image, const Panorama& panorama);
 
 // Renders --path, at each of its poses or --rate times a second; with --resume, from the first frame that the

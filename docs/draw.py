@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Drawings of docs/headset.md: `docs/draw.py OUT` writes OUT/controls/*.svg, one for each family of controllers, from the bindings in
-xr/bindings.cpp, and OUT/overlap.svg. `docs/draw.py docs` renews those of this folder."""
+"""Drawings of docs/headset.md: `docs/draw.py OUT` writes OUT/controls/*.svg, one for each family of controllers,
+from the bindings in xr/bindings.cpp, and OUT/overlap.svg. `docs/draw.py docs` renews those of this folder."""
 
 import pathlib
 import re
@@ -42,7 +42,8 @@ SHAPE = 'stroke="#444" stroke-width="2"'
 
 
 def read_profiles():
-    """(path, trigger, squeeze, stick, stick_click, stick_press, (menu left, menu right), (play left, play right), haptic) of each row of kProfiles, or None."""
+    """(path, trigger, squeeze, stick, stick_click, stick_press, (menu left, menu right), (play left, play right),
+    haptic) of each row of kProfiles, or None."""
     text = (ROOT / "xr" / "bindings.cpp").read_text()
     values = dict(re.findall(r'\*?(k\w+) = ("[^"]*")', text))
     values |= dict(re.findall(r"\b(k\w+)\{((?:\"[^\"]*\"|nullptr), (?:\"[^\"]*\"|nullptr))\}", text))
@@ -128,12 +129,15 @@ def draw_controls(out):
         (out / f"{name if name != 'controller' else vendor + '_' + name}.svg").write_text(svg)
 
 
-PROGRAM, DEVICE, LEAD = 0.4, 0.7, 2.0  # periods: what a frame takes of either, and how long before its display xrWaitFrame returns
+# In periods: how long the program and the device work on a frame, and how long before its display xrWaitFrame
+# returns.
+PROGRAM, DEVICE, LEAD = 0.4, 0.7, 2.0
 LEFT, PERIOD_PX, ROW_PX, SHOWN = 90.0, 46.0, 22.0, 16
 
 
 def play(in_flight):
-    """((program begins, ends), (device begins, ends), is late) of each frame, where a program waits until fewer than `in_flight` are."""
+    """((program begins, ends), (device begins, ends), is late) of each frame, if the program waits until fewer than
+    `in_flight` frames are in flight."""
     frames, program, device = [], 0.0, 0.0
     for turn in range(SHOWN):
         if turn >= in_flight:

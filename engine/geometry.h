@@ -1,4 +1,5 @@
-// Poses, intrinsics and eyes, in float64. Camera axes are OpenCV's: x right, y down, z forward; lengths are scene units.
+// Poses, intrinsics and eyes, in float64. Camera axes are OpenCV's: x right, y down, z forward; lengths are
+// scene units.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -20,8 +21,9 @@ Pose compose(const Pose& a_from_b, const Pose& b_from_c);
 Pose inverse(const Pose& target_from_source);
 glm::dvec3 transform(const Pose& target_from_source, const glm::dvec3& point_source);
 
-// The pose of a camera at `eye` that looks at `look`: forward = look - eye, right = forward x up, down = forward x right.
-// Throws Error if the three points do not span a view (equal points, or `up` along the line of sight).
+// The pose of a camera at `eye` that looks at `look`: forward = look - eye, right = forward x up, down =
+// forward x right. Throws Error if the three points do not span a view (equal points, or `up` along the line
+// of sight).
 Pose lookAt(const glm::dvec3& eye, const glm::dvec3& look, const glm::dvec3& up);
 
 // A view before there is a picture: from where, at what, which way is up, and how wide.
@@ -44,7 +46,8 @@ Intrinsics intrinsicsFromAngles(const ViewAngles& angles, glm::uvec2 size_px);
 // Square pixels, principal point in the middle.
 Intrinsics intrinsicsFromFovX(double fov_x_rad, glm::uvec2 size_px);
 
-// One eye: where it is, what it sees, how many pixels it has. Nothing assumes parallel eyes or a centred principal point.
+// One eye: where it is, what it sees, how many pixels it has. Nothing assumes parallel eyes or a centred
+// principal point.
 struct Eye {
     Pose world_from_camera;
     Intrinsics intrinsics;

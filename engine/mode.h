@@ -16,7 +16,8 @@ enum class Mode {
     kPaper,      // with its borders, and on request its holes, rendered again (the paper)
     kPredicted,  // with the tiles of the greatest expected error rendered again
     kAlternate,  // in each frame one eye in full, in turn; the other from its own last full picture
-    kTemporal,   // both eyes from their histories, with the tiles of the greatest expected error rendered again
+    // Both eyes from their histories, with the tiles of the greatest expected error rendered again.
+    kTemporal,
 };
 
 // By Mode, as options, reports and panels write them.
@@ -39,7 +40,9 @@ enum class TileChoice {
     kNone,       // none: only reprojection and interpolation
     kPaper,      // edge ROIs, and centre ROIs if asked for
     kPredicted,  // cheap ones, and those with the greatest expected error for their cost
-    kPast,       // those with the greatest expected error for their cost and for each frame that they have waited, of both eyes together
+    // Tiles of both eyes together with the greatest expected error for their cost and for each frame that
+    // they have waited.
+    kPast,
 };
 
 // Of a frame that keeps no history.
@@ -52,8 +55,12 @@ constexpr TileChoice choiceOf(Mode mode) {
 
 // The order in which splats are blended, front to back.
 enum class Order {
-    kDepth,     // camera z of their centres, as scenes are trained: changes as an eye turns, and differs between canted eyes
-    kDistance,  // distance of their centres from the midpoint between the eyes: one order for both eyes, however they turn
+    // Camera z of the splats' centres, as scenes are trained: changes as an eye turns, and differs between
+    // canted eyes.
+    kDepth,
+    // Distance of the splats' centres from the midpoint between the eyes: one order for both eyes, however
+    // they turn.
+    kDistance,
 };
 
 }  // namespace binosplat

@@ -41,7 +41,8 @@ void forBlocks(std::size_t count, std::size_t block, int threads, const Work& wo
     if (failure) { std::rethrow_exception(failure); }
 }
 
-// Moves `from` to `to` (same size) by ascending bucket(element) in [0, bucket_count), keeping the order within a bucket.
+// Moves `from` to `to` (same size) by ascending bucket(element) in [0, bucket_count), keeping the order
+// within a bucket.
 template <typename T, typename Bucket>
 void sortByBucket(std::span<const T> from, std::span<T> to, std::size_t bucket_count, int threads, const Bucket& bucket) {
     const std::size_t part_count = static_cast<std::size_t>(std::clamp(threads, 1, 16));

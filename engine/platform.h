@@ -1,5 +1,5 @@
-// The operating system's services: platform_posix.cpp uses POSIX, platform_windows.cpp uses Windows. Nothing else in engine/,
-// app/ and xr/ includes a header of a system, except the simulated runtime (dlopen).
+// The operating system's services: platform_posix.cpp uses POSIX, platform_windows.cpp uses Windows. Nothing
+// else in engine/, app/ and xr/ includes a header of a system, except the simulated runtime (dlopen).
 #pragma once
 
 #include <cstddef>
@@ -73,8 +73,8 @@ double threadSeconds();
 // program.
 void letLongWritesFail();
 
-// Runs a program, found as a shell finds it, with its output in the new file `log`; returns true if its exit status was 0. Throws Error
-// if it cannot be started.
+// Runs a program, found as a shell finds it, with its output in the new file `log`; returns true if its exit
+// status was 0. Throws Error if it cannot be started.
 bool runProgram(const std::vector<std::string>& words, const std::filesystem::path& log);
 
 // Opens a file on a disk for reading, without ever waiting. For anything else (a pipe, a device, a folder)

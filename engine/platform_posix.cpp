@@ -151,8 +151,8 @@ bool runProgram(const std::vector<std::string>& words, const fs::path& log) {
 }
 
 File openRegularFile(const fs::path& path, std::string& reason) {
-    // Asked before it is opened, since opening a device may do something, and after, since it may be another by then. O_NONBLOCK: a pipe
-    // that nobody writes to would keep us waiting.
+    // Asked before it is opened, since opening a device may do something, and after, since it may be another
+    // by then. O_NONBLOCK: a pipe that nobody writes to would keep us waiting.
     const auto isRegular = [&](int answer, const struct stat& status) {
         if (answer != 0) {
             reason = std::strerror(errno);
@@ -221,7 +221,8 @@ void preferLargePages([[maybe_unused]] void* begin, [[maybe_unused]] std::size_t
     constexpr std::uintptr_t kPage = std::uintptr_t{1} << 21;
     const auto first_byte = reinterpret_cast<std::uintptr_t>(begin), end = first_byte + bytes;
     const std::uintptr_t first = (first_byte + kPage - 1) / kPage * kPage, last = end / kPage * kPage;
-    if (first < last) { ::madvise(reinterpret_cast<void*>(first), last - first, MADV_HUGEPAGE); }  // advice: failing is fine
+    // advice: failing is fine
+    if (first < last) { ::madvise(reinterpret_cast<void*>(first), last - first, MADV_HUGEPAGE); }
 #endif
 }
 

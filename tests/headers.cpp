@@ -1,1 +1,2 @@
-// Nothing: CMake makes the headers that test programs share only for a target with a source that includes them.
+// Empty: CMake generates the headers that test programs share only for a target with a source that includes
+// them.

@@ -11,8 +11,8 @@
 
 namespace binosplat::test {
 
-// The result of reading: only Error is thrown, its message is one line, and small files do not run out of
-// memory.
+// Reads the input and checks: only Error is thrown, its message is one line, and small files do not run out
+// of memory.
 struct Tally {
     std::size_t inputs = 0, read = 0, refused = 0;
 
@@ -38,10 +38,10 @@ inline constexpr bool kSanitized = __has_feature(address_sanitizer);
 #else
 inline constexpr bool kSanitized = false;
 #endif
-// A sanitizer makes the libraries' start for each file many times slower: then one input in eight is tried.
+// A sanitizer makes the libraries' start-up many times slower for each file, so one input in eight is tried.
 inline constexpr std::size_t kStep = kSanitized ? 8 : 1;
 
-// The most memory that this process ever held, in MiB; 0 if a sanitizer holds most of it, and on Windows.
+// The peak memory of this process, in MiB; 0 on Windows, or if a sanitizer holds most of it.
 inline long peakMebibytes() {
 #ifdef _WIN32
     return 0;
@@ -75,7 +75,8 @@ inline void flipBits(const std::string& good, int count, const Attempt& attempt)
     }
 }
 
-// `count` times a few bytes overwritten by the ends of the integers' and floats' ranges, cut out, or doubled.
+// `count` times a few bytes that are cut out, doubled, or overwritten with extreme values of integers and
+// floats.
 inline void spliceBytes(const std::string& good, int count, const Attempt& attempt) {
     static const std::array<std::string, 10> kExtremes{std::string(8, '\xff'),
                                                        std::string(8, '\0'),

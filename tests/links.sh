@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Whether every http link of the documents answers: prints those that do not, and fails then. By hand, since it needs a network.
+# Checks whether every http link in the documents answers: prints those that do not, and then fails. Run by
+# hand, since it needs a network.
 #   tests/links.sh [FILE...]     (without any: README.md and the pages below docs)
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -10,7 +11,8 @@ if (($# == 0)); then
 fi
 mapfile -t links < <(grep -ohE 'https?://[^][[:space:]()<>"`|]+' "$@" | sed -E "s/[.,;:!?']+\$//" | sort -u)
 
-# The status that a link ends at, or 000: by its header alone, then, where a server has none for that, by its first byte.
+# The status at the end of a link, or 000: from its header or, if a server does not answer that, from its
+# first byte.
 statusOf() { # LINK
     local status=000 how
     for how in --head '--range 0-0'; do

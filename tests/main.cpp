@@ -1,5 +1,6 @@
-// The entry point of every test program. A run without a single case fails, since a suite's name was mistyped; one that misses the shared
-// scenes and fails nowhere ends with 77, which ctest reports as skipped.
+// The entry point of every test program. A run without a single case fails, since a suite's name was
+// mistyped. A run that misses the shared scenes and fails nowhere ends with 77, which ctest reports as
+// skipped.
 #define DOCTEST_CONFIG_IMPLEMENT
 #include "tests/shared_data.h"
 
@@ -28,7 +29,8 @@ DOCTEST_REGISTER_LISTENER("counter", 1, Counter);
 
 int main(int count, char** arguments) {
     doctest::Context context(count, arguments);
-    if (std::getenv("BINOSPLAT_NIGHTLY") != nullptr) { context.setOption("no-skip", true); }  // nightly() in tests/suite.h
+    // See nightly() in tests/suite.h.
+    if (std::getenv("BINOSPLAT_NIGHTLY") != nullptr) { context.setOption("no-skip", true); }
     const int failed = context.run();
     if (context.shouldExit() || failed != 0) { return failed; }
     if (Counter::cases == 0) {

@@ -11,8 +11,9 @@
 
 namespace binosplat::test {
 
-// Set by test programs that hold the program itself (fork_program.cpp): runs it in a fork of this process, whose libraries are loaded and
-// linked already, which is a third of what a start takes. -1 where that will not do, else the status as `waitpid` has it.
+// Set by test programs that contain the program itself (fork_program.cpp): runs it in a fork of this process,
+// which has already loaded and linked the libraries; that is a third of its start-up time. Returns -1 if a
+// fork is not possible, otherwise the status from `waitpid`.
 inline int (*run_in_fork)(const std::string& arguments, const std::string& environment, const std::filesystem::path& folder,
                           const std::filesystem::path& outputs) = nullptr;
 
@@ -31,7 +32,7 @@ struct Workplace {
     }
 
 #ifndef _WIN32
-    // As in the shell: `arguments` may redirect, `environment` is NAME=VALUE ... in front of the program.
+    // As in the shell: `arguments` may redirect, and `environment` is NAME=VALUE ... in front of the program.
     [[nodiscard]] Outcome run(const std::string& arguments, const std::string& environment = "") const {
         if (run_in_fork != nullptr) {
             if (const int status = run_in_fork(arguments, environment, path, base); status != -1) { return outcomeOf(status); }
@@ -39,7 +40,7 @@ struct Workplace {
         return runCommand(environment + " '" BINOSPLAT_PROGRAM "' " + arguments);
     }
 
-    // A run that is expected to succeed.
+    // A run that must succeed.
     Outcome go(const std::string& arguments, const std::string& environment = "") const {
         Outcome outcome = run(arguments, environment);
         INFO(arguments << ": " << outcome.errors);
@@ -47,7 +48,7 @@ struct Workplace {
         return outcome;
     }
 
-    // A run that ends with this code and one line of error, which contains `part`.
+    // A run that must end with this code and one line of error, which contains `part`.
     void checkRefused(const std::string& arguments, int exit_code, const std::string& part, const std::string& environment = "") const {
         CAPTURE(environment);
         const Outcome outcome = run(arguments, environment);

@@ -1,9 +1,12 @@
 #!/usr/bin/env python3
-"""Whether two builds of the program draw the same: `tests/same_pictures.py OLD NEW [--times N] [--modes A,B] [--size WxH] [SCENE...]`.
+"""Checks whether two builds of the program draw the same.
 
-Every mode and what changes its passes, over some scenes: pictures byte for byte, and of report.json the counters, what was left out, the
-shares that were rendered and the peak of memory (within 1 %). With --times the two take turns N times, and the median of the ratios of their
-pair times (new / old) is printed. Ends with 1 where anything differs."""
+tests/same_pictures.py OLD NEW [--times N] [--modes A,B] [--size WxH] [SCENE...]
+
+Covers every mode and the options that change its passes, over some scenes. Pictures are compared byte for byte;
+in report.json, the counters, what was left out, the shares that were rendered, and the peak of memory (within
+1 %). With --times the two builds alternate N times, and the median of the ratios of their pair times (new / old)
+is printed. Exits with 1 if anything differs."""
 
 import argparse
 import json
@@ -47,7 +50,7 @@ def render(program, scene, options, out):
 
 
 def contents(path):
-    """Its bytes, but for the time that an EXR file was written at."""
+    """The file's bytes, without the time at which an EXR file was written."""
     return re.sub(rb"\d{4}:\d\d:\d\d \d\d:\d\d:\d\d", b"", path.read_bytes())
 
 

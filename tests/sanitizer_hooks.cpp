@@ -1,12 +1,14 @@
-// Linked into every program of the sanitizer build. Drivers and loaders are not sanitized and keep some memory to the end. For the leak
-// sanitizer to know whose it is they stay loaded: a library that was unloaded has no name any more.
+// Linked into every program of the sanitizer build. Drivers and loaders are not sanitized and keep some
+// memory to the end. They stay loaded so that the leak sanitizer knows whose memory it is: an unloaded
+// library has no name any more.
 #pragma GCC visibility push(default)
 extern "C" {
 
 int dlclose(void*);
 int dlclose(void*) { return 0; }
 
-// OpenXR's loader 1.0.20 loses 1304 bytes with every instance, also where a program does nothing but create and destroy one.
+// OpenXR's loader 1.0.20 leaks 1304 bytes with every instance, even if a program does nothing but create and
+// destroy one.
 const char* __lsan_default_suppressions();
 const char* __lsan_default_suppressions() {
     return "leak:libLLVM\n"

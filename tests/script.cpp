@@ -12,7 +12,7 @@ struct Script {
     std::string name, path;
     std::vector<Line> lines;
 };
-// By suite. Cases are kept where they are, as doctest keeps pointers to their names.
+// By suite. Cases stay at their addresses, since doctest keeps pointers to their names.
 std::map<std::string, std::list<Script>>& scripts() {
     static std::map<std::string, std::list<Script>> all;
     return all;
@@ -20,7 +20,7 @@ std::map<std::string, std::list<Script>>& scripts() {
 
 bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
-// What begins with a word, without it.
+// The rest of a line that begins with this word.
 std::optional<std::string> behind(const std::string& text, const std::string& word) {
     if (text != word && !text.starts_with(word + " ")) { return std::nullopt; }
     return text.substr(std::min(text.size(), word.size() + 1));
@@ -38,7 +38,7 @@ std::vector<std::string> valuesOf(const std::string& text) {
     return values;
 }
 
-// The values at a pointer of JSON, in which * stands for each of an array or an object.
+// The values at a JSON pointer, in which * stands for each element of an array or an object.
 void collect(const nlohmann::json& json, const std::string& pointer, std::vector<nlohmann::json>& found) {
     const std::size_t end = std::min(pointer.find('/', 1), pointer.size());
     if (pointer.empty()) {
@@ -90,7 +90,7 @@ public:
     }
 
 private:
-    // With its names replaced; empty where it is a comment, or for another build.
+    // The line with its names replaced; empty for a comment, or a line for another build.
     [[nodiscard]] std::string lineAt(std::size_t at) const {
         std::string text = script_.lines[at].text;
         if (text.starts_with('#')) { return ""; }
@@ -117,7 +117,7 @@ private:
         }
         return at;
     }
-    // The lines that go on as this one begins.
+    // The lines that continue this one.
     std::string textOf(const std::string& mark) {
         std::string text;
         for (; at_ < script_.lines.size() && lineAt(at_).starts_with(mark); ++at_) { text += lineAt(at_).substr(mark.size()) + "\n"; }
@@ -210,7 +210,7 @@ private:
         const bool is_refused = next < script_.lines.size() && lineAt(next).starts_with('!');
         if (!is_refused) { REQUIRE(outcome_.exit_code == 0); }
     }
-    // `! PART`, or `!CODE PART`: the command ended with this code and one line, which holds PART.
+    // `! PART`, or `!CODE PART`: the command ended with this code and one line, which contains PART.
     void checkRefused(const std::string& text) {
         const std::size_t space = std::min(text.find(' '), text.size());
         CHECK(outcome_.exit_code == (space == 1 ? 1 : std::stoi(text.substr(1, space - 1))));
@@ -248,7 +248,7 @@ private:
     std::size_t at_ = 0;  // the next line
     std::string command_, environment_, rest_;
     Outcome outcome_;
-    bool is_program_ = true;  // not the shell
+    bool is_program_ = true;  // instead of the shell
 };
 
 }  // namespace

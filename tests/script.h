@@ -1,5 +1,5 @@
-// Facts that are scripts: commands, and what comes of them, in NAME_test.txt beside NAME_test.cpp.
-// docs/development.md says how one is written.
+// Facts that are scripts: commands with their expected results, in NAME_test.txt beside NAME_test.cpp.
+// docs/development.md says how to write one.
 #pragma once
 
 #include "tests/suite.h"
@@ -13,24 +13,26 @@ struct Outcome {
 
 // What a suite's scripts run on.
 struct ScriptHost {
-    // What `> WORDS` does. The environment is NAME=VALUE ..., as `env` has it.
+    // Executes `> WORDS`. The environment is NAME=VALUE ..., as for `env`.
     std::function<Outcome(const std::string& words, const std::string& environment)> run;
     std::filesystem::path folder{};              // where a script's files lie
-    std::string errors_begin{};                  // every line of error begins so
-    std::map<std::string, std::string> names{};  // what $NAME stands for
-    std::set<std::string> features{};            // `[NAME] LINE` is for builds that have it, `[!NAME] LINE` for others
-    std::map<std::string, std::function<void(const std::string&)>> verbs{};  // more words that begin a line
+    std::string errors_begin{};                  // every line of error begins with this
+    std::map<std::string, std::string> names{};  // values of $NAME
+    // `[NAME] LINE` is for builds that have NAME, `[!NAME] LINE` for others
+    std::set<std::string> features{};
+    // Additional words that can begin a line.
+    std::map<std::string, std::function<void(const std::string&)>> verbs{};
 };
 
-// What `action` says, or the error that it throws.
+// The result of `action`, or the error that it throws.
 Outcome tried(const std::function<std::string()>& action);
 
-// What a script's \n, \t, \r and \xNN stand for.
+// Replaces a script's \n, \t, \r and \xNN.
 std::string unescaped(const std::string& text);
-// A text after `FROM => TO`, of which FROM is in it; without FROM it is TO that comes behind it.
+// The text after `FROM => TO`, in which FROM must occur; if FROM is empty, TO is appended.
 std::string edited(std::string text, const std::string& edit);
 
-// Runs the case that is under way.
+// Runs the case that is being executed.
 void runScript(const ScriptHost& host);
 
 // Every case of tests/PATH_test.txt becomes one of this suite.

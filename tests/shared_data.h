@@ -1,5 +1,5 @@
-// Where the shared test scenes are. A case that needs them is `"its name" * needsSharedData()`: those of a
-// program are one line of ctest, which is reported as skipped if the scenes are absent.
+// Where the shared test scenes are. A case that needs them is `"its name" * needsSharedData()`: such cases of
+// a program are one line of ctest, which is reported as skipped if the scenes are missing.
 #pragma once
 
 #include "tests/suite.h"

@@ -1,5 +1,6 @@
-// SUITE(name) { facts }: the facts of NAME_test.cpp, which are a line of ctest. Within, all of binosplat and of binosplat::test is seen.
-// What suites and their headers share is included here once; a header of tests brings this one along.
+// SUITE(name) { facts }: the facts of NAME_test.cpp, which are one line of ctest. Inside, all names of
+// binosplat and binosplat::test are visible. Includes here what suites and their headers share; every header
+// of tests includes this one.
 #pragma once
 
 #include "engine/error.h"
@@ -59,8 +60,8 @@ namespace binosplat::test {
 
 namespace fs = std::filesystem;
 
-// Facts that take long and seldom break: TEST_CASE("..." * nightly()). .ci/nightly checks them, .ci/run
-// leaves them out.
+// Facts that take long and rarely break: TEST_CASE("..." * nightly()). .ci/nightly checks them, .ci/run skips
+// them.
 struct nightly : doctest::skip {};
 
 // The whole content of a file, byte by byte.
@@ -74,20 +75,20 @@ inline std::vector<std::string> wordsIn(const std::string& text) {
     return {std::istream_iterator<std::string>(stream), {}};
 }
 
-// JSON with some keys set to their expected values: it equals the original if they had them.
+// JSON with some keys set to their expected values: it equals the original if it had those values.
 inline nlohmann::json expecting(nlohmann::json json, const nlohmann::json& keys) {
     json.merge_patch(keys);
     return json;
 }
 
-// What belongs together, in one comparison that prints both sides: CHECK(these(a.x, a.y) == these(1, 2)). Arguments are evaluated in any
-// order, so that calls which change what the next one finds have a CHECK each.
+// Compares things that belong together and prints both sides: CHECK(these(a.x, a.y) == these(1, 2)). The
+// order in which arguments are evaluated is undefined, so calls that affect each other need a CHECK each.
 template <typename... Values>
 std::tuple<Values...> these(Values&&... values) {
     return std::tuple<Values...>(std::forward<Values>(values)...);
 }
 
-// A value in the range equals it: CHECK(share == between(0.1, 0.2)).
+// Any value in the range is equal to it: CHECK(share == between(0.1, 0.2)).
 struct Range {
     double low, high;
     bool has_ends;
@@ -101,13 +102,14 @@ template <typename Low, typename High>
 Range between(Low low, High high) {
     return {static_cast<double>(low), static_cast<double>(high), false};
 }
-// The same with its ends.
+// The same, including the ends.
 template <typename Low, typename High>
 Range within(Low low, High high) {
     return {static_cast<double>(low), static_cast<double>(high), true};
 }
 
-// From 0 to 1. The numbers of std::mt19937 are the same everywhere; those of the standard's distributions are not.
+// From 0 to 1. The numbers of std::mt19937 are the same everywhere; those of the standard's distributions are
+// not.
 inline double drawUnit(std::mt19937& random) { return static_cast<double>(random() >> 8) / 16777216.0; }
 inline double drawBetween(std::mt19937& random, double low, double high) { return low + (high - low) * drawUnit(random); }
 

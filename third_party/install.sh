@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Installs the Debian packages that the build needs and that are missing, and nothing else; with --ci also those of the checks of .ci/run, with
-# --windows those of the build for Windows, with --arm64 those of the build for aarch64, whose libraries it unpacks into build/arm64-root.
+# Installs the Debian packages that the build needs and that are missing, and nothing else; with --ci also
+# those of the checks of .ci/run, with --windows those of the build for Windows, with --arm64 those of the
+# build for aarch64, whose libraries it unpacks into build/arm64-root.
 set -euo pipefail
 
 packages=(
@@ -14,7 +15,8 @@ packages=(
     doctest-dev python3 xvfb xdotool openssl nghttp2-server
     dpkg-dev file
 )
-# For continuous integration besides: the check of the format, the library from Python, shells and desktops that completions and entries are for.
+# For continuous integration besides: the check of the format, the library from Python, shells and desktops
+# that completions and entries are for.
 [[ ${1:-} != --ci ]] || packages+=(clang-format python3-numpy zsh fish desktop-file-utils appstream)
 # For Windows: the compiler, and what unpacks and compiles Debian's source packages.
 [[ ${1:-} != --windows ]] || packages+=(g++-mingw-w64-x86-64-posix libz-mingw-w64-dev xz-utils patch make python3-jinja2)
@@ -49,7 +51,8 @@ else
 fi
 
 if [[ ${1:-} == --arm64 ]]; then
-    # The libraries above of that machine: OpenEXR in place of OpenImageIO, which has a hundred packages behind it.
+    # The libraries above of that machine: OpenEXR in place of OpenImageIO, which has a hundred packages
+    # behind it.
     libraries=("libstdc++-$(aarch64-linux-gnu-g++ -dumpversion)-dev" libopenexr-dev)
     for package in "${packages[@]}"; do
         [[ $package != *-dev || $package =~ ^(libopenimageio|dpkg)-dev$ ]] || libraries+=("$package")

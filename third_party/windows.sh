@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Makes the program for Windows on Debian, with mingw-w64: installs what is missing, compiles the libraries once (third_party/windows/libraries.sh),
-# then build/windows/bin/binosplat.exe with the simulated runtime beside it, and packs both: build/windows/binosplat-VERSION-windows-x64.zip.
+# Makes the program for Windows on Debian, with mingw-w64: installs what is missing, compiles the libraries
+# once (third_party/windows/libraries.sh), then build/windows/bin/binosplat.exe with the simulated runtime
+# beside it, and packs both: build/windows/binosplat-VERSION-windows-x64.zip.
 #   third_party/windows.sh               everything
 #   third_party/windows.sh TARGET...     these targets of the build, and no package
 # BINOSPLAT_JOBS says how many compilers run at a time. docs/windows.md says what was seen to work.

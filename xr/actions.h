@@ -18,7 +18,8 @@ public:
 
     // With a state for each of `hands`, or a single one.
     [[nodiscard]] XrAction make(const char* name, const char* description, XrActionType type, std::span<const XrPath> hands = {}) const;
-    // `profile` is relative to /interaction_profiles. A runtime need not know it: returns the result, but throws InstanceLost.
+    // `profile` is relative to /interaction_profiles. A runtime need not know it: returns the result, but
+    // throws InstanceLost.
     [[nodiscard]] XrResult suggest(const std::string& profile, std::span<const XrActionSuggestedBinding> bindings) const;
     void attach() const;
     // The space of a pose action, for one hand or for none in particular.

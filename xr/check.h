@@ -14,8 +14,8 @@
 
 namespace binosplat::xr {
 
-// The session is gone, or the headset; the runtime may give another one. Neither this nor InstanceLost is an Error: code that goes on
-// without a failed feature must not go on after these.
+// The session is gone, or the headset; the runtime may give another one. Neither this nor InstanceLost is an
+// Error: code that goes on without a failed feature must not go on after these.
 class Lost : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;
@@ -32,8 +32,8 @@ std::string nameOf(XrResult result);
 
 inline constexpr const char* kGoingAway = "the OpenXR runtime is going away";
 
-// Returns `result` if it is a success of any kind. Throws Lost or InstanceLost for a loss, otherwise Error (exit code 3, for memory 1)
-// with the name of the function in `call`.
+// Returns `result` if it is a success of any kind. Throws Lost or InstanceLost for a loss, otherwise Error
+// (exit code 3, for memory 1) with the name of the function in `call`.
 XrResult checkResult(XrResult result, const char* call);
 
 #define BINOSPLAT_XR(call) ::binosplat::xr::checkResult((call), #call)
@@ -46,7 +46,8 @@ template <typename Struct>
     return made;
 }
 
-// The list from a call with the two-call idiom; `call` takes the array's capacity, a pointer to the count, and the array.
+// The list from a call with the two-call idiom; `call` takes the array's capacity, a pointer to the count,
+// and the array.
 template <typename Value>
 [[nodiscard]] std::vector<Value> listAll(const auto& call) {
     std::uint32_t count = 0;

@@ -1,5 +1,6 @@
-// Between OpenXR's axes (x right, y up, z backward; quaternions x, y, z, w; float) and ours (x right, y down, z forward; double).
-// The only file that knows both: half a turn about x converts one into the other, for the room and for every device in it.
+// Between OpenXR's axes (x right, y up, z backward; quaternions x, y, z, w; float) and ours (x right, y down,
+// z forward; double). The only file that knows both: half a turn about x converts one into the other, for the
+// room and for every device in it.
 #pragma once
 
 #include "engine/geometry.h"

@@ -9,7 +9,8 @@ namespace {
 
 // A longer gap is not the device's fault: the runtime paused, or the machine slept.
 constexpr double kMostLostPeriods = 10.0;
-constexpr double kJitter = 0.02;  // tolerance of isMultiple, as a share: what a runtime measures rather than knows grows with it
+// Tolerance of isMultiple, as a share, since the error of a measured period grows with the period.
+constexpr double kJitter = 0.02;
 
 // True if `stated` is `display` or a multiple of it.
 bool isMultiple(XrDuration stated, XrDuration display) {

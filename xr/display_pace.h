@@ -1,5 +1,5 @@
-// The pace of frames, from the runtime's data: the distance between the times at which it displays them. Pure: no runtime, no
-// clock.
+// The pace of frames, from the runtime's data: the distance between the times at which it displays them.
+// Pure: no runtime, no clock.
 #pragma once
 
 #include "xr/platform.h"
@@ -8,12 +8,13 @@ namespace binosplat::xr {
 
 class DisplayPace {
 public:
-    // Call with each result of xrWaitFrame and the period that the runtime states: it may be several of the display's if the program needs
-    // that long (as with Monado); taking it for the display's would settle for half the rate. `told_period` is the display's period
-    // if the runtime reports it (XR_FB_display_refresh_rate), otherwise 0.
+    // Call with each result of xrWaitFrame and the period that the runtime states: it may be several of the
+    // display's if the program needs that long (as with Monado); taking it for the display's would settle for
+    // half the rate. `told_period` is the display's period if the runtime reports it
+    // (XR_FB_display_refresh_rate), otherwise 0.
     void begin(XrTime display_time, XrDuration stated_period, XrDuration told_period = 0);
-    // Call for each xrEndFrame, with the program's own working time. A frame that shows nothing, or in which the program alone needed more
-    // than the period, says nothing about the device.
+    // Call for each xrEndFrame, with the program's own working time. A frame that shows nothing, or in which
+    // the program alone needed more than the period, says nothing about the device.
     void end(bool shows, double busy_seconds);
     // The session's state changed: the next frames are unrelated to the previous ones.
     void interrupt() { says_something_ = false; }

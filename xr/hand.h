@@ -20,8 +20,8 @@ struct Hand {
     bool stick_presses = false;  // the stick is pressed in; never a pad
 };
 
-// Tells if a trigger or a grip is pressed, with hysteresis, since values jitter. A button that was not read for a while may have been
-// pressed for something else: it counts once it has been seen released.
+// Tells if a trigger or a grip is pressed, with hysteresis, since values jitter. A button that was not read
+// for a while may have been pressed for something else: it counts once it has been seen released.
 class Hold {
 public:
     // Empty: unknown.

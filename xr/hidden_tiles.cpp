@@ -68,7 +68,8 @@ std::vector<Triangle> trianglesOf(const HiddenMesh& mesh, const Intrinsics& intr
 }  // namespace
 
 std::uint32_t hiddenMarginPx(const Intrinsics& intrinsics) {
-    constexpr double kMarginRadians = 0.0175;  // a degree: a quick turn of 100 degrees/s, ten milliseconds after its prediction
+    // A degree: a quick turn of 100 degrees/s, ten milliseconds after its prediction.
+    constexpr double kMarginRadians = 0.0175;
     return static_cast<std::uint32_t>(std::ceil(kMarginRadians * std::max(intrinsics.fx, intrinsics.fy)));
 }
 

@@ -80,7 +80,8 @@ std::array<Hand, 2> Input::read() {
         }
         gamepad_.forget();
     }
-    // Even if the focus went and came back between two frames, hands rest for one frame, so that no press seems to be released in place.
+    // Even if the focus went and came back between two frames, hands rest for one frame, so that no press
+    // seems to be released in place.
     if (!is_focused || (is_new && !was_at_rest)) { return hands; }
     for (std::size_t h = 0; h < 2; ++h) { readHand(h, hands[h]); }
     gamepad_.addTo(hands);

@@ -13,16 +13,17 @@ namespace binosplat::xr {
 
 class Input {
 public:
-    // Suggests bindings for every controller of bindings.h that the runtime knows, and attaches them. Controllers that it rejects
-    // are among the Troubles.
+    // Suggests bindings for every controller of bindings.h that the runtime knows, and attaches them.
+    // Controllers that it rejects are among the Troubles.
     explicit Input(const Session& session);
     Input(const Input&) = delete;
     Input& operator=(const Input&) = delete;
 
-    // Both hands, [kLeft] and [kRight], at the open frame's display time; at rest while another program has the input.
+    // Both hands, [kLeft] and [kRight], at the open frame's display time; at rest while another program has
+    // the input.
     [[nodiscard]] std::array<Hand, 2> read();
-    // The gaze as of the last read(): a direction in the room (our axes). Empty if the headset does not track it reliably, or this
-    // program may not see it.
+    // The gaze as of the last read(): a direction in the room (our axes). Empty if the headset does not track
+    // it reliably, or this program may not see it.
     [[nodiscard]] std::optional<glm::dvec3> gaze() { return gaze_.find(); }
     // The bindings of what each hand holds, by hand; null: nothing that is known.
     [[nodiscard]] std::array<const ProfileBindings*, 2> held();

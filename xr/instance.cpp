@@ -146,7 +146,8 @@ void Instance::readProperties(void* of_extension) const {
 void Instance::readViews() {
     std::uint32_t count = 0;
     const XrResult result = xrEnumerateViewConfigurationViews(handle(), system_, kStereo, 0, &count, nullptr);
-    if (result == XR_ERROR_SYSTEM_INVALID) { checkResult(result, "xrEnumerateViewConfigurationViews"); }  // unplugged
+    // unplugged
+    if (result == XR_ERROR_SYSTEM_INVALID) { checkResult(result, "xrEnumerateViewConfigurationViews"); }
     if (XR_FAILED(result)) { refuse(fmt::format("{} does not show two eyes", description_), result); }
     std::vector<XrViewConfigurationView> views(count, {XR_TYPE_VIEW_CONFIGURATION_VIEW, nullptr, 0, 0, 0, 0, 0, 0});
     BINOSPLAT_XR(xrEnumerateViewConfigurationViews(handle(), system_, kStereo, count, &count, views.data()));

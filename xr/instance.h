@@ -28,20 +28,20 @@ struct InstanceOptions {
     bool visibility_mask = true;  // some runtimes offer the function but crash in it
     bool eye_tracking = false;    // the wearer allows this program to see the gaze
     bool foveated_inset = false;  // the program can draw insets, see extensions/foveated_inset.h
-    // Called repeatedly, with a pause of its own, while the runtime knows of a headset that is not there yet. Without it there is no
-    // wait.
+    // Called repeatedly, with a pause of its own, while the runtime knows of a headset that is not there yet.
+    // Without it there is no wait.
     std::function<void(const std::string& runtime)> wait_for_headset;
 };
 
 class Instance {
 public:
-    // Asks for API 1.0 and XR_KHR_vulkan_enable2; uses the extensions of extensions/ and bindings.h that are available.
-    // Throws Error (exit code 3, one line with what was looked for) if there is no runtime or no headset, and rethrows from
-    // `wait_for_headset`.
+    // Asks for API 1.0 and XR_KHR_vulkan_enable2; uses the extensions of extensions/ and bindings.h that are
+    // available. Throws Error (exit code 3, one line with what was looked for) if there is no runtime or no
+    // headset, and rethrows from `wait_for_headset`.
     explicit Instance(const InstanceOptions& options = {});
-    // After a session is lost, which may mean that the headset was unplugged: finds it again, or another one in its place, for a session on
-    // `context`. False while there is none. Throws Lost, InstanceLost, and Error (exit code 3) if the headset is now on another graphics
-    // device.
+    // After a session is lost, which may mean that the headset was unplugged: finds it again, or another one
+    // in its place, for a session on `context`. False while there is none. Throws Lost, InstanceLost, and
+    // Error (exit code 3) if the headset is now on another graphics device.
     bool findHeadset(const Context& context);
     Instance(const Instance&) = delete;
     Instance& operator=(const Instance&) = delete;
@@ -59,17 +59,19 @@ public:
     [[nodiscard]] bool tracksEyes() const { return tracks_eyes_; }
     // See findsMovingInset().
     [[nodiscard]] bool movesInsets() const { return moves_insets_; }
-    // The recommended pixels of an eye, the larger of both, since the methods need eyes of one size; and the maximum.
+    // The recommended pixels of an eye, the larger of both, since the methods need eyes of one size; and the
+    // maximum.
     [[nodiscard]] glm::uvec2 recommendedSizePx() const { return recommended_size_px_; }
     [[nodiscard]] glm::uvec2 maxSizePx() const { return max_size_px_; }
-    // How layers are blended with the world: opaque if the headset can, otherwise its preference; if `see_through`, with the room visible
-    // behind them, if it can. Where the room is a layer of its own, see Passthrough, they stay opaque.
+    // How layers are blended with the world: opaque if the headset can, otherwise its preference; if
+    // `see_through`, with the room visible behind them, if it can. Where the room is a layer of its own, see
+    // Passthrough, they stay opaque.
     [[nodiscard]] XrEnvironmentBlendMode blendMode(bool see_through) const {
         return see_through && see_through_ && !hasPassthrough() ? *see_through_ : blend_mode_;
     }
     [[nodiscard]] bool canSeeThrough() const { return see_through_.has_value() || passes_through_; }
-    // The room is shown by a layer: the extension is enabled, this headset has cameras, and its pictures do not cover the room by their
-    // alpha.
+    // The room is shown by a layer: the extension is enabled, this headset has cameras, and its pictures do
+    // not cover the room by their alpha.
     [[nodiscard]] bool hasPassthrough() const { return passes_through_ && see_through_ != XR_ENVIRONMENT_BLEND_MODE_ALPHA_BLEND; }
 
     [[nodiscard]] XrPath path(const char* text) const;

@@ -39,12 +39,13 @@ public:
     Layers(const Layers&) = delete;
     Layers& operator=(const Layers&) = delete;
 
-    // If `see_through`, the room shows as far as the pictures' alpha lets it; their colours are premultiplied by alpha.
+    // If `see_through`, the room shows as far as the pictures' alpha lets it; their colours are premultiplied
+    // by alpha.
     void addEyes(const std::array<LayerEye, 2>& eyes, bool see_through) { addViews(eyes, see_through); }
     // The same in a session with insets, which come after the eyes.
     void addEyesAndInsets(const std::array<LayerEye, 4>& eyes_and_insets, bool see_through) { addViews(eyes_and_insets, see_through); }
-    // A panel centred at `room_from_panel`, facing along its -z, size_m wide and high. Its picture is blended over what lies behind; its
-    // colours are premultiplied by alpha.
+    // A panel centred at `room_from_panel`, facing along its -z, size_m wide and high. Its picture is blended
+    // over what lies behind; its colours are premultiplied by alpha.
     void addPanel(const Pose& room_from_panel, const glm::dvec2& size_m, const Swapchain& swapchain);
     void addQuad(const LayerQuad& quad);
     // All quads that were added, not counting panels.

@@ -1,4 +1,5 @@
-// The places where OpenXR's loader looks for the runtime, by operating system: runtime_place_posix.cpp or runtime_place_windows.cpp.
+// The places where OpenXR's loader looks for the runtime, by operating system: runtime_place_posix.cpp or
+// runtime_place_windows.cpp.
 #pragma once
 
 #include <string>

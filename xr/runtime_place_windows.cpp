@@ -1,4 +1,5 @@
-// XR_RUNTIME_JSON, unless the program runs as administrator, or the registry, where a runtime's own settings put it.
+// XR_RUNTIME_JSON, unless the program runs as administrator, or the registry, where a runtime's own settings
+// put it.
 #include "xr/runtime_place.h"
 
 #include "engine/platform.h"

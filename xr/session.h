@@ -30,17 +30,17 @@ enum class FrameOutcome {
 
 class Session {
 public:
-    // `context` must have been opened with deviceMaker(instance); both outlive the session. `views` is kStereo, or kStereoWithInset if
-    // findInset() found one.
+    // `context` must have been opened with deviceMaker(instance); both outlive the session. `views` is
+    // kStereo, or kStereoWithInset if findInset() found one.
     Session(const Instance& instance, const Context& context, XrViewConfigurationType views = kStereo);
     Session(const Session&) = delete;
     Session& operator=(const Session&) = delete;
 
-    // Handles the runtime's events, waits for the next frame and opens it. Throws Lost if the session is lost or about to be, InstanceLost
-    // if the runtime is.
+    // Handles the runtime's events, waits for the next frame and opens it. Throws Lost if the session is lost
+    // or about to be, InstanceLost if the runtime is.
     FrameOutcome beginFrame();
-    // Closes the frame with these layers, back to front. Throws Lost and InstanceLost, and Error if the runtime refuses a layer; then
-    // the frame is still open.
+    // Closes the frame with these layers, back to front. Throws Lost and InstanceLost, and Error if the
+    // runtime refuses a layer; then the frame is still open.
     void endFrame(std::span<const XrCompositionLayerBaseHeader* const> layers);
     // Shows the room behind the layers, if the headset can; from the next endFrame() on.
     void seeThrough(bool see_through) {
@@ -56,7 +56,8 @@ public:
     [[nodiscard]] XrTime displayTime() const { return frame_state_.predictedDisplayTime; }
     // Seconds from the last frame to this one, at most a tenth, whatever period the runtime states.
     [[nodiscard]] double stepSeconds() const { return step_seconds_; }
-    // The display's period in milliseconds, see DisplayPace; that of 90 Hz if the runtime states none, or an absurd one.
+    // The display's period in milliseconds, see DisplayPace; that of 90 Hz if the runtime states none, or an
+    // absurd one.
     [[nodiscard]] double periodMs() const;
     // See DisplayPace.
     [[nodiscard]] double lostPeriods() const { return pace_.lostPeriods(); }
@@ -70,7 +71,8 @@ public:
     std::string askForRate(double rate_hz) { return refresh_rate_.request(rate_hz); }
 
     // See Spaces and Floor; for the open frame.
-    // The room is also settled once somebody begins to wear the headset, unless the head still is where the room begins.
+    // The room is also settled once somebody begins to wear the headset, unless the head still is where the
+    // room begins.
     bool settle(bool demanded);
     [[nodiscard]] std::optional<std::array<EyeView, 2>> locateEyes() { return spaces_.locateEyes(displayTime()); }
     [[nodiscard]] const std::optional<std::array<XrFovf, 2>>& insets() const { return spaces_.insets(); }
@@ -117,8 +119,9 @@ private:
     XrTime last_display_time_ = 0;
     double step_seconds_ = 0.0;
     DisplayPace pace_;
-    XrDuration told_period_ = 0, told_for_ = 0;  // the display's period from the runtime, and the stated period at the time of the request
-    double busy_from_seconds_ = 0.0;             // this thread's time when the frame began
+    // The display's period from the runtime, and the stated period at the time of the request.
+    XrDuration told_period_ = 0, told_for_ = 0;
+    double busy_from_seconds_ = 0.0;  // this thread's time when the frame began
     std::chrono::steady_clock::time_point open_from_;
     double busy_seconds_ = 0.0, open_seconds_ = 0.0;
     bool was_shown_ = false, follows_shown_ = false;

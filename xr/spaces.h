@@ -20,25 +20,27 @@ inline constexpr XrPosef kHere{{0.0f, 0.0f, 0.0f, 1.0f}, {0.0f, 0.0f, 0.0f}};
 
 [[nodiscard]] OwnedSpace makeSpace(XrSession session, XrReferenceSpaceType type, const XrPosef& pose = kHere);
 
-// The room's origin is at the head, upright and facing its direction: the origins of the runtime's own spaces are arbitrary.
+// The room's origin is at the head, upright and facing its direction: the origins of the runtime's own spaces
+// are arbitrary.
 class Spaces {
 public:
     // `moves_insets`: those of such a session follow the gaze.
     Spaces(XrSession session, XrViewConfigurationType views, bool moves_insets);
 
-    // Places the room for `time` and after, the first time that the head's pose is known, again when the runtime recentred its space, and
-    // when `demanded`. Returns true if it did.
+    // Places the room for `time` and after, the first time that the head's pose is known, again when the
+    // runtime recentred its space, and when `demanded`. Returns true if it did.
     bool settle(XrTime time, bool demanded);
     // The runtime recentres its space at `time`.
     void recentreFrom(XrTime time) { recentred_from_ = time; }
-    // The poses of the eyes in room(); empty if the headset's orientation is unknown. While its position is unknown, the last known one is
-    // used.
+    // The poses of the eyes in room(); empty if the headset's orientation is unknown. While its position is
+    // unknown, the last known one is used.
     [[nodiscard]] std::optional<std::array<EyeView, 2>> locateEyes(XrTime time);
 
     // The middle between the eyes, if it is known in full.
     [[nodiscard]] std::optional<Pose> locateHead(XrTime time) const;
 
-    // The angles of both insets as of the last locateEyes(), in a session with insets; their poses are the eyes'.
+    // The angles of both insets as of the last locateEyes(), in a session with insets; their poses are the
+    // eyes'.
     [[nodiscard]] const std::optional<std::array<XrFovf, 2>>& insets() const { return insets_; }
 
     // LOCAL until it is settled.

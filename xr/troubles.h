@@ -1,4 +1,5 @@
-// Optional features of a headset that failed: one line for each, however many frames and sessions it fails in.
+// Optional features of a headset that failed: one line for each, however many frames and sessions it fails
+// in.
 #pragma once
 
 #include "xr/check.h"

@@ -11,14 +11,17 @@ void runBench(const BenchOptions& options);
 // Reports a missing scene before the others are measured. Throws Error naming it.
 void requireScenes(const BenchPlan& plan);
 
-// `bench --motion`: every method at every pose of a recorded head; error, time and flicker. Writes motion.csv, .json and .svg.
+// `bench --motion`: every method at every pose of a recorded head; error, time and flicker. Writes
+// motion.csv, .json and .svg.
 void benchMotion(const BenchOptions& options, const BenchPlan& plan);
 
-// `bench --photos`: the affiliated eye where a photograph was taken, against the photograph. Writes photos.csv and .json.
+// `bench --photos`: the affiliated eye where a photograph was taken, against the photograph. Writes
+// photos.csv and .json.
 void benchPhotos(const BenchOptions& options, const BenchPlan& plan);
 
-// `bench --orders`: pictures by each order of splats against one in which every pixel has its own, and popping while the head turns; only
-// on the CPU, for the plan's scenes, views and first size. Writes orders.csv.
+// `bench --orders`: pictures by each order of splats against one in which every pixel has its own, and
+// popping while the head turns; only on the CPU, for the plan's scenes, views and first size. Writes
+// orders.csv.
 void benchOrders(const BenchOptions& options, const BenchPlan& plan);
 
 }  // namespace binosplat

@@ -12,16 +12,18 @@ namespace binosplat {
 struct BenchMethod {
     std::string name;
     StereoOptions stereo;
-    double resolution = 1.0;  // of width and height; scores are those of the pictures scaled up, as a compositor does
+    // Share of width and height; scores are those of the pictures scaled up, as a compositor does.
+    double resolution = 1.0;
 
     // True if both eyes equal two full renders.
     [[nodiscard]] bool isExact() const { return rendersBothInFull(stereo.mode) && resolution == 1.0; }
 };
 
-// One [[methods]] table: name, mode, and any of depth, order, resampling, per-eye, margin, budget, gap-px, center-roi, edge-bounds,
-// edge-samples, hole-error, newcomer-error and move-cost, and resolution. Missing keys are as in `base`. A key with an array stands for a
-// method per entry, several such keys for every combination, each named "name key=value ...", or "name@0.6" by its resolution. Throws Error
-// with file and line.
+// One [[methods]] table: name, mode, and any of depth, order, resampling, per-eye, margin, budget, gap-px,
+// center-roi, edge-bounds, edge-samples, hole-error, newcomer-error and move-cost, and resolution. Missing
+// keys are as in `base`. A key with an array stands for a method per entry, several such keys for every
+// combination, each named "name key=value ...", or "name@0.6" by its resolution. Throws Error with file and
+// line.
 std::vector<BenchMethod> readMethods(const SettingsTable& table, const RunOptions& base);
 
 // A mode with the settings of `base`, named as the mode.

@@ -1,5 +1,6 @@
-// `binosplat bench --orders`: how close the picture of each order of splats is to one in which every pixel has its own order, and popping
-// while the head turns. In float64 on the CPU, so that nothing but the order differs.
+// `binosplat bench --orders`: how close the picture of each order of splats is to one in which every pixel
+// has its own order, and popping while the head turns. In float64 on the CPU, so that nothing but the order
+// differs.
 #include "app/bench/bench.h"
 #include "app/bench/order_results.h"
 #include "app/load.h"

@@ -1,5 +1,5 @@
-// `binosplat bench --photos`: the affiliated eye stands where a photograph was taken, and the dominant one beside it (the paper's
-// protocol, so that PSNR and SSIM are against the photograph).
+// `binosplat bench --photos`: the affiliated eye stands where a photograph was taken, and the dominant one
+// beside it (the paper's protocol, so that PSNR and SSIM are against the photograph).
 #include "app/bench/bench.h"
 #include "app/bench/bench_point.h"
 #include "app/load.h"

@@ -46,8 +46,8 @@ void readScores(const Setting& setting, BenchPlan& plan) {
     }
 }
 
-// The file of LPIPS weights; empty if LPIPS is not measured. The config's file counts unless its scores omit LPIPS, the command line's
-// always.
+// The file of LPIPS weights; empty if LPIPS is not measured. The config's file counts unless its scores omit
+// LPIPS, the command line's always.
 std::string lpipsWeights(const SettingsTable& bench, const BenchOptions& options) {
     if (!options.lpips_weights.empty()) { return options.lpips_weights; }
     const auto scores = bench.settings.find("scores"), weights = bench.settings.find("lpips");

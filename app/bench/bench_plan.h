@@ -46,9 +46,10 @@ struct BenchPlan {
     bool twin = false;           // also the float64 twin on the CPU, for one eye
 };
 
-// Scenes of the command line replace the config's; without a [[series]] there is one, at the frame's own size; a scene without a
-// [[views]] of its own is seen by the camera options. A camera on the command line replaces all views, a size those of all series.
-// Throws Error with file and line; kUsage if no scene is named anywhere.
+// Scenes of the command line replace the config's; without a [[series]] there is one, at the frame's own
+// size; a scene without a [[views]] of its own is seen by the camera options. A camera on the command line
+// replaces all views, a size those of all series. Throws Error with file and line; kUsage if no scene is
+// named anywhere.
 BenchPlan planBench(const BenchOptions& options);
 
 // The scene's own name, or its whole path if another scene of the plan has the same name.

@@ -23,8 +23,8 @@ std::optional<double> errorOf(const BenchResult& result) {
 
 std::optional<double> seenErrorOf(const BenchResult& result) { return result.seen ? std::optional(result.seen->psnrDb()) : std::nullopt; }
 
-// One panel per point whose methods have an error: a series of points per mode; the points of the Pareto front are joined if
-// `draws_front`.
+// One panel per point whose methods have an error: a series of points per mode; the points of the Pareto
+// front are joined if `draws_front`.
 std::vector<PlotPanel> errorPanels(const BenchRun& run, const char* y_label, std::optional<double> (*psnrDbOf)(const BenchResult&),
                                    bool draws_front) {
     std::vector<PlotPanel> panels;

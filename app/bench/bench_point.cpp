@@ -182,7 +182,8 @@ MethodFrames::Rendered MethodFrames::render(const Cameras& full_cameras, const C
     settings.keep_past = keep_past;
     if (chosen) { settings.measured_part = frames_governed_++ % gpu::kMeasuredParts; }
     settings.half_floats = !compared;  // as in the viewer
-    settings.keep_depth = false;       // it is not read here, so a mode only pays for it if it needs it itself
+    // It is not read here, so a mode only pays for it if it needs it itself.
+    settings.keep_depth = false;
     StereoFrame& frame = frameFor(method);
     const std::span<const Eye> eyes = settings.mode == Mode::kMono ? std::span(&cameras.middle, 1) : std::span<const Eye>(cameras.eyes);
     std::array<std::vector<std::uint8_t>, 2> hidden;

@@ -1,4 +1,5 @@
-// All methods at one scene, view and size, in turn and repeatedly, so that a device's drift affects all of them alike.
+// All methods at one scene, view and size, in turn and repeatedly, so that a device's drift affects all of
+// them alike.
 #pragma once
 
 #include "app/bench/bench_plan.h"
@@ -17,7 +18,8 @@
 
 namespace binosplat {
 
-// Renders methods, each in buffers shared only with methods of the same needs: none pays for another's allocations.
+// Renders methods, each in buffers shared only with methods of the same needs: none pays for another's
+// allocations.
 class MethodFrames {
 public:
     MethodFrames(const Context& context, const GpuScene& scene) : context_(context), scene_(scene) {}
@@ -37,8 +39,8 @@ public:
     Rendered render(const Cameras& full_cameras, const CameraOptions& camera, const BenchMethod& method, bool compared = false,
                     bool keep_past = false, const Cameras* views = nullptr, const std::optional<GovernedSettings>& chosen = {});
 
-    // The program's peak memory, in bytes, while it holds only this method's buffers, as in the viewer. Frees the buffers of all other
-    // methods.
+    // The program's peak memory, in bytes, while it holds only this method's buffers, as in the viewer. Frees
+    // the buffers of all other methods.
     std::uint64_t peakAlone(const Cameras& cameras, const CameraOptions& camera, const BenchMethod& method);
 
 private:
@@ -63,8 +65,9 @@ struct BenchPoint {
     LiveScene* live = nullptr;  // if it is streamed or moves; then `scene` is a sample of it
 };
 
-// Renders `round` until the device is as fast as it gets: `rounds` times, and for two seconds on a GPU, whose clocks fall while it waits
-// for scenes to load or pictures to be compared (by a factor of four, NVIDIA H100) and take more than half a second to rise again.
+// Renders `round` until the device is as fast as it gets: `rounds` times, and for two seconds on a GPU, whose
+// clocks fall while it waits for scenes to load or pictures to be compared (by a factor of four, NVIDIA H100)
+// and take more than half a second to rise again.
 void warmUp(const Context& context, std::uint32_t rounds, const std::function<void()>& round);
 
 std::vector<BenchResult> benchPoint(const Context& context, const BenchPoint& point, const BenchPlan& plan);

@@ -11,7 +11,8 @@
 
 namespace binosplat {
 
-// Pixels of one origin: "all", "reprojected", "interpolated" (gaps and holes) or "patched" (tiles rendered again).
+// Pixels of one origin: "all", "reprojected", "interpolated" (gaps and holes) or "patched" (tiles rendered
+// again).
 struct OriginScores {
     std::string origin;
     std::uint64_t pixels = 0;
@@ -29,8 +30,8 @@ struct QualityOptions {
     const Lpips* lpips = nullptr;  // null: not wanted
 };
 
-// "all" first; then every origin that occurs. The lists are those of StereoFrame and may be empty. Scores not defined for pictures of this
-// size or angle (FLIP, LPIPS) are left out.
+// "all" first; then every origin that occurs. The lists are those of StereoFrame and may be empty. Scores not
+// defined for pictures of this size or angle (FLIP, LPIPS) are left out.
 std::vector<OriginScores> measureQuality(const Image& full, const Image& picture, std::span<const std::uint32_t> tile_kinds,
                                          std::span<const std::uint8_t> pixel_classes, const QualityOptions& options);
 
@@ -45,7 +46,8 @@ struct SeenScores {
 // `shares`: by tile, how much of its error's square the eye sees, see reference::findSharesThere.
 SeenScores measureSeen(const Image& full, const Image& picture, std::span<const double> shares);
 
-// Against a photograph, as evaluations of 3DGS and 2DGS do: the picture clamped to 0 to 1, zeros beyond the border for SSIM.
+// Against a photograph, as evaluations of 3DGS and 2DGS do: the picture clamped to 0 to 1, zeros beyond the
+// border for SSIM.
 struct PhotoScores {
     double psnr_db, ssim;
     std::optional<double> lpips;

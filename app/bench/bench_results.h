@@ -20,8 +20,8 @@ namespace binosplat {
 // The origins of `OriginScores` with columns in the tables.
 inline constexpr const char* kOrigins[] = {"all", "reprojected", "interpolated", "patched"};
 
-// One method at one point of a series. Times are medians over the frames, in milliseconds of GPU time; without a mode, they are wall-clock
-// milliseconds of the float64 twin for one eye.
+// One method at one point of a series. Times are medians over the frames, in milliseconds of GPU time;
+// without a mode, they are wall-clock milliseconds of the float64 twin for one eye.
 struct BenchResult {
     std::string series, scene, view, headset, method;
     std::optional<Mode> mode;  // empty: the twin
@@ -38,13 +38,17 @@ struct BenchResult {
     std::uint64_t peak_gpu_bytes = 0;
     std::vector<OriginScores> quality;  // of the affiliated eye; empty if it is rendered in full
     std::optional<SeenScores> seen;     // of the affiliated eye, if its gaze is known
-    // Median of the ratios of frames that took turns, so that temporary slowness affects both. Ratio of total_ms if they did not.
+    // Median of the ratios of frames that took turns, so that temporary slowness affects both. Ratio of
+    // total_ms if they did not.
     std::optional<double> ratio_to_two_pass, ratio_to_shared;
     std::optional<double> ratio_to_twin;               // mono: to the twin
     double tiles_rendered = 1.0, work_rendered = 1.0;  // see FrameResult
-    double stereo_bytes_per_pixel = 0.0;               // see FrameResult, of all passes; 0 if every eye is rendered in full
-    std::optional<double> move_cost;                   // predicted: cost of warping a tile, in pairs of `shared`
-    bool on_front = false;                             // no other method of the point is better in time and error
+    // See FrameResult, of all passes; 0 if every eye is rendered in full.
+    double stereo_bytes_per_pixel = 0.0;
+    // predicted: cost of warping a tile, in pairs of `shared`
+    std::optional<double> move_cost;
+    // No other method of the point is better in time and error.
+    bool on_front = false;
 };
 
 struct BenchRun {
@@ -64,8 +68,8 @@ std::string namePoint(const BenchResult& result);
 // Fills in the ratios and the cost of warping, if both modes were measured at the same point.
 void compareModes(std::vector<BenchResult>& results);
 
-// Marks the Pareto front: of two methods with the same error the faster one, of two equally fast the closer one. Modes that render every
-// eye in full have no error.
+// Marks the Pareto front: of two methods with the same error the faster one, of two equally fast the closer
+// one. Modes that render every eye in full have no error.
 void markFront(std::vector<BenchResult>& results);
 
 // 0 if it has no such counter.
@@ -80,7 +84,8 @@ bool hasLpips(const std::vector<BenchResult>& results);
 std::string benchTable(const BenchRun& run, std::size_t most_columns = SIZE_MAX);
 std::string benchJson(const BenchRun& run);
 std::string benchCsv(const BenchRun& run);
-// Error against run time at every point, with the front; and time against splats and pixels if a series varies them.
+// Error against run time at every point, with the front; and time against splats and pixels if a series
+// varies them.
 std::string benchPlot(const BenchRun& run);
 
 // Quoted if the text would break a row of CSV.

@@ -19,12 +19,13 @@ inline constexpr const char* kStages[] = {"cull+sort", "dominant", "reprojection
 // The times by the labels of their passes: "dominant project".
 NamedTimes byLabel(const PassTimes& pass_ms);
 
-// The times by bare pass, in the order of first appearance: "dominant project" and "affiliated project" add up to "project".
+// The times by bare pass, in the order of first appearance: "dominant project" and "affiliated project" add
+// up to "project".
 NamedTimes byPass(const PassTimes& pass_ms);
 
-// The times by stage: "cull+sort" (FrameStage::kSort), "dominant" (FrameStage::kSplat), "reprojection" (FrameStage::kWarp), "ROI choice"
-// (FrameStage::kChoose), and for the affiliated eye's FrameStage::kSplat "patch", or "affiliated" if it is rendered in full. Stages that
-// did not run are left out.
+// The times by stage: "cull+sort" (FrameStage::kSort), "dominant" (FrameStage::kSplat), "reprojection"
+// (FrameStage::kWarp), "ROI choice" (FrameStage::kChoose), and for the affiliated eye's FrameStage::kSplat
+// "patch", or "affiliated" if it is rendered in full. Stages that did not run are left out.
 NamedTimes stagesOf(std::optional<Mode> mode, const PassTimes& pass_ms);
 
 // The sum of all times with this name; empty if there are none.

@@ -16,7 +16,8 @@ namespace binosplat {
 
 class MotionPoint {
 public:
-    // `frame_ms`: what a frame of `temporal` may take, or 0; a governor then chooses its resolution and bound.
+    // `frame_ms`: what a frame of `temporal` may take, or 0; a governor then chooses its resolution and
+    // bound.
     MotionPoint(const Context& context, const GpuScene& scene, const RunOptions& run, const BenchPlan& plan, std::string name,
                 double frame_ms = 0.0);
     // Repeats what `timed` chose for the same poses, however long frames take now.
@@ -39,8 +40,9 @@ private:
         BenchMethod method;
         std::array<Image, 2> error;  // pictures - full renders, of the previous frame
         std::optional<Governor> governor = {};
-        std::vector<GovernedSettings> chosen = {};  // for each pose that the governor has reached, or from another run
-        std::size_t next = 0;                       // of these
+        // The governor's choice for each pose so far, or that of another run.
+        std::vector<GovernedSettings> chosen = {};
+        std::size_t next = 0;  // of these
     };
 
     // Both eyes in full, and their pairs of tile and splat.
@@ -71,7 +73,8 @@ private:
     std::string name_;
     double frame_ms_;
     std::vector<MethodHistory> sequences_;
-    std::optional<SeenThroughLens> lens_;  // from the first frame on, if there is a headset: its eyes move as one
+    // Set from the first frame on, if there is a headset: its eyes move as one.
+    std::optional<SeenThroughLens> lens_;
     std::map<std::optional<Order>, FullRender> full_before_;
     std::map<std::optional<Order>, std::array<Image, 2>> still_;
 };

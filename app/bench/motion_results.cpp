@@ -77,7 +77,8 @@ std::vector<double> flickerOf(const Sequence& sequence) {
     return values;
 }
 
-// What shows of the errors, over the steady frames: means, the worst frame's bad tiles, and the worst tiles of all.
+// What shows of the errors, over the steady frames: means, the worst frame's bad tiles, and the worst tiles
+// of all.
 struct Visible {
     double bad = 0.0, worst_bad = 0.0, worst_tiles = 0.0, edge = 0.0, seam = 0.0, rival = 0.0;
 };
@@ -357,7 +358,8 @@ std::string motionPlot(const MotionRun& run) {
         if (frame.exact) { continue; }
         add(frame.point + ": error", "PSNR of the worse eye, dB", frame, psnrOf(frame.worseSquare()));
     }
-    // Error against run time: from the run's PSNR down to the worst frame's, and from the mean share of bad tiles up to the worst frame's.
+    // Error against run time: from the run's PSNR down to the worst frame's, and from the mean share of bad
+    // tiles up to the worst frame's.
     const std::string x_label = "median GPU time of the pair, ms";
     for (const Sequence& sequence : sequencesOf(run)) {
         const double square = runSquare(sequence);

@@ -29,8 +29,8 @@ struct MotionFrame {
     double work_rendered = 1.0;       // share of the pairs of tile and splat of both full eyes
     std::uint64_t pixels_warped = 0;  // in tiles that were not rendered
     std::array<double, 2> mean_square{};
-    // Mean absolute change of the error image since the previous frame: how much the picture's change differs from the full render's. 0 for
-    // the first frame.
+    // Mean absolute change of the error image since the previous frame: how much the picture's change differs
+    // from the full render's. 0 for the first frame.
     std::array<double, 2> flicker{};
     double full_change = 0.0;  // of the full renders, mean of both eyes
     VisibleErrors visible;
@@ -38,8 +38,8 @@ struct MotionFrame {
     double warp_error = 0.0, half_loss = 0.0;  // FrameResult
     std::optional<GovernedSettings> chosen;    // if a governor chose the resolution and the bound
     std::optional<BoundedTiles> bounded;       // of both eyes, if the method has an error bound
-    // The pixels that the scene's motion has changed since the previous frame, seen from this pose (kLeastMoved): their share in both
-    // pictures, and their mean squared error, if there are any.
+    // The pixels that the scene's motion has changed since the previous frame, seen from this pose
+    // (kLeastMoved): their share in both pictures, and their mean squared error, if there are any.
     double moved_share = 0.0;
     std::optional<double> moved_square;
     // For a streamed or moving scene: what was resident, and how many splats the frame read.
@@ -59,9 +59,10 @@ struct MotionRun {
 };
 
 std::string motionCsv(const MotionRun& run);
-// Medians, 95th and 99th percentiles and worst frames by point and method; for the error the PSNR that as many frames reach in both eyes,
-// and the run's, from both eyes' mean square; and what shows of them (app/scores/visible_errors.h), with a headset also through its
-// lenses. Errors are of all frames after the tenth, or of all if there are no more.
+// Medians, 95th and 99th percentiles and worst frames by point and method; for the error the PSNR that as
+// many frames reach in both eyes, and the run's, from both eyes' mean square; and what shows of them
+// (app/scores/visible_errors.h), with a headset also through its lenses. Errors are of all frames after the
+// tenth, or of all if there are no more.
 std::string motionJson(const MotionRun& run);
 std::string motionTable(const MotionRun& run, std::size_t most_columns = SIZE_MAX);
 std::string motionPlot(const MotionRun& run);

@@ -42,8 +42,8 @@ void addOwnCameras(Settings& line, const Settings& config) {
     if (!cameras.empty()) { line.emplace("cameras", Setting{"--view", {cameras.string()}}); }
 }
 
-// The command line, to which cameras may be added, over the config and `standard`. Tables of the config that are in `foreign` are not read
-// but go to `rest`.
+// The command line, to which cameras may be added, over the config and `standard`. Tables of the config that
+// are in `foreign` are not read but go to `rest`.
 RunOptions readRun(Settings& line, const std::set<std::string>& foreign, const RunOptions& standard,
                    std::vector<SettingsTable>* rest = nullptr) {
     const std::string config = wordOf(line, kConfig.text.key);
@@ -113,7 +113,8 @@ Options makeRender(const Settings& given) {
     return render;
 }
 
-// Refuses options that do not fit the kind of bench: a motion starts from one camera, photographs have one camera each.
+// Refuses options that do not fit the kind of bench: a motion starts from one camera, photographs have one
+// camera each.
 void requireBenchKind(const BenchOptions& bench) {
     const bool cameras = !bench.run.camera.cameras_file.empty();
     const auto refuse = [](bool wrong, const char* message) {
@@ -179,7 +180,8 @@ Options makeView(const Settings& given) {
     RunOptions standard = withPast();
     standard.stereo.half_periphery = true;
     standard.stereo.axes = Axes::kStay;
-    if (!view.simulate) { readOwnPreferences(standard, view.tables); }  // whose runs are alike wherever they are
+    // Simulated runs are the same everywhere.
+    if (!view.simulate) { readOwnPreferences(standard, view.tables); }
     view.run = readRun(line, {"view"}, standard, &view.tables);
     return readRows(viewRows(), line, view);
 }

@@ -93,7 +93,8 @@ constexpr std::array<std::pair<const char*, const char*>, 6> kEnvironment{{
     {"BINOSPLAT_VALIDATION", "1: with Vulkan's validation layers, whose messages fail the command"},
 }};
 
-// A dot or an apostrophe at the start of a line would be a request, and a bare dash a hyphen that searches do not find.
+// A dot or an apostrophe at the start of a line would be a request, and a bare dash a hyphen that searches do
+// not find.
 std::string manText(const std::string& text) {
     std::string escaped = replaced(replaced(text, "\\", "\\e"), "-", "\\-");
     if (escaped.starts_with('.') || escaped.starts_with('\'')) { escaped = "\\&" + escaped; }

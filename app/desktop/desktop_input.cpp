@@ -45,7 +45,8 @@ void DesktopShell::handle(const DesktopEvent& event) {
         case Kind::kMove:
             pointer_.place_px.reset();
             if (mover_.isDragging()) { mover_.dragTo(event.place_px); }
-            if (glm::distance(event.place_px, pressed_px_) > kDoubleClickPx) { pressed_at_ = {}; }  // not the first click of two
+            // Not the first click of two.
+            if (glm::distance(event.place_px, pressed_px_) > kDoubleClickPx) { pressed_at_ = {}; }
             break;
         case Kind::kLeave:
             pointer_.place_px.reset();

@@ -24,7 +24,8 @@ constexpr double kTourWaySeconds = 4.0;  // from one viewpoint to the next
 // The panel's size: in its own pixels, on a desktop without magnification; and at most this share of the
 // window's width.
 constexpr double kPanelScale = 0.7, kPanelShare = 0.6;
-constexpr double kNearShare = 0.05;  // of the distance to the centre: closer than the usual near plane if the camera goes close
+// Share of the distance to the centre: nearer than the usual near plane if the camera goes close.
+constexpr double kNearShare = 0.05;
 
 double secondsSince(std::chrono::steady_clock::time_point then) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - then).count();

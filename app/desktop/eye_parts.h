@@ -27,8 +27,9 @@ std::optional<EyePart> partAt(const std::vector<EyePart>& parts, const glm::dvec
 struct WindowSight {
     WindowStereo stereo = WindowStereo::kMono;
     double eye_distance = 0.033;  // as a share of the distance to the plane
-    double plane = 1.0;           // the distance to the plane of the screen, as a multiple of the distance to the centre
-    double angle_rad = 1.0;       // of view, along a part's longer side
+    // The distance to the plane of the screen, as a multiple of the distance to the centre.
+    double plane = 1.0;
+    double angle_rad = 1.0;  // of view, along a part's longer side
 };
 
 // One eye, or two, [kLeft] and [kRight], of `size_px`. Content in the plane of the screen is at the same

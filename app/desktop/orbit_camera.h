@@ -41,7 +41,8 @@ public:
 private:
     [[nodiscard]] glm::dquat orientation() const;
 
-    glm::dquat scene_from_level_{1.0, 0.0, 0.0, 0.0};  // its y axis is down in the scene, its z axis is heading 0
+    // Its y axis is down in the scene, its z axis is heading 0.
+    glm::dquat scene_from_level_{1.0, 0.0, 0.0, 0.0};
     glm::dvec3 position_{0.0};
     double heading_rad_ = 0.0, pitch_rad_ = 0.0;  // to the right, and upwards
     double distance_ = 1.0;

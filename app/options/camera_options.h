@@ -13,7 +13,8 @@
 
 namespace binosplat {
 
-// Contents of the files that the options name, in the file's coordinates, so that errors in them are reported before the scene is loaded.
+// Contents of the files that the options name, in the file's coordinates, so that errors in them are reported
+// before the scene is loaded.
 struct CameraFiles {
     std::optional<FileCamera> camera;
     std::optional<Headset> headset;
@@ -26,7 +27,8 @@ struct Cameras {
     Eye middle;               // for `mono`
     std::array<Eye, 2> eyes;  // by Side
     double eye_distance;      // scene units
-    // The resulting --eye, --look, --up and --fov-x (0 with a headset), in the file's coordinates; empty with a camera file.
+    // The resulting --eye, --look, --up and --fov-x (0 with a headset), in the file's coordinates; empty with
+    // a camera file.
     std::optional<View> view;
     // Directions to the lenses' centres, in the eyes' axes.
     std::array<glm::dvec3, 2> lens_centres{glm::dvec3(0.0, 0.0, 1.0), glm::dvec3(0.0, 0.0, 1.0)};
@@ -34,8 +36,8 @@ struct Cameras {
     glm::dvec3 origin{0.0};    // the eyes' origin in the file: Scene::origin
 };
 
-// The eyes among the scene's `positions`. Missing options come from the files, then from the scene. Throws Error if the points span no
-// view.
+// The eyes among the scene's `positions`. Missing options come from the files, then from the scene. Throws
+// Error if the points span no view.
 Cameras makeCameras(const RunOptions& options, const CameraFiles& files, const Scene& scene);
 
 // The options' gazes for FrameSettings, by Side, or of the one eye of `mono`; empty without foveation.

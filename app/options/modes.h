@@ -6,8 +6,8 @@
 
 namespace binosplat {
 
-// Throws Error (bad input) if the options ask for half resolution in the periphery without an angle of foveation. Modes that have no
-// periphery just ignore it.
+// Throws Error (bad input) if the options ask for half resolution in the periphery without an angle of
+// foveation. Modes that have no periphery just ignore it.
 void requirePeriphery(const StereoOptions& stereo);
 
 // In a headset, unless the options say otherwise: turning the head swaps no splats, and canted eyes share one

@@ -1,5 +1,5 @@
-// A row of the table of options: a name, a help text, and a field of a struct with its type and range, from which reading,
-// writing and the documents follow.
+// A row of the table of options: a name, a help text, and a field of a struct with its type and range, from
+// which reading, writing and the documents follow.
 #pragma once
 
 #include "app/options/options.h"

@@ -54,7 +54,8 @@ constexpr unsigned kTried = kWearer | kMethods;  // options that a bench varies
 constexpr auto kCamera = &RunOptions::camera;
 constexpr auto kStereo = &RunOptions::stereo;
 constexpr auto kWarp = &StereoOptions::warp;
-static_assert(gpu::kDepthSum == 0 && gpu::kDepthMean == 1 && gpu::kDepthInverse == 2);  // the order of their names
+// Names below are in this order.
+static_assert(gpu::kDepthSum == 0 && gpu::kDepthMean == 1 && gpu::kDepthInverse == 2);
 constexpr auto kPathSegment = &RenderOptions::segment;
 constexpr auto kMotionSegment = &BenchOptions::segment;
 constexpr auto kLoad = &RunOptions::load;

@@ -1,5 +1,5 @@
-// Every option, once. The command line, config files, reports, the viewer's saved settings, the man page, the completions, docs/options.md
-// and configs/default.toml are made from these rows.
+// Every option, once. The command line, config files, reports, the viewer's saved settings, the man page, the
+// completions, docs/options.md and configs/default.toml are made from these rows.
 #pragma once
 
 #include "app/options/option_row.h"

@@ -24,7 +24,8 @@ struct CameraOptions {
     std::string cameras_file;
     std::uint32_t view = 0;
     std::string headset;
-    std::optional<double> near;  // absent: usualNear of the scene; kUsualNear of the wearer's metres in a headset
+    // absent: usualNear of the scene; kUsualNear of the wearer's metres in a headset
+    std::optional<double> near;
     glm::dvec3 background{0.0};
 };
 
@@ -44,7 +45,8 @@ struct StereoOptions {
     double foveation_deg = 0.0;   // around the gaze, within which all errors count; 0: everywhere
     bool half_periphery = false;  // with foveation: half resolution where the eyes would not see more
     Axes axes = Axes::kView;
-    std::optional<glm::dvec3> gaze;  // in the head's axes: x right, y down, z forward; absent: at the lenses' centres
+    // In the head's axes: x right, y down, z forward; absent: at the lenses' centres.
+    std::optional<glm::dvec3> gaze;
     bool operator==(const StereoOptions&) const = default;
 };
 
@@ -52,15 +54,18 @@ inline constexpr double kDefaultIpdMetres = 0.063;
 
 // How a scene is loaded: its level, and how 3D Gaussians are drawn.
 struct LoadOptions {
-    std::optional<std::uint32_t> lod;        // level of detail, 0 the finest; absent: the finest that fits
-    std::uint64_t splat_budget = 0;          // for a scene with levels, chosen for each leaf by the view; 0: as many as time allows
-    std::uint64_t most_splats = 0;           // without splat_budget: as many as suit the device; 0: as many as fit; no option
+    std::optional<std::uint32_t> lod;  // level of detail, 0 the finest; absent: the finest that fits
+    // For a scene with levels, chosen for each leaf by the view; 0: as many as time allows.
+    std::uint64_t splat_budget = 0;
+    // If there is no splat_budget: as many as suit the device; 0: as many as fit; not an option.
+    std::uint64_t most_splats = 0;
     std::optional<std::uint32_t> sh_degree;  // the highest to keep; absent: the scene's
     bool flatten = false;                    // 3D Gaussians as discs, without their shortest axis
     std::uint64_t cache_limit_mib = 4096;    // on disk, for scenes from the web
     double scene_rate_hz = 30.0;             // frames per second of a moving scene
     bool scene_blend = false;                // interpolate between two of them if their splats correspond
-    bool antialiased = false;                // dim opacities by the low-pass, even if the file does not say so
+    // Dim opacities by the low-pass, even if the file does not say so.
+    bool antialiased = false;
     bool operator==(const LoadOptions&) const = default;
 };
 
@@ -85,7 +90,8 @@ struct RenderOptions {
     std::string scene;
     std::filesystem::path out;
     RunOptions run;
-    std::string path;                            // --path: head poses to render, relative to the camera; empty: one frame
+    // --path: head poses to render, relative to the camera; empty: one frame
+    std::string path;
     MotionAxes path_axes = MotionAxes::kOpenXr;  // --path-axes: of the recording
     MotionSegment segment;                       // --from, --seconds, --rate: of the path
     PictureLayout layout = PictureLayout::kSeparate;
@@ -98,17 +104,23 @@ struct BenchOptions {
     std::vector<std::string> scenes;  // empty: those of the config
     std::filesystem::path out;
     RunOptions run;
-    CameraOptions asked;                           // the part of `run.camera` from the command line, not from the config
-    std::vector<SettingsTable> tables;             // the config's tables that only the bench reads, see bench_plan.h
+    // The part of `run.camera` from the command line, not from the config.
+    CameraOptions asked;
+    // The config's tables that only the bench reads, see bench_plan.h.
+    std::vector<SettingsTable> tables;
     std::string motion_file;                       // --motion: head poses to play, relative to the camera
     MotionAxes motion_axes = MotionAxes::kOpenXr;  // --motion-axes: of the recording
     MotionSegment segment;                         // --from, --seconds, --rate: of the motion
     std::string photos_folder;                     // --photos: photographs of the cameras of --cameras
-    double frame_ms = 0.0;                         // --frame-time: of a motion's frames; 0: they take what they take
-    std::uint32_t every = 1;                       // --every: of a motion's poses or of the cameras
-    std::uint32_t repeats = 0;                     // --repeats: measured frames per method; 0: as the config says
-    bool orders = false;                           // --orders: compare each order of splats with each pixel's own order
-    std::string lpips_weights;                     // --lpips: also measure LPIPS, whatever the config's scores; empty: as in the config
+    // --frame-time: of a motion's frames; 0: they take what they take
+    double frame_ms = 0.0;
+    std::uint32_t every = 1;  // --every: of a motion's poses or of the cameras
+    // --repeats: measured frames per method; 0: as the config says
+    std::uint32_t repeats = 0;
+    // --orders: compare each order of splats with each pixel's own order
+    bool orders = false;
+    // --lpips: also measure LPIPS, whatever the config's scores; empty: as in the config
+    std::string lpips_weights;
 };
 
 struct ViewOptions {
@@ -117,8 +129,9 @@ struct ViewOptions {
     RunOptions run;                     // its camera: where the wearer starts, near, background
     std::vector<SettingsTable> tables;  // the config's [view], see view_settings.h
     bool simulate = false;
-    std::string script;             // of the simulated headset; empty: at rest
-    std::filesystem::path out;      // directory for the simulated headset's pictures; empty: chosen by the command
+    std::string script;  // of the simulated headset; empty: at rest
+    // Directory for the simulated headset's pictures; empty: chosen by the command.
+    std::filesystem::path out;
     std::uint64_t frames = 0;       // stop after this many; 0: never
     bool load_first = false;        // before the session starts, so that runs are repeatable
     bool hide_panel = false;        // at the start
@@ -153,7 +166,8 @@ struct ConvertOptions {
     std::filesystem::path out;
     std::optional<glm::dvec4> crop;  // --crop: centre and radius of the sphere to keep, in scene units
     std::optional<Keep> keep;        // --keep: those that show most; absent: all splats
-    std::string cameras_file;        // --cameras: from which they are judged; empty: from where a person could stand
+    // --cameras: from which they are judged; empty: from where a person could stand
+    std::string cameras_file;
     std::string device;
     // Of a streamed scene, lod-meta.json:
     std::uint32_t levels = 0;        // --levels; 0: as many as the scene asks for

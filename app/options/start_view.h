@@ -39,8 +39,8 @@ struct StartView {
     std::string why, up_why;  // one line each
 };
 
-// The built-in scene's own view; or that of the first of the scene's cameras (found by its name) that sees it; or one derived from
-// the splats, see judgeStandpoint.
+// The built-in scene's own view; or that of the first of the scene's cameras (found by its name) that sees
+// it; or one derived from the splats, see judgeStandpoint.
 StartView startView(const Scene& scene, const StandpointWish& wish = {});
 
 // The same, overridden by the options; with --cameras, its --view. Throws Error if that cannot be read.

@@ -11,9 +11,11 @@ namespace binosplat {
 
 struct PlotLine {
     std::string label;
-    std::vector<std::pair<double, double>> points = {};  // x, y; those without a place on the axes are left out
-    std::vector<std::string> names = {};                 // written beside the points if there is room; empty: none
-    bool joined = true;                                  // a line through the points
+    // Pairs of x and y; those without a place on the axes are left out.
+    std::vector<std::pair<double, double>> points = {};
+    // Written beside the points if there is room; empty: none.
+    std::vector<std::string> names = {};
+    bool joined = true;  // a line through the points
     bool dots = true;
 };
 

@@ -14,14 +14,15 @@ namespace binosplat {
 
 namespace {
 
-// The paper's constants: exponents of the colour and the feature difference, the knee of the colour map, the width of features in
-// degrees.
+// The paper's constants: exponents of the colour and the feature difference, the knee of the colour map, the
+// width of features in degrees.
 constexpr float kColourExponent = 0.7f, kFeatureExponent = 0.5f;  // q_c, q_f
 constexpr float kKneeDifference = 0.4f, kKneeScore = 0.95f;       // p_c, p_t
 constexpr double kFeatureWidth_deg = 0.082;                       // w
 constexpr std::size_t kBlock = 65536;                             // pixels a thread converts at a time
 
-// One term a sqrt(pi/b) exp(-pi^2 d^2 / b) of a channel's contrast sensitivity, d in degrees (the paper's table 1).
+// One term a sqrt(pi/b) exp(-pi^2 d^2 / b) of a channel's contrast sensitivity, d in degrees (the paper's
+// table 1).
 struct SensitivityTerm {
     double a, b;
 };
@@ -104,7 +105,8 @@ bool readRgb(const Image& image, std::size_t pixel, glm::vec3& rgb) {
     return finite;
 }
 
-// L*a*b* of a colour the display can show, with the chroma that is seen at its lightness (the Hunt effect; the paper's equation 4).
+// L*a*b* of a colour the display can show, with the chroma that is seen at its lightness (the Hunt effect;
+// the paper's equation 4).
 glm::vec3 huntLab(const glm::vec3& linear) {
     const glm::vec3 lab = labFromXyz(xyzFromLinear(glm::clamp(linear, 0.0f, 1.0f)));
     return {lab.x, 0.01f * lab.x * lab.y, 0.01f * lab.x * lab.z};
@@ -125,7 +127,8 @@ float colourScore(float difference, float largest) {
     return std::min(1.0f, kKneeScore + (difference - knee) / (largest - knee) * (1.0f - kKneeScore));
 }
 
-// A picture as the eye perceives it: Hunt-adjusted Lab after contrast sensitivity, and the strength of edges and points.
+// A picture as the eye perceives it: Hunt-adjusted Lab after contrast sensitivity, and the strength of edges
+// and points.
 struct Seen {
     Planes lab;
     Plane edges, points;

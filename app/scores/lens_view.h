@@ -11,14 +11,17 @@
 
 namespace binosplat {
 
-// What both eyes see on one grid of directions about the lenses' common middle, so that far things are in the same place in both. On the
-// grid, the distance from the middle is the angle from it (the azimuthal equidistant projection: Snyder 1987, Map Projections, section
-// 25). Its pixels are as wide as those of the eyes' pictures at the lenses' centres, where a lens is sharpest: flat pictures have ever
-// more pixels a degree towards their borders (2.6 times as many at 52 degrees), which the lens and the display do not show. A pixel of the
-// grid is the mean of what is shown at 4x4 places in it. The middle is a corner of tiles of kTileSize.
+// What both eyes see on one grid of directions about the lenses' common middle, so that far things are in the
+// same place in both. On the grid, the distance from the middle is the angle from it (the azimuthal
+// equidistant projection: Snyder 1987, Map Projections, section 25). Its pixels are as wide as those of the
+// eyes' pictures at the lenses' centres, where a lens is sharpest: flat pictures have ever more pixels a
+// degree towards their borders (2.6 times as many at 52 degrees), which the lens and the display do not show.
+// A pixel of the grid is the mean of what is shown at 4x4 places in it. The middle is a corner of tiles of
+// kTileSize.
 class LensView {
 public:
-    // By Side. `lens_centres`: directions in the eyes' axes. Throws Error if the eyes look away from each other's view.
+    // By Side. `lens_centres`: directions in the eyes' axes. Throws Error if the eyes look away from each
+    // other's view.
     LensView(const std::array<Eye, 2>& eyes, const std::array<glm::dvec3, 2>& lens_centres);
 
     // Of the grid, whole tiles.
@@ -28,11 +31,13 @@ public:
     [[nodiscard]] glm::dvec3 directionAt(const glm::dvec2& place_px, int side) const;
     // The solid angle of a pixel of the grid: smaller where pixels are apart along circles around the middle.
     [[nodiscard]] double solidAngleAt(const glm::dvec2& place_px) const;
-    // By the grid's pixels: the tile of the eye's own picture at their centres, by rows; kNowhere if they are not wholly in it.
+    // By the grid's pixels: the tile of the eye's own picture at their centres, by rows; kNowhere if they are
+    // not wholly in it.
     [[nodiscard]] const std::vector<std::uint32_t>& tilesOf(int side) const { return views_[static_cast<std::size_t>(side)].tiles; }
     static constexpr std::uint32_t kNowhere = 0xffffffffu;
 
-    // A picture of an eye of the size that it was made for, on the grid: R, G and B, 0 where there is no picture.
+    // A picture of an eye of the size that it was made for, on the grid: R, G and B, 0 where there is no
+    // picture.
     [[nodiscard]] Image show(const Image& picture, int side) const;
 
 private:

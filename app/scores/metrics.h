@@ -1,4 +1,5 @@
-// How much two pictures differ: one pass over both, several figures. (Per-tile figures, SSIM and FLIP have files of their own.)
+// How much two pictures differ: one pass over both, several figures. (Per-tile figures, SSIM and FLIP have
+// files of their own.)
 #pragma once
 
 #include "engine/picture/image.h"
@@ -10,8 +11,8 @@ namespace binosplat {
 // Two steps of an 8-bit display: the rounding that a comparison tolerates before a value counts as off.
 inline constexpr double kTwoDisplaySteps = 2.0 / 255.0;
 
-// Over all values, i.e. pixels times the channels compared. A pair in which either value is not finite counts as off, with an
-// infinite difference, even if both are alike: neither picture may hold such a value.
+// Over all values, i.e. pixels times the channels compared. A pair in which either value is not finite counts
+// as off, with an infinite difference, even if both are alike: neither picture may hold such a value.
 struct Difference {
     std::uint64_t values = 0;
     std::uint64_t not_finite = 0;  // pairs with a NaN or an infinity

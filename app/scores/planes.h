@@ -1,4 +1,5 @@
-// One channel of a picture, separable filters over it, and scores per pixel: the common part of SSIM and FLIP.
+// One channel of a picture, separable filters over it, and scores per pixel: the common part of SSIM and
+// FLIP.
 #pragma once
 
 #include "engine/picture/image.h"
@@ -18,18 +19,21 @@ struct Plane {
 
 // The values that a filter sees beyond the border.
 enum class Border {
-    kClamp,      // the nearest pixel of the picture
-    kZero,       // zeros
-    kCutWindow,  // nothing: the weights inside are scaled to the kernel's sum (kernels of positive weights only)
+    kClamp,  // the nearest pixel of the picture
+    kZero,   // zeros
+    // nothing: the weights inside are scaled to the kernel's sum (kernels of positive weights only)
+    kCutWindow,
 };
 
-// Odd-sized weights, centre in the middle; the filter is a correlation: out(x) = sum over i of kernel[i] * in(x + i - radius).
+// Odd-sized weights, centre in the middle; the filter is a correlation: out(x) = sum over i of kernel[i] *
+// in(x + i - radius).
 using Weights = std::vector<float>;
 
 // Weights exp(-x^2 / (2 sigma^2)) at whole x from -radius to radius, scaled to the sum 1.
 Weights gaussianKernel(double sigma, int radius);
 
-// `across` along rows, then `down` along columns. Same size as `in`; the result does not depend on the number of threads.
+// `across` along rows, then `down` along columns. Same size as `in`; the result does not depend on the number
+// of threads.
 Plane filterPlane(const Plane& in, const Weights& across, const Weights& down, Border border, int threads);
 
 // One score per pixel, rows top to bottom.
@@ -39,8 +43,8 @@ struct PixelScores {
 
     // Over all pixels; nothing where there are none.
     [[nodiscard]] std::optional<double> mean() const;
-    // Over the pixels whose class (one per pixel, such as pixelOrigins gives) is `chosen`; nothing where there are none.
-    // Throws Error if there are not as many classes as pixels.
+    // Over the pixels whose class (one per pixel, such as pixelOrigins gives) is `chosen`; nothing where
+    // there are none. Throws Error if there are not as many classes as pixels.
     [[nodiscard]] std::optional<double> meanWhere(std::span<const std::uint8_t> classes, std::uint8_t chosen) const;
 };
 

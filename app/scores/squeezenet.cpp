@@ -1,4 +1,5 @@
-// SqueezeNet's layers on the CPU. Channels lie side by side, so that a row of a kernel meets one run of neighbouring values.
+// SqueezeNet's layers on the CPU. Channels lie side by side, so that a row of a kernel meets one run of
+// neighbouring values.
 #include "app/scores/squeezenet.h"
 
 #include "engine/parallel.h"
@@ -34,7 +35,8 @@ static_assert(countAll() == SqueezeNet::kWeights);
 
 // Sums that are kept in registers at a time: 4 pixels by 8 channels are 8 of the 16 that any x86-64 has.
 constexpr std::size_t kPixels = 4, kChannels = 8;
-// A register's four floats, as GCC and clang spell it. Of plain loops GCC 12 vectorizes the wrong one, which takes three times as long.
+// A register's four floats, as GCC and clang spell it. Of plain loops GCC 12 vectorizes the wrong one, which
+// takes three times as long.
 using Four = float __attribute__((vector_size(16)));
 Four loadFour(const float* from) {
     Four values;
@@ -44,8 +46,8 @@ Four loadFour(const float* from) {
 
 constexpr std::size_t kRowsAtATime = 4;  // of a thread
 
-// Takes a convolution's values off the front. Where the file has output x input x row x column, the loops read
-// block of outputs x row x column x input x output of the block.
+// Takes a convolution's values off the front. Where the file has output x input x row x column, the loops
+// read block of outputs x row x column x input x output of the block.
 Convolution takeConvolution(std::span<const float>& values, std::size_t inputs, std::size_t outputs, std::size_t side, std::size_t stride) {
     Convolution convolution{inputs, outputs, side, stride, {}, {}};
     for (std::size_t block = 0; block < outputs; block += kChannels) {
@@ -74,7 +76,8 @@ float* pixelAt(Image& map, std::size_t x, std::size_t y) {
     return map.values.data() + (y * map.size_px.x + x) * static_cast<std::size_t>(map.channels);
 }
 
-// A block of output channels of `count` neighbouring pixels, from x on. `out` is the first one's block in a map of `out_step` channels.
+// A block of output channels of `count` neighbouring pixels, from x on. `out` is the first one's block in a
+// map of `out_step` channels.
 template <std::size_t count>
 void convolvePixels(const Image& in, const Convolution& convolution, std::size_t block, std::size_t x, std::size_t y, float* out,
                     std::size_t out_step) {

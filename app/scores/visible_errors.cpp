@@ -139,8 +139,9 @@ double lostEdges(const Luma& picture, const Luma& full, const SeenPixels& seen) 
     return edges > 0 ? static_cast<double>(lost) / static_cast<double>(edges) : 0.0;
 }
 
-// How much more an error changes across borders than within tiles, mean of both directions. With a sight by its own tiles, mean of those
-// that show a border: towards a lens's border the rendered tiles have more of them, and errors count for less.
+// How much more an error changes across borders than within tiles, mean of both directions. With a sight by
+// its own tiles, mean of those that show a border: towards a lens's border the rendered tiles have more of
+// them, and errors count for less.
 double steps(const Luma& picture, const Luma& full, const SeenPixels& seen) {
     struct Sums {
         double within = 0.0, across = 0.0;

@@ -17,14 +17,15 @@ inline constexpr double kBadTileSquare = 1e-3;
 struct VisibleErrors {
     // Of each whole tile of kTileSize, left eye first: the mean squared error of R, G and B.
     std::vector<float> tile_squares;
-    // Over the pixels where the full render's luma has a strong edge, the share whose gradient is off by more than half of it. Mean of the
-    // eyes.
+    // Over the pixels where the full render's luma has a strong edge, the share whose gradient is off by more
+    // than half of it. Mean of the eyes.
     double edge = 0.0;
-    // How much more the error of the luma changes from pixel to pixel across the borders of tiles than within tiles, in values of 0 to 1.
-    // 0: no grid shows; less if errors end within tiles.
+    // How much more the error of the luma changes from pixel to pixel across the borders of tiles than within
+    // tiles, in values of 0 to 1. 0: no grid shows; less if errors end within tiles.
     double seam = 0.0;
-    // Over the tiles with texture in both eyes: how far the eyes differ in sharpness, each relative to its full render. The standard
-    // deviation in octaves of the gradient's amplitude: the same blur in both eyes is none.
+    // Over the tiles with texture in both eyes: how far the eyes differ in sharpness, each relative to its
+    // full render. The standard deviation in octaves of the gradient's amplitude: the same blur in both eyes
+    // is none.
     double rival = 0.0;
 
     [[nodiscard]] double badShare() const;
@@ -38,15 +39,19 @@ VisibleErrors findVisibleErrors(const std::array<Image, 2>& pictures, const std:
 
 // How one eye sees pictures that are not the rendered ones: LensView.
 struct Sight {
-    std::vector<std::uint32_t> rendered_tiles;  // by pixels: which tile of the rendered picture this is; kNoTile: nothing is shown
-    std::vector<double> shares;                 // of each tile of this picture, by rows: how much of the square of an error the eye sees
+    // For each pixel: which tile of the rendered picture this is; kNoTile: nothing is shown.
+    std::vector<std::uint32_t> rendered_tiles;
+    // For each tile of this picture, by rows: how much of the square of an error the eye sees.
+    std::vector<double> shares;
 
     static constexpr std::uint32_t kNoTile = 0xffffffffu;
 };
-// The same of what each eye sees of the errors, by the model that `price` has of an eye: squares count by the tile's share, and not at all
-// if this is less than 1 and less than kLeastSeenError is left of the tile's; gradients, steps and octaves count by its root, that of an
-// octave by the smaller one of both eyes. Tiles with pixels that show nothing are left out, and so are such pixels. `seam` is across the
-// borders of the rendered tiles, compared within each tile of this picture. Pictures are as shown (asShown), and not rounded again.
+// The same of what each eye sees of the errors, by the model that `price` has of an eye: squares count by the
+// tile's share, and not at all if this is less than 1 and less than kLeastSeenError is left of the tile's;
+// gradients, steps and octaves count by its root, that of an octave by the smaller one of both eyes. Tiles
+// with pixels that show nothing are left out, and so are such pixels. `seam` is across the borders of the
+// rendered tiles, compared within each tile of this picture. Pictures are as shown (asShown), and not rounded
+// again.
 VisibleErrors findSeenErrors(const std::array<Image, 2>& pictures, const std::array<Image, 2>& full, const std::array<Sight, 2>& sights);
 
 // The mean square of this share of tiles, the worst ones, at least one; 0 if there are none.

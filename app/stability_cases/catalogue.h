@@ -1,5 +1,5 @@
-// The stiff and extreme cases of docs/results/stability.md as data: a scene, eyes, and how close the device's pictures must come to those
-// of the float64 twin.
+// The stiff and extreme cases of docs/results/stability.md as data: a scene, eyes, and how close the device's
+// pictures must come to those of the float64 twin.
 #pragma once
 
 #include "engine/geometry.h"
@@ -13,13 +13,15 @@
 
 namespace binosplat::stability {
 
-// Over red, green, blue and alpha. A value is off if it differs by more than 2/255 of the peak. For an eye made from the other, over
-// the tiles that both the device and the twin render again, or neither does.
+// Over red, green, blue and alpha. A value is off if it differs by more than 2/255 of the peak. For an eye
+// made from the other, over the tiles that both the device and the twin render again, or neither does.
 struct Bound {
-    double psnr_db;                                            // at least; the peak is 1, or the twin's brightest value if that is more
+    // Lower bound; the peak is 1, or the twin's brightest value if that is more.
+    double psnr_db;
     double share_off;                                          // of the values, at most
     double largest = std::numeric_limits<double>::infinity();  // difference, at most; of the peak
-    double other_tiles = 0.0;                                  // share of the tiles that only one of them renders again, at most
+    // Upper bound of the share of tiles that only one of them renders again.
+    double other_tiles = 0.0;
 };
 
 // A scene and its eyes.

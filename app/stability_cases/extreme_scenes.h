@@ -26,18 +26,21 @@ Stage makeNeedlesAcross(double aspect);      // the same, along rows and columns
 Stage makeNeedlesDiagonal(double aspect);    // the same, along the diagonals of the screen
 Stage makeSheetsEdgeOn(double angle_rad);    // no thickness, all but holding both eyes
 Stage makeLongSheets(double length);         // no thickness, at 1e-7 rad, up to this long
-Stage makeBeyondNear(double share);          // large ones, their centres beyond the near plane by this share of it
-Stage makeBesideEye(double slope);           // centres at this x/z or y/z
-Stage makeGaussianScales(double scale);      // from specks to those that hold the eye
-Stage makeFlatAxes(double count);            // so many of the three scales are 0
+// Large splats whose centres are beyond the near plane by this share of it.
+Stage makeBeyondNear(double share);
+Stage makeBesideEye(double slope);       // centres at this x/z or y/z
+Stage makeGaussianScales(double scale);  // from specks to those that hold the eye
+Stage makeFlatAxes(double count);        // so many of the three scales are 0
 Stage makeGaussianOpacity(double opacity);
 Stage makeBrokenGaussians(double value);  // makeBrokenAttributes, and a thickness
 Stage asGaussians(Stage stage);           // discs given thicknesses of 0 to their shorter scale
 Stage asDimmed(Stage stage);              // with these thicknesses unless they have some; antialiased
 
 // Worlds and views.
-Stage makeUnit(double unit);           // all lengths of an ordinary scene, the eyes' distance and the near plane too
-Stage makeFarOff(double offset);       // all of a scene, and the eyes, so far from the world's origin along every axis
+// Scales all lengths of an ordinary scene, including the eyes' distance and the near plane.
+Stage makeUnit(double unit);
+// Moves a scene and the eyes this far from the world's origin along every axis.
+Stage makeFarOff(double offset);
 Stage makeTwoPlaces(double distance);  // the eyes at a few splats, most splats so far away
 Stage makeEyeDistance(double distance);
 Stage makeCanting(double degrees);

@@ -1,4 +1,5 @@
-// The table of cases of 3D Gaussians: what is stiff about them, and the scenes of discs again with a thickness.
+// The table of cases of 3D Gaussians: what is stiff about them, and the scenes of discs again with a
+// thickness.
 #include "app/stability_cases/extreme_scenes.h"
 #include "app/stability_cases/families.h"
 

@@ -52,11 +52,13 @@ struct SequenceScore {
     std::vector<Frame> frames;
     double psnr_db = 0.0;   // of the worst
     double drift_db = 0.0;  // how much worse the last of them are than the first, a third each
-    double beyond = 0.0;    // how far any value lies beyond what the full render has in the 7x7 pixels around it
-    double bias = 0.0;      // how far the mean of all values is off, at most
+    // How far any value lies beyond what the full render has in the 7x7 pixels around it.
+    double beyond = 0.0;
+    double bias = 0.0;  // how far the mean of all values is off, at most
     std::uint64_t not_finite = 0;
     bool repeats = false;  // a second run came to the same bytes, after 60 frames at most
-    int equal_from = 0;    // the first frame from which on all are the full render's bytes; the number of frames if none is
+    // From this frame on, all are the full render's bytes; the number of frames if there is none.
+    int equal_from = 0;
     bool passes = false;
 };
 

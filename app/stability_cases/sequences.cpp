@@ -1,4 +1,5 @@
-// The sequences: heads that stop, oscillate, turn fast, and scenes that are hard to make from the frames before.
+// The sequences: heads that stop, oscillate, turn fast, and scenes that are hard to make from the frames
+// before.
 #include "app/stability_cases/sequences.h"
 
 #include "app/stability_cases/extreme_scenes.h"

@@ -1,4 +1,5 @@
-// Frames one after another, each made from the ones before, and the bounds that their pictures must keep to against full renders.
+// Frames one after another, each made from the ones before, and the bounds that their pictures must keep to
+// against full renders.
 #pragma once
 
 #include "app/stability_cases/catalogue.h"

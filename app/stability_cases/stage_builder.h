@@ -1,4 +1,5 @@
-// Small scenes given in the axes of an eye that is itself moved and turned: nothing about them is aligned with the world.
+// Small scenes given in the axes of an eye that is itself moved and turned: nothing about them is aligned
+// with the world.
 #pragma once
 
 #include "app/stability_cases/catalogue.h"
@@ -37,7 +38,8 @@ public:
     // An eye at `position_world`, turned, that sees 60 degrees; the eyes stand 0.063 apart.
     explicit StageBuilder(glm::uvec2 size_px = kSizePx, double fov_x_deg = 60.0, const glm::dvec3& position_world = {0.3, -0.2, 0.1});
     void add(const Disc& disc);
-    // A wall of overlapping opaque discs `depth` before the eye, patterned, as wide as the view and some more.
+    // A wall of overlapping opaque discs `depth` before the eye, patterned, as wide as the view and some
+    // more.
     void addWall(double depth = 4.0);
     // Discs of all directions between the eye and the wall.
     void addClutter(int count, unsigned seed);
@@ -60,7 +62,8 @@ StageBuilder makeDiscRoom(glm::uvec2 size_px = kSizePx);
 // Somewhere in view between the wall and the eye.
 Disc placeDisc(Random& random, double nearest = 0.8);
 
-// Of a disc that is seen: its normal is all but perpendicular to the line of sight, and to the line between the eyes.
+// Of a disc that is seen: its normal is all but perpendicular to the line of sight, and to the line between
+// the eyes.
 void layAlongSight(Disc& disc, double angle_rad);
 // Any directions.
 void turnAnyhow(Disc& disc, Random& random);

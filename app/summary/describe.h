@@ -16,9 +16,11 @@ struct SceneSummary {
     std::uint64_t splats = 0;
     glm::vec3 min_position{0.0f}, max_position{0.0f};  // of the centres; zero if the scene is empty
     int sh_degree = 0;
-    bool gaussian_3d = false;                                         // otherwise all splats are discs
-    std::array<std::uint64_t, kMaxShDegree + 1> splats_using_band{};  // splats with a non-zero coefficient in each SH band
-    // Quantiles 0, 0.05, 0.5, 0.95, 1 over the splats; scale is the longer axis, aspect the shorter over the longer.
+    bool gaussian_3d = false;  // otherwise all splats are discs
+    // Splats with a non-zero coefficient in each SH band.
+    std::array<std::uint64_t, kMaxShDegree + 1> splats_using_band{};
+    // Quantiles 0, 0.05, 0.5, 0.95, 1 over the splats; scale is the longer axis, aspect the shorter over the
+    // longer.
     std::array<float, 5> opacity_quantiles{}, scale_quantiles{}, aspect_quantiles{};
     std::uint64_t invisible_splats = 0;  // opacity under 1/255: they never reach a pixel
     std::uint64_t host_bytes = 0;        // of the scene's arrays

@@ -59,7 +59,8 @@ public:
     [[nodiscard]] Cell cellOf(const glm::vec3& position) const {
         Cell cell{};
         for (int axis = 0; axis < 3; ++axis) {
-            constexpr auto kFurthest = static_cast<double>(kFurthestCell - 2);  // so that its neighbours are others
+            // Leaves space for its neighbours' cells.
+            constexpr auto kFurthest = static_cast<double>(kFurthestCell - 2);
             const double along = (static_cast<double>(position[axis]) - middle_[axis]) / side_;
             cell[static_cast<std::size_t>(axis)] = static_cast<std::int64_t>(std::floor(std::clamp(along, -kFurthest, kFurthest)));
         }

@@ -13,8 +13,9 @@ struct SceneSurvey {
     double size = 0.0;
     std::uint64_t transparent = 0;  // opacity under 1/255: they never reach a pixel
     std::uint64_t opaque = 0;       // over 99 %
-    std::uint64_t thin = 0;         // the shortest axis of 3D Gaussians, or the shorter axis of discs, is under kThinMetres
-    std::uint64_t large = 0;        // the longest axis is over kLargeShare of the size
+    // The shortest axis of 3D Gaussians, or the shorter axis of discs, is under kThinMetres.
+    std::uint64_t thin = 0;
+    std::uint64_t large = 0;  // the longest axis is over kLargeShare of the size
     // Visible splats, no longer than a cell, with fewer than kFewNeighbours in the cells around them,
     // counting themselves. A cell is kCellShare of the size wide.
     std::uint64_t floaters = 0;

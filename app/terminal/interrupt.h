@@ -5,7 +5,8 @@
 
 namespace binosplat {
 
-// While one exists, SIGINT and SIGTERM only set a flag; a second signal ends the program as usual. The program has one.
+// While one exists, SIGINT and SIGTERM only set a flag; a second signal ends the program as usual. The
+// program has one.
 class Interrupt {
 public:
     Interrupt();

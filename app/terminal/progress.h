@@ -1,5 +1,5 @@
-// One line on a terminal for work that takes longer than a second; nothing if stderr is not a terminal. Work that reports its progress can
-// also be interrupted there.
+// One line on a terminal for work that takes longer than a second; nothing if stderr is not a terminal. Work
+// that reports its progress can also be interrupted there.
 #pragma once
 
 #include <chrono>
@@ -19,8 +19,8 @@ public:
     ProgressLine& operator=(const ProgressLine&) = delete;
     ~ProgressLine();  // clears the line
 
-    // `share` done, 0 to 1. Throws Interrupted after a Ctrl-C, but only on the thread that made the line. Cheap enough for inner
-    // loops: the line is drawn at most ten times a second.
+    // `share` done, 0 to 1. Throws Interrupted after a Ctrl-C, but only on the thread that made the line.
+    // Cheap enough for inner loops: the line is drawn at most ten times a second.
     void show(double share);
 
     // The same as a function, for as long as the line lives.

@@ -25,7 +25,8 @@ struct FrameViews {
     Pose room_from_head;
     std::optional<std::array<xr::EyeView, 2>> insets;  // from the same places, if the headset takes insets
     std::array<std::optional<Gaze>, 2> gazes;          // by Side: where the eyes look, if it matters
-    std::array<xr::EyeView, 2> pictures;               // what the frame's pictures show, as the runtime is told
+    // What the frame's pictures show, as the runtime is told.
+    std::array<xr::EyeView, 2> pictures;
 };
 
 class SceneRenderer {
@@ -89,7 +90,8 @@ private:
     };
     void fitImages(ConnectedHeadset& headset, const ViewSettings& settings, const FrameViews& views);
     void makeImages(ConnectedHeadset& headset, glm::uvec2 size_px, glm::uvec2 inset_px);
-    // Whether the pictures' axes stay, in images that must be this large; says once why they do not, if the wearer wants that.
+    // Whether the pictures' axes stay, in images that must be this large; says once why they do not, if the
+    // wearer wants that.
     [[nodiscard]] bool mayStay(const ConnectedHeadset& headset, const ViewSettings& settings, glm::uvec2 cover_px);
     // Prepares pictures whose axes stay, of the eyes that were prepared.
     void keepAxes(ConnectedHeadset& headset, const Similarity& scene_from_room, FrameViews& views);

@@ -41,7 +41,8 @@ std::vector<std::uint32_t> compileShader(const fs::path& folder, const std::stri
     const fs::path source = folder / stage / (name + ".comp"), words = scratch / (name + ".spv"), log = scratch / (name + ".log");
     std::error_code ignored;
     check(fs::exists(source, ignored), "{} is not there", source.string());
-    check(fs::is_regular_file(source, ignored), "{} is not a file", source.string());  // the compiler would wait for a pipe
+    // The compiler would wait for a pipe.
+    check(fs::is_regular_file(source, ignored), "{} is not a file", source.string());
     // As in shaders/CMakeLists.txt. The compiler comes with the package glslang-tools.
     const bool ok = runProgram({"glslangValidator", "--quiet", "--target-env", "vulkan1.2", "-I" + (folder / "shared").string(),
                                 "-I" + folder.string(), "-o", words.string(), source.string()},

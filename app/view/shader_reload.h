@@ -9,14 +9,17 @@
 
 namespace binosplat {
 
-// Where the sources are: `folder` if it is not empty, else BINOSPLAT_SHADERS of the environment. Empty: reloading is off.
+// Where the sources are: `folder` if it is not empty, else BINOSPLAT_SHADERS of the environment. Empty:
+// reloading is off.
 std::filesystem::path shaderFolder(const std::filesystem::path& folder);
 
-// Compiles every shader of `folder` with glslang. Throws Error with file, line and reason of the first that does not compile.
+// Compiles every shader of `folder` with glslang. Throws Error with file, line and reason of the first that
+// does not compile.
 ShaderWords compileShaders(const std::filesystem::path& folder);
 
-// Compiles them, replaces the context's shaders and calls `rebuild`, which remakes all kernels. If either fails, everything stays as it
-// was. Returns the outcome in one line. Structs that shaders share with C++ (shaders/shared) must be those of the build.
+// Compiles them, replaces the context's shaders and calls `rebuild`, which remakes all kernels. If either
+// fails, everything stays as it was. Returns the outcome in one line. Structs that shaders share with C++
+// (shaders/shared) must be those of the build.
 std::string reloadShaders(const Context& context, const std::filesystem::path& folder, const std::function<void()>& rebuild);
 
 }  // namespace binosplat

@@ -45,7 +45,8 @@ ViewSettings startSettings(const ViewOptions& options, const DeviceDefaults& dev
     return settings;
 }
 
-// Called until the headset is there; throws Interrupted on Ctrl-C, Escape or the window's close button. The first call opens the window.
+// Called until the headset is there; throws Interrupted on Ctrl-C, Escape or the window's close button. The
+// first call opens the window.
 void waitForHeadset(const std::string& runtime, std::unique_ptr<WaitingWindow>& window) {
     if (!window) {
         FrameLog::print(runtime + " has no headset yet: waiting for it (Ctrl-C ends)");

@@ -25,12 +25,13 @@ namespace binosplat {
 
 class Viewer {
 public:
-    // `instance` and `context` outlive the viewer. Begins to load the scene. Its frames are shown in `window`, too, if it is given.
+    // `instance` and `context` outlive the viewer. Begins to load the scene. Its frames are shown in
+    // `window`, too, if it is given.
     Viewer(const ViewOptions& options, const ViewSettings& settings, xr::Instance& instance, const Context& context, EventWindow* window);
 
-    // Runs until the runtime, the wearer, Ctrl-C or --frames ends it. Prints changes by frame, and why it ended, to stdout. A lost session
-    // is followed by another one, with the scene as it is, once there is a headset. Throws errors of the scene and the device, and Error
-    // (exit code 3) if the runtime is lost.
+    // Runs until the runtime, the wearer, Ctrl-C or --frames ends it. Prints changes by frame, and why it
+    // ended, to stdout. A lost session is followed by another one, with the scene as it is, once there is a
+    // headset. Throws errors of the scene and the device, and Error (exit code 3) if the runtime is lost.
     void run();
 
 private:
@@ -54,7 +55,8 @@ private:
     void settle();
     void renderWaiting();
     void recordPanel(Commands& commands);
-    // With the wearer's settings or, if memory is short, the previous ones; false: the scene is not shown in this frame.
+    // With the wearer's settings or, if memory is short, the previous ones; false: the scene is not shown in
+    // this frame.
     bool prepareScene(FrameViews& views);
     // Asks where the rays and the arc meet the scene, and where the ground is.
     void probeScene(double feet_m);
@@ -134,8 +136,9 @@ private:
     PictureCopy copy_;
     bool picture_asked_ = false;  // for the next frame
     std::uint64_t frames_of_scene_ = 0;
-    bool said_there_ = false;  // everything in the first view of a streamed scene is loaded, and that was reported
-    Pose room_from_head_;      // as last known
+    // Everything in the first view of a streamed scene is loaded, and that was reported.
+    bool said_there_ = false;
+    Pose room_from_head_;  // as last known
     Ruler ruler_;
     std::array<bool, 2> clicked_{};  // by hand, in the frame before
     bool other_asked_ = false;       // by the panel: it stays in sight

@@ -273,7 +273,8 @@ void Viewer::submitFrame(const FrameViews& views) {
         return false;
     };
     if (isTaken(SIZE_MAX)) { return; }
-    // Which layer it refuses, the runtime does not say: the things are left out one after the other until it takes the rest.
+    // Which layer it refuses, the runtime does not say: the things are left out one after the other until it
+    // takes the rest.
     for (std::size_t most = things.size(); most-- > 0;) {
         if (!isTaken(most)) { continue; }
         instance_.troubles().add(fmt::format("{}; going on without hands, rays and the vignette: it refuses {}", refusal, things[most]));

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Writes binosplat.ico beside itself: two splats, one for each eye, where they overlap brighter. PNG pictures of 16 to 256 pixels."""
+"""Writes binosplat.ico beside itself: two splats, one for each eye, brighter where they overlap. PNG pictures of 16
+to 256 pixels."""
 
 import math
 import pathlib

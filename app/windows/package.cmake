@@ -1,4 +1,5 @@
-# The package for Windows: one .zip that runs wherever it is unpacked. The program finds the simulated runtime and configs/ beside itself.
+# The package for Windows: one .zip that runs wherever it is unpacked. The program finds the simulated runtime
+# and configs/ beside itself.
 install(TARGETS binosplat RUNTIME DESTINATION . COMPONENT windows)
 install(DIRECTORY configs DESTINATION . COMPONENT windows)
 install(DIRECTORY docs DESTINATION . COMPONENT windows PATTERN "*.py" EXCLUDE)
@@ -9,7 +10,8 @@ if(BINOSPLAT_OPENXR)
     install(FILES ${CMAKE_LIBRARY_OUTPUT_DIRECTORY}/simulated_runtime.json ${FRIBIDI_DLL} DESTINATION . COMPONENT windows)
     install(PROGRAMS xr/simulated/compare_frame_logs.py DESTINATION . COMPONENT windows)
 endif()
-# Of everything that is linked: third_party/windows/libraries.sh has gathered them, and the compiler's own come from its packages.
+# Of everything that is linked: third_party/windows/libraries.sh has gathered them, and the compiler's own
+# come from its packages.
 if(windows_prefix)
     install(DIRECTORY ${windows_prefix}/licences DESTINATION . COMPONENT windows)
 endif()

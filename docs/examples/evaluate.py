@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """PSNR of a training's test cameras: evaluate.py SCENE cameras.json PHOTOGRAPHS [--every N]
 
-SCENE is what the training made (a PLY file, or its output folder), cameras.json the file that 3DGS and 2DGS leave beside it, PHOTOGRAPHS the folder
-of the pictures it names. As these trainings do, every eighth camera by name is a test camera. Photographs are PNG files of 8 bits, or, if
-python3-pil is installed, whatever that reads; where they are a whole number of times larger than the camera says, they are averaged down.
+SCENE is what the training made (a PLY file, or its output folder), cameras.json the file that 3DGS and 2DGS leave
+beside it, PHOTOGRAPHS the folder of the pictures it names. As in these trainings, every eighth camera by name is
+a test camera. Photographs are PNG files of 8 bits or, if python3-pil is installed, anything that it reads; if they
+are a whole number of times larger than the camera says, they are averaged down.
 """
 
 import argparse
@@ -66,7 +67,8 @@ def read_photograph(path, width, height):
 
 
 def view_of(camera):
-    """A camera of cameras.json: its matrix leads from the camera to the world; the principal point is the middle unless it is given."""
+    """A camera of cameras.json: its matrix leads from the camera to the world; the principal point is the middle
+    unless it is given."""
     matrix = np.eye(4)
     matrix[:3, :3], matrix[:3, 3] = camera["rotation"], camera["position"]
     width, height = camera["width"], camera["height"]

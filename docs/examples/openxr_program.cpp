@@ -1,6 +1,6 @@
-// A plain OpenXR program with a cube of its own, and the splats of SCENE before and behind it: openxr_program [SCENE]. It creates its
-// Vulkan device as OpenXR wants it, draws its cube for both eyes, lets binosplat record into the same command buffer, and submits colour
-// and depth.
+// A plain OpenXR program with a cube of its own, and the splats of SCENE before and behind it: openxr_program
+// [SCENE]. It creates its Vulkan device as OpenXR wants it, draws its cube for both eyes, lets binosplat
+// record into the same command buffer, and submits colour and depth.
 #define XR_USE_GRAPHICS_API_VULKAN
 #include <binosplat_vulkan.h>
 #include <binosplat.hpp>
@@ -55,7 +55,8 @@ void run(const char* source) {
     VkPhysicalDeviceVulkan12Features features = vk::PhysicalDeviceVulkan12Features();
     bsp_required_device_features(&features);
     const float priority = 1.0f;
-    const vk::DeviceQueueCreateInfo queue_info({}, 0, 1, &priority);  // the first family draws and computes, on all GPUs there are
+    // The first family draws and computes, on all GPUs there are.
+    const vk::DeviceQueueCreateInfo queue_info({}, 0, 1, &priority);
     const VkDeviceCreateInfo device_info = vk::DeviceCreateInfo({}, queue_info, {}, {}, nullptr, &features);
     const XrVulkanDeviceCreateInfoKHR of_device{
         XR_TYPE_VULKAN_DEVICE_CREATE_INFO_KHR, nullptr, system, 0, load, gpu, &device_info, nullptr};
@@ -64,7 +65,8 @@ void run(const char* source) {
     const vk::raii::Device device(physical, made);
     const vk::raii::Queue queue = device.getQueue(0, 0);
 
-    // binosplat on this device. Its scene is there before the session begins, so that no other thread uses the queue.
+    // binosplat on this device. Its scene is there before the session begins, so that no other thread uses
+    // the queue.
     auto own = bsp::make<bsp_vulkan_device>(BSP_TYPE_VULKAN_DEVICE);
     own.instance = vulkan;
     own.physical_device = gpu;
@@ -131,8 +133,8 @@ void run(const char* source) {
             commands.begin(vk::CommandBufferBeginInfo(vk::CommandBufferUsageFlagBits::eOneTimeSubmit));
             for (std::size_t e = 0; e < 2; ++e) {
                 targets[e] = overCube(colours[e].acquire(), kColour, depths[e].acquire());
-                // OpenXR's y points up and its -z forward: half a turn about x between the two. The wearer begins where the scene is best
-                // seen.
+                // OpenXR's y points up and its -z forward: half a turn about x between the two. The wearer
+                // begins where the scene is best seen.
                 const auto& [q, p] = eyes[e].pose;
                 views[e] = {BSP_TYPE_VIEW,
                             sizeof(bsp_view),

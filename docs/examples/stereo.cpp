@@ -1,4 +1,5 @@
-// Renders a scene for two eyes and writes left.png and right.png: stereo SCENE [EYE_X EYE_Y EYE_Z LOOK_X LOOK_Y LOOK_Z]
+// Renders a scene for two eyes and writes left.png and right.png:
+//   stereo SCENE [EYE_X EYE_Y EYE_Z LOOK_X LOOK_Y LOOK_Z]
 #include <binosplat.hpp>
 
 #include <cstdio>

@@ -1,5 +1,6 @@
-// A window with a Vulkan device of its own, a cube, and the splats of SCENE before and behind it: vulkan_window [SCENE] [FRAMES]. Two
-// frames are under way at a time, and nothing waits for the one that was just submitted.
+// A window with a Vulkan device of its own, a cube, and the splats of SCENE before and behind it:
+// vulkan_window [SCENE] [FRAMES]. Two frames are under way at a time, and nothing waits for the one that was
+// just submitted.
 #include <binosplat_vulkan.h>
 #include <binosplat.hpp>
 #include <vulkan/vulkan_raii.hpp>

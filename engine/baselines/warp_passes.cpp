@@ -69,21 +69,21 @@ private:
 void WarpRecorder::weigh() {
     begin<WeighKernel>();
     in_.target_shown.recordKinds(commands_, in_.warp.tiles(), WarpBuffers::tileKindsOffset());
-    const gpu::WeighPass pass{
-        .warp = view(),
-        .ranges = in_.buffers.tile_ranges.address<gpu::uvec2>(),
-        .moving = in_.may_move ? in_.words.moving : gpu::DeviceAddress<gpu::uint>{},  // otherwise the source came without
-        .tile_kinds = in_.warp.tileKinds(),
-        .tile_costs = in_.warp.tileCosts(),
-        .tile_errors = in_.warp.tileErrors(),
-        .tile_depths = in_.warp.tileDepths(),
-        .tile_mask = in_.warp.tileMask(),
-        .price_bins = in_.warp.bins(),
-        .shown_mask = in_.source_shown.mask(),
-        .visible = visible(),
-        .masked_tiles = chosen(),
-        .counters = counters(),
-        .kinds_given = in_.target_shown.hideAny()};
+    const gpu::WeighPass pass{.warp = view(),
+                              .ranges = in_.buffers.tile_ranges.address<gpu::uvec2>(),
+                              // If it may not move, the source came without them.
+                              .moving = in_.may_move ? in_.words.moving : gpu::DeviceAddress<gpu::uint>{},
+                              .tile_kinds = in_.warp.tileKinds(),
+                              .tile_costs = in_.warp.tileCosts(),
+                              .tile_errors = in_.warp.tileErrors(),
+                              .tile_depths = in_.warp.tileDepths(),
+                              .tile_mask = in_.warp.tileMask(),
+                              .price_bins = in_.warp.bins(),
+                              .shown_mask = in_.source_shown.mask(),
+                              .visible = visible(),
+                              .masked_tiles = chosen(),
+                              .counters = counters(),
+                              .kinds_given = in_.target_shown.hideAny()};
     dispatch(WeighKernel{.rectified = in_.rectified}, pass, tileGroups());
 }
 

@@ -3,7 +3,8 @@
 //   weigh         predicted: which tiles are cheaper to render than to warp, and whether warping pays
 //   depth_bounds  paper: how deep the picture is
 //   edge_rois     paper: the borders that the source does not see
-//   reproject     the source's pixels go to where the target sees them; resample does this itself if they stay in their rows
+//   reproject     the source's pixels go to where the target sees them; resample does this itself if they
+//                 stay in their rows
 //   resample      every pixel's place in the source, its colour, and the error to expect
 //   newcomers     predicted: splats that only the target sees, nearer than the middle of their tile
 //   components    paper, on request: connected holes inside the picture

@@ -16,7 +16,8 @@ Scene makeAtelier(std::uint64_t splats, const Progress& progress) {
     return draft.make(splats, room, progress);
 }
 
-// Lattice 0.65 to 0.75 m deep on the left, leaves 0.4 to 0.8 m on the right, hills at 40 to 400 m through the window.
+// Lattice 0.65 to 0.75 m deep on the left, leaves 0.4 to 0.8 m on the right, hills at 40 to 400 m through the
+// window.
 View atelierView() { return {{0.1, -1.45, 0.35}, {0.02, -1.06, 5.0}, {0.0, -1.0, 0.0}, 70.0}; }
 
 }  // namespace binosplat::builtin

@@ -5,10 +5,13 @@
 
 namespace binosplat::builtin {
 
-void addShell(Draft& draft, const Room& room);      // floor, walls, ceiling, window frame, glass, curtains
-void addOutside(Draft& draft, const Room& room);    // hills, trees and sky beyond the window
-void addFurniture(Draft& draft, const Room& room);  // table, armchair, shelf with books, sideboard, lamp, pictures
-void addStillLife(Draft& draft);                    // what lies on the table and the sideboard: the glazed vase, fruit, books
-void addForeground(Draft& draft);                   // close to the eye: a lattice screen on the left, a plant on the right
+void addShell(Draft& draft, const Room& room);    // floor, walls, ceiling, window frame, glass, curtains
+void addOutside(Draft& draft, const Room& room);  // hills, trees and sky beyond the window
+// Table, armchair, shelf with books, sideboard, lamp, pictures.
+void addFurniture(Draft& draft, const Room& room);
+// What lies on the table and the sideboard: the glazed vase, fruit, books.
+void addStillLife(Draft& draft);
+// Close to the eye: a lattice screen on the left, a plant on the right.
+void addForeground(Draft& draft);
 
 }  // namespace binosplat::builtin

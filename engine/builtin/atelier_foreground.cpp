@@ -1,4 +1,5 @@
-// Objects close to the eyes, so that each eye sees different things behind them: a lattice screen and a plant.
+// Objects close to the eyes, so that each eye sees different things behind them: a lattice screen and a
+// plant.
 #include "engine/builtin/atelier.h"
 #include "engine/builtin/noise.h"
 #include "engine/builtin/shapes.h"
@@ -9,7 +10,8 @@ namespace binosplat::builtin {
 
 namespace {
 
-// A folding screen, 1.8 m high: solid below, above it thin bars in a stepped pattern. One panel, from `from` to `to` on the floor.
+// A folding screen, 1.8 m high: solid below, above it thin bars in a stepped pattern. One panel, from `from`
+// to `to` on the floor.
 void addScreenPanel(Draft& draft, const glm::vec2& from, const glm::vec2& to) {
     const glm::vec2 along = to - from;
     const float width = glm::length(along), yaw = -std::atan2(along.y, along.x);

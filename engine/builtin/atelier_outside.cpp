@@ -1,4 +1,5 @@
-// The view from the window: a meadow, rows of hills into the haze, trees, and the sky. Unlit: colours are painted with the light in them.
+// The view from the window: a meadow, rows of hills into the haze, trees, and the sky. Unlit: colours are
+// painted with the light in them.
 #include "engine/builtin/atelier.h"
 #include "engine/builtin/noise.h"
 
@@ -27,7 +28,8 @@ struct Ridge {
     std::uint32_t seed;
 };
 
-// A band from below the view up to the ridge line, leaning back so that nearer bands hide the feet of farther ones.
+// A band from below the view up to the ridge line, leaning back so that nearer bands hide the feet of farther
+// ones.
 void addRidge(Draft& draft, const Ridge& ridge) {
     Patch patch;
     const float half_angle = 0.85f;

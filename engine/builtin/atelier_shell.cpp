@@ -14,7 +14,8 @@ namespace {
 constexpr float kDadoHeight = 0.92f;  // top of the wooden panelling
 const glm::vec3 kWhitePaint(0.80f, 0.79f, 0.75f);
 
-// Boards along z, 14 cm wide and about 1.6 m long, each with its own tone; grain along the board, dark joints.
+// Boards along z, 14 cm wide and about 1.6 m long, each with its own tone; grain along the board, dark
+// joints.
 Material woodenFloor(const glm::vec3& p) {
     const float column = std::floor(p.x / 0.14f);
     const std::uint32_t column_seed = hash(static_cast<std::uint32_t>(static_cast<std::int32_t>(column)), 11u);
@@ -30,7 +31,8 @@ Material woodenFloor(const glm::vec3& p) {
     return {colour, glm::vec3(0.0f), 0.98f};
 }
 
-// Sage plaster above a rail, painted panels below, a skirting at the floor. `along` is the coordinate along the wall.
+// Sage plaster above a rail, painted panels below, a skirting at the floor. `along` is the coordinate along
+// the wall.
 Material wall(float along, float y) {
     const float height = -y;
     if (height > kDadoHeight) {
@@ -48,7 +50,8 @@ Material wall(float along, float y) {
     if (height < 0.12f) {
         shade = 0.94f - 0.4f * (1.0f - glm::smoothstep(0.0f, 0.01f, 0.12f - height));
     } else if (height < kDadoHeight - 0.05f) {
-        // Panels 62 cm wide; the moulding is lit from above, so its upper inner edge is dark and its lower one bright.
+        // Panels 62 cm wide; the moulding is lit from above, so its upper inner edge is dark and its lower
+        // one bright.
         const float u = along / 0.62f - std::floor(along / 0.62f);
         const float side = std::min(u, 1.0f - u) * 0.62f - 0.05f, top = kDadoHeight - 0.12f - height, bottom = height - 0.19f;
         const auto line = [](float distance) { return 1.0f - glm::smoothstep(0.004f, 0.014f, std::abs(distance)); };
@@ -108,11 +111,13 @@ void addWalls(Draft& draft, const Room& room) {
     };
     const std::array<glm::vec4, 2> far_holes{holeOn(room.window_min.x - room.min.x, room.window_min.y - room.min.y,
                                                     room.window_max.x - room.min.x, room.window_max.y - room.min.y, size.x),
-                                             holeOn(4.47f, 0.72f, 5.43f, 1.88f, size.x)};  // window; picture of addFurniture
+                                             // The window, and the picture of addFurniture.
+                                             holeOn(4.47f, 0.72f, 5.43f, 1.88f, size.x)};
     addQuadAround(draft, {{room.min.x, room.min.y, room.max.z}, across, down, middle}, far_holes, by_x, 1.0f);
     const std::array<glm::vec4, 1> left_holes{holeOn(2.3f, 0.5f, 4.5f, 2.8f, size.z)};  // the shelf
     addQuadAround(draft, {room.min, deep, down, middle}, left_holes, by_z, 0.9f);
-    const std::array<glm::vec4, 1> right_holes{holeOn(2.1f, 0.62f, 3.7f, 1.72f, size.z)};  // the large picture
+    // The large picture.
+    const std::array<glm::vec4, 1> right_holes{holeOn(2.1f, 0.62f, 3.7f, 1.72f, size.z)};
     addQuadAround(draft, {{room.max.x, room.min.y, room.min.z}, deep, down, middle}, right_holes, by_z, 0.9f);
     addQuad(draft, {room.min, across, down, middle}, by_x, 0.15f);
     // Four beams carry the ceiling.

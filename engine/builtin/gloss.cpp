@@ -1,5 +1,5 @@
-// A reflection maps each SH band onto itself, so the mirrored room is exactly of degree 3 if the room is; and a product of two functions of
-// degree 3 is integrated exactly by 4 Gauss-Legendre rings of 8 points each.
+// A reflection maps each SH band onto itself, so the mirrored room is exactly of degree 3 if the room is; and
+// a product of two functions of degree 3 is integrated exactly by 4 Gauss-Legendre rings of 8 points each.
 #include "engine/builtin/gloss.h"
 
 #include <cmath>
@@ -32,12 +32,14 @@ Quadrature makeQuadrature() {
     return result;
 }
 
-// A smooth lobe of degree 3 about an axis: ((1 + t) / 2)^3, which is 1 ahead and falls to a half at 54 degrees.
+// A smooth lobe of degree 3 about an axis: ((1 + t) / 2)^3, which is 1 ahead and falls to a half at 54
+// degrees.
 float lobe(const glm::vec3& direction, const glm::vec3& axis) {
     const float t = 0.5f + 0.5f * glm::dot(direction, axis);
     return t * t * t;
 }
-// A narrower lobe: a Legendre sum whose weights fall off, so that it hardly rings (down to -0.08 behind the axis).
+// A narrower lobe: a Legendre sum whose weights fall off, so that it hardly rings (down to -0.08 behind the
+// axis).
 float sharpLobe(const glm::vec3& direction, const glm::vec3& axis) {
     const float t = glm::dot(direction, axis);
     const float p2 = 1.5f * t * t - 0.5f, p3 = 2.5f * t * t * t - 1.5f * t;
@@ -70,7 +72,8 @@ std::array<glm::vec3, 16> projectGloss(const glm::vec3& point, const glm::vec3& 
     static const Quadrature kQuadrature = makeQuadrature();
     const glm::vec3 to_window = glm::normalize(window - point), to_lamp = glm::normalize(lamp - point), up(0.0f, -1.0f, 0.0f);
     const glm::vec3 to_skylight =
-        glm::normalize(glm::vec3(-0.75f, -0.75f, -0.6f));  // a second bright spot, behind the user's left shoulder
+        // A second bright spot, behind the user's left shoulder.
+        glm::normalize(glm::vec3(-0.75f, -0.75f, -0.6f));
     std::array<glm::vec3, 16> sh{};
     for (std::size_t i = 0; i < kQuadrature.directions.size(); ++i) {
         const glm::vec3 mirrored = glm::reflect(kQuadrature.directions[i], normal);

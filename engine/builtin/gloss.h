@@ -10,8 +10,9 @@ namespace binosplat::builtin {
 // The 16 real SH at a unit direction, in the order and with the signs of 3DGS/2DGS trainings.
 std::array<float, 16> evaluateSh(const glm::vec3& direction);
 
-// SH over viewing directions (from the eye to the splat) of the reflection, in a mirror with this normal, of a bright window ahead, a warm
-// lamp and a pale ceiling; display-encoded, to be added to the surface's own colour.
+// SH over viewing directions (from the eye to the splat) of the reflection, in a mirror with this normal, of
+// a bright window ahead, a warm lamp and a pale ceiling; display-encoded, to be added to the surface's own
+// colour.
 std::array<glm::vec3, 16> projectGloss(const glm::vec3& point, const glm::vec3& normal, const glm::vec3& window, const glm::vec3& lamp);
 
 }  // namespace binosplat::builtin

@@ -15,7 +15,8 @@ namespace {
 
 constexpr float kFar = 1e9f;
 
-// The distance at which a ray enters the occluder; kFar if it misses or starts inside (a surface does not shade itself).
+// The distance at which a ray enters the occluder; kFar if it misses or starts inside (a surface does not
+// shade itself).
 float hitDistance(const Occluder& occluder, const glm::vec3& origin, const glm::vec3& direction) {
     const glm::vec3 to_centre = occluder.centre - origin;
     const float radius = occluder.bounding_radius, nearest = glm::dot(to_centre, direction);

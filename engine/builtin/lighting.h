@@ -1,5 +1,6 @@
-// Baked light of a box-shaped room with one window in its far wall: sky light through the window, sun, one bounce with
-// darkening near other surfaces, and a lamp. Linear radiance, arbitrary units in which a sunlit white wall is about 1.
+// Baked light of a box-shaped room with one window in its far wall: sky light through the window, sun, one
+// bounce with darkening near other surfaces, and a lamp. Linear radiance, arbitrary units in which a sunlit
+// white wall is about 1.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -30,7 +31,8 @@ struct Room {
     glm::vec3 lamp{2.35f, -1.62f, 4.35f};
 };
 
-// Light falling on a point, by source; the sun's part is kept apart because its pattern (window bars) is finer than the grid.
+// Light falling on a point, by source; the sun's part is kept apart because its pattern (window bars) is
+// finer than the grid.
 struct Light {
     glm::vec3 diffuse{0.0f};
     float sun = 0.0f;  // share of the sun not blocked by furniture, times the cosine

@@ -1,4 +1,5 @@
-// Hashes and noise for generated scenes: integer arithmetic and float32 products only, so the same on every platform.
+// Hashes and noise for generated scenes: integer arithmetic and float32 products only, so the same on every
+// platform.
 #pragma once
 
 #include <glm/glm.hpp>

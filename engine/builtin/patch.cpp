@@ -16,9 +16,10 @@ namespace binosplat::builtin {
 
 namespace {
 
-// Sigma over spacing, by the number of splats across a patch. On a square grid with 0.66, 3 % of the background shines through the
-// middle of four splats at opacity 0.96; smaller values show holes, larger ones blur. A narrow strip (a bar, a leaf) would look fatter than
-// it is: one splat across of 0.45 falls to half its opacity at the strip's edges.
+// Sigma over spacing, by the number of splats across a patch. On a square grid with 0.66, 3 % of the
+// background shines through the middle of four splats at opacity 0.96; smaller values show holes, larger ones
+// blur. A narrow strip (a bar, a leaf) would look fatter than it is: one splat across of 0.45 falls to half
+// its opacity at the strip's edges.
 float sigmaPerSpacing(std::uint64_t splats_across) { return splats_across == 1 ? 0.45f : splats_across == 2 ? 0.56f : 0.66f; }
 
 struct Frame {
@@ -140,7 +141,8 @@ private:
         const glm::vec2 jitter(unitFloat(chance) - 0.5f, unitFloat(hash(chance)) - 0.5f);
         const glm::vec2 place(static_cast<float>(i - rows_.starts[row]) + 0.5f + (row % 2 == 0 ? 0.2f : -0.2f),
                               static_cast<float>(row) + 0.5f);
-        // The outermost splats move in by a sixteenth of a cell: half of a splat's opacity reaches 0.3 cells past the edge otherwise.
+        // The outermost splats move in by a sixteenth of a cell: half of a splat's opacity reaches 0.3 cells
+        // past the edge otherwise.
         const glm::vec2 even = (place + 0.16f * jitter) * cell,
                         uv = glm::clamp(0.5f + (even - 0.5f) * (1.0f - 0.12f * cell), glm::vec2(0.0f), glm::vec2(1.0f));
 
@@ -163,7 +165,8 @@ private:
         if (patch_.glossy) { addGloss(frame, sh); }
     }
 
-    // The mean over the splat's cell, so that a texture finer than the splats turns into its average and not into noise.
+    // The mean over the splat's cell, so that a texture finer than the splats turns into its average and not
+    // into noise.
     glm::vec3 shade(const Frame& frame, const glm::vec2& uv, const glm::vec2& cell, float& opacity) const {
         const Light light = patch_.lit ? grid_.at(uv) : Light{};
         glm::vec3 sum(0.0f);
@@ -213,7 +216,8 @@ void forAll(std::size_t count, const Work& work, const Progress& progress, doubl
     });
 }
 
-// True if a patch lies in a wall, floor or ceiling and faces out of the room: the back of a picture frame, the underside of a pot.
+// True if a patch lies in a wall, floor or ceiling and faces out of the room: the back of a picture frame,
+// the underside of a pot.
 bool isHidden(const Patch& patch, const Room& room) {
     if (!patch.lit || patch.two_sided || !patch.behind) { return false; }
     const Frame frame = frameAt(patch, {0.5f, 0.5f});
@@ -238,8 +242,8 @@ Patch& Draft::add(Patch patch) {
 }
 
 Scene Draft::make(std::uint64_t count, const Room& room, const Progress& progress) const {
-    // Patch i gets the splats between two rounded points of the running sum: exactly `count` in all, and small patches get their
-    // share on average even where it is under one.
+    // Patch i gets the splats between two rounded points of the running sum: exactly `count` in all, and
+    // small patches get their share on average even where it is under one.
     std::vector<std::uint64_t> starts{0};
     double total = 0.0, running = 0.0;
     for (const Patch& patch : patches_) { total += weightOf(patch, room); }

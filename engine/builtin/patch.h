@@ -22,12 +22,13 @@ using MaterialAt = std::function<Material(const glm::vec3& point, const glm::vec
 struct Patch {
     std::function<glm::vec3(const glm::vec2& uv)> point;
     MaterialAt material;
-    glm::vec2 size_m{1.0f};                                   // mean extents along u and v
-    float detail = 1.0f;                                      // splats per area, relative
-    std::function<glm::vec3(const glm::vec3& point)> behind;  // a point at the back of the surface near `point`
-    bool lit = true;                                          // false: emission alone
-    bool two_sided = false;                                   // lit through, as leaves and curtains are
-    bool glossy = false;                                      // mirrors the room by SH of degree 3
+    glm::vec2 size_m{1.0f};  // mean extents along u and v
+    float detail = 1.0f;     // splats per area, relative
+    // A point at the back of the surface near `point`.
+    std::function<glm::vec3(const glm::vec3& point)> behind;
+    bool lit = true;         // false: emission alone
+    bool two_sided = false;  // lit through, as leaves and curtains are
+    bool glossy = false;     // mirrors the room by SH of degree 3
 };
 
 class Draft {

@@ -87,8 +87,8 @@ void addCushion(Draft& draft, const Box& box, float boxiness, const MaterialAt& 
     if (occludes) { draft.occluders().push_back({Occluder::Shape::kEllipsoid, box.centre, 0.97f * box.half, box.yaw_rad}); }
     Patch patch;
     patch.point = [=](const glm::vec2& uv) {
-        // A direction, stretched until its norm of order `boxiness` is 1. (The usual superellipsoid formula has no finite derivative
-        // there.)
+        // A direction, stretched until its norm of order `boxiness` is 1. (The usual superellipsoid formula
+        // has no finite derivative there.)
         const float longitude = 2.0f * kPi * uv.x, latitude = kPi * (uv.y - 0.5f), ring = std::cos(latitude);
         const glm::vec3 d(ring * std::cos(longitude), std::sin(latitude), ring * std::sin(longitude));
         const glm::vec3 powers = glm::pow(glm::abs(d), glm::vec3(boxiness));
@@ -143,7 +143,8 @@ void addLeaf(Draft& draft, const Leaf& leaf, const glm::vec3& albedo, float deta
     const glm::vec3 up = glm::cross(side, direction);
     Patch patch;
     patch.point = [=](const glm::vec2& uv) {
-        // u runs along the leaf, v across; the outline is widest at a third, and the two halves fold up a little.
+        // u runs along the leaf, v across; the outline is widest at a third, and the two halves fold up a
+        // little.
         const float t = uv.x, across = 2.0f * uv.y - 1.0f;
         const float outline = std::pow(std::max(std::sin(kPi * std::pow(0.02f + 0.96f * t, 0.8f)), 0.0f), 0.8f);
         const float reach = leaf.length * t * (1.0f - 0.25f * leaf.droop * t);

@@ -41,7 +41,8 @@ Patch& addRevolution(Draft& draft, const glm::vec3& foot, std::vector<glm::vec2>
 // A thin upright or slanted rod.
 void addRod(Draft& draft, const glm::vec3& from, const glm::vec3& to, float radius, const MaterialAt& material, float detail);
 
-// A leaf from `base` along `direction`, drooping by `droop` of its length, `width` across; `side` is the direction across.
+// A leaf from `base` along `direction`, drooping by `droop` of its length, `width` across; `side` is the
+// direction across.
 struct Leaf {
     glm::vec3 base, direction, side;
     float length, width, droop;

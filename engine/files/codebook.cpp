@@ -13,7 +13,8 @@ namespace {
 constexpr std::size_t kSize = 256;
 constexpr std::size_t kMostSamples = std::size_t{1} << 22;
 constexpr std::size_t kStartCells = 4096;
-constexpr double kMostPerCell = 4.0;  // values that a cell may have at first, so that an outlier does not take them all
+// How many values a cell may have at first, so that an outlier does not take them all.
+constexpr double kMostPerCell = 4.0;
 constexpr int kIterations = 100;
 
 // Evenly picked, in ascending order, including the least and the largest.

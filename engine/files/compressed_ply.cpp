@@ -148,7 +148,8 @@ void unpackSplat(const Words& words, const Bounds& bounds, StoredBlock& block, s
         put(kStoredDc0 + offset, storedColour(between(kBoundsWithoutColour, axis, unpack(words[3], 24 - 8 * offset, 8))));
     }
     put(kStoredOpacity, storedOpacity(unpack(words[3], 0, 8)));
-    // Two bits for the largest component (w, x, y, z), then ten for each of the others, from -1/sqrt(2) to 1/sqrt(2).
+    // Two bits for the largest component (w, x, y, z), then ten for each of the others, from -1/sqrt(2) to
+    // 1/sqrt(2).
     const auto component = [&](int shift) { return (unpack(words[1], shift, 10) - 0.5f) * 1.41421356f; };
     const std::array<float, 4> rotation = fromSmallestThree(words[1] >> 30, {component(20), component(10), component(0)});
     for (std::size_t i = 0; i < 4; ++i) { put(kStoredRot0 + static_cast<int>(i), rotation[i]); }

@@ -48,7 +48,8 @@ glm::dvec3 findOrigin(const GltfDocument& document) {
     std::array<std::vector<double>, 3> places, moves;
     std::vector<float> values;
     for (const GltfSplats& part : document.parts) {
-        const double share = static_cast<double>(part.count()) / std::max(all, 1.0);  // so that small parts far away do not shift the rest
+        // Weighted, so that small parts far away do not shift the rest.
+        const double share = static_cast<double>(part.count()) / std::max(all, 1.0);
         const auto rows = std::min(static_cast<std::size_t>(part.count()), static_cast<std::size_t>(std::ceil(share * kMostSamples)));
         part.position.read(0, rows, values);
         for (std::size_t row = 0; row < rows; ++row) {

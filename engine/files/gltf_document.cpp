@@ -17,7 +17,8 @@ namespace binosplat {
 
 namespace {
 
-constexpr std::uint64_t kMostTextBytes = std::uint64_t{32} << 20;            // in memory it is ten times as long; splats belong in a buffer
+// In memory it is ten times as long; splats belong in a buffer.
+constexpr std::uint64_t kMostTextBytes = std::uint64_t{32} << 20;
 constexpr std::uint32_t kJsonChunk = 0x4e4f534a, kBinaryChunk = 0x004e4942;  // "JSON", "BIN\0"
 // For all nodes together: a file of a few megabytes may name each of a million primitives a million times.
 constexpr std::uint64_t kMostPrimitives = std::uint64_t{1} << 18;

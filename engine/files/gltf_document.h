@@ -37,7 +37,8 @@ private:
 // A primitive at a node.
 struct GltfSplats {
     GltfColumn position, rotation, scale, opacity;
-    std::vector<GltfColumn> sh;  // by coefficient, starting with the constant one; empty: `colour` stands for that one
+    // One column per coefficient, starting with the constant one; empty: `colour` stands for that one.
+    std::vector<GltfColumn> sh;
     std::optional<GltfColumn> colour;
     glm::dmat4 world_from_node{1.0};
     bool is_linear = false;  // its colours are light; otherwise display-encoded

@@ -72,7 +72,8 @@ bool GzipReader::fill() {
     z_stream& stream = state_->stream;
     if (stream.avail_in > 0) { return true; }
     const std::span<const std::byte> block = file_.readBlock(kBlockBytes);
-    stream.next_in = zlibBytes(block.data());  // valid until the next block is requested, after this one is used up
+    // Valid until the next block is requested, after this one is used up.
+    stream.next_in = zlibBytes(block.data());
     stream.avail_in = zlibCount(block.size());
     return !block.empty();
 }

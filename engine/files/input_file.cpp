@@ -70,7 +70,8 @@ void InputFile::open() {
     }
     // One byte more than a small file, so that its last line does not seem too long for filling the buffer.
     const auto buffer_bytes = static_cast<std::size_t>(std::clamp<std::uint64_t>(sizeBytes() + 1, kLeastBufferBytes, kMostBufferBytes));
-    room_ = std::make_unique_for_overwrite<char[]>(buffer_bytes);  // stays unused if the file is read in parts
+    // Stays unused if the file is read in parts.
+    room_ = std::make_unique_for_overwrite<char[]>(buffer_bytes);
     buffer_ = {room_.get(), buffer_bytes};
 }
 

@@ -59,7 +59,8 @@ public:
     // How a line ended: by a line break, by the end of the file after at least one character, or there was no
     // line at all.
     enum class LineEnd { kBreak, kFileEnd, kNoLine };
-    // The next line without its break ("\n" or "\r\n"); valid until the next call. Throws Error for a line over 1 MiB.
+    // The next line without its break ("\n" or "\r\n"); valid until the next call. Throws Error for a line
+    // over 1 MiB.
     LineEnd readLine(std::string_view& line);
 
     // The next `count` bytes, at most 1 MiB; fewer only at the end of the file. Valid until the next call.
@@ -80,7 +81,8 @@ public:
 private:
     void open();
     [[nodiscard]] FileStamp stamp() const;
-    void fillTo(std::size_t count);  // to at least `count` unread bytes in the buffer, or the rest of the file
+    // Fills the buffer to at least `count` unread bytes, or to the rest of the file.
+    void fillTo(std::size_t count);
 
     std::optional<TemporaryFolder> folder_;  // removed after the file is closed
     std::filesystem::path path_;

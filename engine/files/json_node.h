@@ -36,7 +36,8 @@ struct JsonNode {
     [[nodiscard]] float number() const;         // finite
     [[nodiscard]] std::uint64_t count() const;  // also as 608.0
     [[nodiscard]] std::string text() const;
-    [[nodiscard]] std::string filePath() const;  // a text with backslashes replaced by slashes, and without "./" at its front
+    // A text with backslashes replaced by slashes, and without "./" at its front.
+    [[nodiscard]] std::string filePath() const;
     [[nodiscard]] bool flag() const;
 };
 

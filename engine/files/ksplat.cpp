@@ -41,7 +41,8 @@ struct Section {
     std::string place;
     std::uint64_t splats = 0, splats_at = 0, splat_bytes = 0;
     int sh_degree = 0;
-    float step = 0.0f, middle = 0.0f;                 // a coordinate is bucket centre + (value - middle) * step
+    // A coordinate is bucket centre + (value - middle) * step.
+    float step = 0.0f, middle = 0.0f;
     std::uint64_t full_buckets = 0, bucket_size = 0;  // the first ones
     std::vector<std::uint32_t> other_sizes;           // of the buckets that follow
     std::vector<glm::vec3> centres;

@@ -68,7 +68,8 @@ constexpr std::array<SceneFormat, 10> kSceneFormats{{
      [](Source& source, LoadNotes& notes, const Progress& progress) { return readSpz(*source.file, notes, progress); }},
     {".ksplat", [](Source& source) { return source.file && isKsplat(*source.file); },
      [](Source& source, LoadNotes& notes, const Progress& progress) { return readKsplat(*source.file, notes, progress); }},
-    {".splat", [](Source& source) { return source.file && isSplatFile(*source.file); },  // a guess, so it comes last
+    // A guess, so it comes last.
+    {".splat", [](Source& source) { return source.file && isSplatFile(*source.file); },
      [](Source& source, LoadNotes& notes, const Progress& progress) { return readSplatFile(*source.file, notes, progress); }},
 }};
 

@@ -17,18 +17,22 @@ namespace binosplat {
 // Level 0 is the finest.
 struct LodLevel {
     std::uint64_t splats = 0;
-    std::map<std::size_t, std::vector<SplatRange>> chunks;  // by index into LodMeta::files; ascending, no two overlap or touch
+    // Keys are indices into LodMeta::files. Ranges ascend, and no two overlap or touch.
+    std::map<std::size_t, std::vector<SplatRange>> chunks;
 };
 
 struct LodMeta {
-    std::vector<std::string> files;  // the meta.json or .sog bundle of each chunk, relative to the folder of lod-meta.json and within it
-    std::string environment;         // likewise, for splats that belong to every level; empty: none
-    std::vector<LodLevel> levels;    // at least one
-    bool has_errors = false;         // each leaf has LodLeaf::errors
-    std::vector<LodLeaf> tree;       // its leaves that have splats
-    std::uint64_t leaves = 0;        // all of them
-    std::vector<std::uint64_t> leaves_without;  // for each level: leaves with splats at other levels but not at this one
-    std::vector<std::uint64_t> leaves_coarser;  // those of them that have a coarser level: the next coarser one is used instead
+    // The meta.json or .sog bundle of each chunk, relative to the folder of lod-meta.json and within it.
+    std::vector<std::string> files;
+    std::string environment;       // likewise, for splats that belong to every level; empty: none
+    std::vector<LodLevel> levels;  // at least one
+    bool has_errors = false;       // each leaf has LodLeaf::errors
+    std::vector<LodLeaf> tree;     // its leaves that have splats
+    std::uint64_t leaves = 0;      // all of them
+    // For each level: leaves with splats at other levels but not at this one.
+    std::vector<std::uint64_t> leaves_without;
+    // Those of them that have a coarser level: the next coarser one is used instead.
+    std::vector<std::uint64_t> leaves_coarser;
 };
 
 // `place` is the file's name for messages. Throws Error naming the key and what was expected. The reader

@@ -19,7 +19,8 @@ struct LodRange {
 
 struct LodLeaf {
     glm::vec3 low{0.0f}, high{0.0f};  // the corners of its box, scene units; finite, and low <= high
-    std::vector<LodRange> levels;     // at least one, the finest first; a leaf need not have every level of the scene
+    // At least one level, the finest first; a leaf need not have every level of the scene.
+    std::vector<LodRange> levels;
     // For each of `levels`, how far its picture is from that of the finest, in any unit that all leaves share
     // and in which errors add up; finite and not negative. Empty: not measured.
     std::vector<float> errors = {};

@@ -35,9 +35,11 @@ struct Header {
     Encoding encoding = Encoding::kLittleEndian;
     std::vector<Element> elements;
     int line_count = 0;
-    bool antialiased = false;  // from a comment: "SplatRenderMode: mip" (Brush, gsplat), "antialiased 1" or "postshot.anti_aliasing=1"
-                               // (Postshot); the last one counts
-    int vertical_axis = -1;    // 0 or 2, from a comment: "Vertical axis: z". "y" says nothing: Brush writes it into every file
+    // From a comment: "SplatRenderMode: mip" (Brush, gsplat), "antialiased 1" or "postshot.anti_aliasing=1"
+    // (Postshot); the last one counts.
+    bool antialiased = false;
+    // 0 or 2, from a comment: "Vertical axis: z". "y" says nothing: Brush writes it into every file
+    int vertical_axis = -1;
 };
 
 // Reads up to and including the end_header line. Throws Error naming the line at fault.

@@ -50,7 +50,8 @@ void Moment::apply(StoredBlock& block) const {
     for (std::size_t row = 0; row < block.rows; ++row) {
         std::array<float, kFields> fields{};
         for (std::size_t i = 0; i < kFields; ++i) {
-            if (attribute_of_[i] >= 0) { std::swap(fields[i], block.rest(row)[attribute_of_[i] - kStoredRest0]); }  // leaves 0
+            // The swap leaves 0.
+            if (attribute_of_[i] >= 0) { std::swap(fields[i], block.rest(row)[attribute_of_[i] - kStoredRest0]); }
         }
         const float dt = time_ - fields[kTime];
         for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -106,7 +106,8 @@ public:
         std::vector<std::byte> row(stride_);
         for (std::size_t i = 0; i < block.rows; ++i) {
             const std::uint64_t offset = file_.positionBytes() + total_ * i / block.rows * stride_;
-            if (file_.readAt(offset, row) < row.size()) {  // it has been cut off, which reading it will report
+            // It has been cut off, which reading it will report.
+            if (file_.readAt(offset, row) < row.size()) {
                 block.rows = i;
                 return;
             }
@@ -143,7 +144,8 @@ private:
     InputFile& file_;
     std::uint64_t total_, done_ = 0;
     std::size_t stride_;
-    std::size_t rest_offset_ = 0, rest_count_ = 0;  // the first f_rest values, if they lie together as float32
+    // The first f_rest values, if they lie together as float32.
+    std::size_t rest_offset_ = 0, rest_count_ = 0;
     std::vector<Source> columns_;
 };
 

@@ -29,7 +29,8 @@ inline float storedScale(float scale) { return scale == 0.0f ? -200.0f : std::lo
 // The f_dc of a displayed colour of 0 to 1.
 inline float storedColour(float colour) { return (colour - 0.5f) / kShConstant; }
 
-// A unit quaternion (w, x, y, z) whose largest component is positive and left out; the three others keep their order.
+// A unit quaternion (w, x, y, z) whose largest component is positive and left out; the three others keep
+// their order.
 inline std::array<float, 4> fromSmallestThree(std::size_t largest, const std::array<float, 3>& others) {
     std::array<float, 4> quaternion{};
     float rest = 1.0f;

@@ -67,7 +67,8 @@ std::vector<Checkpoint> findCheckpointFiles(const fs::path& folder) {
     std::error_code error, ignored;
     for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
         const std::string name = entry->path().filename().string();
-        for (const char* front : {"point_cloud_", "iteration_", "export_"}) {  // gsplat, and others; the last is Brush's
+        // Of gsplat and others; the last is Brush's.
+        for (const char* front : {"point_cloud_", "iteration_", "export_"}) {
             const std::string_view digits = digitsOf(name, front, ".ply");
             if (digits.empty() || !entry->is_regular_file(ignored)) { continue; }
             if (!isRound(digits)) { return {}; }
@@ -88,7 +89,8 @@ std::optional<TrainingOutput> findTrainingOutput(const fs::path& folder) {
     std::ranges::sort(found, std::greater{}, &Checkpoint::number);
     TrainingOutput output{found.front().scene.string(), "", {}};
     for (const Checkpoint& older : std::span(found).subspan(1)) { output.older.push_back(older.scene.lexically_relative(folder).string()); }
-    const fs::path named = folder.has_filename() ? folder : folder.parent_path();  // with a slash behind it or not
+    // The path may end with a slash.
+    const fs::path named = folder.has_filename() ? folder : folder.parent_path();
     std::error_code ignored;
     for (const fs::path& place : {named, named.filename() == "point_cloud" ? named.parent_path() : named}) {
         const fs::path cameras = place / "cameras.json";

@@ -34,7 +34,7 @@ std::vector<std::vector<NumberedFile>> findSceneGroups(const std::string& folder
     const auto formatIn = [](const std::string& path) {
         try {
             return mayHaveScene(path) ? formatOfFile(path) : std::string();
-        } catch (const Error&) { return std::string(); }  // an archive without a scene, such as a network's weights
+        } catch (const Error&) { return std::string(); }  // such as a network's weights
     };
     std::erase_if(groups, [&](const std::vector<NumberedFile>& group) {
         const std::string format = formatIn(group.front().path);

@@ -40,7 +40,8 @@ public:
 
 private:
     std::string name_, format_;
-    glm::dvec3 origin_{0.0};           // of the first file, and so of all files: otherwise the scene would jump
+    // That of the first file serves for all; otherwise the scene would jump.
+    glm::dvec3 origin_{0.0};
     std::vector<std::string> scenes_;  // files
     std::vector<std::size_t> frames_;
     double growth_ = 1.0;

@@ -160,7 +160,8 @@ std::vector<std::byte> packSogBundle(const std::vector<NamedBytes>& files, const
     zip_error_init(&error);
     const std::unique_ptr<zip_source_t, SourceCloser> target(zip_source_buffer_create(nullptr, 0, 0, &error));
     require(target != nullptr);
-    zip_source_keep(target.get());  // a reference for the archive, which releases its own even if it is not opened
+    // A reference for the archive, which releases its own even if it is not opened.
+    zip_source_keep(target.get());
     std::unique_ptr<zip_t, ArchiveCloser> archive(zip_open_from_source(target.get(), ZIP_TRUNCATE, &error));
     if (archive == nullptr) { zip_source_free(target.get()); }
     require(archive != nullptr);

@@ -19,7 +19,8 @@ inline constexpr std::size_t kSogPaletteColumns = 64;  // entries per row of the
 
 // SH beyond the constant band: each splat has a label, each label a row of coefficients.
 struct SogPalette {
-    int sh_degree = 0;                                                // 0: version 1 does not say; the picture's width does
+    // 0: version 1 does not say; the picture's width does
+    int sh_degree = 0;
     std::uint64_t count = std::numeric_limits<std::uint64_t>::max();  // the same
     ByteTable values{};
     std::string centroids_file, labels_file;
@@ -33,7 +34,8 @@ struct SplatRange {
 struct SogMeta {
     std::uint64_t count = 0;
     bool antialiased = false;
-    bool discs = false;                      // trained as 2DGS: the shortest of the three scales is meaningless
+    // Trained as 2DGS: the shortest of the three scales is meaningless.
+    bool discs = false;
     std::array<float, 3> mins{}, maxs{};     // of the positions after x -> sign(x) ln(1 + |x|)
     std::array<std::string, 2> means_files;  // low bytes, high bytes
     std::array<ByteTable, 3> scales{};

@@ -90,7 +90,8 @@ Pixels drawPalette(const ShPalette& palette, const Codebook& book) {
     const auto columns = static_cast<std::uint32_t>(kSogPaletteColumns * palette.coefficients),
                rows = static_cast<std::uint32_t>((palette.size() + kSogPaletteColumns - 1) / kSogPaletteColumns);
     Pixels pixels = blank({columns, rows});
-    for (std::size_t i = 0; i < palette.entries.size() / 3; ++i) {  // entries follow each other in a row's pixels
+    // Entries follow each other in a row's pixels.
+    for (std::size_t i = 0; i < palette.entries.size() / 3; ++i) {
         for (std::size_t channel = 0; channel < 3; ++channel) {
             pixels.rgba[4 * i + channel] = book.nearest(palette.entries[3 * i + channel]);
         }

@@ -46,7 +46,8 @@ bool isSplatFile(InputFile& file) {
     std::size_t plausible = 0;
     const std::size_t samples = bytes.size() / kSplatBytes;
     for (std::size_t i = 0; i < samples; ++i) { plausible += isPlausible(bytes.subspan(i * kSplatBytes, kSplatBytes)); }
-    return samples > 0 && 10 * plausible >= 9 * samples;  // a few may be broken; they are counted when they are read
+    // A few may be broken; they are counted when they are read.
+    return samples > 0 && 10 * plausible >= 9 * samples;
 }
 
 Scene readSplatFile(InputFile& file, LoadNotes& notes, const Progress& progress) {

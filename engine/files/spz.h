@@ -32,10 +32,11 @@ int spzFractionalBits(const Scene& scene);
 namespace spz {
 
 inline constexpr std::uint32_t kMagic = 0x5053474e;  // "NGSP"
-inline constexpr std::size_t kHeaderBytes = 16;      // magic, version, count; one byte each: SH degree, fractional bits, flags, reserved
-inline constexpr int kAntialiased = 1;               // of the flags
-inline constexpr int kHasExtensions = 2;             // the same
-inline constexpr float kColourScale = 0.15f;         // a colour byte is 255 * (0.5 + kColourScale * f_dc)
+// Magic, version, count; one byte each: SH degree, fractional bits, flags, reserved.
+inline constexpr std::size_t kHeaderBytes = 16;
+inline constexpr int kAntialiased = 1;        // of the flags
+inline constexpr int kHasExtensions = 2;      // the same
+inline constexpr float kColourScale = 0.15f;  // a colour byte is 255 * (0.5 + kColourScale * f_dc)
 
 // True if SH coefficient k, from 1 on, changes sign with y and z, that is if its polynomial is odd in the two
 // together.

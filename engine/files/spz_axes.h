@@ -18,7 +18,8 @@ namespace binosplat {
 
 class SpzAxes {
 public:
-    static constexpr std::uint32_t kUsual = 4, kLast = 16;  // right, up, back; the last one that the extension knows is right, front, up
+    // Right, up, back; the last one that the extension knows is right, front, up.
+    static constexpr std::uint32_t kUsual = 4, kLast = 16;
 
     // `system` is the extension's number, 1 to kLast.
     explicit SpzAxes(std::uint32_t system = kUsual);

@@ -82,7 +82,8 @@ Turned turnShortestLast(const glm::dquat& rotation, const std::array<float, 3>& 
 // The highest band with a non-zero value, over the rows that are kept.
 int findUsedDegree(const StoredBlock& block, const ActiveBlock& active, int sh_degree) {
     const int per_channel = shCoefficientCount(sh_degree) - 1;
-    std::array<float, StoredBlock::kRestStride> seen{};  // sums of magnitudes, finite or infinite: 0 if all are 0
+    // Sums of magnitudes, finite or infinite: 0 if all are 0.
+    std::array<float, StoredBlock::kRestStride> seen{};
     for (std::size_t i = 0; i < active.count; ++i) {
         const float* rest = block.rest(active.source[i]);
         for (std::size_t k = 0; k < seen.size(); ++k) { seen[k] += std::abs(rest[k]); }
@@ -128,7 +129,8 @@ void activate(const StoredBlock& block, int sh_degree, bool three_scales, Active
             thickness = std::exp(axes.log_scale_w);
             usable = std::isfinite(axes.log_scale_u + axes.log_scale_v);
         }
-        if (!usable || !std::isfinite(scale.x + scale.y)) {  // a logarithm over 88.7 gives an infinite float32 scale
+        // A logarithm over 88.7 gives an infinite float32 scale.
+        if (!usable || !std::isfinite(scale.x + scale.y)) {
             ++active.skipped_not_finite;
             continue;
         }

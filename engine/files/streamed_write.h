@@ -65,7 +65,8 @@ private:
     };
     struct Node {
         glm::vec3 low{0.0f}, high{0.0f};  // of what its splats reach, at all levels
-        int axis = -1;                    // -1 for a leaf; otherwise splats at or beyond `cut` go to the second child
+        // -1 for a leaf; otherwise splats at or beyond `cut` go to the second child
+        int axis = -1;
         float cut = 0.0f;
         std::uint32_t first = 0, second = 0;  // children
         std::uint64_t splats = 0;             // of the finest level

@@ -28,7 +28,8 @@ std::optional<gpu::ChangedRect> rectOf(const SceneChange& change, const Eye& eye
         low = glm::min(low, place);
         high = glm::max(high, place);
     };
-    // The part beyond the near plane: corners, and where edges cross the plane. Corners of an edge differ in one bit.
+    // The part beyond the near plane: corners, and where edges cross the plane. Corners of an edge differ in
+    // one bit.
     for (std::size_t c = 0; c < corners.size(); ++c) {
         if (corners[c].z >= near) { hold(corners[c]); }
         for (const std::size_t bit : {1u, 2u, 4u}) {

@@ -31,7 +31,8 @@ struct WarpedCounters {
     std::uint64_t tiles_shown = 0;  // of pictures that are made from others
     std::uint64_t tiles_patched = 0, tiles_edge = 0, tiles_center = 0, tiles_predicted = 0;
     std::optional<Work> work;
-    std::optional<std::uint64_t> tiles_over_bound;  // if errors are bounded: tiles left above the bound for lack of budget
+    // If errors are bounded: tiles left above the bound for lack of budget.
+    std::optional<std::uint64_t> tiles_over_bound;
     std::uint64_t hole_components = 0, splats_newcomers = 0, bytes = 0;
 };
 

@@ -12,7 +12,8 @@ namespace {
 
 // D of a pixel with this word.
 float depthOf(gpu::uint word, float alpha) {
-    const float inverse_depth = word == 0 ? 0.0f : std::bit_cast<float>(((word >> 6) - 1) << 5);  // lib/moving_pixel.glsl
+    // See lib/moving_pixel.glsl.
+    const float inverse_depth = word == 0 ? 0.0f : std::bit_cast<float>(((word >> 6) - 1) << 5);
     return inverse_depth > 0.0f ? alpha / inverse_depth : 0.0f;
 }
 

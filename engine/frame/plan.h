@@ -20,8 +20,9 @@ inline constexpr std::size_t kFramePictures = 4;
 struct ListPlan {
     EyesOfList eyes;
     Role role = Role::kNone;
-    bool of_chosen = false;  // holds what touches the chosen tiles of its eyes, and is made once these are known
-    bool culls = true;       // otherwise it is the existing one, in the order of another eye
+    // Holds only what touches the chosen tiles of its eyes, and is made once these are known.
+    bool of_chosen = false;
+    bool culls = true;  // otherwise it is the existing one, in the order of another eye
 };
 
 // Where pixels of a target that are not rendered come from.
@@ -29,7 +30,8 @@ struct Warp {
     int source = 0;  // of the plan's targets; it is rendered before
     EyeRelation relation;
     StereoSettings settings;
-    bool may_move = true;           // otherwise nothing is warped, and the frame only finds out whether warping would pay, for the next one
+    // If false, nothing is warped, and the frame only finds out whether warping would pay in the next one.
+    bool may_move = true;
     std::optional<Gaze> gaze = {};  // empty: the whole target counts alike
 };
 
@@ -66,12 +68,13 @@ struct TargetPlan {
 
 struct Step {
     enum class Kind {
-        kList,       // makes FramePlan::lists[index]
-        kWarp,       // warps pixels into FramePlan::targets[index] and chooses its tiles
-        kPast,       // makes FramePlan::targets[index] from its history
-        kChoose,     // chooses the tiles of all targets that have one
-        kRender,     // renders the chosen tiles
-        kRenderAll,  // renders the chosen tiles of all targets at once; their list and pairs need capacity for each
+        kList,    // makes FramePlan::lists[index]
+        kWarp,    // warps pixels into FramePlan::targets[index] and chooses its tiles
+        kPast,    // makes FramePlan::targets[index] from its history
+        kChoose,  // chooses the tiles of all targets that have one
+        kRender,  // renders the chosen tiles
+        // Renders the chosen tiles of all targets at once; their list and pairs need capacity for each.
+        kRenderAll,
     };
     Kind kind;
     int index;
@@ -85,13 +88,15 @@ struct FramePlan {
     bool shares_order = false;  // one order of the splats serves all eyes
     double near = 0.2;
     glm::dvec3 background{0.0};
-    double budget = 0.0;          // of the choice among what histories have left: a share of the work of the targets that have one
-    double error_bound_db = 0.0;  // of that choice: StereoSettings
+    // For the choice among what histories have left: a share of the work of the targets that have one.
+    double budget = 0.0;
+    double error_bound_db = 0.0;                        // of that choice: StereoSettings
     std::uint32_t measured_part = gpu::kMeasuredParts;  // FrameSettings
     int dominant = 0;                                   // of the targets
     bool keeps_past = false;                            // later frames are made from this one
     std::optional<int> spare_picture = {};              // the room's picture for the frame after this one
-    int shares_ahead = 1;                               // how many pictures that frame renders at the same time
+    // How many pictures that frame renders at the same time.
+    int shares_ahead = 1;
 
     // The step that makes it is the next one.
     void makeList(const ListPlan& list) {
@@ -102,7 +107,8 @@ struct FramePlan {
     [[nodiscard]] int firstTarget() const;
     // How many pictures are rendered at once.
     [[nodiscard]] int shares() const;
-    // True if nothing is in the target's picture until its pairs are sorted. The frames after a history need their lists in one piece.
+    // True if nothing is in the target's picture until its pairs are sorted. The frames after a history need
+    // their lists in one piece.
     [[nodiscard]] bool isSortedInPicture(const TargetPlan& target) const {
         return target.choice == TileChoice::kAll && !keeps_past && !target.coarse;
     }

@@ -99,8 +99,8 @@ void countCoarse(const gpu::EyeCounters& eye, FrameCounters& counters) {
 
 bool seesNothing(const FrameCounters& counters) {
     if (std::ranges::any_of(counters.targets, [](const TargetCounters& target) { return target.tile_pairs > 0; })) { return false; }
-    // Pictures that are made from their histories may need no splat: then their tiles know the cost of making them. An empty tile counts
-    // for kTilePairs.
+    // Pictures that are made from their histories may need no splat: then their tiles know the cost of making
+    // them. An empty tile counts for kTilePairs.
     std::uint64_t tiles = 0;
     for (const TargetCounters& target : counters.targets) { tiles += target.tiles; }
     return !counters.warped || !counters.warped->work || counters.warped->work->full <= gpu::kTilePairs * tiles;

@@ -29,8 +29,8 @@ public:
     void forgetFrames() { first_frame_ = true; }
     [[nodiscard]] bool isFirstFrame() const { return first_frame_; }
 
-    // Pictures as the plan wants them. `hidden_tiles`: see FrameSettings. Throws Error if the device lacks the memory: then no picture is
-    // left.
+    // Pictures as the plan wants them. `hidden_tiles`: see FrameSettings. Throws Error if the device lacks
+    // the memory: then no picture is left.
     void fitPictures(const FramePlan& plan, const std::array<std::span<const std::uint8_t>, 2>& hidden_tiles);
     // Lists, if there are none.
     void fitLists();

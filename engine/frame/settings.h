@@ -30,16 +30,21 @@ struct FrameSettings {
     double near = 0.2;             // scene units
     double units_per_metre = 1.0;  // scene units in a metre of the wearer: to recognize a jump of the eyes
     glm::dvec3 background{0.0};
-    Order order = Order::kDepth;  // in all modes; a frame of two eyes has one middle, even if nothing is shared
-    StereoSettings stereo;        // how one eye is made from the other; its `choice` follows from the mode
-    // kPaper: each eye is culled, ordered and projected by itself, as in kTwoPass. The two sequential strategies that the paper compares
-    // differ only in the second eye's picture (section 4.3), and it mentions no work that the eyes share.
+    // Applies to all modes; a frame of two eyes has one middle, even if nothing is shared.
+    Order order = Order::kDepth;
+    StereoSettings stereo;  // how one eye is made from the other; its `choice` follows from the mode
+    // kPaper: each eye is culled, ordered and projected by itself, as in kTwoPass. The two sequential
+    // strategies that the paper compares differ only in the second eye's picture (section 4.3), and it
+    // mentions no work that the eyes share.
     bool per_eye = false;
-    bool half_floats = false;       // pictures of four half floats a pixel: for display, with half the bytes of those for files
-    bool keep_depth = true;         // D of the dominant eye, for readDominantDepth
-    bool keep_both_depths = false;  // D of the affiliated eye, too; where it is not rendered, alpha over its inverse depth
-    bool keep_moments = false;      // I and J of the dominant eye, for readInverseDepthMoments
-    bool keep_classes = false;      // how each pixel of the affiliated eye came about, for readPixelClasses and the report's counters
+    // Four half floats per pixel: for display, with half the bytes of pictures for files.
+    bool half_floats = false;
+    bool keep_depth = true;  // D of the dominant eye, for readDominantDepth
+    // Also D of the affiliated eye; where that is not rendered, alpha over its inverse depth.
+    bool keep_both_depths = false;
+    bool keep_moments = false;  // I and J of the dominant eye, for readInverseDepthMoments
+    // How each pixel of the affiliated eye came about, for readPixelClasses and the report's counters.
+    bool keep_classes = false;
     // By eye, hidden tiles: a byte a tile, row-major, 1 if it is hidden; empty: none is. They become
     // background, cost no pairs and do not count for the budget, which is a share of the others.
     std::array<std::span<const std::uint8_t>, 2> hidden_tiles = {};
@@ -80,11 +85,14 @@ struct FrameResult {
     // For `temporal`, as mean squares over pixels and channels, for values of 0 to 1; 0 if unknown: the
     // expected error of its tiles that were not rendered, and what half of the resolution would lose.
     double warp_error = 0.0, half_loss = 0.0;
-    double tiles_rendered = 1.0, work_rendered = 1.0;  // shares of the affiliated eye's tiles, and of its work if the mode weighs it
-    std::uint64_t peak_gpu_bytes = 0;                  // the most device memory that this program ever held at a time
-    std::vector<std::string> left_out;                 // what this scene and mode did not need
-    std::uint64_t mark = 0;                            // of its settings
-    bool sees_nothing = false;                         // no splat touches any of its pictures, or touched their histories
+    // Shares of the affiliated eye's tiles, and of its work if the mode weighs it.
+    double tiles_rendered = 1.0, work_rendered = 1.0;
+    // The most device memory that this program ever held at a time.
+    std::uint64_t peak_gpu_bytes = 0;
+    std::vector<std::string> left_out;  // what this scene and mode did not need
+    std::uint64_t mark = 0;             // of its settings
+    // No splat touches any of its pictures, nor touched their histories.
+    bool sees_nothing = false;
 };
 
 // Initial values of a frame; the defaults suit every device.

@@ -254,7 +254,8 @@ Pasts StereoFrame::pastsFor(std::span<const Eye> eyes, const FrameSettings& sett
     }
     const double farthest = farthestPast(eyes, settings.units_per_metre);
     for (std::size_t e = 0; e < eyes.size(); ++e) {
-        if (settings.mode == Mode::kAlternate && static_cast<int>(e) == pasts_.turn) { continue; }  // rendered anyway
+        // This eye is rendered anyway.
+        if (settings.mode == Mode::kAlternate && static_cast<int>(e) == pasts_.turn) { continue; }
         if (!canComeFrom(pasts_.of_eyes[e]->eye, eyes[e], farthest)) { return {}; }
     }
     return pasts_;

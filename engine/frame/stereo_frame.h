@@ -23,8 +23,8 @@ public:
     StereoFrame(const StereoFrame&) = delete;
     StereoFrame& operator=(const StereoFrame&) = delete;
     ~StereoFrame();
-    // Another frame of the scene that `other` shows, with pictures and histories of its own. It uses the kernels of `other`, which must
-    // outlive it, and on the same thread.
+    // Another frame of the scene that `other` shows, with pictures and histories of its own. It uses the
+    // kernels of `other`, which must outlive it, and on the same thread.
     static std::unique_ptr<StereoFrame> beside(StereoFrame& other);
 
     // Frames show `scene` from now on, which is on the same device. Kernels stay compiled. Waits for frames
@@ -104,8 +104,8 @@ public:
     [[nodiscard]] std::vector<std::uint32_t> readTileKinds();
     // The same for any eye's picture, including one that is made from its own history.
     [[nodiscard]] std::vector<std::uint32_t> readTileKinds(int eye);
-    // How each pixel of the affiliated picture outside such tiles came about (kCovered, kGap, kHole), row-major; if they
-    // were kept.
+    // How each pixel of the affiliated picture outside such tiles came about (kCovered, kGap, kHole),
+    // row-major; if they were kept.
     [[nodiscard]] std::vector<std::uint8_t> readPixelClasses();
 
     // The same in device memory, for display.
@@ -160,7 +160,8 @@ private:
     // The same for display: at most once more; returns how often it was done again. Where lists are too short
     // even then, background is shown; they are long enough the next time if the device has that much memory.
     std::uint64_t renderAtMostTwice(const FrameSettings& settings, const Append& append);
-    // What the last known frame would have reported if it had seen all splats that come with the next changes.
+    // What the last known frame would have reported if it had seen all splats that come with the next
+    // changes.
     [[nodiscard]] FrameState stateAhead() const;
     // Counts the splats that the eyes see, which costs little: if their list is too short, nothing is known
     // about what follows.
@@ -187,7 +188,8 @@ private:
     std::uint32_t splats_known_ = 0;  // how many the scene held then
     MovingPays moving_pays_;
     bool brings_changes_ = true;
-    std::uint64_t changes_known_ = 0;  // the scene's changes that the last frame shows, see GpuScene::changesSince
+    // The scene's changes that the last frame shows, see GpuScene::changesSince.
+    std::uint64_t changes_known_ = 0;
     FrameShape shape_;
     std::vector<Eye> eyes_;
     std::uint64_t cut_short_ = 0, done_again_ = 0;

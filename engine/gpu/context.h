@@ -28,15 +28,21 @@ struct DeviceMaker {
 };
 
 struct ContextOptions {
-    std::string device;       // index, or part of a name; empty: the first discrete GPU, or else the first device that will do
-    bool validation = false;  // Khronos validation with synchronization checks; also BINOSPLAT_VALIDATION=1 in the environment
-    std::uint64_t max_allocation_bytes = 0;             // the most in one allocation; 0: what the device allows
-    std::uint64_t memory_limit_bytes = 0;               // the most in all buffers together; 0: what the device has
-    DeviceMaker maker = {};                             // in place of Vulkan itself; `device` then has no effect
-    const ForeignDevice* foreign = nullptr;             // in place of everything else
-    std::vector<const char*> instance_extensions = {};  // in addition to those that the passes need; must be literals
-    std::vector<const char*> device_extensions = {};    // likewise, but only those that the device has
-    void* device_features = nullptr;                    // also enable these: a chain of feature structs
+    // Index, or part of a name; empty: the first discrete GPU, or else the first device that will do.
+    std::string device;
+    // Khronos validation with synchronization checks; also BINOSPLAT_VALIDATION=1 in the environment
+    bool validation = false;
+    // Limit for one allocation; 0: what the device allows.
+    std::uint64_t max_allocation_bytes = 0;
+    // Limit for all buffers together; 0: what the device has.
+    std::uint64_t memory_limit_bytes = 0;
+    // Makes the device in place of Vulkan itself; `device` then has no effect.
+    DeviceMaker maker = {};
+    const ForeignDevice* foreign = nullptr;  // in place of everything else
+    // Extensions in addition to those that the passes need; must be literals.
+    std::vector<const char*> instance_extensions = {};
+    std::vector<const char*> device_extensions = {};  // likewise, but only those that the device has
+    void* device_features = nullptr;                  // also enable these: a chain of feature structs
 };
 
 // Shaders by name, as SPIR-V.

@@ -14,7 +14,8 @@ namespace binosplat {
 
 class Kernel {
 public:
-    enum class Keep { kNothing, kStatistics };  // from VK_KHR_pipeline_executable_properties, only if Context::hasKernelStatistics
+    // Statistics come from VK_KHR_pipeline_executable_properties, only if Context::hasKernelStatistics.
+    enum class Keep { kNothing, kStatistics };
 
     Kernel() = default;
     // Throws Error (ExitCode::kNoDevice) if the driver rejects it.

@@ -19,9 +19,10 @@ namespace binosplat {
 struct SceneTraits {
     int sh_degree = 0;
     std::uint32_t splat_kind = gpu::kDiscs;  // or kGaussians
-    bool is_dimmed = false;                  // Gaussians that were trained with an opacity that the low-pass dims
-    Order usual_order = Order::kDepth;       // as the scene asks for it
-    bool is_light = false;                   // its colours are light, to be encoded once they are blended
+    // These are Gaussians that were trained with an opacity that the low-pass dims.
+    bool is_dimmed = false;
+    Order usual_order = Order::kDepth;  // as the scene asks for it
+    bool is_light = false;              // its colours are light, to be encoded once they are blended
 
     [[nodiscard]] bool isGaussian3d() const { return splat_kind != gpu::kDiscs; }
     bool operator==(const SceneTraits&) const = default;

@@ -34,13 +34,15 @@
 extern "C" {
 #endif
 
-typedef struct bsp_device_t* bsp_device;      // a Vulkan device: the library's own, or the program's
-typedef struct bsp_scene_t* bsp_scene;        // splats in its memory
-typedef struct bsp_renderer_t* bsp_renderer;  // makes pictures, and keeps what the last ones leave for the next
+typedef struct bsp_device_t* bsp_device;  // a Vulkan device: the library's own, or the program's
+typedef struct bsp_scene_t* bsp_scene;    // splats in its memory
+// Makes pictures, and keeps what the last ones leave for the next.
+typedef struct bsp_renderer_t* bsp_renderer;
 
 typedef enum bsp_result {
     BSP_SUCCESS = 0,
-    BSP_NOT_READY = 1,             // a scene is loading, or the device is drawing: not an error, there is no text
+    // A scene is loading, or the device is drawing: not an error, there is no text.
+    BSP_NOT_READY = 1,
     BSP_ERROR_INPUT = -1,          // a file or a value
     BSP_ERROR_OUT_OF_MEMORY = -2,  // of the device or the host: a smaller scene or picture may do
     BSP_ERROR_NO_DEVICE = -3,      // no Vulkan device, or none with what is needed
@@ -76,7 +78,7 @@ typedef struct bsp_header {
     const void* next;
 } bsp_header;
 
-// Devices. ----------------------------------------------------------------------------------------------------------------------------
+// Devices. --------------------------------------------------------------------------------------------------
 
 // One line for the user, such as: splats were skipped and why, or a copy of a scene from the web may be old.
 // Any thread may call it in the middle of any call, and it must not call this library.
@@ -85,11 +87,13 @@ typedef void (*bsp_log)(void* user, const char* line);
 typedef struct bsp_device_info {
     uint32_t type, size;  // BSP_TYPE_DEVICE_INFO
     const void* next;
-    const char* name;             // the device's number, or part of its name; null: the first discrete GPU, or else the first that will do
+    // The device's number, or part of its name; null: the first discrete GPU, or else the first that will do.
+    const char* name;
     bsp_log log;                  // null: no messages
     void* log_user;               // passed to `log`
     uint64_t memory_limit_bytes;  // the most for all buffers together; 0: what the device has
-    uint32_t validation;          // 1: use Khronos' validation layers; their messages are logged as the device is destroyed
+    // 1: use Khronos' validation layers; their messages are logged when the device is destroyed.
+    uint32_t validation;
 } bsp_device_info;
 
 // `info` may be null.
@@ -99,7 +103,7 @@ BSP_API void bsp_device_destroy(bsp_device device);
 // Its name, valid while the device exists. May run beside any call.
 BSP_API const char* bsp_device_name(bsp_device device);
 
-// Scenes. -----------------------------------------------------------------------------------------------------------------------------
+// Scenes. ---------------------------------------------------------------------------------------------------
 
 // The floats of each splat lie together; splats are `stride` bytes apart, or side by side if it is 0.
 typedef struct bsp_array {
@@ -111,14 +115,16 @@ typedef struct bsp_splats {
     uint32_t type, size;  // BSP_TYPE_SPLATS
     const void* next;
     uint64_t count;
-    bsp_array positions;   // 3: the centre
-    bsp_array rotations;   // 4: w, x, y, z, of any length except 0
-    bsp_array scales;      // scale_count: along the rotated axes
-    bsp_array opacities;   // 1
-    bsp_array sh;          // 3 (sh_degree + 1)^2: by coefficients, the constant one first, with red, green and blue of each together
+    bsp_array positions;  // 3: the centre
+    bsp_array rotations;  // 4: w, x, y, z, of any length except 0
+    bsp_array scales;     // scale_count: along the rotated axes
+    bsp_array opacities;  // 1
+    // 3 (sh_degree + 1)^2: by coefficients, the constant one first, with red, green and blue of each together
+    bsp_array sh;
     uint32_t scale_count;  // 2: discs (2DGS); 3: Gaussians (3DGS)
     uint32_t sh_degree;    // 0 to 3
-    uint32_t activated;    // 0: as trainings store them, logarithms of scales and logits of opacities; 1: lengths, and 0 to 1
+    // 0: as trainings store them, logarithms of scales and logits of opacities; 1: lengths, and 0 to 1
+    uint32_t activated;
     uint32_t antialiased;  // 1: Gaussians whose opacities were trained to be dimmed by the low-pass
     double origin[3];      // positions are relative to it; for positions far from 0
 } bsp_splats;
@@ -126,15 +132,17 @@ typedef struct bsp_splats {
 typedef struct bsp_scene_info {
     uint32_t type, size;  // BSP_TYPE_SCENE_INFO
     const void* next;
-    const char* source;        // a file of any format that the README lists, a folder, builtin:NAME, or a web address; null: `splats`
+    // A file of any format that the README lists, a folder, builtin:NAME, or a web address; null: `splats`.
+    const char* source;
     const bsp_splats* splats;  // null: `source`
     // 1: a streamed scene loads what the views need, frame by frame, and a folder of numbered files moves,
     // see bsp_frame_info::time_s. Such a scene belongs to one renderer at a time. 0: all of it is loaded, or
     // the first file.
     uint32_t live;
     uint32_t unused;
-    uint64_t splat_budget;  // of a streamed scene: the most splats to show; 0: as many as half of the memory holds
-    double rate_hz;         // of a scene that moves: files per second; 0: 30
+    // For a streamed scene: the most splats to show; 0: as many as half of the memory holds.
+    uint64_t splat_budget;
+    double rate_hz;  // of a scene that moves: files per second; 0: 30
 } bsp_scene_info;
 
 // Starts loading in the background, and returns at once. Arrays are read before it returns. May run beside
@@ -155,32 +163,36 @@ BSP_API void bsp_scene_destroy(bsp_scene scene);
 typedef struct bsp_scene_properties {
     uint32_t type, size;  // BSP_TYPE_SCENE_PROPERTIES
     void* next;
-    uint64_t splats, skipped;  // skipped: with a NaN, an infinity, or a rotation of length 0. From here on a live
-                               // scene counts with its coarsest level or first file
-    uint64_t device_bytes;     // memory that it takes on the device
-    uint32_t scale_count;      // 2 or 3, as bsp_splats
-    uint32_t sh_degree;        // the highest degree with a coefficient that is not 0
-    double low[3], high[3];    // the box of all centres
-    double core_size;          // the longest side of the box with nine tenths of the scene, without its surroundings
-    double near;               // the nearest depth that is drawn unless a frame sets it
-    double eye[3], look[3];    // where to start, judged from the scene, and what to look at
-    double up[3];              // a vector that points upwards
+    // skipped: with a NaN, an infinity, or a rotation of length 0. From here on a live scene counts with its
+    // coarsest level or first file
+    uint64_t splats, skipped;
+    uint64_t device_bytes;   // memory that it takes on the device
+    uint32_t scale_count;    // 2 or 3, as bsp_splats
+    uint32_t sh_degree;      // the highest degree with a coefficient that is not 0
+    double low[3], high[3];  // the box of all centres
+    // The longest side of the box with nine tenths of the scene, without its surroundings.
+    double core_size;
+    double near;             // the nearest depth that is drawn unless a frame sets it
+    double eye[3], look[3];  // where to start, judged from the scene, and what to look at
+    double up[3];            // a vector that points upwards
 } bsp_scene_properties;
 
 // Of a loaded scene. May run beside any call with the same scene except its destruction.
 BSP_API bsp_result bsp_scene_get_properties(bsp_scene scene, bsp_scene_properties* properties);
 
-// Frames. -----------------------------------------------------------------------------------------------------------------------------
+// Frames. ---------------------------------------------------------------------------------------------------
 
 // An eye: where it is and what it sees.
 typedef struct bsp_view {
-    uint32_t type, size;                           // BSP_TYPE_VIEW
-    const void* next;                              // bsp_target, for pictures in a program's own images
-    double orientation[4];                         // world from camera, a quaternion
-    double position[3];                            // in the coordinates of the scene's file
-    double left_rad, right_rad, up_rad, down_rad;  // signed angles from the axis, as OpenXR's: usually left and down are negative
-    uint32_t width, height;                        // pixels, 1 to 16384
-    double gaze[3];                                // for foveation: where the eye looks, in its own axes, of any length; 0: straight ahead
+    uint32_t type, size;    // BSP_TYPE_VIEW
+    const void* next;       // bsp_target, for pictures in a program's own images
+    double orientation[4];  // world from camera, a quaternion
+    double position[3];     // in the coordinates of the scene's file
+    // Signed angles from the axis, as OpenXR's: usually left and down are negative.
+    double left_rad, right_rad, up_rad, down_rad;
+    uint32_t width, height;  // pixels, 1 to 16384
+    // For foveation: where the eye looks, in its own axes, of any length; 0: straight ahead.
+    double gaze[3];
 } bsp_view;
 
 // Sets everything but the headers of `count` views, 1 or 2, with square pixels: from `eye` to `look`, with
@@ -190,19 +202,24 @@ BSP_API bsp_result bsp_look_at(const double eye[3], const double look[3], const 
 
 // How the pictures of two eyes are made; docs/how-it-works.md explains each mode.
 typedef enum bsp_mode {
-    BSP_MODE_USUAL = 0,      // predicted
-    BSP_MODE_TWO_PASS = 1,   // both eyes in full, one after the other
-    BSP_MODE_SHARED = 2,     // both eyes in full, culled and sorted together: the same pictures in less time
-    BSP_MODE_PAPER = 3,      // the second eye reprojected from the first, its borders rendered again (Zhu and Zhou)
-    BSP_MODE_PREDICTED = 4,  // also renders again the tiles with the greatest expected error, up to the budget
-    BSP_MODE_TEMPORAL = 5    // both eyes reprojected from the frame before, such tiles of both rendered again; the first frame in full
+    BSP_MODE_USUAL = 0,     // predicted
+    BSP_MODE_TWO_PASS = 1,  // both eyes in full, one after the other
+    BSP_MODE_SHARED = 2,    // both eyes in full, culled and sorted together: the same pictures in less time
+    // The second eye reprojected from the first, its borders rendered again (Zhu and Zhou).
+    BSP_MODE_PAPER = 3,
+    // As BSP_MODE_PAPER, and also renders again the tiles with the greatest expected error, up to the budget.
+    BSP_MODE_PREDICTED = 4,
+    // Both eyes reprojected from the frame before, and such tiles of both rendered again; the first frame in
+    // full.
+    BSP_MODE_TEMPORAL = 5
 } bsp_mode;
 
 typedef enum bsp_frame_flags {
     BSP_FRAME_HALF_FLOATS = 1,  // pictures of 11 bits a value, for display: half the memory, and less time
     BSP_FRAME_DEPTH = 2,        // depths are kept, for bsp_read_depth
     BSP_FRAME_CUT = 4,          // the history is of no use: the head jumped, or the scene changed
-    BSP_FRAME_SETTLED = 8       // of bsp_render and bsp_prepare: wait for everything that the views need of live scenes
+    // For bsp_render and bsp_prepare: wait for everything that the views need of live scenes.
+    BSP_FRAME_SETTLED = 8
 } bsp_frame_flags;
 
 // A scene placed among others: p in the frame = scale * (orientation p) + position, with p in the coordinates
@@ -220,12 +237,14 @@ typedef struct bsp_instance {
 typedef struct bsp_frame_info {
     uint32_t type, size;  // BSP_TYPE_FRAME_INFO
     const void* next;
-    bsp_scene scene;        // a loaded one; null: none, or `instances`
-    const bsp_view* views;  // the first two are a pair of eyes, left and right, of the same size; so are the third and fourth
-    uint32_t view_count;    // 1 to 4; an odd one at the end is drawn by itself, in full
+    bsp_scene scene;  // a loaded one; null: none, or `instances`
+    // The first two are a pair of eyes, left and right, of the same size; so are the third and fourth.
+    const bsp_view* views;
+    uint32_t view_count;  // 1 to 4; an odd one at the end is drawn by itself, in full
     bsp_mode mode;
-    uint32_t flags;        // of bsp_frame_flags
-    double budget;         // share of an eye's work (predicted) or of both eyes' (temporal) for patching; 0: 0.2; less than 0: none
+    uint32_t flags;  // of bsp_frame_flags
+    // Share of an eye's work (predicted) or of both eyes' (temporal) for patching; 0: 0.2; less than 0: none.
+    double budget;
     double near_depth;     // the nearest depth that is drawn; 0: the scene's
     double background[3];  // red, green, blue, display-encoded
     // Several scenes in place of `scene`, at most 4096: all discs, or all Gaussians trained alike. With a
@@ -234,10 +253,13 @@ typedef struct bsp_frame_info {
     const bsp_instance* instances;
     uint32_t instance_count;
     uint32_t unused;
-    double foveation_rad;  // within this angle of its gaze an eye sees all; farther out tiles may be coarse, as it would not see; 0: none
-    double time_s;         // which scenes that move are shown at, in their loop
-    // temporal: tiles that are expected to be off by more than this PSNR in dB, such as 28, are rendered first, within
-    // the budget, and what is better than that is left as it is; up to 60; 0: no bound, the budget is spent
+    // Within this angle of its gaze an eye sees everything; farther out, tiles may be coarse if it would not
+    // see the difference; 0: no foveation.
+    double foveation_rad;
+    double time_s;  // which scenes that move are shown at, in their loop
+    // temporal: tiles that are expected to be off by more than this PSNR in dB, such as 28, are rendered
+    // first, within the budget, and what is better than that is left as it is; up to 60; 0: no bound, the
+    // budget is spent
     double error_bound_db;
 } bsp_frame_info;
 
@@ -248,13 +270,16 @@ BSP_API void bsp_renderer_destroy(bsp_renderer renderer);
 typedef struct bsp_frame_result {
     uint32_t type, size;  // BSP_TYPE_FRAME_RESULT
     void* next;
-    double gpu_ms;               // device time for the first two views; 0 if it has no timestamps
-    uint64_t splats_visible;     // by one eye of the first two
-    uint64_t tile_pairs;         // pairs of tile and splat that were blended for them
-    double work_rendered;        // the share of the second eye's work (predicted) or of both eyes' (temporal) that was rendered
-    uint64_t frames_cut_short;   // so far: frames with lists that were too short, where something showed background
+    double gpu_ms;            // device time for the first two views; 0 if it has no timestamps
+    uint64_t splats_visible;  // by one eye of the first two
+    uint64_t tile_pairs;      // pairs of tile and splat that were blended for them
+    // The share of the second eye's work (predicted) or of both eyes' (temporal) that was rendered.
+    double work_rendered;
+    // Number of frames so far whose lists were too short, so that some place showed background.
+    uint64_t frames_cut_short;
     uint64_t peak_device_bytes;  // the most ever in use
-    double share_there;          // the loaded share of what the views need of live scenes, for the scene that lacks most; 1: all of it
+    // The loaded share of what the views need of live scenes, for the scene that lacks most; 1: all of it.
+    double share_there;
 } bsp_frame_result;
 
 // Renders and waits. `result` may be null. With BSP_MODE_TEMPORAL, call it frame after frame, with views that

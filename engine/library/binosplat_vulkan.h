@@ -3,9 +3,9 @@
 // The program creates the device, with the features that bsp_required_device_features sets. A renderer's
 // frames can then be parts of the program's own command buffers:
 //
-//     bsp_prepare(renderer, &frame);                        once, while nobody waits for a picture: this waits
+//     bsp_prepare(renderer, &frame);                        // once, while no picture is due: this waits
 //     each frame:
-//         bsp_record(renderer, &frame, commands, &number);  waits for nothing
+//         bsp_record(renderer, &frame, commands, &number);  // waits for nothing
 //         vkQueueSubmit(... commands ..., fence);
 //         later, once an earlier frame's fence is signalled: bsp_collect(renderer, its_number, &result);
 //
@@ -41,7 +41,8 @@ typedef struct bsp_vulkan_device {
     VkPhysicalDevice physical_device;
     VkDevice device;
     uint32_t queue_family;
-    VkQueue queue;                 // scenes are uploaded on it by their own threads, and bsp_render, bsp_prepare and bsp_submit use it
+    // Scenes are uploaded on it by their own threads, and bsp_render, bsp_prepare and bsp_submit use it.
+    VkQueue queue;
     const void* enabled_features;  // the chain that was VkDeviceCreateInfo::pNext
     const char* const* enabled_extensions;
     uint32_t enabled_extension_count;
@@ -53,8 +54,10 @@ typedef struct bsp_vulkan_device {
 } bsp_vulkan_device;
 
 typedef enum bsp_target_flags {
-    BSP_TARGET_BLEND = 1,  // the picture is blended over what is in the image; the frame's background must be 0
-    BSP_TARGET_LIGHT = 2,  // an image without sRGB in its format holds linear light, as in OpenXR, not display-encoded values
+    // The picture is blended over what is in the image; the frame's background must be 0.
+    BSP_TARGET_BLEND = 1,
+    // An image without sRGB in its format holds linear light, as in OpenXR, not display-encoded values.
+    BSP_TARGET_LIGHT = 2,
     // With BLEND: `depth` holds the depths of the program's meshes, behind which splats do not show. A single
     // view, and the views of modes that render both eyes in full (two-pass, shared), test each splat as they
     // blend it. Other modes reproject pictures that know nothing of meshes: there one depth stands for all

@@ -6,7 +6,8 @@
 namespace binosplat {
 namespace {
 
-// Axes that are this close, and positions relative to their length, differ by the rounding of the poses alone.
+// Axes that are this close, and positions relative to their length, differ by the rounding of the poses
+// alone.
 constexpr double kSameDirection = 1e-9, kSamePlace = 1e-12;
 
 glm::dmat3 matrixOf(const Intrinsics& k) { return glm::dmat3(k.fx, 0, 0, 0, k.fy, 0, k.cx, k.cy, 1); }
@@ -16,13 +17,15 @@ bool areParallel(const Eye& a, const Eye& b) {
     return glm::length(axes_a[0] - axes_b[0]) + glm::length(axes_a[1] - axes_b[1]) + glm::length(axes_a[2] - axes_b[2]) < kSameDirection;
 }
 
-// Target pixels from source pixels (paper, equations 3 to 5, with the pixel's inverse depth in place of its depth).
+// Target pixels from source pixels (paper, equations 3 to 5, with the pixel's inverse depth in place of its
+// depth).
 gpu::PixelMap mapPixels(const Eye& target, const Eye& source) {
     const Pose target_from_source = compose(inverse(target.world_from_camera), source.world_from_camera);
     const Intrinsics &k = target.intrinsics, &l = source.intrinsics;
     glm::dmat3 excess;
     if (areParallel(target, source)) {
-        // K' K^-1 less the identity: exactly 0 wherever the intrinsics agree, so that rows stay rows if fy and cy do.
+        // K' K^-1 less the identity: exactly 0 wherever the intrinsics agree, so that rows stay rows if fy
+        // and cy do.
         const double x = k.fx / l.fx, y = k.fy / l.fy;
         excess = glm::dmat3(x - 1, 0, 0, 0, y - 1, 0, k.cx - x * l.cx, k.cy - y * l.cy, 0);
     } else {

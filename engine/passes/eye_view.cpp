@@ -6,8 +6,9 @@
 namespace binosplat {
 namespace {
 
-// Splits a value into the two floats that the device holds. Through memory: g++ 12 vectorizes two components and takes a double that was
-// rounded to a float for the double itself, which leaves nothing of the remainder.
+// Splits a value into the two floats that the device holds. Through memory: g++ 12 vectorizes two components
+// and takes a double that was rounded to a float for the double itself, which leaves nothing of the
+// remainder.
 template <typename Wide, typename Narrow>
 void split(const Wide& value, Narrow& high, Narrow& low) {
     for (glm::length_t i = 0; i < value.length(); ++i) {

@@ -1,4 +1,5 @@
-// The device memory of a frame: what grows with the visible splats (60 bytes each), with the pairs (4 to 16), with the pixels.
+// The device memory of a frame: what grows with the visible splats (60 bytes each), with the pairs (4 to 16),
+// with the pixels.
 #pragma once
 
 #include "engine/gpu/buffer.h"
@@ -53,8 +54,8 @@ public:
     VisibleBuffers(const Context& context, std::uint32_t capacity);
 
     [[nodiscard]] std::uint32_t capacity() const { return capacity_; }
-    // Depth keys and splat indices; sorting begins in `spare`. Once they are sorted, the counts of tiles replace the keys, and the
-    // sets of tiles replace `spare`.
+    // Depth keys and splat indices; sorting begins in `spare`. Once they are sorted, the counts of tiles
+    // replace the keys, and the sets of tiles replace `spare`.
     [[nodiscard]] KeyValues order() const { return {at<gpu::uint>(0), at<gpu::uint>(4)}; }
     [[nodiscard]] KeyValues spare() const { return {at<gpu::uint>(8), at<gpu::uint>(12)}; }
     [[nodiscard]] gpu::DeviceAddress<gpu::uvec2> tileSets() const { return at<gpu::uvec2>(8); }
@@ -112,11 +113,15 @@ struct FrameBuffers {
     std::uint32_t splat_count = 0;
     Buffer state;       // FrameState
     Buffer visibility;  // one bit per splat, then one count per workgroup and per run of these
-    Buffer pages;       // of a scene in pages: the list, a word per run of it, then one bit per page, then one count per word of these
+    // For a scene in pages: the list, a word per run of it, then one bit per page, then one count per word of
+    // these.
+    Buffer pages;
     VisibleBuffers visible;
     PairBuffers pairs;
-    Buffer scratch;      // sums of workgroups or histograms of the list at hand
-    Buffer tile_ranges;  // uvec2 a tile for all that are rendered at once; then, if tiles may be coarse, a list of those with pairs
+    Buffer scratch;  // sums of workgroups or histograms of the list at hand
+    // One uvec2 per tile for all that are rendered at once; then, if tiles may be coarse, a list of those
+    // with pairs.
+    Buffer tile_ranges;
 
     [[nodiscard]] FrameCapacity capacity() const { return {visible.capacity(), pairs.capacity()}; }
     [[nodiscard]] gpu::DeviceAddress<gpu::EyeView> eyes() const { return state.address<gpu::EyeView>(offsetof(FrameState, views)); }

@@ -112,7 +112,8 @@ ContributeKernel contributeKernel(std::uint32_t threads_per_cell, std::uint32_t 
 RasterizeKernel rasterizeKernel(std::uint32_t threads_per_cell, const Kept& kept, std::uint32_t splat_shape, bool masked, bool coarse) {
     const bool moves_by_depth = kept.moving && kept.depth_choice != gpu::kDepthInverse;
     return {.threads_per_cell = threads_per_cell,
-            .depth = (kept.depth || moves_by_depth || coarse || kept.cut) && !kept.past,  // a past has it from its words
+            // A past has the depth from its words.
+            .depth = (kept.depth || moves_by_depth || coarse || kept.cut) && !kept.past,
             .moments = kept.moments || kept.moving || kept.past,
             .half_colours = kept.half_floats,
             .splat_kind = splat_shape,

@@ -22,14 +22,17 @@ namespace binosplat {
 
 // What the rasterizer writes in addition to the colour.
 struct Kept {
-    bool depth = false;                           // D, to Picture::depths
-    bool moments = false;                         // I and J
-    bool moving = false;                          // the picture is going to be warped into the other eye
-    bool even_rows = false;                       // only its even rows are warped; needs kDepthInverse, and no moments kept
+    bool depth = false;    // D, to Picture::depths
+    bool moments = false;  // I and J
+    bool moving = false;   // the picture is going to be warped into the other eye
+    // Only even rows are warped; needs kDepthInverse, and no moments kept.
+    bool even_rows = false;
     gpu::uint depth_choice = gpu::kDepthInverse;  // of a warped pixel; that of a history is always this
     bool half_floats = false;                     // colours are stored as half floats
-    bool cut = false;                             // splats show only where they are nearer than the target's mesh_depths
-    bool past = false;                            // later pictures are going to be made from this one: its words and tiles are kept
+    // Splats show only where they are nearer than the target's mesh_depths.
+    bool cut = false;
+    // Later pictures are going to be made from this one: its words and tiles are kept.
+    bool past = false;
 };
 
 // Pictures that a frame renders at once, whole or some tiles: FrameState::views and targets say where they
@@ -59,8 +62,10 @@ struct EyesOfList {
     int order_eye = 0;
     int list = 0;
     std::optional<gpu::Place> middle = {};
-    int shares = 1;                                                 // how many pictures are rendered from it at once
-    gpu::DeviceAddress<gpu::uint> first_mask = {}, last_mask = {};  // if only the chosen tiles of each eye count
+    // How many pictures are rendered from it at once.
+    int shares = 1;
+    // For when only the chosen tiles of each eye count.
+    gpu::DeviceAddress<gpu::uint> first_mask = {}, last_mask = {};
 };
 
 // `by_lanes`: only if PassKernels::cellsAreNarrow.

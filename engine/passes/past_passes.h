@@ -1,4 +1,5 @@
-// An eye's picture warped from the one that it showed before, and the tiles of both eyes that are rendered again.
+// An eye's picture warped from the one that it showed before, and the tiles of both eyes that are rendered
+// again.
 //
 //   warp_past    what the history shows, block by block, and the error to expect of each tile
 //   warp_pixels  the pixels of other blocks one by one
@@ -24,7 +25,8 @@ struct PastInputs {
     const Picture& source;
     const Picture& target;
     gpu::DeviceAddress<gpu::uint> shown, source_shown;  // masks of the shown tiles; null: all
-    bool gaze;                                          // the eye's gaze is known; otherwise all tiles count alike
+    // The eye's gaze is known; otherwise all tiles count alike.
+    bool gaze;
 };
 
 // The eye `now` and the one whose picture is its history, for the device. `near`: nothing nearer is visible,

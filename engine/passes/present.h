@@ -10,11 +10,15 @@ namespace binosplat {
 struct PresentedEye {
     const Picture* picture = nullptr;
     glm::uvec2 size_px{0, 0};
-    const WarpBuffers* tinted_by = nullptr;  // of the affiliated eye, to tint its pixels by how they came about; or null
-    vk::Image colour;                        // where the picture goes; 8-bit RGBA or BGRA
-    vk::Image depth;                         // where its depth goes, D32: near / depth, 0 where there is nothing; or null
-    bool see_through = false;                // write its alpha, too, multiplied in as headsets blend: as light
-    std::uint32_t kept_bits = 0;             // of each word: keep the bits that the eye before left, as for an anaglyph
+    // The affiliated eye's, to tint its pixels by how they came about; or null.
+    const WarpBuffers* tinted_by = nullptr;
+    vk::Image colour;  // where the picture goes; 8-bit RGBA or BGRA
+    // Where its depth goes, D32: near / depth, 0 where there is nothing; or null.
+    vk::Image depth;
+    // Write its alpha, too, multiplied in as headsets blend: as light.
+    bool see_through = false;
+    // Bits of each word that keep what the eye before left, as for an anaglyph.
+    std::uint32_t kept_bits = 0;
 };
 
 // All kernels of `present`.

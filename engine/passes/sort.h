@@ -1,5 +1,5 @@
-// A stable radix sort of 32-bit keys with 32-bit values (shaders/sort/sort_*.comp): reduce then scan, 9 bits and two
-// commands per round.
+// A stable radix sort of 32-bit keys with 32-bit values (shaders/sort/sort_*.comp): reduce then scan, 9 bits
+// and two commands per round.
 #pragma once
 
 #include "engine/gpu/commands.h"
@@ -12,8 +12,8 @@ struct KeyValues {
     gpu::DeviceAddress<gpu::uint> keys, values;
 };
 
-// How lanes find equal digits. Ballots work for any subgroup width; comparing with each lane in turn is cheaper if there
-// are at most eight.
+// How lanes find equal digits. Ballots work for any subgroup width; comparing with each lane in turn is
+// cheaper if there are at most eight.
 enum class DigitMatch { kAuto, kBallots, kComparisons };
 
 class Sort {
@@ -31,8 +31,9 @@ public:
     // True if the result of `record` lies in `spare`.
     static constexpr bool endsInSpare(unsigned key_bits) { return roundsOf(key_bits) % 2 == 1; }
 
-    // Sorts `in` by the lowest `key_bits` bits of its keys; `spare` is as large and is overwritten. Returns whichever of the two
-    // holds the result. The length is that of the list at `list_bytes` of `lists`, whose count of workgroups is used.
+    // Sorts `in` by the lowest `key_bits` bits of its keys; `spare` is as large and is overwritten. Returns
+    // whichever of the two holds the result. The length is that of the list at `list_bytes` of `lists`, whose
+    // count of workgroups is used.
     KeyValues record(KernelCache& kernels, Commands& commands, KeyValues in, KeyValues spare, gpu::DeviceAddress<gpu::uint> histograms,
                      const Buffer& lists, std::uint64_t list_bytes, unsigned key_bits) const;
 

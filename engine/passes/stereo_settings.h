@@ -13,15 +13,18 @@ inline constexpr gpu::uint kDefaultMoveCost = 32;
 struct StereoSettings {
     TileChoice choice = TileChoice::kPredicted;  // follows from the mode
     gpu::uint depth_choice =
-        gpu::kDepthInverse;       // which depth a pixel is reprojected by, from its blended sums: D, D/A or A/I (docs/how-it-works.md)
-    bool forward = false;         // colours are copied with gaps interpolated, as in the paper, not sampled; kPredicted samples
+        // Which depth a pixel is reprojected by, from its blended sums: D, D/A or A/I (docs/how-it-works.md).
+        gpu::kDepthInverse;
+    // Colours are copied with gaps interpolated, as in the paper, not sampled; kPredicted samples.
+    bool forward = false;
     gpu::uint gap_px = 2;         // runs of uncovered pixels up to this long are interpolated
     gpu::uint margin_px = 32;     // of the paper's ROIs
     gpu::uint edge_samples = 64;  // along each edge of the picture, for the paper's borders
     bool tight_edges = false;     // which also cover what near content uncovers
     bool center_rois = false;     // paper: holes inside the picture are rendered, too
     double budget = 0.2;          // share of an eye's work, or of both eyes'
-    double error_bound_db = 0.0;  // with a history: tiles expected to be under this PSNR come first, within the budget; 0: no bound
+    // With a history: tiles expected to be under this PSNR come first, within the budget; 0: no bound.
+    double error_bound_db = 0.0;
     gpu::uint move_cost = 0;      // of a tile, in pairs
     double hole_error = 1.0;      // weight of the error expected of a hole's pixel
     double newcomer_error = 0.3;  // of a pixel covered by splats that the source does not see

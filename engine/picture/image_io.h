@@ -23,7 +23,8 @@ const char* extensionOf(PictureKind kind);
 // files written. Throws Error naming the file.
 std::vector<std::filesystem::path> writePicture(const std::filesystem::path& stem, PictureKind kind, const Image& image);
 
-// A display picture as `stem`.jpg, the only format that some galleries take. Empty: this build cannot write it.
+// A display picture as `stem`.jpg, the only format that some galleries take. Empty: this build cannot write
+// it.
 std::filesystem::path writeJpeg(const std::filesystem::path& stem, const Image& image);
 
 // Reads any image file that this build knows, by its content or extension; 8-bit values become 0 to 1. For

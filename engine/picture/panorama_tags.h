@@ -1,5 +1,6 @@
-// What a file says about its picture, for galleries and headset players: GPano in the XMP of a PNG or a JPEG, and
-// the boxes of Google's Spherical Video V2 (docs/spherical-video-v2-rfc.md in its spatial-media) in an MP4.
+// What a file says about its picture, for galleries and headset players: GPano in the XMP of a PNG or a JPEG,
+// and the boxes of Google's Spherical Video V2 (docs/spherical-video-v2-rfc.md in its spatial-media) in an
+// MP4.
 #pragma once
 
 #include "engine/picture/panorama.h"
@@ -12,7 +13,8 @@ namespace binosplat {
 // A PNG or JPEG file whose picture is this panorama, with the tags.
 std::string withPanoramaTags(const std::string& file, const Panorama& panorama);
 
-enum class FilmEyes : unsigned char { kOne = 0, kTopBottom = 1, kSideBySide = 2 };  // as the box st3d counts; the left one first
+// Numbered as in the box st3d; the left one first.
+enum class FilmEyes : unsigned char { kOne = 0, kTopBottom = 1, kSideBySide = 2 };
 
 struct FilmTags {
     FilmEyes eyes = FilmEyes::kOne;

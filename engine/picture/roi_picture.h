@@ -1,4 +1,5 @@
-// The origin of each pixel of the affiliated picture, as one class per pixel and as a tinted picture (roi.png).
+// The origin of each pixel of the affiliated picture, as one class per pixel and as a tinted picture
+// (roi.png).
 #pragma once
 
 #include "engine/picture/image.h"

@@ -23,12 +23,14 @@ constexpr double kBetterThanOthers = 2.0;
 constexpr double kLeastCovered = 0.5, kLeastFacing = 0.4;
 constexpr double kReachesFar = 1.2;  // beyond what stands on it: ground, not a wall
 constexpr double kHoversFrom = 0.1;  // of the size
-constexpr double kRelief = 0.4;      // of the breadth: on walls seen from the front nothing stands out farther
+// Share of the breadth: on walls seen from the front, nothing stands out farther.
+constexpr double kRelief = 0.4;
 
 struct Rating {
     double covered = 0.0;  // the share, of what is seen along the normal, that has splats of the plane
     double facing = 0.0;   // the share of the plane's splats that face along its normal
-    double reach = 0.0;    // how far from its middle nine tenths of the plane's splats are, relative to the others'
+    // How far from its middle nine tenths of the plane's splats are, relative to the others.
+    double reach = 0.0;
     double low = 0.5;      // of what stands away from the rim, the share in the lower half
     double height = 0.0;   // nineteen in twenty of the others are lower
     double breadth = 0.0;  // the side of a square as large as what is seen along the normal

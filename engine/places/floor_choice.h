@@ -10,11 +10,14 @@ namespace binosplat {
 
 // What is known about up besides the splats.
 struct UpHints {
-    glm::dvec3 usual{0.0, -1.0, 0.0};                                          // up by convention, unit
-    glm::dvec3 front{0.0, 0.0, -1.0};                                          // the side from which scenes are usually seen, unit
-    enum class Known { kNothing, kAxis, kDirection } known = Known::kNothing;  // up is about `usual`, or about its opposite
-    std::optional<glm::dvec3> seen_from{};                                     // the cameras' mean place
-    bool is_doubtful = false;                                                  // `usual` needs confirmation by a floor
+    glm::dvec3 usual{0.0, -1.0, 0.0};  // up by convention, unit
+    // The side from which scenes are usually seen, unit.
+    glm::dvec3 front{0.0, 0.0, -1.0};
+    // Up is about `usual`, or about its opposite.
+    enum class Known { kNothing, kAxis, kDirection } known = Known::kNothing;
+    std::optional<glm::dvec3> seen_from{};  // the cameras' mean place
+    // `usual` needs confirmation by a floor
+    bool is_doubtful = false;
 };
 UpHints hintsOf(const Scene& scene);
 

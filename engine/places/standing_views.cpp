@@ -17,9 +17,10 @@ constexpr std::size_t kMostJudged = 8192;
 constexpr double kFovXDegrees = 60.0, kFaceDegrees = 92.0;         // faces of a cube that overlap
 constexpr double kNarrowestDegrees = 1.0, kWidestDegrees = 100.0;  // of what shows a part
 constexpr double kGoldenAngle = 2.399963229728653;
-constexpr std::array kHeights{1.0, 0.75, 1.1};   // of the eyes, relative to a standing person's
-constexpr std::array kDistances{1.0, 0.6, 0.8};  // of shells, relative to the distance from which everything is seen
-constexpr double kClear = 0.25, kInner = 0.9;    // in heights of the eyes; of the scene's sides
+constexpr std::array kHeights{1.0, 0.75, 1.1};  // of the eyes, relative to a standing person's
+// Distances of shells, relative to the one from which everything is seen.
+constexpr std::array kDistances{1.0, 0.6, 0.8};
+constexpr double kClear = 0.25, kInner = 0.9;  // in heights of the eyes; of the scene's sides
 constexpr std::size_t kTriedPerPlace = 24;
 constexpr std::size_t kFaces = 6;
 

@@ -20,7 +20,8 @@ constexpr double kAlikeCosine = 0.9962;     // 5 degrees
 constexpr double kThickness = 0.01;         // of the size, to each side
 constexpr double kLeastShare = 0.08;        // of all splats
 constexpr double kMostBehind = 0.15;        // of the others
-constexpr double kLeastAcross = 0.03;       // of the size: standard deviation, as of a corridor an eighth as wide as long
+// Share of the size: the standard deviation of a corridor an eighth as wide as long.
+constexpr double kLeastAcross = 0.03;
 
 struct Plane {
     glm::dvec3 normal{0.0};

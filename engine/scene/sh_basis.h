@@ -1,4 +1,5 @@
-// Real spherical harmonics of degree 0 to 3 with the constants and signs that 3DGS and 2DGS scenes are trained with.
+// Real spherical harmonics of degree 0 to 3 with the constants and signs that 3DGS and 2DGS scenes are
+// trained with.
 #pragma once
 
 #include <glm/glm.hpp>

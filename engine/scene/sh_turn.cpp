@@ -48,7 +48,8 @@ ShTurn::ShTurn(const glm::dmat3& target_from_source) {
     const glm::dmat3 source_from_target = glm::transpose(target_from_source);
     for (std::size_t band = 1; band <= 3; ++band) {
         const std::size_t n = 2 * band + 1, first = band * band;
-        // Normal equations: (T^t T) matrix = T^t S, where T and S hold the band in each direction in both axes.
+        // Normal equations: (T^t T) matrix = T^t S, where T and S hold the band in each direction in both
+        // axes.
         std::array<std::array<double, 7>, 7> squares{}, products{};
         for (int i = 0; i < kDirections; ++i) {
             const glm::dvec3 d = spiralDirection(i);

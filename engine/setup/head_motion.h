@@ -17,7 +17,8 @@ enum class MotionAxes {
     kUnity,   // left-handed, the wearer looks along +z: recordings of Unity applications
 };
 
-// A recorded pose in the camera's axes (x right, y down, z forward), head and world alike. Lengths stay in metres.
+// A recorded pose in the camera's axes (x right, y down, z forward), head and world alike. Lengths stay in
+// metres.
 Pose poseFromRecording(const glm::dvec3& position, const glm::dquat& orientation, MotionAxes axes);
 
 struct HeadSample {
@@ -35,8 +36,9 @@ public:
     [[nodiscard]] const std::vector<HeadSample>& samples() const { return samples_; }
     [[nodiscard]] double duration_s() const { return samples_.back().time_s; }
 
-    // The pose at a time since the first sample: positions linearly, orientations by the shorter great arc (Shoemake, "Animating
-    // Rotation with Quaternion Curves", SIGGRAPH 1985, section 3.3). Before the first and after the last sample the head rests.
+    // The pose at a time since the first sample: positions linearly, orientations by the shorter great arc
+    // (Shoemake, "Animating Rotation with Quaternion Curves", SIGGRAPH 1985, section 3.3). Before the first
+    // and after the last sample the head rests.
     [[nodiscard]] Pose poseAt(double time_s) const;
 
     // The motion from this second to the last sample; its times begin at 0 with the pose there.
@@ -53,8 +55,9 @@ private:
 
 // The part of a recording to play.
 struct MotionSegment {
-    double from_s = 0.0;            // its beginning
-    std::optional<double> seconds;  // its length, without its end; absent: up to and including the last sample
+    double from_s = 0.0;  // its beginning
+    // Length, without its end; absent: up to and including the last sample.
+    std::optional<double> seconds;
     std::optional<double> rate_hz;  // frames per second; absent: one for each sample
 };
 

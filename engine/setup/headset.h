@@ -19,9 +19,9 @@ struct Headset {
     std::array<glm::dvec3, 2> lens_centres{};  // by Side: the lens's centre, a direction in the eye's axes
 };
 
-// Keys name, source, size, canting_deg, eye_distance_m; tables [left] and [right] with left, right, up, down in degrees (left and
-// down negative for a usual eye), and lens_centre, to the right and upwards, if that is not on the eye's axis. Throws Error with file and
-// line.
+// Keys name, source, size, canting_deg, eye_distance_m; tables [left] and [right] with left, right, up, down
+// in degrees (left and down negative for a usual eye), and lens_centre, to the right and upwards, if that is
+// not on the eye's axis. Throws Error with file and line.
 Headset readHeadset(const std::filesystem::path& path);
 
 // A headset's file: NAME itself if it is a path to a .toml, otherwise configs/headsets/NAME.toml in the first

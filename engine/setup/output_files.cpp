@@ -32,8 +32,8 @@ OutputFiles::OutputFiles(const fs::path& folder) : folder_(folder) {
         fail("{}: cannot be used as output directory ({}), must be a directory that can be made and written", folder_.string(),
              error ? error.message() : "not a directory");
     }
-    // A folder made inside proves that the place is writable, whatever its permission bits say; a file in that, that its path is not too
-    // long: some systems then make the folder, but nothing in it.
+    // A folder made inside proves that the place is writable, whatever its permission bits say; a file in
+    // that, that its path is not too long: some systems then make the folder, but nothing in it.
     makeStaging();
     const fs::path probe = staging_ / kLongName;
     const bool fits = createFile(probe) != nullptr && entriesOf(staging_) == std::vector<fs::path>{probe};
@@ -73,7 +73,8 @@ void OutputFiles::removeUnpublished() noexcept {
 
 void OutputFiles::publish() {
     if (staging_.empty()) { return; }
-    // A folder in a file's place, or a pipe or a device, which moving would replace, is known before the first file moves.
+    // A folder in a file's place, or a pipe or a device, which moving would replace, is known before the
+    // first file moves.
     const std::vector<fs::path> staged = entriesOf(staging_);
     for (const fs::path& entry : staged) {
         const fs::path target = folder_ / entry.filename();

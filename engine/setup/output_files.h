@@ -1,4 +1,5 @@
-// Files that appear all together or not at all: they are written in a hidden folder beside their place and moved at the end.
+// Files that appear all together or not at all: they are written in a hidden folder beside their place and
+// moved at the end.
 #pragma once
 
 #include <filesystem>
@@ -9,7 +10,8 @@ namespace binosplat {
 
 class OutputFiles {
 public:
-    // Makes `folder` (with its parents) and checks that it can be written. Throws Error otherwise, naming the folder.
+    // Makes `folder` (with its parents) and checks that it can be written. Throws Error otherwise, naming the
+    // folder.
     explicit OutputFiles(const std::filesystem::path& folder);
     OutputFiles(const OutputFiles&) = delete;
     OutputFiles& operator=(const OutputFiles&) = delete;
@@ -17,11 +19,12 @@ public:
     // Removes unpublished files, and the folders made for them.
     ~OutputFiles();
 
-    // Where to write files for now, under their final names. The hidden folder is made by the first call, so that a run that is
-    // stopped before it has anything to write leaves none.
+    // Where to write files for now, under their final names. The hidden folder is made by the first call, so
+    // that a run that is stopped before it has anything to write leaves none.
     [[nodiscard]] const std::filesystem::path& staging();
 
-    // Moves every staged file into the folder, replacing files of the same name. Throws Error if one cannot be moved.
+    // Moves every staged file into the folder, replacing files of the same name. Throws Error if one cannot
+    // be moved.
     void publish();
 
 private:
@@ -30,7 +33,8 @@ private:
 
     std::filesystem::path folder_;
     std::filesystem::path staging_;
-    std::vector<std::filesystem::path> made_folders_;  // outermost first; removed again if nothing is published
+    // Outermost first; they are removed again if nothing is published.
+    std::vector<std::filesystem::path> made_folders_;
 };
 
 // Writes `text` as a whole file and checks that it reached the disk. Throws Error naming the file.

@@ -1,4 +1,5 @@
-// Settings as text with their place of origin, so that the command line and TOML files are checked by the same code.
+// Settings as text with their place of origin, so that the command line and TOML files are checked by the
+// same code.
 #pragma once
 
 #include <filesystem>

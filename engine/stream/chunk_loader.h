@@ -20,8 +20,8 @@
 
 namespace binosplat {
 
-// A level of a leaf, decoded, with three scales a splat even if these are discs. It may have fewer splats than the tree says: broken
-// ones are skipped.
+// A level of a leaf, decoded, with three scales a splat even if these are discs. It may have fewer splats
+// than the tree says: broken ones are skipped.
 struct LoadedPart {
     LeafLevel at;
     std::uint32_t splats = 0;
@@ -30,10 +30,11 @@ struct LoadedPart {
 };
 
 struct LoaderSettings {
-    int threads = 2;                              // that decode at a time
-    std::uint64_t waiting_splats = 1 << 20;       // decoded and not taken yet: beyond this, decoding waits
-    std::size_t kept_files = 2;                   // decoded, in case more of them is wanted
-    std::chrono::milliseconds first_pause{1000};  // before a file from the web is tried again, then doubled each time
+    int threads = 2;                         // that decode at a time
+    std::uint64_t waiting_splats = 1 << 20;  // decoded and not taken yet: beyond this, decoding waits
+    std::size_t kept_files = 2;              // decoded, in case more of them is wanted
+    // Pause before a file from the web is tried again; doubled each time.
+    std::chrono::milliseconds first_pause{1000};
     std::chrono::milliseconds most_pause{30000};
     std::function<void(LoadedPart&)> finish = {};  // further work on a part, on the loader's threads
 };
@@ -55,20 +56,22 @@ public:
 
     [[nodiscard]] const ChunkSource& source() const { return *source_; }
 
-    // From now on these are wished for, and nothing else; they must not include what was taken already. `finer` is begun when nothing of
-    // `coarsest` is left to load. False if that was not heard: who never waits finds this and what follows false and empty while the
-    // loader looks through its lists.
+    // From now on these are wished for, and nothing else; they must not include what was taken already.
+    // `finer` is begun when nothing of `coarsest` is left to load. False if that was not heard: who never
+    // waits finds this and what follows false and empty while the loader looks through its lists.
     bool want(std::vector<LeafLevel> coarsest, std::vector<LeafLevel> finer, Waits waits = Waits::kBriefly);
     // The parts that are loaded, in the order of the wishes.
     [[nodiscard]] std::vector<LoadedPart> take(Waits waits = Waits::kBriefly);
-    // One sentence for each file that is broken or missing, and one each time that a server does not answer; each only once.
+    // One sentence for each file that is broken or missing, and one each time that a server does not answer;
+    // each only once.
     [[nodiscard]] std::vector<std::string> takeLines(Waits waits = Waits::kBriefly);
     // By file: true if it cannot be had now. Wishes in such files are not loaded.
     [[nodiscard]] std::optional<std::vector<bool>> brokenFiles(Waits waits = Waits::kBriefly) const;
     // True if every wish was taken or cannot be had.
     [[nodiscard]] bool isDone(Waits waits = Waits::kBriefly) const;
     [[nodiscard]] std::optional<LoaderWork> tryWork() const;
-    // Waits until there is something to take, a file is broken, or all is done; false if the time is up first.
+    // Waits until there is something to take, a file is broken, or all is done; false if the time is up
+    // first.
     bool waitForNews(std::chrono::milliseconds most) const;
 
 private:
@@ -106,7 +109,8 @@ private:
     Clock::duration pause_;        // of the loader's thread
     std::size_t came_since_ = 0;   // of the loader's thread: files since one did not come
     Clock::time_point failed_at_;  // of the loader's thread: when that was
-    bool said_gone_ = false;       // of the loader's thread: the server does not answer, and that was reported
+    // Used by the loader's thread: the server does not answer, and that was reported.
+    bool said_gone_ = false;
 
     mutable std::mutex mutex_;  // of what follows
     mutable std::condition_variable changed_, news_;

@@ -39,15 +39,17 @@ struct LevelChoices {
     static constexpr std::uint32_t kNone = ~std::uint32_t{0};
     // By leaf, the place of its level in LodLeaf::levels; kNone if not even the coarsest fits.
     std::vector<std::uint32_t> levels;
-    // The levels to load, in order: the coarsest level of every leaf, then the finer ones that leaves are to show.
+    // The levels to load, in order: the coarsest level of every leaf, then the finer ones that leaves are to
+    // show.
     std::vector<LeafLevel> coarsest, finer;
     std::uint64_t splats = 0, pages = 0;  // of `levels`
 };
 
 // The levels to choose from: all except those in files that cannot be loaded, unless they are loaded already.
 struct LevelsThere {
-    std::vector<bool> broken;           // by file; may be shorter than there are files
-    std::vector<std::uint64_t> loaded;  // by leaf, a bit for each of LodLeaf::levels; may be shorter than there are leaves
+    std::vector<bool> broken;  // by file; may be shorter than there are files
+    // By leaf, one bit for each of LodLeaf::levels; may be shorter than there are leaves.
+    std::vector<std::uint64_t> loaded;
 
     [[nodiscard]] bool has(LeafLevel at, std::uint32_t file) const {
         const bool is_loaded = at.leaf < loaded.size() && (loaded[at.leaf] >> at.level & 1) != 0;
@@ -70,7 +72,8 @@ private:
     struct Step {
         double worth = 0.0;
         std::uint32_t leaf = 0, level = 0, order = 0;  // order: its place among those of its leaf
-        std::uint64_t splats = 0, pages = 0;           // beyond those of the step before; all of the level's if order is 0
+        // In addition to the step before; all of the level's if order is 0.
+        std::uint64_t splats = 0, pages = 0;
     };
     void addSteps(std::uint32_t leaf, double area_px, double weight, const ChoiceSettings& settings, const LevelsThere& there);
 

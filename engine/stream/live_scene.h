@@ -13,10 +13,11 @@
 namespace binosplat {
 
 struct StreamCounters {
-    std::uint64_t splats_resident = 0, splats_read = 0;  // on the device; of these, those that the next frame reads
-    std::uint64_t chunks_resident = 0;                   // levels of leaves, or pages of a scene that moves
-    std::uint64_t frames_waited_for_loading = 0;         // update() never waits
-    std::uint64_t scene_frames_late = 0;                 // that were not loaded when their time came
+    // Splats on the device, and how many of them the next frame reads.
+    std::uint64_t splats_resident = 0, splats_read = 0;
+    std::uint64_t chunks_resident = 0;            // levels of leaves, or pages of a scene that moves
+    std::uint64_t frames_waited_for_loading = 0;  // update() never waits
+    std::uint64_t scene_frames_late = 0;          // that were not loaded when their time came
 };
 
 // For the thread that records frames.

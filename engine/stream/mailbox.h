@@ -1,4 +1,5 @@
-// What is asked of a thread of its own, one question at a time. Whoever asks never waits for the answer before the one that is taken.
+// What is asked of a thread of its own, one question at a time. Whoever asks never waits for the answer
+// before the one that is taken.
 #pragma once
 
 #include <condition_variable>

@@ -51,7 +51,8 @@ public:
     [[nodiscard]] bool isSettled() const override;
     [[nodiscard]] double share() const override { return 1.0; }
     [[nodiscard]] StreamCounters counters() const override;
-    // Of files that are broken only for display, which never waits: settle() throws if it lacks what it needs.
+    // Of files that are broken only for display, which never waits: settle() throws if it lacks what it
+    // needs.
     [[nodiscard]] std::vector<std::string> takeLines(Waits waits) override;
 
 private:

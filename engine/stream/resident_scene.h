@@ -19,8 +19,9 @@ public:
     using Part = std::uint32_t;
 
     struct Options {
-        std::uint32_t capacity_pages = 0;                            // of kPageSplats
-        std::uint64_t most_bytes_a_frame = std::uint64_t{16} << 20;  // of splats that a frame uploads; at least one page
+        std::uint32_t capacity_pages = 0;  // of kPageSplats
+        // Limit of the splats that a frame uploads; at least one page.
+        std::uint64_t most_bytes_a_frame = std::uint64_t{16} << 20;
     };
     // Takes all of its device memory. Throws Error if there is not that much.
     ResidentScene(const Context& context, const SceneTraits& traits, const Options& options);
@@ -36,7 +37,8 @@ public:
     [[nodiscard]] std::uint32_t splatsAdded() const { return scene_.splats_coming_; }
     [[nodiscard]] std::uint32_t splatsShown() const { return scene_.splats_held_; }
 
-    // The following are for the thread that records frames, between them. A new page takes the lowest free place.
+    // The following are for the thread that records frames, between them. A new page takes the lowest free
+    // place.
 
     // What a part that comes or goes marks as changed for earlier pictures: everything around it, or nothing,
     // if the caller marks it more precisely.
@@ -56,7 +58,8 @@ public:
     [[nodiscard]] bool isInPlace(Part part) const { return parts_[part].pages_to_copy == 0; }
     [[nodiscard]] bool hasChanges() const { return !waiting_.empty() || !changed_.empty(); }
 
-    // Into a recording, before anything reads the scene; GpuScene::recordChanges. The recording must be submitted, and before the next one.
+    // Into a recording, before anything reads the scene; GpuScene::recordChanges. The recording must be
+    // submitted, and before the next one.
     void recordChanges(Commands& commands);
 
 private:

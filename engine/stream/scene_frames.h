@@ -10,7 +10,8 @@
 
 namespace binosplat {
 
-// All splats of one scene frame, in the order of their file; each entry is one page, and only the last has fewer than kPageSplats.
+// All splats of one scene frame, in the order of their file; each entry is one page, and only the last has
+// fewer than kPageSplats.
 using SceneFrame = std::vector<PackedPages>;
 
 // Throws Error if the scene's splats are of another kind than the traits'.

@@ -14,10 +14,11 @@ namespace binosplat {
 
 struct StreamSettings {
     std::uint64_t splat_budget = 0;  // of the shown levels together; 0: as many as fit the memory
-    std::uint64_t memory_bytes = 0;  // device memory for splats; 0: half of what the device has or, if less is allowed, two fifths of that
-    double fade_seconds = 0.2;       // that each half of an exchange takes
-    double look_ahead_rad = 0.35;    // see ChoiceSettings
-    bool pictures = false;           // frames may take their time
+    // Device memory for splats; 0: half of what the device has or, if less is allowed, two fifths of that.
+    std::uint64_t memory_bytes = 0;
+    double fade_seconds = 0.2;     // that each half of an exchange takes
+    double look_ahead_rad = 0.35;  // see ChoiceSettings
+    bool pictures = false;         // frames may take their time
     // How splats are drawn, see LoadOptions.
     std::optional<int> sh_degree = {};
     bool flatten = false, antialiased = false;

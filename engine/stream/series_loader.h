@@ -30,7 +30,8 @@ public:
     };
     using Held = std::unique_ptr<const Frame, LetGo>;
     struct Settings {
-        std::uint64_t most_bytes = std::uint64_t{1} << 30;  // for frames that are kept, but at least kLeastKept of them
+        // Limit for frames that are kept; at least kLeastKept of them are.
+        std::uint64_t most_bytes = std::uint64_t{1} << 30;
         int threads = 1;
     };
     static constexpr std::size_t kLeastKept = 3;

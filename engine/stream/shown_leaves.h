@@ -1,5 +1,6 @@
-// Which levels of a streamed scene's leaves are on the device, and how one takes the place of another: the new one fades in over the old
-// one, and then the old one fades out, so that there is no moment without either.
+// Which levels of a streamed scene's leaves are on the device, and how one takes the place of another: the
+// new one fades in over the old one, and then the old one fades out, so that there is no moment without
+// either.
 #pragma once
 
 #include "engine/stream/chunk_loader.h"

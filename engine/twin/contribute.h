@@ -12,7 +12,8 @@ struct Contribution {
     double weight = 0.0;                            // w
     glm::dvec3 missing{0.0};                        // w missing
     double opacity_pull = 0.0, opacity_hold = 0.0;  // w D . missing, w D . D: for more opacity
-    double size_pull = 0.0, size_hold = 0.0;        // rho and rho^2 times those: if the size determines rho, not the low-pass
+    // rho and rho^2 times the above, if the size determines rho rather than the low-pass.
+    double size_pull = 0.0, size_hold = 0.0;
 };
 
 // One for each of `splats`, from the input of rasterize(), the picture that it makes of them, and a wanted

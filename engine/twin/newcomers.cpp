@@ -10,10 +10,13 @@ namespace binosplat::reference {
 namespace {
 
 constexpr double kTilePixels = kTileSize * kTileSize;
-constexpr double kMostTileError = 2048.0 - 0x1p-20;  // with this much, a tile is rendered anyway: it is more than a fixed-point sum holds
-constexpr double kInFrontRatio = 1.01;               // a wall that continues beyond the border must not count as in front of itself
+// With this much, a tile is rendered anyway: it is more than a fixed-point sum holds.
+constexpr double kMostTileError = 2048.0 - 0x1p-20;
+// A wall that continues beyond the border must not count as in front of itself.
+constexpr double kInFrontRatio = 1.01;
 
-// The integral of exp(-rho) over the image, i.e. of alpha^2 / o^2: the disc's, pi sigma_u sigma_v, and the low-pass's.
+// The integral of exp(-rho) over the image, i.e. of alpha^2 / o^2: the disc's, pi sigma_u sigma_v, and the
+// low-pass's.
 double squareCoverage(const ProjectedSplat& splat) {
     if (splat.gaussian) { return std::numbers::pi / (splat.plane_from_pixel.x * splat.plane_from_pixel.z); }
     const double low_pass = std::numbers::pi / kLowPassFactor;

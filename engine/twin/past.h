@@ -19,9 +19,10 @@ struct PastTile {
     std::uint64_t cost = 0;  // in pairs, when it was last rendered
     std::uint32_t age = 0;   // frames since it was rendered
     // By quarters, row by row:
-    std::array<double, 4> growth = {};    // of the error's amplitude per frame, as measured then; 0: unknown
-    std::array<double, 4> errors = {};    // amplitudes of the expected error
-    std::array<double, 4> grown = {};     // squared errors that this frame's warp is expected to add to a quarter, summed over its pixels
+    std::array<double, 4> growth = {};  // of the error's amplitude per frame, as measured then; 0: unknown
+    std::array<double, 4> errors = {};  // amplitudes of the expected error
+    // Squared errors that this frame's warp is expected to add to a quarter, summed over its pixels.
+    std::array<double, 4> grown = {};
     double lost = 0.0;                    // for a coarse tile: the amplitude of its loss
     std::array<unsigned, 4> unseen = {};  // by quarters: pixels that the history did not see
     double squared_gradient = 0.0;        // of the tile's picture, summed over pixels and channels
@@ -33,7 +34,8 @@ struct Past {
     std::vector<glm::dvec4> rgba;
     std::vector<std::optional<MovingPixel>> pixels;  // empty: it goes nowhere
     std::vector<PastTile> tiles;
-    std::vector<std::uint8_t> hidden = {};  // by tiles: 1 for those that have never been seen; empty: all have been
+    // By tile: 1 for those that have never been seen; empty: all have been.
+    std::vector<std::uint8_t> hidden = {};
 };
 
 // rasterize: a picture that was rendered whole, from its moments of inverse depth. `costs`: pairs of each

@@ -14,9 +14,12 @@ inline constexpr int kCell = kTileSize / 2;
 inline constexpr glm::ivec2 kPastBlock{4, 8};
 inline constexpr double kMostSpreadPx = 4.0, kOwnSpread = 0.5;
 inline constexpr double kMostPixelError = 4.0;  // squared, of three channels
-inline constexpr double kLeastGrowth = 1.9e-7;  // squared, of three channels, for a pixel that is made from another
-inline constexpr double kSameDepthPx = 0.25;    // content whose depths separate it by no more than this moves as one
-inline constexpr double kAgreesPx = 0.51;       // a pixel of the history this close to the wanted place is what is seen there
+// The square, in three channels, for a pixel that is made from another.
+inline constexpr double kLeastGrowth = 1.9e-7;
+// Content whose depths separate it by no more than this moves as one.
+inline constexpr double kSameDepthPx = 0.25;
+// A pixel of the history this close to the wanted place is what is seen there.
+inline constexpr double kAgreesPx = 0.51;
 
 inline constexpr int kReach = 3;  // the taps of a place reach this far from its pixel
 

@@ -15,9 +15,11 @@
 namespace binosplat::reference {
 
 struct Settings {
-    double near = 0.2;           // positive; hits closer than this are skipped, scene units along the camera's z
+    // Positive; hits closer than this are skipped. Scene units along the camera's z.
+    double near = 0.2;
     glm::dvec3 background{0.0};  // display-encoded
-    bool is_light = false;       // colours are light, to be encoded after blending: the scene decides, if one is given
+    // Colours are light, to be encoded after blending; if a scene is given, it decides.
+    bool is_light = false;
     // Front to back by the distance of centres from this point (the midpoint between the eyes); empty: by
     // their camera z.
     std::optional<glm::dvec3> order_from = {};
@@ -31,15 +33,18 @@ struct Settings {
 
 enum Pass : int { kCull, kCompact, kSortDepth, kProject, kBin, kSortTiles, kRasterize, kPassCount };
 
-// A splat as one eye sees it. With dx, dy the offset of a pixel from `reference_px`, and (A, B, D) = plane_from_pixel, the
-// ray of the pixel meets the disc's plane at
-//   1/z = inverse_depth + perspective.x dx + perspective.y dy,   u/z = plane_offset.x + A dx + B dy,   v/z = plane_offset.y + D dy
-// where the (u, v) frame has been turned within the disc so that v/z does not depend on dx and A >= 0 (rho3 = u^2 + v^2 is
-// unchanged by that). If the centre lies beyond the near plane (`low_pass`), reference_px is the projected centre and
-// plane_offset is zero; otherwise reference_px is the middle of the image (size_px / 2) and there is no low-pass.
-// For a 3D Gaussian (`gaussian`) these are u and v themselves in place of u/z and v/z, 1/z is where it is greatest along the ray, to
-// first order and within kDepthReach of the centre's, and there is no low-pass but that in plane_from_pixel. A splat that can show nowhere
-// (opacity at or below 1/255, an attribute or the colour not finite) is all zeros.
+// A splat as one eye sees it. With dx, dy the offset of a pixel from `reference_px`, and (A, B, D) =
+// plane_from_pixel, the ray of the pixel meets the disc's plane at
+//   1/z = inverse_depth + perspective.x dx + perspective.y dy
+//   u/z = plane_offset.x + A dx + B dy
+//   v/z = plane_offset.y + D dy
+// where the (u, v) frame has been turned within the disc so that v/z does not depend on dx and A >= 0 (rho3 =
+// u^2 + v^2 is unchanged by that). If the centre lies beyond the near plane (`low_pass`), reference_px is the
+// projected centre and plane_offset is zero; otherwise reference_px is the middle of the image (size_px / 2)
+// and there is no low-pass. For a 3D Gaussian (`gaussian`) these are u and v themselves in place of u/z and
+// v/z, 1/z is where it is greatest along the ray, to first order and within kDepthReach of the centre's, and
+// there is no low-pass but that in plane_from_pixel. A splat that can show nowhere (opacity at or below
+// 1/255, an attribute or the colour not finite) is all zeros.
 struct ProjectedSplat {
     glm::dvec2 reference_px;
     glm::dvec2 plane_offset;
@@ -55,10 +60,11 @@ struct ProjectedSplat {
     double opacity;       // dimmed, if the scene says so
     glm::dvec2 reach_px;  // of a 3D Gaussian: half its box on the screen
     glm::dvec3 colour;    // max(0, 0.5 + SH(d))
-    // Rows of the splat's pixel matrix, U = fx (a.x, b.x, c.x) + cx (a.z, b.z, c.z), V and W accordingly; the twin's own
-    // rasterizer uses these and not the reduced form above.
+    // Rows of the splat's pixel matrix, U = fx (a.x, b.x, c.x) + cx (a.z, b.z, c.z), V and W accordingly; the
+    // twin's own rasterizer uses these and not the reduced form above.
     glm::dvec3 row_u, row_v, row_w;
-    // Pixels whose centres the splat can reach, [x0, x1) x [y0, y1), clipped to the image; empty if it reaches none.
+    // Pixels whose centres the splat can reach, [x0, x1) x [y0, y1), clipped to the image; empty if it
+    // reaches none.
     glm::ivec4 box_px;  // x0, y0, x1, y1
     // The same in tiles for the usual square box of 3 sigma (ceil of three standard deviations of the larger
     // screen extent about the projected box's centre, as the public 2DGS rasterizer bins), for the report

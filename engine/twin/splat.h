@@ -58,8 +58,9 @@ struct CameraSplat {
 // side.
 struct ScreenGaussian {
     double xx, xy, yy, det;
-    double sharp_det;       // without the low-pass
-    glm::dvec2 with_depth;  // the covariance of 1/z, to first order, with the place on the screen: -(J Sigma) e_z / z^2
+    double sharp_det;  // without the low-pass
+    // The covariance of 1/z, to first order, with the place on the screen: -(J Sigma) e_z / z^2.
+    glm::dvec2 with_depth;
 };
 
 inline ScreenGaussian screenGaussian(const CameraSplat& splat, const EyeFrame& eye) {
@@ -122,7 +123,8 @@ inline PixelRows pixelRows(const ProjectedSplat& splat, glm::uvec2 size_px) {
     return rows;
 }
 
-// (u/z, v/z, 1/z) as a linear function of the pixel: q / det, where q = x (V x W) + y (W x U) + (U x V) and det = U . (V x W).
+// (u/z, v/z, 1/z) as a linear function of the pixel: q / det, where q = x (V x W) + y (W x U) + (U x V) and
+// det = U . (V x W).
 struct RayPlane {
     glm::dvec2 origin_px;
     glm::dvec3 at_origin, along_x, along_y;

@@ -1,6 +1,7 @@
-// The float64 twins of the stereo passes: same names, same order, no shared arithmetic. Each function is one pass of
-// shaders/warp and shaders/choose or a part of one; `renderStereo` runs them all. Source: docs/how-it-works.md; paper, sections 3.4
-// and 3.5. Places are pixels of an image, (0.5, 0.5) the centre of the first; pixels and tiles are listed by rows.
+// The float64 twins of the stereo passes: same names, same order, no shared arithmetic. Each function is one
+// pass of shaders/warp and shaders/choose or a part of one; `renderStereo` runs them all. Source:
+// docs/how-it-works.md; paper, sections 3.4 and 3.5. Places are pixels of an image, (0.5, 0.5) the centre of
+// the first; pixels and tiles are listed by rows.
 #pragma once
 
 #include "engine/mode.h"
@@ -123,7 +124,8 @@ std::vector<Resolved> resolve(std::span<const Arrival> arrivals, const EyePair& 
 // even one above it, seen in its own row of the source; a pixel that repeats another column's does so from
 // the even row.
 void moveOddRowsAlike(std::vector<Resolved>& resolved, glm::uvec2 size_px);
-// Also resample: colours by Catmull and Rom's cubic (1974), not below 0; zero in marked tiles, but background in hidden ones.
+// Also resample: colours by Catmull and Rom's cubic (1974), not below 0; zero in marked tiles, but background
+// in hidden ones.
 std::vector<glm::dvec4> resample(const Picture& dominant, std::span<const Resolved> resolved, std::span<const TileKind> kinds,
                                  const EyePair& eyes, const glm::dvec3& background = glm::dvec3(0.0));
 // Also resample, if colours are copied (`settings.forward`; paper, section 3.1, stages 2 and 4): the pixel

@@ -167,7 +167,8 @@ private:
             tile.growth[quarter] += share * std::min(before.growth[from], 1.0);
         }
         warped_.one_by_one.push_back(block.whole ? 0 : 1);
-        const Loss loss = block.whole ? lossOf(view_, block, first) : Loss{leastLossOf(block), 0.0};  // and that of its pixels
+        // And the loss of its pixels.
+        const Loss loss = block.whole ? lossOf(view_, block, first) : Loss{leastLossOf(block), 0.0};
         tile.grown[quarter] += loss.error;
         tile.squared_gradient += loss.squared_gradient;
         const glm::ivec2 size(warped_.picture.eye.size_px);

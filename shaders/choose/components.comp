@@ -1,5 +1,6 @@
-// components: connected holes inside the picture become boxes of tiles (paper, section 3.5, step 2). Union-find with links towards the
-// smaller index (Jaiganesh and Burtscher 2018): whatever the order of threads, a component's root is its first pixel.
+// components: connected holes inside the picture become boxes of tiles (paper, section 3.5, step 2).
+// Union-find with links towards the smaller index (Jaiganesh and Burtscher 2018): whatever the order of the
+// threads, a component's root is its first pixel.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "passes.h"
@@ -7,21 +8,23 @@
 layout(local_size_x = 16, local_size_y = 8) in;
 layout(push_constant, scalar) uniform Push { ComponentsPass pass; };
 
-// The steps, each a dispatch over the pixels except the last, which strides over the boxes. resample has made every hole its own parent.
+// The steps, each a dispatch over the pixels except the last, which strides over the boxes. resample has made
+// every hole its own parent.
 const uint kStepUnite = 0, kStepCount = 1, kStepBound = 2, kStepMark = 3;
 layout(constant_id = 0) const uint kStep = kStepUnite;
 
-// Where a pixel's colour would lie.
+// Where the pixel's colour would be.
 uint slotOf(uint pixel) { return pass.slots_apart * pixel; }
 
 bool isHole(WarpView warp, uvec2 at) {
     return ((pass.pixel_classes.at[at.y * warp.size_tiles.x + at.x / kTileSize] >> (2 * (at.x % kTileSize))) & 3) == kHole;
 }
 
-// Other threads change parents meanwhile; every value one may see leads to the same root.
+// Other threads change parents meanwhile; every value that can be read leads to the same root.
 uint parentOf(uint pixel) { return atomicOr(pass.pixels.at[slotOf(pixel)].parent, 0); }
 
-// On the way up each pixel is linked to its grandparent: otherwise the chains of a hole are as long as it is wide and high.
+// On the way up, each pixel is linked to its grandparent; otherwise chains would be as long as a hole is wide
+// and high.
 uint rootOf(uint pixel) {
     uint parent = parentOf(pixel);
     while (parent != pixel) {
@@ -45,7 +48,8 @@ void unite(uint a, uint b) {
     }
 }
 
-// With more components than boxes none gets one, since which came first depends on the order of threads.
+// If there are more components than boxes, none gets one, since the first ones depend on the order of the
+// threads.
 bool haveBoxes() { return pass.counters.at[0].components <= pass.box_capacity; }
 
 // Marks the tiles that [low, high) meets, grown by the margin.
@@ -75,7 +79,7 @@ void main() {
     const uint pixel = at.y * warp.size_px.x + at.x;
     if (!isHole(warp, at)) { return; }
     if (kStep == kStepUnite) {
-        // The four neighbours that come before; the others find this pixel.
+        // The four neighbours that come before this pixel; the others find it.
         for (uint n = 0; n < 4; ++n) {
             const ivec2 other = ivec2(at) + (n == 0 ? ivec2(-1, 0) : ivec2(int(n) - 2, -1));
             if (other.x < 0 || other.y < 0 || other.x >= int(warp.size_px.x)) { continue; }

@@ -1,5 +1,6 @@
-// depth_bounds: how often each depth occurs in the source, for the robust extremes that the edge ROIs start from. Every other row is as
-// good as all. A workgroup counts kBoundsTiles tiles side by side before it adds its bins to the global ones.
+// depth_bounds: how often each depth occurs in the source, for the robust extremes from which the edge ROIs
+// start. Every other row is enough. A workgroup counts kBoundsTiles tiles side by side before it adds its
+// bins to the global ones.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "passes.h"

@@ -1,6 +1,7 @@
-// edge_rois: the borders of the target that the source does not see (paper, section 3.5, step 1). Samples along the
-// edges of the source are moved at the least and the greatest depth; where they land bounds what is covered. A thread per tile:
-// every workgroup finds the bounds for itself, which takes less than waiting for another dispatch.
+// edge_rois: the borders of the target that the source does not see (paper, section 3.5, step 1). Samples
+// along the edges of the source are moved at the least and the greatest depth; where they land bounds what is
+// covered. A thread per tile: every workgroup finds the bounds for itself, which takes less time than another
+// dispatch.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "passes.h"
@@ -14,12 +15,14 @@ layout(local_size_x = kWarpGroup) in;
 layout(push_constant, scalar) uniform Push { EdgeRoisPass pass; };
 
 const uint kBinsPerThread = kDepthBins / kWarpGroup;
-// One pixel in two hundred may be nearer, and one farther, than the bounds: specks and fringes of mixed depth are no surface.
+// One pixel in two hundred may be nearer, and one farther, than the bounds: specks and fringes of mixed depth
+// are not surfaces.
 const uint kOutliers = 200;
 
 shared float inverse_depth_bounds[2];  // far, near
-shared vec4 group_low[kWarpGroup];     // least x and y of all samples; greatest of the left and of the top edge's
-shared vec4 group_high[kWarpGroup];    // greatest x and y of all; least of the right and of the bottom edge's
+// Least x and y of all samples; greatest x of the left edge and greatest y of the top edge.
+shared vec4 group_low[kWarpGroup];
+shared vec4 group_high[kWarpGroup];    // greatest x and y of all; least of the right and of the bottom edge
 
 void findDepthBounds() {
     const uint thread = threadIndex();
@@ -54,7 +57,8 @@ void sampleEdges(WarpView warp) {
         const vec2 pixel_px = vertical ? vec2(edge == 0 ? 0.5 : size.x - 0.5, along * size.y) : vec2(along * size.x, edge == 1 ? 0.5 : size.y - 0.5);
         const vec3 moved = movePixel(warp.target_from_source, pixel_px, inverse_depth_bounds[sample_index & 1]);
         if (!(moved.z > 0)) { continue; }
-        // The paper counts pixels from 0 at their centres. Rounded to 2^-14 px, so that an edge that does not move stays at 0.
+        // The paper counts pixels from 0 at their centres. Rounded to 2^-14 px, so that an edge that does not
+        // move stays at 0.
         const vec2 place = round((moved.xy - 0.5) * 16384.0) / 16384.0;
         low.xy = min(low.xy, place);
         high.xy = max(high.xy, place);

@@ -1,5 +1,6 @@
-// newcomers: splats that the target sees and the source does not. They stand in front of what was reprojected and leave no hole,
-// so the picture does not reveal them; here each adds its expected error to the tiles it meets.
+// newcomers: splats that the target sees and the source does not. They stand in front of what was reprojected
+// and leave no hole, so the picture does not reveal them; here each adds its expected error to the tiles it
+// meets.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -22,18 +23,19 @@ layout(push_constant, scalar) uniform Push { NewcomersPass pass; };
 
 shared uint unseen_ranks[kNewcomersBlock];
 shared uint unseen_count;
-// Splats over more tiles than this would keep one thread busy for long: they stay in the list, and all others leave it.
+// A splat that meets more tiles than this would keep one thread busy for long: it stays in the list, and all
+// others leave it.
 const uint kLargeTiles = 64;
 const uint kDone = 0xffffffffu;
 shared uint large_count;
 
-// A tile's sum stops at half of what a word holds, in steps; a tile that gets there is rendered anyway. One splat adds at most the greatest
-// float below it.
+// A tile's sum stops, in steps, at half of what a word holds; a tile that gets there is rendered anyway. One
+// splat adds at most the greatest float below it.
 const uint kMostSteps = 0x7fffffffu;
 const float kMostStepsOfOne = 2147483520.0;
 
-// True if the splat's centre, clamped to the picture, is clearly nearer than what the source sees in the middle of its tile; always in a
-// tile that is rendered.
+// True if the splat's centre, clamped to the picture, is clearly nearer than what the source sees in the
+// middle of its tile; always true in a tile that is rendered.
 bool standsInFront(WarpView warp, vec2 pixel_px, float inverse_depth) {
     const uint tile = tileOf(warp.size_tiles, pixelAt(warp.size_px, pixel_px));
     const uint moving = pass.tile_depths.at[tile];
@@ -49,8 +51,9 @@ void addError(uint tile, uint steps) {
     } while (seen != before);
 }
 
-// Adds the splat's error to the tiles it meets, by one thread or, if it is large, by all threads `together`, which share its rows.
-// False: it is large, and one thread alone leaves it.
+// Adds the splat's error to the tiles it meets: by one thread or, for a large splat, by all threads
+// `together`, which share its rows.
+// False if it is large, so that one thread alone must leave it.
 bool addNewcomer(uint rank, EyeView eye, WarpView warp, bool together) {
     const CameraSplat splat = loadCameraSplat(pass.chunks, placeOfSplat(pass.order.at[rank], pass.chunk_bits), eye);
     bool has_reference;
@@ -64,7 +67,8 @@ bool addNewcomer(uint rank, EyeView eye, WarpView warp, bool together) {
     if (!together && tiles > kLargeTiles) { return false; }
     if (!together || gl_LocalInvocationIndex == 0) { atomicAdd(pass.counters.at[0].newcomers, 1); }
 
-    // The integral of exp(-rho), the square of what a pixel blends: pi sigma_u sigma_v on the screen and that of the low-pass.
+    // The integral of exp(-rho), the square of what a pixel blends: pi sigma_u sigma_v on the screen, plus
+    // that of the low-pass.
     const float jacobian = p.plane_from_pixel.x * abs(p.plane_from_pixel.z);
     const float area_px = 3.14159265 * (kSplatKind != kDiscs ? 1 / jacobian : 1 / eye.low_pass + p.inverse_depth * p.inverse_depth / jacobian);
     const float pixels = has_reference ? min(area_px / float(tiles), float(kTileSize * kTileSize)) : float(kTileSize * kTileSize);
@@ -81,8 +85,8 @@ bool addNewcomer(uint rank, EyeView eye, WarpView warp, bool together) {
     return true;
 }
 
-// A workgroup looks over a block of the visible splats for those that the source does not see; its threads then share these few, and
-// after that the rows of each of the large ones.
+// A workgroup examines a block of the visible splats for those that the source does not see; its threads then
+// share these few, and after that the rows of each large one.
 void main() {
     const uint count = pass.visible.at[0].count;
     const uint begin = groupIndex() * kNewcomersBlock;

@@ -1,6 +1,7 @@
-// price: the price of each tile, which is its expected error per pair, and how much there is to render at each price. A thread per tile.
-// Where it is known where the eye looks, only the part of an error that it sees counts, and tiles in which it cannot tell two rows apart
-// are marked. The last workgroup finds the price at which the budget, the first target's and of all targets, ends.
+// price: the price of each tile, which is its expected error per pair, and how much there is to render at
+// each price. A thread per tile. Where the gaze is known, only the part of an error that the eye sees counts,
+// and tiles in which it cannot tell two rows apart are marked. The last workgroup finds the price at which
+// the budget ends, for the first target and for all.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -17,21 +18,24 @@ layout(constant_id = 1) const bool kPast = false;  // errors are those that the 
 #include "lib/target.glsl"
 
 const uint kBinsPerThread = kPriceBins / kWarpGroup;
-// Contrast masks errors. A tile whose colours change by this much from pixel to pixel (root of the mean square) may be off by the bound; one
-// that has less contrast by as much less, down to this part of it (4.4 dB): there an edge that is off in one eye alone is seen.
+// Contrast masks errors. A tile whose colours change by this much from pixel to pixel (root of the mean
+// square) may be off by the bound. A tile with less contrast may be off by proportionally less, but at least
+// by this part of the bound (4.4 dB): there, an error at an edge is visible even if only one eye has it.
 const float kMaskingGradient = 0.05, kUnmaskedBound = 0.6;
 
 // 16 bins per octave, the greatest quotients last: exponent and four bits of the mantissa.
 uint binOf(float error_per_pair) { return min(max(floatBitsToUint(error_per_pair) >> 19, 104u << 4) - (104u << 4), kNewBin - 1); }
 
-// What rendering a tile is worth in a picture that is made from a history: its expected squared error, times the frames that it has waited. An
-// error that grows by the frame loses its area under that growth when it is mended (a Whittle index), and so every tile gets its turn.
+// What rendering a tile is worth in a picture that is made from a history: its expected squared error, times
+// the frames that it has waited. Mending an error that grows with each frame saves the area under its growth
+// (a Whittle index), and so every tile gets its turn.
 uint errorOfPast(PastTile tile) {
     const float squares = 3 * float(kCellSize * kCellSize) * dot(tile.errors, tile.errors);
     return squares > 0 ? max(uint(min(squares * float(max(tile.age, 1)), 2000) * kErrorSteps), 1) : 0;
 }
 
-// Adds the error that this frame's warp is expected to cause. Blur of what is blurred already adds up by amplitude.
+// Adds the error that this frame's warp is expected to cause. Blur of what is already blurred adds up by
+// amplitude.
 PastTile withGrowth(PastTile tile) {
     [[unroll]] for (uint q = 0; q < 4; ++q) {
         // The amplitude per pixel and channel.
@@ -42,7 +46,7 @@ PastTile withGrowth(PastTile tile) {
     return tile;
 }
 
-// What a coarse tile lacks is an error once the eye would notice it.
+// What a coarse tile lacks is an error as soon as the eye would notice it.
 PastTile withLoss(PastTile tile, uvec2 at) {
     const float share = kFoveated ? seenShareThere(TARGET.counters.gaze, at) : 1;
     const bool is_seen = share * 3 * float(kTileSize * kTileSize) * tile.lost * tile.lost >= kLeastSeenError;
@@ -50,13 +54,15 @@ PastTile withLoss(PastTile tile, uvec2 at) {
     return tile;
 }
 
-// The amplitude that a tile may be off by. Contrast masks errors: with less of it a tile may be off by less.
+// The amplitude by which a tile may be off. Contrast masks errors: with less of it, a tile may be off by
+// less.
 float boundOf(PastTile tile) {
     const float gradient = sqrt(float(tile.squared_gradient) / (kErrorSteps * 3 * kTileSize * kTileSize));
     return FIRST.warp.error_bound * clamp(gradient / kMaskingGradient, kUnmaskedBound, 1);
 }
 
-// The bin of a tile under a bound: by two bins in one, those above it before the others and those that nobody saw before before all.
+// The bin of a tile under a bound, two bins in one: tiles above the bound come before the others, and those
+// that nobody saw before come first.
 uint binUnderBound(uint bin, PastTile tile, float share) {
     uint unseen = 0;
     [[unroll]] for (uint q = 0; q < 4; ++q) { unseen += unseenIn(tile.unseen, q); }
@@ -92,8 +98,9 @@ uint priceOf(uint tile, uvec2 size_tiles) {
     const bool unnoticed = kFoveated && share < 1 && seen < kLeastSeenError * kErrorSteps;
     const uint bin = binOf(worth / float(cost));
     uint seen_bin = binOf(share * worth / float(cost));
-    // The list counts errors as if all were seen whole, so that what a pair must be worth does not fall with what is not seen. Not so with
-    // a history: errors that are not seen and not rendered grow from frame to frame, and would leave nothing to those that are seen.
+    // The list counts errors as if they were seen whole, so that the required worth of a pair does not fall
+    // with what is not seen. A history is different: errors that are neither seen nor rendered grow from
+    // frame to frame, and would leave nothing to those that are seen.
     if (kPast && FIRST.warp.error_bound > 0) { seen_bin = binUnderBound(seen_bin, its, share); }
     const uint listed_bin = kPast ? seen_bin : bin;
     if (!kPast || !unnoticed) { atomicAdd(pass.price_bins.at[listed_bin], cost); }

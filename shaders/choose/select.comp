@@ -1,5 +1,6 @@
-// select: the tiles to render, as a list and as a mask: those that earlier passes have marked and, where errors are predicted, those
-// with the greatest error per pair, as many as the budget allows. Of equal ones the first are taken. A thread per tile.
+// select: the tiles to render, as a list and as a mask: those that earlier passes have marked and, where
+// errors are predicted, those with the greatest error per pair, as many as the budget allows. Among equal
+// tiles, the first are taken. A thread per tile.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -12,10 +13,11 @@
 layout(local_size_x = kWarpGroup) in;
 layout(push_constant, scalar) uniform Push { SelectPass pass; };
 layout(constant_id = 0) const bool kPredicted = false;  // otherwise tile_kinds says which
-layout(constant_id = 1) const bool kPast = false;  // all targets share a budget, and a tile that costs more than is left still gets its turn
+// All targets share a budget, and a tile that costs more than is left still gets its turn.
+layout(constant_id = 1) const bool kPast = false;
 #include "lib/target.glsl"
 
-const uint kTilesPerStep = 8;  // loaded at once, since each load takes as long as all of them
+const uint kTilesPerStep = 8;  // loaded at once, since one load takes as long as all of them
 
 // Where the budget ends (price).
 struct End {
@@ -23,14 +25,15 @@ struct End {
     uint left;  // of the budget, for its tiles
 };
 
-// True if the tile may use what is left of the budget in the last bin. A tile that the list counted in a higher bin, as if its error were
-// seen whole (price), has had its turn there, unless the budget is enough for all.
+// True if the tile may use what is left of the budget in the last bin. A tile that the list counted in a
+// higher bin, as if its error were seen whole (price), had its turn there, unless the budget is enough for
+// all.
 bool isOfLast(uint price, End end) { return price != 0 && price >> 22 == end.bin && ((price & kSeenInPart) == 0 || end.left == 0xffffffffu); }
 
 uint tilesOf(uint target) { return pass.targets.at[target].warp.size_tiles.x * pass.targets.at[target].warp.size_tiles.y; }
 
-// The cost of the last bin's tiles before this workgroup's, first those of the targets before its own; `first_tile` is a multiple of its
-// size.
+// The cost of the last bin's tiles before this workgroup's, starting with those of earlier targets;
+// `first_tile` is a multiple of its size.
 uint costBefore(uint first_tile, End end) {
     uint own = 0;
     for (uint target = 0; target <= gl_WorkGroupID.z; ++target) {
@@ -64,7 +67,7 @@ bool isChosen(uint tile, uint tiles, out bool waits) {
     return chosen;
 }
 
-// What the tile is expected to be off by.
+// The error that the tile is expected to have.
 uint squaresOf(uint tile) {
     const vec4 off = PastTiles(TARGET.past_tiles).at[tile].errors;
     return uint(min(3 * float(kCellSize * kCellSize) * dot(off, off), kMostSquares) * kSquareSteps + 0.5);

@@ -1,7 +1,9 @@
-// weigh: tiles that are cheap to render are not warped. Warping a tile costs about the same whatever it shows. Rendering it costs in
-// proportion to its pairs of tile and splat, and the source's ranges show roughly how many these are. A thread per tile. The last workgroup
-// decides whether warping pays at all: if not, the passes that warp are empty dispatches, every tile is rendered, and nothing is lost. If
-// it did not pay in the frame before, the source comes without what warping needs, and the decision is only for the next frame.
+// weigh: tiles that are cheap to render are not warped. Warping a tile costs about the same whatever it
+// shows. Rendering it costs in proportion to its pairs of tile and splat, and the source's ranges show
+// roughly how many these are. A thread per tile. The last workgroup decides whether warping pays at all: if
+// not, the passes that warp are empty dispatches, every tile is rendered, and nothing is lost. If it did not
+// pay in the frame before, the source comes without what warping needs, and the decision is only for the next
+// frame.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "passes.h"
@@ -19,30 +21,32 @@ layout(push_constant, scalar) uniform Push { WeighPass pass; };
 // True if the source's pixels can be warped.
 bool mayMove() { return isThere(uvec2(pass.moving)); }
 
-// The pixel in the middle of a tile; of an even row, since odd ones may have no depths.
+// The pixel in the middle of a tile, in an even row, since odd ones may have no depths.
 uvec2 middleOf(WarpView warp, uint tile) {
     const uvec2 at = uvec2(tile % warp.size_tiles.x, tile / warp.size_tiles.x);
     return min(at * kTileSize + kTileSize / 2, warp.size_px - 1) & uvec2(~0u, ~1u);
 }
 
-// Pairs of the source tile that this pixel comes from, assuming that it is as deep as what the source sees there.
+// Pairs of the source tile from which this pixel comes, assuming the depth that the source sees there.
 uint pairsNear(WarpView warp, uvec2 middle, uint moving) {
     const vec2 middle_px = vec2(middle) + 0.5;
     const vec3 moved = movePixel(warp.source_from_target, middle_px, moving == 0 ? 0 : inverseDepthOf(moving));
-    const bool sane = isPositive(moved.z) && isPositive(1e9 - abs(moved.x)) && isPositive(1e9 - abs(moved.y));  // NaN stays where it is
+    // NaN stays where it is
+    const bool sane = isPositive(moved.z) && isPositive(1e9 - abs(moved.x)) && isPositive(1e9 - abs(moved.y));
     const uvec2 range = pass.ranges.at[tileOf(warp.size_tiles, pixelAt(warp.size_px, sane ? moved.xy : middle_px))];
     return range.y - range.x;
 }
 
-// True if the warped tiles save more than two costs together: the cost of warping where no tile is warped (kMoveSharedPart), and the
-// budget for mending its errors.
-// Without depths it is less certain where tiles come from: to be taken up again, warping must then save clearly more, or frames would
-// alternate.
+// True if the warped tiles save more than two costs together: the cost of warping if no tile is warped
+// (kMoveSharedPart), and the budget for mending its errors.
+// Without depths, it is less certain where tiles come from. To be resumed, warping must then save clearly
+// more; otherwise frames would alternate.
 bool movingPays(WarpView warp, uint all_saved, uint picture_cost, uint tiles) {
     const uint saved = mayMove() ? all_saved : all_saved - all_saved / kResumePart;
     const float budget = warp.budget * float(picture_cost);
     const uint mending = budget < 4e9 ? uint(budget) : 4000000000u;
-    // What is left for the shared part, times kMoveSharedPart, against the cost of warping all tiles: in 64 bits.
+    // What is left for the shared part, times kMoveSharedPart, against the cost of warping all tiles: in 64
+    // bits.
     uvec2 gain, cost;
     umulExtended(saved - min(saved, mending), kMoveSharedPart, gain.y, gain.x);
     umulExtended(warp.move_cost, tiles, cost.y, cost.x);

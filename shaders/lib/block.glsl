@@ -4,8 +4,8 @@
 
 uint blockCount() { return kInPages ? pass.visible_pages.at[0].count : groupsOver(pass.splat_count, kCullBlock); }
 
-// The page that is a block of the list. If there are many pages, each run is listed where all of its pages
-// would be, followed by the numbers of visible pages before each run (cull_pages).
+// The page of a block in the list. If there are many pages, each run is listed where all of its pages would
+// be, followed by the numbers of visible pages before each run (cull_pages).
 uint pageOfBlock(uint block) {
     const uint pages = groupsOver(pass.splat_count, kPageSplats), groups = groupsOver(pages, kGroupSize);
     const uint length = sumRunLength(groups, kMostPageGroupsInOneRun);
@@ -21,8 +21,8 @@ uint pageOfBlock(uint block) {
     return pass.page_list.at[first + (block - before)];
 }
 
-// The first splat of the block; if there is no such block (the last row of a dispatch may have more
-// workgroups), the number of all splats.
+// The first splat of the block, or the number of all splats if there is no such block (the last row of a
+// dispatch may have more workgroups).
 uint firstOfBlock(uint block) {
     if (!kInPages) { return min(block, groupsOver(pass.splat_count, kCullBlock)) * kCullBlock; }
     return block < pass.visible_pages.at[0].count ? pageOfBlock(block) * kCullBlock : pass.splat_count;

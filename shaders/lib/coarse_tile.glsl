@@ -1,10 +1,10 @@
-// A coarse tile: 8x8 samples, evenly from the first pixel's middle to the last one's, and the 16x16 pixels
-// that Catmull and Rom's cubic makes of them. For rasterize, where each cell of a workgroup has such a tile:
-// once its splats are blended, their shared memory holds the samples.
+// A coarse tile: 8x8 samples, evenly spaced from the middle of the first pixel to that of the last, and the
+// 16x16 pixels that Catmull and Rom's cubic makes of them. For rasterize, where each cell of a workgroup has
+// such a tile: once its splats are blended, their shared memory holds the samples.
 
 shared uint cell_details[kCellsPerTile];  // second differences, squared and summed, in kErrorSteps
-shared uint sharp_cells;                  // cells whose tile needs all of its pixels: a bit each
-shared uint most_pairs;                   // of a cell's tile
+shared uint sharp_cells;                  // cells whose tile needs all of its pixels, one bit each
+shared uint most_pairs;                   // in a cell's tile
 
 const int kLastSample = int(kCellSize) - 1, kHalfTile = int(kTileSize) / 2;
 
@@ -36,8 +36,8 @@ uint sampleWord(uint cell, ivec2 at) {
     return cell < 2 ? words.x : words.y;
 }
 
-// Its squared second differences along both axes; there are none across the tile's border, so six samples of
-// eight stand for all.
+// Its squared second differences along both axes. There are none across the tile's border, so six of eight
+// samples stand for all.
 float detailAt(uint cell, ivec2 at) {
     const vec3 here = sampleAt(cell, at).rgb;
     float squares = 0;
@@ -66,8 +66,8 @@ vec4 cubicAt(int pixel, out int first) {
 // The second half is the first one in reverse.
 int mirrored(int i, int last, bool is_second) { return is_second ? last - i : i; }
 
-// A column of half of the tile's pixels, from the border on, and the sampled rows from which the next of them
-// is made.
+// A column of half of the tile's pixels, from the border inwards, and the sampled rows from which its next
+// pixel is made.
 struct Column {
     uint cell;
     bool is_right, is_lower;

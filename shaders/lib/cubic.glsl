@@ -5,8 +5,8 @@ vec4 cubicWeights(float t) {
     return 0.5 * vec4(t * (-1 + t * (2 - t)), 2 + t * t * (-5 + 3 * t), t * (1 + t * (4 - 3 * t)), t * t * (t - 1));
 }
 
-// A colour; how the picture changes from pixel to pixel along the disparity, at the pixel that holds the place; and the squared loss of
-// sampling between pixels.
+// A colour; how the picture changes from pixel to pixel along the disparity, at the pixel that contains the
+// place; and the squared loss from sampling between pixels.
 struct Sample {
     vec4 colour;
     vec3 gradient;
@@ -14,7 +14,7 @@ struct Sample {
     float squared_gradient;  // of the picture, summed over channels
 };
 
-// What alternates in sign from pixel to pixel is lost halfway between them, and partly on the way there.
+// What alternates in sign from pixel to pixel is lost halfway between pixels, and partly on the way there.
 vec3 lostBetween(float t, vec3 third_difference) { return 0.5 * t * (1 - t) * third_difference; }
 
 // Rectified pixels keep their row, where the vertical kernel is exactly 1.

@@ -1,6 +1,7 @@
-// Numbers of 48 bits as unevaluated sums x + y of two floats, |y| at most half a unit in the last place of x (Dekker 1971, Knuth 4.2.2).
-// For the few steps where float32's 24 bits would show: the centre of a splat on the screen is a difference of large numbers.
-// No fused multiply-add is assumed: Vulkan does not promise one.
+// Numbers of 48 bits as unevaluated sums x + y of two floats, |y| at most half a unit in the last place of x
+// (Dekker 1971, Knuth 4.2.2). For the few steps where float32's 24 bits would show: the centre of a splat on
+// the screen is a difference of large numbers. No fused multiply-add is assumed, since Vulkan does not
+// promise one.
 
 // a + b, exactly.
 vec2 exactSum(float a, float b) {

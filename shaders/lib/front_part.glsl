@@ -17,7 +17,8 @@ void widen(inout vec4 bounds, CameraSplat splat, EyeView eye, vec2 uv, float sla
     if (p.z >= eye.near - slack) { widenBy(bounds, eye, vec3(p.xy, max(p.z, eye.near)), slack); }
 }
 
-// Both points of the outline whose tangent on the screen has a fixed coordinate along one axis; `along` is that row of (a, b, c).
+// Both points of the outline where its tangent on the screen is parallel to an axis; `along` is that axis's
+// row of (a, b, c).
 void widenByTangents(inout vec4 bounds, CameraSplat splat, EyeView eye, float radius, vec3 along, float slack) {
     const vec3 w = vec3(splat.scale.x * splat.t_u.z, splat.scale.y * splat.t_v.z, splat.centre.z);
     const vec3 form = vec3(radius * radius, radius * radius, -1);
@@ -39,7 +40,7 @@ vec4 frontPartBounds(CameraSplat splat, EyeView eye, float radius) {
     const vec3 y = vec3(splat.scale.x * splat.t_u.y, splat.scale.y * splat.t_v.y, splat.centre.y);
     widenByTangents(bounds, splat, eye, radius, x, slack);
     widenByTangents(bounds, splat, eye, radius, y, slack);
-    const vec2 climb = splat.scale * vec2(splat.t_u.z, splat.t_v.z);  // of z along u and v
+    const vec2 climb = splat.scale * vec2(splat.t_u.z, splat.t_v.z);  // by which z grows along u and v
     const float steepness = length(climb);
     const float along = (eye.near - splat.centre.z) / steepness;
     if (steepness > 0 && abs(along) <= radius) {

@@ -1,9 +1,11 @@
-// A 3D Gaussian on the screen, as it was trained: its covariance through the projection's derivative at its centre, and a low-pass
-// (Zwicker et al. 2001, sections 4 and 5; Kerbl et al. 2023, section 4). Needs lib/splat.glsl.
+// A 3D Gaussian on the screen, as it was trained: its covariance through the projection's derivative at its
+// centre, and a low-pass (Zwicker et al. 2001, sections 4 and 5; Kerbl et al. 2023, section 4). Needs
+// lib/splat.glsl.
 //
-// The axes s_u t_u, s_v t_v, s_w t_w become three vectors m on the screen, and Sigma2 = sum m m^T + kScreenVariance. Its determinant is a
-// sum of squares, kScreenVariance^2 + kScreenVariance sum |m|^2 + sum (m_i x m_j)^2 (Cauchy and Binet), which keeps its digits for
-// needles and for sheets seen edge-on, and needs roots and no squares of large numbers.
+// The axes s_u t_u, s_v t_v, s_w t_w become three vectors m on the screen, and Sigma2 = sum m m^T +
+// kScreenVariance. Its determinant is a sum of squares, kScreenVariance^2 + kScreenVariance sum |m|^2 + sum
+// (m_i x m_j)^2 (Cauchy and Binet), which keeps its digits for needles and for sheets seen edge-on, and needs
+// only roots, no squares of large numbers.
 
 struct ScreenGaussian {
     float xx, xy, yy;  // Sigma2, px^2

@@ -10,15 +10,15 @@ vec2 middleOfTile(uvec2 tile) { return vec2(tile * kTileSize + kTileSize / 2); }
 float finestCycle(EyeGaze gaze, float angle) { return kFovealCycle + kCyclePerAngle * max(angle - gaze.clear_rad, 0); }
 
 // The finest cycle that an eye resolves grows linearly with the angle from its gaze (Guenter et al. 2012). A
-// picture has cycles of two pixels and longer; the eye sees the share of these that is no finer than what it
+// picture has cycles of two pixels and longer; the eye sees the share of these that are no finer than what it
 // resolves, along both axes.
 float seenShare(EyeGaze gaze, uvec2 tile) {
     const float share = min(gaze.pixel_cycle / finestCycle(gaze, angleFromGaze(gaze, middleOfTile(tile))), 1);
     return share * share;
 }
 
-// The same with the angular size of the pixels there: the farther from the lens's axis, the smaller they
-// look.
+// The same with the angular size of the pixels there: the farther they are from the lens's axis, the smaller
+// they appear.
 float seenShareThere(EyeGaze gaze, uvec2 tile) {
     const vec2 px = middleOfTile(tile);
     const float stretch = length(vec3((px - gaze.principal_px) / gaze.focal_px, 1));

@@ -1,11 +1,13 @@
-// Workgroups: which one this is, which thread, and prefix sums across one. No subgroup width is assumed, but that no subgroup of a workgroup
-// has idle lanes: kernels ask for that where a device lets them (Context::fullSubgroups).
+// Workgroups: which one this is, which thread, and prefix sums across one. Assumes no subgroup width, but
+// that no subgroup of a workgroup has idle lanes: kernels request that where a device allows it
+// (Context::fullSubgroups).
 //
-// What lanes tell each other after a branch that only some took needs them together again. Vulkan promises that where all of a workgroup
-// came to that branch, and with subgroup_uniform_control_flow where all of the subgroup did.
+// After a branch that only some lanes took, lanes must be together again before they exchange values. Vulkan
+// promises this if the whole workgroup came to that branch and, with subgroup_uniform_control_flow, if the
+// whole subgroup did.
 //
-// Here and elsewhere hot loops test at their end whether to go on: a device that runs branches under a mask, as llvmpipe does, runs
-// the body of a `for` once more than there are items.
+// Here and elsewhere, hot loops test at their end whether to go on: a device that runs branches under a mask,
+// like llvmpipe, runs the body of a `for` once more than there are items.
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_subgroup_uniform_control_flow : require
 #extension GL_KHR_shader_subgroup_basic : require
@@ -22,17 +24,19 @@ uint spread(uint i, uint count) {
     return i < even ? 2 * i : 2 * (i - even) + 1;
 }
 
-// Lanes are counted, since gl_SubgroupSize may state more than a subgroup holds. In uniform control flow only.
+// Lanes are counted, since gl_SubgroupSize may state more than a subgroup holds. In uniform control flow
+// only.
 uint laneCount() { return subgroupBallotBitCount(subgroupBallot(true)); }
 
-// The thread's place in the order in which the scans below sum: by subgroup and lane, which the invocation
+// The thread's place in the order of summation of the scans below: by subgroup and lane, which the invocation
 // index need not follow.
 uint threadIndex() { return gl_SubgroupID * laneCount() + gl_SubgroupInvocationID; }
 
 // One value for each subgroup, of at least four lanes, and one for all.
 shared uint subgroup_sums[kGroupSize / 4 + 1];
 
-// The sum of `value` over the threads before this one; `total` is the sum over all. Every thread must call it.
+// The sum of `value` over the threads before this one; `total` is the sum over all. Every thread must call
+// it.
 uint scanGroup(uint value, out uint total) {
     const uint before_in_subgroup = subgroupExclusiveAdd(value);
     const uint of_subgroup = subgroupAdd(value);
@@ -40,7 +44,7 @@ uint scanGroup(uint value, out uint total) {
     barrier();  // an earlier call may still be reading
     if (subgroupElect()) { subgroup_sums[gl_SubgroupID] = of_subgroup; }
     barrier();
-    // The first subgroup sums the subgroups' sums, as many at a time as it is wide.
+    // The first subgroup sums the subgroups' sums, as many at a time as it has lanes.
     if (gl_SubgroupID == 0) {
         uint carry = 0, first = 0;
         [[dont_unroll]] do {
@@ -58,7 +62,8 @@ uint scanGroup(uint value, out uint total) {
     return subgroup_sums[gl_SubgroupID] + before_in_subgroup;
 }
 
-// The greatest `value` of the threads up to and including this one; `greatest` is that of all. Every thread must call it.
+// The greatest `value` of the threads up to and including this one; `greatest` is that of all. Every thread
+// must call it.
 uint scanGroupMax(uint value, out uint greatest) {
     const uint in_subgroup = subgroupInclusiveMax(value);
     const uint of_subgroup = subgroupMax(value);

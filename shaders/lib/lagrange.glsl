@@ -1,9 +1,11 @@
-// A kernel for pictures that are resampled again and again: Lagrange's polynomial through six samples. Its weights sum to 1, and no
-// frequency comes out stronger than it went in, for any place between the two middle samples.
+// A kernel for pictures that are resampled again and again: Lagrange's polynomial through six samples. Its
+// weights sum to 1, and no frequency comes out stronger than it went in, for any place between the two middle
+// samples.
 
 const uint kTaps = 6;
 
-// Weights of the samples at -2 ... 3 for a place `t` (0 to 1) after sample 0. At t = 0 and 1 they are exactly 0 and 1.
+// Weights of the samples at -2 ... 3 for a place `t` (0 to 1) after sample 0. At t = 0 and 1 they are exactly
+// 0 and 1.
 void lagrangeWeights(float t, out float weights[kTaps]) {
     const float a = t + 2, b = t + 1, c = t, d = t - 1, e = t - 2, f = t - 3;
     const float low = a * b * c, high = d * e * f;
@@ -15,6 +17,7 @@ void lagrangeWeights(float t, out float weights[kTaps]) {
     weights[5] = low * d * e * (1.0 / 120);
 }
 
-// 32 times the amplitude of what alternates in sign over six consecutive samples, which is lost halfway between them.
+// 32 times the amplitude of what alternates in sign over six consecutive samples, which is lost halfway
+// between them.
 const float kFifthDifference[kTaps] = float[kTaps](-1, 5, -10, 10, -5, 1);
 float lostShare(float t) { return 4 * t * (1 - t) / 32; }

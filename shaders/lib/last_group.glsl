@@ -4,7 +4,7 @@
 
 shared uint group_is_last;
 
-// True if all other workgroups of the dispatch are done; `list` counts them and is back at 0 afterwards. To
+// True if all other workgroups of the dispatch are done; `list` counts them and is back at 0 afterwards. Must
 // be called in uniform control flow, once by every workgroup.
 bool isLastGroup(ListStates list);
 // The same for the `groups` workgroups of one run; the list counts 128 / bits runs, and `groups` is less than

@@ -10,13 +10,13 @@ void addError(inout float error, vec3 shown, uvec2 colours, uint at) {
 
 bool isMade() { return kMasked && (!kCoarse || TARGET.is_made != 0); }
 
-// Of sums over a quarter's pixels and channels, in kErrorSteps.
+// From sums over a quarter's pixels and channels, in kErrorSteps.
 vec4 amplitudeOf(vec4 sums) { return sqrt(sums / (kErrorSteps * 3 * kCellSize * kCellSize)); }
 
 uint inSquareSteps(float squares) { return uint(min(squares, kMostSquares) * kSquareSteps + 0.5); }
 
-// Writes what a picture that is made from this one must know about the tile. `sums`: the errors that its
-// quarters turned out to have had; `lost`: the amplitude that a coarse tile lacks.
+// Writes what a picture made from this one must know about the tile. `sums`: the errors that its quarters
+// turned out to have; `lost`: the amplitude that a coarse tile lacks.
 void leaveTile(uint tile, uint cost, vec4 sums, float lost) {
     const vec4 amplitude = isMade() ? amplitudeOf(sums) : vec4(0);
     PastTiles past_tiles = PastTiles(TARGET.past_tiles);
@@ -42,7 +42,7 @@ bool isMeasured(uint tile) {
     return measured;
 }
 
-// What its pixels have found: its error or, if they are twice as wide, their loss.
+// What its pixels have found: its error or, with pixels twice as wide, their loss.
 void leaveFound(uint tile, uint cost, vec4 sums) {
     if (kMeasures && is_wider) {
         atomicAdd(TARGET.warp_counters.wider_squares, inSquareSteps(dot(sums, vec4(1)) / kErrorSteps) * frames_waited);

@@ -1,12 +1,12 @@
 // The expected error of a pixel that is reprojected. For resample.
 
 // The uncertainty of a pixel's inverse depth, as a variance: the pixel blends several depths, and may have
-// one of its neighbours'.
+// that of one of its neighbours.
 float uncertaintyOf(uint row, uint x, uint width, Resolved resolved) {
     const float own = kSpreadWeight * resolved.inverse_depth;
     float step = 0;
     [[unroll]] for (uint side = 0; side < 2; ++side) {
-        const uint beside = x + 2 * side - 1;  // beyond either end: no column
+        const uint beside = x + 2 * side - 1;  // no column beyond either end
         const uint arrival = beside < width ? arrivalAt(row, beside) : 0;
         if (arrival != 0) { step = max(step, abs(inverseDepthOf(arrival) - resolved.inverse_depth)); }
     }
@@ -14,7 +14,7 @@ float uncertaintyOf(uint row, uint x, uint width, Resolved resolved) {
 }
 
 // The expected squared error of a hole's pixel, which repeats what is `repeated_px` away: hidden content is
-// expected to differ from that as much as the content seen equally far on the other side does.
+// expected to differ from that as much as the content at the same distance on the other side does.
 float holeError(WarpView warp, vec2 source_px, int repeated_px) {
     const ivec2 last = ivec2(warp.size_px) - 1;
     const ivec2 source = ivec2(floor(clamp(source_px, vec2(-1e6), vec2(1e6))));

@@ -1,9 +1,12 @@
-// A pixel on its way from one eye to the other, in a word. Of two that meet in a pixel the greater one stays: the nearer.
+// A pixel on its way from one eye to the other, in a word. If two meet in a pixel, the greater word stays:
+// the nearer pixel.
 //
-//   31..6  one more than the upper 26 of the 31 bits of its inverse depth; 0: nothing is there, or it goes nowhere
+//   31..6  one more than the upper 26 of the 31 bits of its inverse depth; 0: nothing is there, or it goes
+//          nowhere
 //   5      it landed in this pixel; otherwise it lies between two that did
-//   4..0   how far its inverse depth spreads, as the standard deviation's share of the mean: 2^((code - 1)/2 - 13), or nothing;
-//          where colours are copied, which pixel it is: bit 0 of its column, and in the next place that of its row
+//   4..0   how far its inverse depth spreads, as the standard deviation's share of the mean:
+//          2^((code - 1)/2 - 13), or nothing; where colours are copied, which pixel it is: bit 0 of its
+//          column, and in the next place that of its row
 //
 // Rounding costs up to 2^-19 of the inverse depth: 1e-4 px where the eyes see a point 50 px apart.
 

@@ -1,13 +1,14 @@
 // Rows that are made after those above and below them: sampled at the places of the row above, or as the mean
 // of both. For resample.
 
-// Where a pixel was sampled, for the one below it in an odd row; stored where the colour of that one is going to be.
+// Where a pixel was sampled, for the pixel below it in an odd row; stored where that pixel's colour is going
+// to be.
 //
 //   31..3  its column in the source, in pixels, with 15 bits of fraction
 // 1: it repeats a neighbour, in the row above
 //   1..0   the class
 //
-// Followed, where depths are wanted, by a second word: the inverse depth.
+// If depths are requested, a second word follows: the inverse depth.
 const float kPlaceSteps = 32768;
 const uint kRepeats = 4;
 
@@ -22,8 +23,8 @@ void keepPlace(WarpView warp, uvec2 at, Resolved resolved, float place_px) {
     if (keepsDepths()) { placeWords().at[word + 1] = floatBitsToUint(resolved.inverse_depth); }
 }
 
-// Writes a pixel of an odd row. A neighbour is repeated as the row above shows it, since its depths found the
-// neighbour.
+// Writes a pixel of an odd row. A neighbour is repeated as the row above shows it, since that row's depths
+// chose the neighbour.
 float sampleBelow(WarpView warp, uvec2 at, out uint pixel_class) {
     const uint word = placeAt(warp, at), place = placeWords().at[word];
     pixel_class = place & 3;
@@ -40,7 +41,7 @@ bool mayBeMean(WarpView warp, uint y) {
     return !predictsErrors() && between && isThere(uvec2(pass.tile_errors));
 }
 
-// The rows above and below this one are even ones, finished before any odd row is begun.
+// The rows above and below this one are even, and finished before any odd row is begun.
 void putMeans(uint y, uint width, uint tiles) {
     for (uint item = gl_LocalInvocationIndex; item < mean_count * kTileSize; item += kWarpGroup) {
         const uint tile = moved_tiles[kMostTiles - 1 - item / kTileSize], x = tile * kTileSize + item % kTileSize;

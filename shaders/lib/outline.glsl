@@ -1,16 +1,18 @@
-// The part of the screen that a splat covers: the outline rho < cut of its disc, a conic, and the circle of the low-pass around its
-// projected centre. Both are convex, so that the pixels they cover in a band of rows lie between two bounds.
+// The part of the screen that a splat covers: the outline rho < cut of its disc, a conic, and the circle of
+// the low-pass around its projected centre. Both are convex, so the pixels that they cover in a band of rows
+// lie between two bounds.
 //
-// Offsets y from the centre, s = A x + B y (= u/z), h = e + gamma y (1/z at s = 0), phi = f/A, gamma = g - phi B: the outline
-// s^2 + D^2 y^2 = cut (h + phi s)^2 has for each y the ends
+// Offsets y from the centre, s = A x + B y (= u/z), h = e + gamma y (1/z at s = 0), phi = f/A, gamma = g -
+// phi B: the outline s^2 + D^2 y^2 = cut (h + phi s)^2 has for each y the ends
 //   s = (cut phi h -+ S) / kappa,   S^2 = cut h^2 - kappa D^2 y^2,   kappa = 1 - cut phi^2.
-// S^2 is a parabola R^2 - m (y - y_c)^2 in y; x = (s - B y)/A is greatest where dS/dy = P := kappa B - cut phi gamma, which is
-// y_c - P R / sqrt(m (m + P^2)), and least at y_c + the same. All is `precise`: two passes must count the same tiles.
+// S^2 is a parabola R^2 - m (y - y_c)^2 in y; x = (s - B y)/A is greatest where dS/dy = P := kappa B - cut
+// phi gamma, which is y_c - P R / sqrt(m (m + P^2)), and least at y_c + the same. All is `precise`: two
+// passes must count the same tiles.
 
 struct Outline {
     vec2 centre_px;
-    float circle_px;  // radius of the low-pass, 0: none
-    bool ellipse;     // false: the disc reaches the eye's plane, or there is nothing of it
+    float circle_px;  // radius of the low-pass; 0: none
+    bool ellipse;     // false: the disc reaches the eye's plane, or nothing of it is visible
     float a, b, d, e, phi, gamma, kappa, cut;
     vec2 rows;          // y of the lowest and highest point, offsets
     float y_leftmost, y_rightmost;
@@ -78,7 +80,8 @@ ivec2 unitsBetween(vec2 bounds_px, uint size, uint count) {
     if (!(first_pixel <= last_pixel)) { return ivec2(0, 0); }
     precise const vec2 units = vec2(floor(first_pixel / float(size)), floor(last_pixel / float(size)) + 1);
     const vec2 clipped = clamp(units, vec2(0), vec2(count));
-    return clamp(ivec2(clipped), ivec2(0), ivec2(count));  // also for NaN, of which the first may make anything
+    // Also for NaN, of which the clamp above may make anything.
+    return clamp(ivec2(clipped), ivec2(0), ivec2(count));
 }
 
 // The tiles of a row that a splat meets, within its box of tiles; all of the box's for a disc that reaches
@@ -94,7 +97,7 @@ ivec2 tilesInRow(Outline o, uint row, ivec4 tile_box) {
 // `low_pass`: as in EyeView.
 Outline outlineOfProjected(ProjectedSplat p, float low_pass) {
     const float cut = (kLog2Of255 - negativeLog2Opacity(p)) / kLog2PerRho;
-    if (kSplatKind != kDiscs) {  // an ellipse around its centre, if there is anything of it
+    if (kSplatKind != kDiscs) {  // an ellipse around its centre, if anything of it is visible
         Outline o = outlineOf(p.reference_px, p.plane_from_pixel, vec2(0), 1, cut, low_pass);
         o.circle_px = 0;
         o.ellipse = o.ellipse && cut > 0 && hasReference(p);

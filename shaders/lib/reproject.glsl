@@ -23,9 +23,9 @@ bool isNearHidden(WarpView warp, uvec2 pixel) {
            isHiddenAt(warp, pass.shown_mask, vec2(low.x, high.y)) || isHiddenAt(warp, pass.shown_mask, vec2(high.x, low.y));
 }
 
-// A pixel of the source as the target sees it. One that blends two depths moves with what is in front: with
-// the nearest of itself and its neighbours in the row. The rows above and below may not exist, or may already
-// be colours of the target.
+// A pixel of the source as the target sees it. A pixel that blends two depths moves with what is in front:
+// with the nearest of itself and its neighbours in the row. The rows above and below may not exist, or may
+// already be colours of the target.
 Moved moveSource(WarpView warp, uvec2 pixel) {
     const uint at = pixel.y * warp.row_words + pixel.x, moving = pass.moving.at[at];
     uint front = moving;

@@ -69,7 +69,8 @@ int arrivedAfter(uint x, uint width) {
     return bits == 0 ? -1 : word * 32 + findLSB(bits);
 }
 
-// Where a pixel's colour comes from: the source's place of the pixel in `column` of its row, at this depth.
+// Where a pixel's colour comes from: the place in the source of the pixel in `column` of its row, at this
+// depth.
 struct Resolved {
     uint column;
     uint pixel_class;

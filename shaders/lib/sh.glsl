@@ -1,4 +1,5 @@
-// Colour of a splat from spherical harmonics, bands 0 to kShDegree (real SH with the signs of 3DGS, Kerbl et al. 2023). Needs lib/splat.glsl.
+// Colour of a splat from spherical harmonics, bands 0 to kShDegree (real SH with the signs of 3DGS, Kerbl et
+// al. 2023). Needs lib/splat.glsl.
 
 layout(constant_id = 0) const uint kShDegree = 0;
 // Half floats of bands 1 to kShDegree, and the words they take.

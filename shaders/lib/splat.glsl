@@ -1,9 +1,9 @@
-// A splat from the scene to the camera: loading, and the ray-disc intersection of 2DGS (Huang et al. 2024, section 4.2) in the form
-// that ProjectedSplat holds. Needs kSplatKind and kPlaced.
+// A splat from the scene to the camera: loading, and the ray-disc intersection of 2DGS (Huang et al. 2024,
+// section 4.2) in the form that ProjectedSplat holds. Needs kSplatKind and kPlaced.
 //
-// A disc point is P(u, v) = u a + v b + c with a = s_u t_u, b = s_v t_v, c in camera space. A pixel's ray is z r with
-// r = ((x - cx)/fx, (y - cy)/fy, 1). From u a + v b + c = z r follows (u, v, 1)/z = [a b c]^-1 r, and with t_w = t_u x t_v and
-// delta = t_w . c the rows of that inverse are
+// A disc point is P(u, v) = u a + v b + c with a = s_u t_u, b = s_v t_v, c in camera space. A pixel's ray is
+// z r with r = ((x - cx)/fx, (y - cy)/fy, 1). From u a + v b + c = z r follows (u, v, 1)/z = [a b c]^-1 r,
+// and with t_w = t_u x t_v and delta = t_w . c the rows of that inverse are
 //   u/z = (t_v x c) . r / (s_u delta),   v/z = (c x t_u) . r / (s_v delta),   1/z = t_w . r / delta:
 // linear in the pixel, and free of the cancellation that det(a, b, c) has for tiny or long discs.
 
@@ -81,7 +81,7 @@ CameraSplat loadWorldSplat(SceneChunks chunks, SplatPlace at) {
 }
 
 // From one place in the world, in two floats, to another. Both may be close together and far from the origin:
-// in this order the first difference is exact if it is small compared with its terms.
+// in this order, the first difference is exact if it is small compared with its terms.
 vec3 fromPlace(vec3 from, vec3 from_low, vec3 position) {
     precise const vec3 difference = (position - from) - from_low;
     return difference;
@@ -102,7 +102,8 @@ float cutOf(float opacity) { return opacity >= kMinAlpha ? (log2(opacity) + kLog
 
 // Opacity as -log2, so that alpha = exp2(-(this + kLog2PerRho rho)), with the sign as a flag.
 float packOpacity(float opacity, bool has_reference) {
-    const float negative_log2 = abs(log2(max(opacity, 1e-37)));  // an opacity is at most 1, and dimmed at most to 0
+    // An opacity is at most 1, and at least 0 after dimming.
+    const float negative_log2 = abs(log2(max(opacity, 1e-37)));
     return has_reference ? negative_log2 : uintBitsToFloat(floatBitsToUint(negative_log2) | 0x80000000u);
 }
 bool hasReference(ProjectedSplat splat) { return (floatBitsToUint(splat.opacity) & 0x80000000u) == 0; }

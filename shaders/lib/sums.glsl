@@ -1,11 +1,11 @@
 // Sums what each workgroup counted. For workgroups of kGroupSize; after lib/group.glsl, lib/last_group.glsl
-// and lib/list.glsl. The last workgroup does it. If there are many counts it takes two steps, by runs of
-// counts (sumRunLength), each summed by the last workgroup of its run.
+// and lib/list.glsl. The last workgroup does it. Many counts take two steps, by runs of counts
+// (sumRunLength), each summed by the last workgroup of its run.
 
 const uint kSumsPerThread = 8;
 
-// Replaces the values from `step_begin` to `end` by the sums of those before them and returns the sum of all;
-// 0xffffffff if that is more than kMaxItems. To be called by all threads of one workgroup.
+// Replaces the values from `step_begin` to `end` by the sums of those before them and returns the sum of all,
+// or 0xffffffff if that exceeds kMaxItems. All threads of one workgroup must call it.
 uint sumRange(CoherentUints sums, uint step_begin, uint end) {
     const uint thread = threadIndex();
     uint before_step = 0;
@@ -41,8 +41,8 @@ uint sumRange(CoherentUints sums, uint step_begin, uint end) {
     return fits ? before_step : 0xffffffffu;
 }
 
-// Makes `result` a list as long as the sum of the first `count` values, empty if that is more than
-// `capacity`. To be called by all threads of one workgroup.
+// Makes `result` a list as long as the sum of the first `count` values, or an empty one if that exceeds
+// `capacity`. All threads of one workgroup must call it.
 void sumUpAtOnce(CoherentUints sums, uint count, ListStates result, uint capacity) {
     const uint total = sumRange(sums, 0, count);
     if (gl_LocalInvocationIndex == 0) { result.at[0] = makeList(total, capacity); }

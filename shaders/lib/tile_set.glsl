@@ -1,14 +1,15 @@
-// The tiles that a splat meets, in 64 bits: where its box begins, and a bit for each tile that it meets (under a mask: of the mask) if
-// the box has at most 4x4; otherwise where the box ends, half open, and the outline has to tell again which rows meet which tiles.
+// The tiles that a splat meets, in 64 bits: where its box begins and, if the box has at most 4x4 tiles, a bit
+// for each tile that it meets (under a mask: only tiles of the mask). Otherwise where the box ends, half
+// open; the outline must then tell again which rows meet which tiles.
 //
-//   x0 | y0 << 16,   x1 | y1 << 16                                     a large box: tile coordinates stay below 2^11
-//   x0 | y0 << 16,   1 << 31 | 1 << (column + 4 row) for each tile          a small one
+//   x0 | y0 << 16,   x1 | y1 << 16                                  a large box; coordinates are below 2^11
+//   x0 | y0 << 16,   1 << 31 | 1 << (column + 4 row) for each tile  a small one
 
 const int kSmallBox = 4;
 
 bool isSmallBox(ivec4 box) { return all(lessThanEqual(box.zw - box.xy, ivec2(kSmallBox))); }
 
-// A bit for each tile of a row, from x to y (exclusive) within the box; of no use if the box is large.
+// A bit for each tile of a row, from x to y (exclusive) within the box; meaningless if the box is large.
 uint smallRow(ivec2 in_row) {
     const ivec2 clipped = clamp(in_row, ivec2(0), ivec2(kSmallBox));
     return clipped.y > clipped.x ? (1u << clipped.y) - (1u << clipped.x) : 0;
@@ -24,6 +25,6 @@ ivec2 firstTile(uvec2 tile_set) { return ivec2(tile_set.x & 0xffffu, tile_set.x 
 
 ivec4 largeBox(uvec2 tile_set) { return ivec4(firstTile(tile_set), tile_set.y & 0xffffu, tile_set.y >> 16); }
 
-// The tiles of a small set, a bit each, and where the tile of a bit lies.
+// The tiles of a small set, one bit each, and where the tile of a bit lies.
 uint smallTiles(uvec2 tile_set) { return isSmall(tile_set) ? tile_set.y & 0xffffu : 0; }
 ivec2 tileOfBit(uvec2 tile_set, int bit) { return firstTile(tile_set) + ivec2(bit % kSmallBox, bit / kSmallBox); }

@@ -9,9 +9,9 @@ bool isHiddenAt(WarpView warp, Uints shown_mask, vec2 place_px) {
 }
 
 // True if a corner of the tile is more than a gap outside the source even if everything is infinitely far
-// (only rendering can fill so much of a headset's eye, whose view is wider outwards than inwards), or where
-// the source's lens hides what the tile would need. The paper's borders cover the first case but not the
-// second: then `beyond_counts` is false.
+// (only rendering can fill so much of a headset's eye, whose view is wider outwards than inwards), or if the
+// source's lens hides what the tile would need. The paper's borders cover the first case but not the second:
+// then `beyond_counts` is false.
 bool isUnseen(WarpView warp, Uints shown_mask, uint tile, bool beyond_counts) {
     const uvec2 first = uvec2(tile % warp.size_tiles.x, tile / warp.size_tiles.x) * kTileSize;
     const uvec2 last = min(first + kTileSize, warp.size_px) - 1;

@@ -2,7 +2,7 @@
 
 #include "lib/move_pixel.glsl"
 
-// Pixels move along their row alone and keep their depth; see EyeRelation.
+// Pixels move only along their row and keep their depth; see EyeRelation.
 layout(constant_id = 0) const bool kRectified = false;
 
 // By how much; third component: depth there over depth here; not positive behind the other eye.

@@ -1,6 +1,7 @@
-// present: an eye's picture in the format of the headset's swapchain image: 8 bits per channel and, on request, its depth. Trained values
-// are display-encoded already, as are the bytes of an sRGB image. A program's own picture may lie behind it, and before it where the
-// program's depth says so: by the depth that stands for all splats of a pixel, unless each was tested by itself.
+// present: an eye's picture in the format of the headset's swapchain image: 8 bits per channel and, on
+// request, its depth. Trained values are display-encoded already, as are the bytes of an sRGB image. A
+// program's own picture may lie behind it, and in front of it where the program's depth says so: compared
+// with the depth that stands for all splats of a pixel, unless each was tested by itself.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -21,7 +22,7 @@ vec3 clampToDisplay(vec3 colour) { return mix(vec3(0), min(colour, vec3(1)), gre
 // The share is kTintShare of engine/picture/roi_picture.h and the colours are those of its tintOf.
 vec3 tint(vec3 colour, uvec2 at, uint row_tiles) {
     const uint kind = pass.tile_kinds.at[(at.y / kTileSize) * row_tiles + at.x / kTileSize];
-    if (kind == kTileHidden) { return colour; }  // nothing says what made its pixels
+    if (kind == kTileHidden) { return colour; }  // nothing says how its pixels were made
     const uint pixel_class = isThere(uvec2(pass.pixel_classes)) ? (pass.pixel_classes.at[at.y * row_tiles + at.x / kTileSize] >> (2 * (at.x % kTileSize))) & 3u : kCovered;
     vec3 shade;
     if (kind == kTileEdge) {
@@ -97,7 +98,8 @@ void main() {
     const float mesh_depth = has_mesh ? pass.mesh_depths.at[i] : 0;
     if (has_mesh && pass.is_cut == 0 && !(inverse_depth > (mesh_depth - pass.depth_offset) / pass.depth_scale)) { pixel = vec4(0); }
     vec3 colour = clampToDisplay(pixel.rgb);
-    // Colours were multiplied by alpha as display-encoded values, but headsets blend light: alpha is divided out and multiplied back in.
+    // Colours were multiplied by alpha as display-encoded values, but headsets blend light: alpha is divided
+    // out and multiplied back in.
     const bool see_through = pass.see_through != 0, linear = pass.linear != 0;
     const float alpha = see_through ? (pixel.a > 0 ? min(pixel.a, 1) : 0) : 1;
     float left_alpha = alpha;

@@ -17,7 +17,8 @@ BINOSPLAT_CONSTANT uint kCellsPerTile = 4;
 // that says which cells it meets.
 BINOSPLAT_CONSTANT uint kBatchSize = 128;
 
-// Threads per workgroup where each thread handles one item: as many as every device supports, and one subgroup on the widest.
+// Threads per workgroup where each thread handles one item: as many as every device supports, and one
+// subgroup on the widest.
 BINOSPLAT_CONSTANT uint kGroupSize = 128;
 // Splats of the scene that a workgroup culls or compacts, and items of a list that one projects or bins.
 // Several per thread: the last workgroup then has few counts to sum, and the eye is loaded into shared memory
@@ -39,18 +40,18 @@ BINOSPLAT_CONSTANT uint kSortRun = 16;
 BINOSPLAT_CONSTANT uint kMaxSortRuns = kMaxSortBlocks / kSortRun;
 BINOSPLAT_CONSTANT uint kSortSubgroups = 4;
 
-// The last workgroup sums the counts of all, 1024 at a time. Beyond four times that, runs of them are summed
-// beside each other first: as many runs as a list has counters of kSumRunBits bits,
-// ListState::run_groups_done.
+// The last workgroup sums the counts of all, 1024 at a time. Beyond four times that, runs of them are first
+// summed side by side: as many runs as a list has counters of kSumRunBits bits, ListState::run_groups_done.
 BINOSPLAT_CONSTANT uint kMostInOneRun = 4096;
 BINOSPLAT_CONSTANT uint kSumRuns = 8;
 BINOSPLAT_CONSTANT uint kSumRunBits = 16;
-// For cull_pages, whose last workgroup also lists the pages, a word of 32 per thread: pages in workgroups of
-// kGroupSize.
+// For cull_pages, whose last workgroup also lists the pages, with a word of 32 per thread: pages in
+// workgroups of kGroupSize.
 BINOSPLAT_CONSTANT uint kMostPageGroupsInOneRun = 32;
 
-// Keys of depths and distances, of three rounds: a float for every one between half the near plane and 2^13 times the near plane; nearer
-// (and behind the eye) 2^kNearKeyShift floats share a key, farther away 2^kFarKeyShift.
+// Keys of depths and distances, for three rounds: each float between half the near plane and 2^13 times the
+// near plane has a key of its own. Nearer (and behind the eye) 2^kNearKeyShift floats share a key, farther
+// away 2^kFarKeyShift.
 BINOSPLAT_CONSTANT uint kDepthKeyBits = 27;
 BINOSPLAT_CONSTANT uint kExactDepthKeys = 14 << 23;
 BINOSPLAT_CONSTANT uint kNearKeyShift = 10;
@@ -60,7 +61,7 @@ BINOSPLAT_CONSTANT uint kFarKeyShift = 8;
 BINOSPLAT_CONSTANT uint kBinLargeSize = 128;
 BINOSPLAT_CONSTANT uint kBinLargeGroups = 256;
 
-// newcomers: visible splats that a workgroup examines; those that only one eye sees are few.
+// newcomers: visible splats that a workgroup examines; few of them are seen by only one eye.
 BINOSPLAT_CONSTANT uint kNewcomersBlock = 1024;
 
 // No list is longer: SPIR-V treats array indices as signed.
@@ -72,15 +73,18 @@ BINOSPLAT_CONSTANT uint kMaxGroupsX = 32768;
 // A scene's splats are discs (2DGS) or 3D Gaussians.
 BINOSPLAT_CONSTANT uint kDiscs = 0;
 BINOSPLAT_CONSTANT uint kGaussians = 1;
-// The low-pass of 3DGS: this much variance is added on the screen, in px^2 (Kerbl et al. 2023, the reference implementation).
+// The low-pass of 3DGS: this much variance is added on the screen, in px^2 (Kerbl et al. 2023, the reference
+// implementation).
 BINOSPLAT_CONSTANT float kScreenVariance = 0.3f;
 // The projection's derivative is taken within the picture enlarged by this fraction of its width and height
 // on each side: near the eye the linear projection breaks down (the same reference implementation).
 BINOSPLAT_CONSTANT float kDerivativeBorder = 0.15f;
-// The depth of a 3D Gaussian at a pixel is a linear guess from its centre; it stays within this ratio of the centre's.
+// The depth of a 3D Gaussian at a pixel is extrapolated linearly from its centre; it stays within this ratio
+// of the centre's.
 BINOSPLAT_CONSTANT float kDepthReach = 2.0f;
-// The axes of a 3D Gaussian are cut off at this length on the screen, in px, so that their squares and the areas between them stay
-// finite: the visible part of one that long is equally opaque everywhere along it.
+// The axes of a 3D Gaussian are cut off at this length on the screen, in px, so that their squares and the
+// areas between them stay finite: if an axis is that long, the visible part is equally opaque everywhere
+// along it.
 BINOSPLAT_CONSTANT float kMaxSigma = 1e15f;
 
 // Alpha is never above this, and hits below 1/255 are skipped; blending stops before the transmittance would
@@ -105,10 +109,12 @@ BINOSPLAT_CONSTANT float kLowPass = 2.0f;
 BINOSPLAT_CONSTANT float kEdgeOnSine = 3e-7f;
 // plane_from_pixel is cut off here, at a disc of 1e-15 px, so that its squares stay finite.
 BINOSPLAT_CONSTANT float kMaxPlaneSlope = 1e15f;
-// Outlines are widened by this much, in pixels: a hundred times the rounding of a coordinate in a 2048 px image.
+// Outlines are widened by this many pixels: a hundred times the rounding of a coordinate in an image of 2048
+// px.
 BINOSPLAT_CONSTANT float kOutlinePadding = 1.0f / 64.0f;
 
-// The depth that the reprojection takes for a pixel: D as the paper writes it, D/A, or A/I, from the mean disparity.
+// The depth that the reprojection takes for a pixel: D as the paper writes it, D/A, or A/I, from the mean
+// disparity.
 BINOSPLAT_CONSTANT uint kDepthSum = 0;
 BINOSPLAT_CONSTANT uint kDepthMean = 1;
 BINOSPLAT_CONSTANT uint kDepthInverse = 2;
@@ -144,8 +150,8 @@ BINOSPLAT_CONSTANT uint kPriceBins = 1024;
 BINOSPLAT_CONSTANT uint kOverBin = kPriceBins / 2;
 BINOSPLAT_CONSTANT uint kNewBin = kPriceBins - 1;
 BINOSPLAT_CONSTANT float kNewShare = 0.25f;
-// The share of an eye's work for tiles within the bound: expectations are not exact, and this way every tile
-// gets its turn.
+// The share of an eye's work for tiles within the bound: expectations are not exact, and this gives every
+// tile its turn.
 BINOSPLAT_CONSTANT float kWithinBound = 0.05f;
 // The highest cost of a tile in the price list, in pairs: ten bits of the word hold the bin, and one says
 // that the tile would be in a higher bin if its error were seen whole.
@@ -167,14 +173,15 @@ BINOSPLAT_CONSTANT float kLeastSeenError = 0.0256f;
 BINOSPLAT_CONSTANT float kCoarseShare = 0.25f;
 BINOSPLAT_CONSTANT uint kSeenCoarsely = 0xffffffffu;
 // A coarse tile is blended as 8x8 samples. The outermost ones are in the middles of its outermost pixels, so
-// that none must be extrapolated and tiles fit each other; the others are spaced evenly between them.
+// none must be extrapolated and tiles fit each other; the others are evenly spaced between them.
 BINOSPLAT_CONSTANT float kSamplesApart = float(kTileSize - 1) / float(kCellSize - 1);
 // Splats of such a tile that are loaded at a time.
 BINOSPLAT_CONSTANT uint kCoarseBatch = kBatchSize / kCellsPerTile;
 // It is expected to have lost this fraction of the second differences of its samples, squared and summed over
 // both axes and all channels. Measured on 2DGS scenes as headsets show them: docs/tried.md.
 BINOSPLAT_CONSTANT float kCoarseLoss = 0.3f;
-// The spread of a moving pixel's inverse depth is stored in 31 steps of half an octave, the first at 2^-13 of the inverse depth.
+// The spread of a moving pixel's inverse depth is stored in 31 steps of half an octave, the first at 2^-13 of
+// the inverse depth.
 BINOSPLAT_CONSTANT uint kSpreadCodes = 31;
 BINOSPLAT_CONSTANT float kLeastSpreadLog2 = -13.0f;
 
@@ -198,7 +205,8 @@ BINOSPLAT_CONSTANT uint kDoesAny = 3;
 // Invocations of a workgroup in the passes of warp and choose: as many as every device allows.
 BINOSPLAT_CONSTANT uint kWarpGroup = 128;
 
-// warp_past: the block of pixels that a thread makes: 9x13 source pixels are read for 4x8. A workgroup makes the blocks of a row of tiles.
+// warp_past: the block of pixels that a thread makes: 9x13 source pixels are read for 4x8. A workgroup makes
+// the blocks of a row of tiles.
 BINOSPLAT_CONSTANT uint kPastColumns = 4;
 BINOSPLAT_CONSTANT uint kPastRows = 8;
 BINOSPLAT_CONSTANT uint kPastGroup = 64;
@@ -206,14 +214,16 @@ BINOSPLAT_CONSTANT uint kPastTiles = kPastGroup * kPastColumns * kPastRows / (kT
 // Depths are examined this far around a block: within a frame, a head's motion shifts near content against
 // far content by less than that.
 BINOSPLAT_CONSTANT uint kPastBorder = 2;
-// Farther away, occluders are searched for where the near plane moves that far: along the path they would take, in steps of this.
+// Farther away, occluders are searched for along the path they would take where the near plane moves that
+// far, in steps of this.
 BINOSPLAT_CONSTANT float kPastSearchStep = 8.0f;
 BINOSPLAT_CONSTANT uint kPastMostSearched = 48;
-// How far the places of a block's pixels may deviate from a common shift, and how much of that its depths may
-// account for, in pixels.
+// How far the places of a block's pixels may deviate from a common shift, and how much of that may come from
+// its depths, in pixels.
 BINOSPLAT_CONSTANT float kPastSmooth = 0.0625f;
 BINOSPLAT_CONSTANT float kPastSameDepth = 0.25f;
-// A pixel of the past that lands this close to where it is wanted is what is seen there (half a pixel, and rounding).
+// A pixel of the past that lands this close to the wanted place is what is seen there (half a pixel, and
+// rounding).
 BINOSPLAT_CONSTANT float kPastAgrees = 0.51f;
 BINOSPLAT_CONSTANT uint kPastSteps = 3;
 // The taps of a place reach this far from its pixel.
@@ -234,10 +244,11 @@ BINOSPLAT_CONSTANT float kNewError = 0.5f;
 // The least squared error that a warped pixel adds, (1/4000)^2 in three channels, so that every tile gets its
 // turn.
 BINOSPLAT_CONSTANT float kLeastGrowth = 1.9e-7f;
-// What the blocks of a quarter bring along from the history, amplitudes up to 1 and their squares, is summed in steps of 2^-30.
+// What the blocks of a quarter bring along from the history, amplitudes up to 1 and their squares, is summed
+// in steps of 2^-30.
 BINOSPLAT_CONSTANT float kCarriedSteps = 1073741824.0f;
 // The weight of the measured growth of a tile's error, from when it was last rendered; the rest is the
-// model's. A quarter of a tile in which much was not seen grows by the model alone.
+// model's. A quarter of a tile of which much was not seen grows only by the model.
 BINOSPLAT_CONSTANT float kMeasuredShare = 0.5f;
 BINOSPLAT_CONSTANT float kUnseenGrowth = 0.05f;
 
@@ -260,12 +271,13 @@ BINOSPLAT_CONSTANT float kMaxPixelError = 4.0f;
 // tiles fits.
 BINOSPLAT_CONSTANT float kSquareSteps = 1024.0f;
 BINOSPLAT_CONSTANT float kMostSquares = 48.0f;
-// In each frame, one tile in this many is measured for what pixels twice as wide would lose, other tiles in
-// the next frame. This alone predicts a picture of half the size within half a dB on most views:
+// In each frame, one tile in this many is measured for what pixels twice as wide would lose; in the next
+// frame, others are. This alone predicts a picture of half the size within half a dB on most views:
 // docs/tried.md.
 BINOSPLAT_CONSTANT uint kMeasuredParts = 64;
 BINOSPLAT_CONSTANT float kWiderLowPass = 0.25f;
-BINOSPLAT_CONSTANT uint kMostWaited = 32;  // frames, by which a tile's loss counts, as others like it were not rendered
+// Frames; beyond them, longer waiting no longer raises a tile's weight.
+BINOSPLAT_CONSTANT uint kMostWaited = 32;
 // The least error of a hole's pixel, since hidden content need not look like what is next to it: (1/100)^2,
 // so little that it only decides between tiles that are otherwise equal.
 BINOSPLAT_CONSTANT float kLeastHoleError = 1e-4f;

@@ -1,4 +1,4 @@
-// The passes of a frame, in frame order: for each the struct of its push constants, that is what it reads and
+// The passes of a frame, in frame order, each with the struct of its push constants: what it reads and
 // writes.
 #ifndef BINOSPLAT_SHADERS_SHARED_PASSES_H
 #define BINOSPLAT_SHADERS_SHARED_PASSES_H
@@ -13,8 +13,9 @@ struct CullPagesPass {
     EyeViews eyes;
     CoherentUints page_bits;     // out: one bit per page
     CoherentUints word_offsets;  // out: visible pages before each word of page_bits
-    CoherentUints page_list;     // out: the visible pages, ascending, and what lib/block.glsl needs to find them
-    ListStates visible_pages;    // out; per_item: one workgroup per page
+    // out: the visible pages, ascending, and what lib/block.glsl needs to find them
+    CoherentUints page_list;
+    ListStates visible_pages;  // out; per_item: one workgroup per page
     uint page_count;
     uint first_eye;
     uint eye_count;
@@ -24,7 +25,8 @@ struct CullPagesPass {
 struct CullPass {
     SceneChunks chunks;
     EyeViews eyes;
-    Uints page_list;             // in a scene of pages: the blocks of kCullBlock splats to examine; otherwise all are
+    // In a scene of pages: the blocks of kCullBlock splats to examine; otherwise all are.
+    Uints page_list;
     ListStates visible_pages;    // and how many there are
     Uints visible_bits;          // out: one bit per splat of these blocks
     CoherentUints group_counts;  // out: visible splats before each block
@@ -34,12 +36,13 @@ struct CullPass {
     uint first_eye;
     uint eye_count;
     uint capacity;          // of the list
-    uint at_once;           // how many targets are rendered from it at once
+    uint at_once;           // how many targets are rendered from it at the same time
     Uints first_tile_mask;  // if only the chosen tiles of each eye count: lib/tile_mask.glsl
     Uints last_tile_mask;
 };
 
-// compact: the visible splats in the scene's order, with the depth or the distance of their centres as sort keys.
+// compact: the visible splats in the scene's order, with the depth or the distance of their centres as sort
+// keys.
 struct CompactPass {
     SceneChunks chunks;
     EyeViews eyes;
@@ -53,7 +56,7 @@ struct CompactPass {
     uint splat_count;
     uint chunk_bits;
     uint order_eye;    // the eye whose depths are the keys
-    uint by_distance;  // 1: distances from `middle`, between the eyes, are
+    uint by_distance;  // 1: the keys are distances from `middle`, between the eyes
     Place middle;
 };
 
@@ -63,14 +66,15 @@ struct ProjectPass {
     EyeViews eyes;  // of the targets, from the first on
     Uints order;    // indices into the scene, front to back
     ListStates visible;
-    ProjectedSplats splats;    // out
-    UVec2s tile_sets;          // out: lib/tile_set.glsl
-    Uints tile_counts;         // out
-    CoherentUints group_sums;  // out: tiles before each block of kListBlock splats, those of one target after the other
-    ListStates pairs;          // out: one for each tile that a splat meets
+    ProjectedSplats splats;  // out
+    UVec2s tile_sets;        // out: lib/tile_set.glsl
+    Uints tile_counts;       // out
+    // out: tiles before each block of kListBlock splats; one target's blocks after the other's
+    CoherentUints group_sums;
+    ListStates pairs;  // out: one for each tile that a splat meets
     TargetStates targets;
     uint chunk_bits;
-    uint splats_apart;  // of one target's splats, sets and counts to the next one's
+    uint splats_apart;  // from one target's splats, sets and counts to the next one's
     uint capacity;      // of the pairs
     uint is_dimmed;     // 1: Gaussians that were trained with an opacity that the low-pass dims
 };
@@ -84,17 +88,18 @@ struct BinPass {
     Uints group_sums;
     ListStates visible;
     ListStates pairs;
-    Uints tiles;         // out
-    Uints ranks;         // out: indices into `splats`
-    Uints large_splats;  // out of bin, in no order: what is left to bin_large; of each target where its pairs begin
+    Uints tiles;  // out
+    Uints ranks;  // out: indices into `splats`
+    // out of bin, unordered: what is left for bin_large; for each target where its pairs begin
+    Uints large_splats;
     Uints large_begins;  // out of bin: where the pairs of each begin
     TargetStates targets;
     uint splats_apart;  // as in ProjectPass
     uint all_tiles;     // of all targets
 };
 
-// tile_ranges: where each tile's pairs are once sorted by tile. Under a mask also which tiles have any; the
-// others become background.
+// tile_ranges: where each tile's pairs are once they are sorted by tile. Under a mask also which tiles have
+// any; the others become background.
 struct TileRangesPass {
     EyeViews eyes;
     Uints tiles;
@@ -113,8 +118,9 @@ struct RasterizePass {
     UVec2s ranges;
     TargetStates targets;
     vec3 background;
-    uint depth_choice;  // the depth by which a pixel is reprojected: kDepthInverse, or one of those that D gives
-    uint is_light;      // 1: colours and background are light, to be encoded once they are blended
+    // The depth by which a pixel is reprojected: kDepthInverse, or one of those that D gives.
+    uint depth_choice;
+    uint is_light;  // 1: colours and background are light, to be encoded after blending
 };
 
 // contribute: how much each splat contributes to an eye's picture and, compared with a wanted picture, in
@@ -141,7 +147,7 @@ struct WeighPass {
     Uints tile_kinds;   // out, except where it is kTileHidden
     Uints tile_costs;   // out: in pairs
     Uints tile_errors;  // out: zeros
-    Uints tile_depths;  // out: what the source sees in the middle of each, a word of `moving`
+    Uints tile_depths;  // out: what the source sees in the middle of each tile, as a word of `moving`
     Uints tile_mask;    // out: zeros
     Uints price_bins;   // out: zeros
     Uints shown_mask;   // if the source has hidden tiles: the shown ones
@@ -186,10 +192,12 @@ struct ResamplePass {
     Uints moving;         // the source's pixels or, if reproject ran, its arrivals
     FloatColours target;  // out; `moving` may lie in the same row
     HalfColours half_target;
-    Floats depths;  // out where asked for, otherwise null: D, alpha over the inverse depth with which the place was found
+    // out if requested, otherwise null: D, alpha over the inverse depth with which the place was found
+    Floats depths;
     Uints tile_kinds;
-    Uints tile_errors;    // out if errors are predicted, otherwise null; for the odd rows null, or in: kSeenCoarsely by price
-    Uints pixel_classes;  // out where asked for: 2 bits a pixel, kCovered, kGap or kHole
+    // out if errors are predicted, otherwise null; for the odd rows null, or in: kSeenCoarsely by price
+    Uints tile_errors;
+    Uints pixel_classes;  // out if requested: 2 bits per pixel, kCovered, kGap or kHole
     WarpCounterss counters;
     Uints shown_mask;     // if the source has hidden tiles: the shown ones; otherwise null
     vec3 background;      // of hidden tiles
@@ -198,8 +206,8 @@ struct ResamplePass {
     uint groups_holes;    // 1: holes will be grouped: `target` gets a ComponentPixel for each of their pixels
 };
 
-// warp_past and warp_pixels: an eye's picture warped from the one that it showed before, and each tile's
-// error so far. With half-float colours these are their addresses, too.
+// warp_past and warp_pixels: an eye's picture, warped from the one that it showed before, and each tile's
+// error so far. With half-float colours, these are their addresses, too.
 struct WarpPastPass {
     PastViews view;
     FloatColours source;  // the history
@@ -212,7 +220,7 @@ struct WarpPastPass {
     Uints tile_mask;      // out: zeros
     Uints price_bins;     // out: zeros
     Uints shown_mask;     // if parts are hidden: the shown tiles; otherwise null
-    Uints past_shown;     // the same of the history
+    Uints past_shown;     // the same for the history
     PastBlocks blocks;    // from warp_past to warp_pixels: the blocks whose pixels are made one by one
     PastBlockLists block_list;
 };
@@ -243,7 +251,7 @@ struct ComponentsPass {
     Uints tile_kinds;  // in and out
     WarpCounterss counters;
     uint box_capacity;
-    uint slots_apart;  // of one pixel to the next one's: 1 in a picture of half floats, otherwise 2
+    uint slots_apart;  // from one pixel to the next: 1 in a picture of half floats, otherwise 2
 };
 
 // mark_changed: where parts of the scene came, went or faded, a history is wrong.
@@ -257,9 +265,11 @@ struct MarkChangedPass {
 // price: predicted: the cost of rendering each tile's error away, and how much there is at each price.
 struct PricePass {
     TargetStates targets;
-    ListStates chosen;         // of the first target: counts finished workgroups
-    CoherentUints price_bins;  // cost of the tiles in each bin, without a history by errors as if seen whole; greatest error per pair last
-    uint most_cost;            // under a bound, in pairs: the lists' capacity
+    ListStates chosen;  // of the first target: counts finished workgroups
+    // Cost of the tiles in each bin, without a history as if errors were seen whole; greatest error per pair
+    // last.
+    CoherentUints price_bins;
+    uint most_cost;  // under a bound, in pairs: the lists' capacity
 };
 
 // select: the tiles to render, as a list and as a mask.
@@ -270,8 +280,8 @@ struct SelectPass {
     uint at_once;  // how many of the targets are rendered at the same time
 };
 
-// A stable radix sort of (key, value), up to 9 bits per round, reduce then scan: assumes neither forward progress between workgroups
-// nor a subgroup width.
+// A stable radix sort of (key, value), up to 9 bits per round, by reduce-then-scan: assumes neither forward
+// progress between workgroups nor a subgroup width.
 struct SortCountPass {
     Uints keys;
     CoherentUints histograms;  // out: [block][digit], in the run's earlier blocks
@@ -296,13 +306,15 @@ struct SortScatterPass {
 struct PresentPass {
     FloatColours colours;
     HalfColours half_colours;
-    Floats depths;         // D, if its depth is wanted
-    Uints words;           // instead of D, for a picture that later ones are made from: lib/moving_pixel.glsl; otherwise null
-    Uints tile_kinds;      // for a tint by what made each pixel; otherwise null
+    Floats depths;  // D, if its depth is wanted
+    // Instead of D, for a picture that later ones are made from: lib/moving_pixel.glsl; otherwise null.
+    Uints words;
+    Uints tile_kinds;      // for a tint by how each pixel was made; otherwise null
     Uints pixel_classes;   // for the tint, or null
-    Uints pixels;          // out: 8 bits a channel; with `over` also in, what is behind the splats
-    Floats device_depths;  // out where wanted, otherwise null: depth_scale / depth + depth_offset
-    Floats mesh_depths;    // likewise, of the content of `pixels`, or null: splats behind it do not show; may be device_depths
+    Uints pixels;          // out: 8 bits per channel; with `over` also in: what is behind the splats
+    Floats device_depths;  // out if requested, otherwise null: depth_scale / depth + depth_offset
+    // The same for the content of `pixels`, or null: splats behind it do not show; may be device_depths.
+    Floats mesh_depths;
     uvec2 size_px;
     float depth_scale;
     float depth_offset;
@@ -310,11 +322,11 @@ struct PresentPass {
     uint linear;       // 1: the image is not sRGB: its bytes count as light
     uint see_through;  // 1: write alpha, for what the headset shows behind the picture
     uint over;         // 1: blended over the content of `pixels`; then the picture has no background
-    uint is_cut;       // 1: splats were tested one by one as they were blended, and pixels are not
-    uint kept_bits;    // of each word of pixels: stay as they are, for a picture of both eyes
+    uint is_cut;       // 1: splats were tested one by one as they were blended, so pixels are not
+    uint kept_bits;    // bits in each word of `pixels` that stay as they are, for a picture of both eyes
 };
 
-// turn: a presented picture as a view with other axes shows it.
+// turn: shows a presented picture in a view with other axes.
 struct TurnPass {
     Uints pixels;   // of the picture, as PresentPass leaves them
     Uints shown;    // out: of the view

@@ -1,5 +1,5 @@
-// compact: the visible splats in the scene's order, so that a stable sort breaks ties by index, with the depth of their centres,
-// or with their distance from the middle between the eyes.
+// compact: the visible splats in the scene's order, so that a stable sort breaks ties by index, with the
+// depth of their centres, or with their distance from the middle between the eyes.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -21,7 +21,8 @@ const uint kBlockWords = kCullBlock / 32;
 shared uint visible_words[kBlockWords];
 shared uint visible_before[kBlockWords];  // how many of the block's splats come before each word's
 
-// What splats are ordered by. A distance is the same float for whichever eyes the list is made, since it depends on neither.
+// What splats are ordered by. A distance is the same float for all eyes of the list, since it depends on none
+// of them.
 float depthOf(EyeView eye, vec3 position) {
     if (pass.by_distance != 0) {
         const vec3 from_middle = fromPlace(pass.middle.position, pass.middle.position_low, position);
@@ -31,7 +32,7 @@ float depthOf(EyeView eye, vec3 position) {
     return dot(eye.camera_from_world_z, fromEye(eye, position));
 }
 
-// Floats as integers of the same order; depths of centres behind the eye are negative.
+// Floats as integers of the same order; centres behind the eye have negative depths.
 uint sortableBits(float value) {
     const uint bits = floatBitsToUint(value == 0 ? 0.0 : value);  // -0 is as deep as 0
     return (bits & 0x80000000u) != 0 ? ~bits : bits | 0x80000000u;

@@ -1,6 +1,6 @@
-// cull: which splats may touch a pixel of any eye. A splat reaches to rho = 2 ln(255 o), so its disc is tested as a whole against
-// the planes of the view by its support function, and its low-pass by the projected centre; a 3D Gaussian by its box on the screen.
-// The last workgroup writes the length of their list.
+// cull: which splats may touch a pixel of any eye. A splat reaches to rho = 2 ln(255 o), so its disc is
+// tested as a whole against the planes of the view by its support function, and its low-pass by the projected
+// centre; a 3D Gaussian is tested by its box on the screen. The last workgroup writes the length of the list.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -34,7 +34,7 @@ float reachAlong(CameraSplat splat, float radius, vec3 normal) {
     return radius * length(splat.scale * vec2(dot(splat.t_u, normal), dot(splat.t_v, normal)));
 }
 
-// True if any of the disc lies on the side of the plane through the eye that `normal` points to.
+// True if any of the disc lies on the side of the plane through the eye to which `normal` points.
 bool reachesInside(CameraSplat splat, float radius, vec3 normal) { return isNotNegative(dot(splat.centre, normal) + reachAlong(splat, radius, normal)); }
 
 // True if a box around the projected centre meets the picture.
@@ -49,7 +49,7 @@ bool meetsMask(Uints mask, uvec2 size_tiles, vec2 low_px, vec2 high_px) {
     const vec2 last = vec2(size_tiles) - 1;
     const vec2 first_tile = floor(low_px / float(kTileSize)), last_tile = floor(high_px / float(kTileSize));
     if (any(greaterThan(first_tile, last)) || any(lessThan(last_tile, vec2(0)))) { return false; }
-    // Within the picture even where a corner is NaN, of which nothing is known.
+    // Within the picture even if a corner is NaN, which tells nothing.
     const uvec2 begin = min(uvec2(clamp(first_tile, vec2(0), last)), size_tiles - 1), end = min(uvec2(clamp(last_tile, vec2(0), last)), size_tiles - 1) + 1;
     uint row = begin.y, bits = 0;
     [[dont_unroll]] do {
@@ -63,7 +63,8 @@ bool meetsMask(Uints mask, uvec2 size_tiles, vec2 low_px, vec2 high_px) {
     return bits != 0;
 }
 
-// True if the splat, which is visible, may touch a tile of the mask: by its bounds on the screen, if it lies in front of the eye.
+// True if the splat, which is visible, may touch a tile of the mask: by its bounds on the screen, if it lies
+// in front of the eye.
 bool meetsMask(CameraSplat splat, EyeView eye, Uints mask) {
     const float cut = cutOf(splat.opacity);
     const vec3 c = splat.centre;
@@ -83,7 +84,8 @@ bool meetsMask(CameraSplat splat, EyeView eye, Uints mask) {
         const vec2 square = middle * middle - (c.xy * c.xy - (a.xy * a.xy + b.xy * b.xy)) / d;
         const vec2 half_px = eye.focal_px * sqrt(max(square, vec2(0)));
         const vec2 middle_px = eye.focal_px * middle + eye.principal_px;
-        // And the circle of the low-pass around its centre. The root of a difference of squares keeps only half their digits.
+        // And the circle of the low-pass around its centre. The root of a difference of squares keeps only
+        // half the digits.
         const vec2 rounding_px = 0.5 + 5e-4 * abs(eye.focal_px * middle) + kOutlinePadding;
         const vec2 centre_px = eye.focal_px * c.xy / c.z + eye.principal_px;
         const float circle_px = sqrt(cut / eye.low_pass);

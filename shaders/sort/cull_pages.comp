@@ -1,5 +1,6 @@
-// cull_pages: in a scene whose chunks come and go, lists the pages that may hold a splat that cull keeps, in the scene's order. The box
-// around all that can be seen of a page is tested against the planes of the view, widened by the reach of the low-pass on the screen.
+// cull_pages: in a scene whose chunks come and go, lists the pages that may hold a splat that cull keeps, in
+// the scene's order. The box around all that can be seen of a page is tested against the planes of the view,
+// widened by the reach of the low-pass on the screen.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -29,14 +30,16 @@ struct Box {
     vec3 middle, half_size;  // in the world's axes, from the eye
 };
 
-// True if the box reaches beyond `least` along `normal`, a direction in the eye's axes of any length; also for NaN, which cull handles.
+// True if the box reaches beyond `least` along `normal`, a direction in the eye's axes of any length; also
+// for NaN, which cull handles.
 bool reaches(Box box, EyeView eye, vec3 normal, float least) {
     const vec3 n = normal.x * eye.camera_from_world_x + normal.y * eye.camera_from_world_y + normal.z * eye.camera_from_world_z;
     const float rounding = kRounding * dot(abs(box.middle) + box.half_size, abs(n));
     return !isNegative(dot(box.middle, n) + dot(box.half_size, abs(n)) + rounding - least);
 }
 
-// One side of the view, widened or not: the points of a disc that cull tests may lie behind the eye, where a wider plane is no wider.
+// One side of the view, widened or not: the points of a disc that cull tests may lie behind the eye, where a
+// wider plane is not wider.
 bool reachesSide(Box box, EyeView eye, vec3 normal, float wider_px, float least) {
     return reaches(box, eye, normal, least) || reaches(box, eye, normal + vec3(0, 0, wider_px), least);
 }
@@ -45,8 +48,9 @@ bool mayShow(ScenePage page, EyeView eye) {
     const vec3 low = fromEye(eye, page.low), high = fromEye(eye, page.high);
     const Box box = Box(0.5 * (low + high), 0.5 * (high - low));
     if (!reaches(box, eye, vec3(0, 0, 1), eye.near)) { return false; }
-    // On the screen a 3D Gaussian reaches as far as its ellipsoid along f (1, 0, -slope), the slope clamped to the picture and its border
-    // (lib/gaussian.glsl): beside the picture at most its reach along the side's normal plus the border times its reach in depth.
+    // On the screen a 3D Gaussian reaches as far as its ellipsoid does along f (1, 0, -slope), with the slope
+    // clamped to the picture and its border (lib/gaussian.glsl). Beside the picture, that is at most its
+    // reach along the side's normal plus the border times its reach in depth.
     const vec2 size_px = vec2(eye.size_px), to_far_edge = size_px - eye.principal_px;
     float wider_px = sqrt(kMaxCut / eye.low_pass);
     vec2 least = vec2(0);
@@ -60,10 +64,12 @@ bool mayShow(ScenePage page, EyeView eye) {
            reachesSide(box, eye, vec3(0, -eye.focal_px.y, to_far_edge.y), wider_px, least.y);
 }
 
-// By one workgroup: the visible pages of some words in their order, from where the first of these words' pages would lie. Returns their number.
+// By one workgroup: the visible pages of some words in order, from where the first of these words' pages
+// would lie. Returns their number.
 uint listPages(uint first_word, uint words) {
     const uint total = sumRange(pass.word_offsets, first_word, first_word + words);
-    memoryBarrierBuffer();  // as in lib/last_group.glsl: the sums are handed from the threads that made them to all
+    // As in lib/last_group.glsl: the sums are passed from the threads that made them to all.
+    memoryBarrierBuffer();
     barrier();
     memoryBarrierBuffer();
     uint word = first_word + gl_LocalInvocationIndex;
@@ -98,7 +104,7 @@ void main() [[subgroup_uniform_control_flow]] {
         pass.page_bits.at[word] = visible_words[gl_LocalInvocationIndex];
         pass.word_offsets.at[word] = bitCount(visible_words[gl_LocalInvocationIndex]);
     }
-    // As sumUp, for lib/block.glsl: where there are many, each run of pages has its own part of the list.
+    // Like sumUp, for lib/block.glsl: if there are many, each run of pages has its own part of the list.
     const uint groups = groupsOver(pass.page_count, kGroupSize), length = sumRunLength(groups, kMostPageGroupsInOneRun);
     if (length < groups && group < groups) {
         const uint run = group / length, first = run * length, in_run = min(length, groups - first);

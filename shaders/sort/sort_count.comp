@@ -1,5 +1,6 @@
-// Radix sort, first step of a round: how often each digit occurs in each block. The last workgroup of a run of blocks replaces each count
-// by the sum over the run's earlier blocks; the last workgroup of all does the same over the runs, and finds where each digit begins.
+// Radix sort, first step of a round: how often each digit occurs in each block. The last workgroup of a run
+// of blocks replaces each count by the sum over the run's earlier blocks; the last workgroup of all does the
+// same over the runs, and finds where each digit begins.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -12,7 +13,8 @@ layout(constant_id = 0) const uint kThreads = 128;
 layout(local_size_x_id = 0) in;
 layout(push_constant, scalar) uniform Push { SortCountPass pass; };
 
-const uint kMaxColumn = max(kSortRun, kMaxSortRuns);  // loaded at once, since each load takes as long as all of them
+// Loaded at once, since one load takes as long as all of them.
+const uint kMaxColumn = max(kSortRun, kMaxSortRuns);
 
 shared uint digit_counts[kMaxDigits];
 
@@ -33,7 +35,8 @@ void countDigits(uint block, uint block_keys, uint count) {
     }
 }
 
-// Replaces the counts of one digit, in `rows` rows starting at `first`, by the sums of those before them; returns the total.
+// Replaces the counts of one digit, in `rows` rows starting at `first`, by the sums of those before them;
+// returns the total.
 uint sumColumn(CoherentUints counts, uint first, uint rows, uint digit) {
     uint values[kMaxColumn];
     [[unroll]] for (uint row = 0; row < kMaxColumn; ++row) { values[row] = row < rows ? counts.at[(first + row) * pass.digits + digit] : 0; }

@@ -1,6 +1,7 @@
-// Radix sort, second step of a round: every pair goes to its place. Stable: a subgroup takes a contiguous run of a block's keys, counts
-// its digits, and then walks the run once more, a subgroup's width at a time, ranking equal digits by comparing them across the lanes
-// (Adinets and Merrill 2022, section 4.3, without the chained scan). Keys are read twice, so that a thread holds only one of them.
+// Radix sort, second step of a round: every pair goes to its place. Stable: a subgroup takes a contiguous run
+// of a block's keys, counts its digits, and then walks through the run again, a subgroup's width at a time,
+// ranking equal digits by comparing them across the lanes (Adinets and Merrill 2022, section 4.3, without the
+// chained scan). Keys are read twice, so that a thread holds only one of them.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_KHR_shader_subgroup_ballot : require
@@ -12,15 +13,17 @@
 
 layout(constant_id = 0) const uint kThreads = 128;
 layout(constant_id = 1) const uint kMaxSubgroups = 8;
-layout(constant_id = 2) const uint kComparedLanes = 0;  // not 0: the subgroup width, where comparisons are cheaper than ballots
+// Not 0: the subgroup width, if comparisons are cheaper than ballots.
+layout(constant_id = 2) const uint kComparedLanes = 0;
 layout(local_size_x_id = 0) in;
 layout(push_constant, scalar) uniform Push { SortScatterPass pass; };
 
-shared uint subgroup_digits[kMaxSubgroups * kMaxDigits];  // counts, then where the next key of a subgroup's digit goes
+// Counts, then where the next key of a subgroup's digit goes.
+shared uint subgroup_digits[kMaxSubgroups * kMaxDigits];
 
 uint digitOf(uint key) { return (key >> pass.shift) & (pass.digits - 1); }
 
-// The lane's bit if its digit equals this lane's. A macro, since the lane has to be a constant.
+// The lane's bit if its digit equals this lane's. A macro, since the lane must be a constant.
 #define SAME_DIGIT(lane) (subgroupBroadcast(digit, lane) == digit ? 1u << (lane) : 0)
 
 // The lanes among `valid` whose digit equals this lane's.
@@ -39,14 +42,15 @@ uvec4 matchDigit(uint digit, uvec4 valid) {
     return peers;
 }
 
-// Word by word: not every compiler knows subgroupBallotFindLSB of 64 lanes.
+// Word by word: not every compiler knows subgroupBallotFindLSB for 64 lanes.
 uint firstLane(uvec4 lanes) {
     if (lanes.x != 0) { return uint(findLSB(lanes.x)); }
     if (lanes.y != 0) { return 32 + uint(findLSB(lanes.y)); }
     return lanes.z != 0 ? 64 + uint(findLSB(lanes.z)) : 96 + uint(findLSB(lanes.w));
 }
 
-// Turns counts into places: where each digit begins overall and in this block, and where each subgroup's share of it does.
+// Turns counts into places: where each digit begins overall and in this block, and where each subgroup's
+// share of it does.
 void placeDigits(uint block) {
     uint digit = gl_LocalInvocationIndex;
     if (digit >= pass.digits) { return; }
@@ -86,8 +90,9 @@ void main() [[subgroup_uniform_control_flow]] {
     placeDigits(block);
     barrier();
 
-    // The same number of steps for every subgroup, though the runs of a list's last block may be shorter: a device may make whole
-    // workgroups wait at a subgroup's barrier, as Mesa 25's software device does. The first run is the longest.
+    // Every subgroup takes the same number of steps, although the runs of a list's last block may be shorter:
+    // a device may make whole workgroups wait at a subgroup's barrier, as Mesa 25's software device does. The
+    // first run is the longest.
     const uint steps_end = min(run_keys, count - block_begin);
     uint step_begin = 0;
     [[dont_unroll]] do {
@@ -98,7 +103,7 @@ void main() [[subgroup_uniform_control_flow]] {
         const uint digit = digitOf(key);
         const uvec4 peers = matchDigit(digit, subgroupBallot(valid));
         const uint before = subgroupBallotExclusiveBitCount(peers);
-        // The first of equal digits takes places for all of them and tells the others.
+        // The first of several equal digits takes places for all of them and tells the others.
         uint place = 0;
         if (valid && before == 0) { place = atomicAdd(subgroup_digits[own_digits + digit], subgroupBallotBitCount(peers)); }
         place = subgroupShuffle(place, firstLane(peers) & (lanes - 1)) + before;

@@ -1,5 +1,5 @@
-// bin: a (tile, splat) pair for each tile a splat meets, front to back. A small splat's tiles are one bit each; the few
-// larger splats are listed for bin_large, so that one over the whole screen stalls nothing.
+// bin: a (tile, splat) pair for each tile that a splat meets, front to back. A small splat's tiles are one
+// bit each; the few larger splats are listed for bin_large, so that one over the whole screen stalls nothing.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -14,7 +14,7 @@ layout(push_constant, scalar) uniform Push { BinPass pass; };
 
 #include "lib/pair.glsl"
 
-// Every lane of a workgroup must call it; it returns to none early, see lib/group.glsl.
+// Every lane of a workgroup must call it; none returns early, see lib/group.glsl.
 void listLarge(bool is_large, uint rank, uint begin, uint first_pair) {
     const uvec4 large_lanes = subgroupBallot(is_large);
     const uint large = subgroupBallotBitCount(large_lanes);

@@ -1,4 +1,5 @@
-// bin, second step: the pairs of the splats that bin listed. A subgroup per splat and a lane per row of tiles.
+// bin, second step: the pairs of the splats that bin listed. A subgroup per splat and a lane per row of
+// tiles.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_buffer_reference_uvec2 : require
@@ -20,7 +21,7 @@ const bool kPlaced = false;  // no splat of the scene is read
 #include "lib/outline.glsl"
 #include "lib/pair.glsl"
 
-// As maskBits; without a mask all tiles count.
+// Like maskBits; without a mask all tiles count.
 uint bitsOf(Uints mask, uvec2 size_tiles, int row, uint begin, uint end) {
     if (isThere(uvec2(mask))) { return maskBits(mask, size_tiles, row, begin, end); }
     return 0xffffffffu >> (32 - (end - begin));
@@ -72,7 +73,8 @@ void putLarge(uint i, uint lanes) {
         pairs.x += subgroupAdd(tiles);
         first_row += int(lanes);
     } while (first_row < box.w);
-    // project counted no fewer. Should it count more, the rest become pairs of no tile, which are sorted last and never blended.
+    // project counted no fewer. If it counted more, the rest become pairs of no tile, which are sorted last
+    // and never blended.
     for (uint pair = pairs.x + gl_SubgroupInvocationID; pair < pairs.y; pair += lanes) {
         pass.tiles.at[pair] = pass.all_tiles;
         pass.ranks.at[pair] = splat;

@@ -1,5 +1,5 @@
-// project: the visible splats, front to back, as each eye sees them, and how many tiles each meets. The last workgroup writes the length of
-// the list of pairs.
+// project: the visible splats, front to back, as each eye sees them, and how many tiles each meets. The last
+// workgroup writes the length of the list of pairs.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -11,9 +11,10 @@
 
 layout(local_size_x = kGroupSize) in;
 layout(push_constant, scalar) uniform Push { ProjectPass pass; };
-layout(constant_id = 1) const bool kMasked = false;  // only tiles of the mask count; splats that meet none cost little
+// Only tiles of the mask count; splats that meet none cost little.
+layout(constant_id = 1) const bool kMasked = false;
 layout(constant_id = 2) const uint kSplatKind = kDiscs;
-layout(constant_id = 3) const bool kPlaced = false;  // scenes among others
+layout(constant_id = 3) const bool kPlaced = false;  // scenes placed among others
 
 #include "lib/splat.glsl"
 #include "lib/gaussian.glsl"
@@ -28,7 +29,8 @@ layout(constant_id = 3) const bool kPlaced = false;  // scenes among others
 
 shared uint group_tiles;
 
-// How many tiles (of the mask, if there is one) the splat meets; `small` has a bit for each if the box is small enough.
+// How many tiles (of the mask, if there is one) the splat meets; `small` has a bit for each if the box is
+// small enough.
 uint countTiles(Outline outline, ivec4 box, uvec2 size_tiles, out uint small) {
     const bool fits = isSmallBox(box);
     uint tiles = 0;
@@ -60,7 +62,7 @@ uint countTiles(Outline outline, ivec4 box, uvec2 size_tiles, out uint small) {
     return fits ? bitCount(small) : tiles;
 }
 
-// Of the target.
+// Splats of the target.
 uint firstSplat() { return gl_WorkGroupID.z * pass.splats_apart; }
 
 // Projects a visible splat for this eye; returns how many tiles it meets.
@@ -81,7 +83,7 @@ uint project(uint rank, EyeView eye) {
         p.colour = uvec2(0, p.colour.y & 0xffff0000u) | packColour(shColour(pass.chunks, at, normalize(fromEye(eye, in_world.centre))));
         pass.splats.at[firstSplat() + rank] = p;
     }
-    // Empty where the splat meets no tile: then there is no splat either.
+    // Empty if the splat meets no tile: then no splat is written either.
     pass.tile_sets.at[firstSplat() + rank] = tiles > 0 ? packTileSet(box, small) : uvec2(0);
     return tiles;
 }
@@ -110,6 +112,6 @@ void main() [[subgroup_uniform_control_flow]] {
         pass.group_sums.at[gl_WorkGroupID.z * blocks + group] = group_tiles;
         atomicAdd(TARGET.counters.pairs, group_tiles);
     }
-    // In one step: in two the shader takes more registers, which every frame would pay for.
+    // In one step: with two, the shader takes more registers, which every frame would pay for.
     if (isLastGroup(pass.pairs)) { sumUpAtOnce(pass.group_sums, gl_NumWorkGroups.z * blocks, pass.pairs, pass.capacity); }
 }

@@ -1,5 +1,6 @@
-// tile_ranges: where each tile's pairs lie, once they are sorted by tile: a thread per tile searches for its first pair and the next
-// tile's. Under a mask tiles with pairs are listed for rasterize; others become background here, which takes less than a workgroup each.
+// tile_ranges: where each tile's pairs lie, once they are sorted by tile: one thread per tile searches for
+// its first pair and the next tile's. Under a mask, tiles with pairs are listed for rasterize; the others
+// become background here, which is cheaper than a workgroup each.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -50,7 +51,7 @@ bool leavesPast() { return isThere(TARGET.past_tiles); }
 uvec2 sizeTiles() { return pass.eyes.at[gl_WorkGroupID.z].size_tiles; }
 uvec2 sizePx() { return pass.eyes.at[gl_WorkGroupID.z].size_px; }
 
-// True if samples of the tile may do: an eye does not see it sharply, and it lies within the picture.
+// True if samples of the tile may suffice: the eye does not see it sharply, and it lies within the picture.
 bool mayBeCoarse(uint tile) {
     const uint columns = sizeTiles().x;
     const uvec2 at = uvec2(tile % columns, tile / columns);
@@ -91,7 +92,7 @@ void main() [[subgroup_uniform_control_flow]] {
     }
     if (gl_LocalInvocationIndex == 0) { empty_count = 0; }
     barrier();
-    // If pairs had no room, what the history made stays.
+    // If the capacity for pairs did not suffice, what the history made stays.
     const bool is_void = TARGET.is_made != 0 && (pass.pairs.at[0].needed != pass.pairs.at[0].count || pass.visible.at[0].needed != pass.visible.at[0].count);
     const bool of_list = isThere(TARGET.tile_list);
     const bool listed = item < (of_list ? TARGET.chosen_tiles.count : tiles) && !is_void;

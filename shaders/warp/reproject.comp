@@ -1,10 +1,13 @@
-// reproject: moves the source's pixels to where the target sees them (paper, section 3.4, equations 3 to 5). Of several that meet, the
-// one with the greatest inverse depth stays, whatever the order of threads. resample finds the source from it, so 32-bit atomics suffice.
-// A surface may be stretched. Pixels that fall between a pixel and its neighbours, at most gap_px apart, are interpolated here already,
-// since what lies behind would otherwise show through the cracks. Not so where colours are copied: in the paper only pixels move
-// (section 3.1, stage 2), and what they leave open is a hole to be filled afterwards (stage 4).
-// The paper does not say which pixel a place belongs to: here the one that holds it. Nor does it say which of two surfaces stays: here the
-// nearer one. Nor what becomes of pixels without any splat, whose D of 0 is no depth: here they are infinitely far.
+// reproject: moves the source's pixels to where the target sees them (paper, section 3.4, equations 3 to 5).
+// If several meet, the one with the greatest inverse depth stays, whatever the order of the threads. resample
+// finds the source from it, so 32-bit atomics suffice.
+// A surface may be stretched. Pixels that fall between a pixel and its neighbours, at most gap_px apart, are
+// interpolated here already, since what lies behind would otherwise show through the cracks. Where colours
+// are copied, this is not done: in the paper only pixels move (section 3.1, stage 2), and what they leave
+// open is a hole to be filled afterwards (stage 4).
+// The paper does not say which pixel a place belongs to: here, the one that contains it. Nor does it say
+// which of two surfaces stays (here, the nearer one), or what becomes of pixels without any splat, whose D of
+// 0 is no depth (here, they are infinitely far away).
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -28,7 +31,8 @@ void put(WarpView warp, ivec2 at, uint arrival) {
     atomicMax(pass.arrivals.at[uint(at.y) * warp.row_words + uint(at.x)], arrival);
 }
 
-// In any direction: the pixels whose centres lie in the parallelogram between `here`, its right and its lower neighbour.
+// In any direction: the pixels whose centres lie in the parallelogram between `here`, its right and its lower
+// neighbour.
 void putWithin(WarpView warp, uvec2 pixel, Moved here, Moved right, Moved below) {
     const vec2 u = vec2(1, 0) + (right.move_px - here.move_px), v = vec2(0, 1) + (below.move_px - here.move_px);
     const float area = u.x * v.y - u.y * v.x;

@@ -1,14 +1,18 @@
-// resample: every pixel of the target that no tile renders gets a place in the source and is sampled there. A workgroup per row.
-// Where pixels stay in their rows and a row fits into shared memory, this pass moves them there itself; otherwise reproject has done so.
-// A pixel that something reached keeps its depth. The others form runs between two such pixels. A short run across a slanted surface
-// interpolates its depth; any other repeats the farther neighbour, since what was hidden lies behind. Few tiles have runs: they are listed
-// and processed in a second pass, so that all other pixels skip the search. A cubic kernel (Catmull and Rom 1974) reads the colour.
-// Where errors are predicted, each tile sums those of its pixels from the samples at hand: for a hole's pixel, how much the picture changes
-// next to the hole; for any other, the uncertainty of its disparity times the picture's gradient, and what a cubic loses between pixels.
-// Only even rows have errors, which count twice. They come first, and the odd ones once tiles are chosen: of a tile that is going to be
-// rendered only half of the pixels are then sampled in vain. Where pixels stay in their rows, an odd row is sampled at the places of the
-// even one above it, so that only half of the rows are moved. Its colours are its own, except where it repeats a neighbour. Where an eye
-// does not resolve two rows (price), an odd row is the mean of those above and below.
+// resample: every pixel of the target that no tile renders gets a place in the source and is sampled there. A
+// workgroup per row. Where pixels stay in their rows and a row fits into shared memory, this pass moves them
+// there itself; otherwise reproject has done so.
+// A pixel that something reached keeps its depth. The others form runs between two such pixels. A short run
+// across a slanted surface interpolates its depth; any other repeats the farther neighbour, since what was
+// hidden lies behind. Few tiles have runs: they are listed and processed in a second pass, so that all other
+// pixels skip the search. A cubic kernel (Catmull and Rom 1974) reads the colour.
+// Where errors are predicted, each tile sums those of its pixels from the samples at hand: for a hole's
+// pixel, how much the picture changes next to the hole; for any other, the uncertainty of its disparity times
+// the picture's gradient, and what a cubic loses between pixels. Only even rows have errors, which count
+// twice. They come first, and the odd ones once tiles are chosen, so that only half of a tile's pixels are
+// sampled in vain if it is then rendered. Where pixels stay in their rows, an odd row is sampled at the
+// places of the even one above it, so that only half of the rows are moved. Its colours are its own, except
+// where it repeats a neighbour. Where an eye does not resolve two rows (price), an odd row is the mean of
+// those above and below.
 // Where colours are copied, this follows the paper to the letter instead, see copyArrived.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -23,8 +27,8 @@
 
 layout(local_size_x = kWarpGroup) in;
 layout(push_constant, scalar) uniform Push { ResamplePass pass; };
-// A whole row of arrivals is kept in shared memory, so that colours may overwrite it in device memory. 0: rows are too long, and arrivals
-// lie elsewhere.
+// A whole row of arrivals is kept in shared memory, so that colours may overwrite it in device memory. 0:
+// rows are too long, and arrivals lie elsewhere.
 layout(constant_id = 1) const uint kRowSteps = 1;
 layout(constant_id = 2) const bool kHalfColours = false;
 layout(constant_id = 3) const uint kRowSource = kArrivalsGiven;
@@ -43,11 +47,13 @@ shared uint arrived_bits[kPlaced ? 1 : kLongestRow / 32];
 shared uint tile_classes[kClasses ? kLongestRow / 16 : 1];
 const uint kMostTiles = kLongestRow / 16;
 
-shared uint moved_tiles[kMostTiles];  // tiles of this row, in no order; from the end those in which this row is a mean of others
+// Tiles of this row, unordered; from the end those in which this row is a mean of others.
+shared uint moved_tiles[kMostTiles];
 shared uint moved_count;
 shared uint mean_count;
 shared uint hidden_count;
-shared uint open_tiles[kPlaced ? 1 : kMostTiles];  // slots of moved_tiles whose tiles have pixels that nothing reached
+// Slots of moved_tiles whose tiles have pixels that nothing reached.
+shared uint open_tiles[kPlaced ? 1 : kMostTiles];
 shared uint open_bits[kPlaced ? 1 : (kMostTiles + 31) / 32];
 shared uint open_count;
 
@@ -74,7 +80,8 @@ void putPixel(WarpView warp, uvec2 at, uint pixel_class, vec4 colour, float inve
 
 #include "lib/odd_rows.glsl"
 
-// Which tiles of the row are moved, i.e. come from here, which are the mean of the rows above and below, and whether any is hidden.
+// Which tiles of the row are moved, which are the mean of the rows above and below, and whether any is
+// hidden.
 void listTiles(uint first_tile, uint tiles, bool moves, bool may_be_mean) {
     uint tile = gl_LocalInvocationIndex;
     if (tile >= tiles) { return; }
@@ -109,7 +116,8 @@ float putResolved(WarpView warp, uint row, uvec2 at, Resolved resolved, bool ope
     return 2 * (variance_px2 * dot(found.gradient, found.gradient) + found.lost) / 3;
 }
 
-// Writes a pixel that something reached, or any pixel if open ones are not told apart; returns its expected squared error, and its class.
+// Writes a pixel that something reached, or any pixel if open ones are not told apart; returns its expected
+// squared error and its class.
 float putReached(WarpView warp, uint row, uvec2 at, uint arrival, out uint pixel_class) {
     if (copiesColours()) {
         const Copied copied = copyArrived(warp, row, at);

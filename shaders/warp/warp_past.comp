@@ -1,7 +1,8 @@
-// warp_past: warps the picture that an eye showed before, and predicts each tile's error. A workgroup makes 128x16 pixels, a thread a
-// block of 4x8. Where a block's places in the history lie as its pixels do, shifted and a little rotated, its thread goes over the source
-// pixels row by row and resamples first along the row, then along columns, so that each is read once. Other blocks, where depths differ or
-// the history ends, are listed for warp_pixels: few workgroups have many of them, and the rest would wait for these.
+// warp_past: warps the picture that an eye showed before, and predicts each tile's error. A workgroup makes
+// 128x16 pixels, a thread a block of 4x8. If the places of a block's pixels in the history are just shifted
+// and slightly rotated, its thread goes over the source pixels row by row and resamples first along the row,
+// then along columns, so that each pixel is read once. Other blocks, where depths differ or the history ends,
+// are listed for warp_pixels: few workgroups have many of them, and the rest would wait for those.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -10,7 +11,7 @@
 layout(constant_id = 0) const bool kHalfColours = false;
 layout(constant_id = 1) const bool kHiddenTiles = false;  // a lens hides parts
 layout(constant_id = 2) const bool kWholeBlocks = false;  // the picture's width is a multiple of a block's
-layout(constant_id = 3) const bool kByAddress = false;    // lib/past.glsl; of software devices
+layout(constant_id = 3) const bool kByAddress = false;    // lib/past.glsl; for software devices
 
 layout(local_size_x = kPastGroup) in;
 layout(push_constant, scalar) uniform Push { WarpPastPass pass; };
@@ -27,18 +28,20 @@ const uvec2 kRegionCells = uvec2(kPastTiles, 1) * (kTileSize / kCellSize);
 const int kColumns = int(kPastColumns), kRows = int(kPastRows);
 
 shared uint listed_count, listed_first;  // this workgroup's part of the list of blocks
-shared uint cell_grown[kRegionCells.x * kRegionCells.y];    // squared errors expected of this step, summed, in kErrorSteps
-// Of where the blocks of a cell come from, summed in kCarriedSteps: the squares of the history's errors, and how fast they grow.
+// Squared errors expected of this step, summed, in kErrorSteps.
+shared uint cell_grown[kRegionCells.x * kRegionCells.y];
 shared uint tile_squared_gradient[kPastTiles];
+// Where the blocks of a cell come from: squares of the history's errors, and how fast they grow, summed in
+// kCarriedSteps.
 shared uint cell_carried[kRegionCells.x * kRegionCells.y], cell_growth[kRegionCells.x * kRegionCells.y];
 
-// The offsets from a block's pixels to their places in the history: at its middle, by column and by row.
+// The offsets from a block's pixels to their places in the history: in its middle, and how they change.
 struct BlockMoves {
     vec2 mean;
-    vec2 across, down;  // how that changes from column to column and from row to row
+    vec2 across, down;  // from column to column and from row to row
 };
 
-// A row of a block, in 16-byte stores where it begins at a multiple of 16 bytes.
+// A row of a block, in 16-byte stores if it begins at a multiple of 16 bytes.
 void putWords(PastView view, uvec2 first, uvec4 words) {
     if (first.y >= view.size_px.y) { return; }
     if (kWholeBlocks) {
@@ -67,7 +70,7 @@ void putPixels(PastView view, uvec2 first, vec4 colours[kPastColumns]) {
     }
 }
 
-// The squared error that one pixel of a block is expected to take on in this step.
+// The squared error that one pixel of a block is expected to gain in this step.
 float lossAt(ivec2 at, ivec2 last, vec2 shares, vec2 uncertain_px, out float squared_gradient) {
     vec3 downs[kTaps];
     [[unroll]] for (int k = 0; k < int(kTaps); ++k) { downs[k] = sourceAt(uint(clamp(at.y + k - 2, 0, last.y) * (last.x + 1) + at.x)).rgb; }
@@ -98,14 +101,15 @@ void resampleBlock(PastView view, uvec2 first, BlockMoves moves, ivec2 last) {
         const float beside = float(c) - 0.5 * float(kColumns - 1);
         lagrangeWeights(clamp(moves.mean.y + beside * moves.across.y - float(base_y), 0, 1), weights_y[c]);
     }
-    vec4 sums[kTaps][kColumns];  // of the block's rows that the source rows so far contribute to, the first to complete first
+    // Sums for the block's rows to which the source rows so far contribute; the first one is completed first.
+    vec4 sums[kTaps][kColumns];
     [[unroll]] for (int k = 0; k < int(kTaps); ++k) {
         [[unroll]] for (int c = 0; c < kColumns; ++c) { sums[k][c] = vec4(0); }
     }
     int row = 1 - int(kTaps);  // the block's row that this source row completes
     [[dont_unroll]] do {
         [[dont_unroll]] do {
-            // How far from the block's middle the source row comes to lie.
+            // How far from the block's middle the source row lands.
             const float from_middle = float(row + 3) - fract_y - 0.5 * float(kRows - 1);
             const float move_x = moves.mean.x + from_middle * moves.down.x;
             const float base_x = floor(move_x);
@@ -133,8 +137,8 @@ void resampleBlock(PastView view, uvec2 first, BlockMoves moves, ivec2 last) {
     } while (row < kRows);
 }
 
-// The inverse depth of content that comes to lie at a place from so far away in the past that it is not among its neighbours; 0: nothing
-// stands in front of `known`.
+// The inverse depth of content that lands at a place from so far away in the past that it is not among its
+// neighbours; 0 if nothing is in front of `known`.
 float nearestOnTheWay(PastView view, vec2 wanted_px, vec2 by_depth, float known) {
     const float px_by_depth = max(abs(by_depth.x), abs(by_depth.y));
     const uint steps = min(uint(px_by_depth * view.nearest / kPastSearchStep), kPastMostSearched);
@@ -150,8 +154,9 @@ float nearestOnTheWay(PastView view, vec2 wanted_px, vec2 by_depth, float known)
     return nearest;
 }
 
-// Looks for where the block's pixels come from: near its middle's place, since in a frame the head moves little. True if they lie in the
-// past as in a picture that is shifted and a little rotated. Also writes their depths, which hold in that case.
+// Looks for where the block's pixels come from: close to the place of its middle, since the head moves little
+// within a frame. True if they lie in the past as in a picture that is shifted and slightly rotated. Also
+// writes their depths, which are valid in that case.
 bool findBlock(PastView view, uvec2 first, ivec2 last, out BlockMoves moves, out vec2 depths, out vec2 source_px, out float spread) {
     const vec2 half_size = 0.5 * vec2(kBlock), middle_px = vec2(first) + half_size;
     const float guess = look(view, movePixelAnywhere(view.past_from_now, middle_px, 0).xy, middle_px).inverse_depth;
@@ -192,7 +197,7 @@ bool findBlock(PastView view, uvec2 first, ivec2 last, out BlockMoves moves, out
         lower += r < kRows / 2 ? -in_row : in_row;
     }
     const float differ = 0.5 * (depths.y - depths.x);
-    // Content in front of its neighbours may have moved in front of this block.
+    // Content in front of neighbouring blocks may have moved in front of this one.
     [[unroll]] for (int side = 0; side < 9; ++side) {
         if (side == 4) { continue; }
         const ivec2 at = clamp((corner + end + 1) / 2 + ivec2(side % 3 - 1, side / 3 - 1) * (ivec2(kBlock) / 2 + int(kPastBorder)), ivec2(0), last);
@@ -201,7 +206,7 @@ bool findBlock(PastView view, uvec2 first, ivec2 last, out BlockMoves moves, out
         depths = vec2(min(depths.x, here), max(depths.y, here));
     }
     depths.y = max(depths.y, nearestOnTheWay(view, middle_px, by_depth, depths.y));
-    // What is found there must belong there: it comes to lie where it was looked for.
+    // What is found there must belong there: it lands where it was looked for.
     const float pixels = float(kColumns * kRows), off_px = max(abs(by_depth.x), abs(by_depth.y)) * abs(sum / pixels - guess);
     valid = valid && off_px <= kPastAgrees;
     const float right = in_columns[2] + in_columns[3] - in_columns[0] - in_columns[1];
@@ -298,7 +303,7 @@ void main() {
     if (thread >= kPastTiles) { return; }
     const uvec2 tile = tileOfRegion(thread);
     if (any(greaterThanEqual(tile, view.size_tiles))) { return; }
-    // The tile's cost and age are those of where its middle comes from.
+    // The tile's cost and age are those of the place that its middle comes from.
     const vec2 middle_px = min(vec2(tile * kTileSize) + 0.5 * float(kTileSize), vec2(view.size_px));
     const float guess = look(view, movePixelAnywhere(view.past_from_now, middle_px, 0).xy, middle_px).inverse_depth;
     const uvec2 from = pixelAt(view.past_size_px, movePixelAnywhere(view.past_from_now, middle_px, guess).xy) / kTileSize;
@@ -306,7 +311,7 @@ void main() {
     PastTile now = PastTile(before.cost, before.age + 1, vec4(0), vec4(0), uvec4(0), before.lost, 0, tile_squared_gradient[thread]);
     [[unroll]] for (uint q = 0; q < 4; ++q) {
         const uint its_cell = (q >> 1) * kRegionCells.x + thread * (kTileSize / kCellSize) + (q & 1);
-        // A quarter has two blocks, side by side, if the picture does not end between them.
+        // A quarter has two blocks, side by side, unless the picture ends between them.
         const float blocks = tile.x * kTileSize + (q & 1) * kCellSize + kPastColumns < view.size_px.x ? 2 : 1;
         now.errors[q] = sqrt(float(cell_carried[its_cell]) / (blocks * kCarriedSteps));
         now.growth[q] = float(cell_growth[its_cell]) / (blocks * kCarriedSteps);

@@ -1,8 +1,9 @@
 // warp_pixels: the pixels of an eye's picture that warp_past has left out, one thread per pixel.
 //
-// A place is found backwards, by a fixed point (Bowles et al. 2012, Iterative Image Warping): the depth at a place says where the place is.
-// Such a search always finds something, so a place counts only if the history's pixel there, moved forwards, meets the pixel that it is
-// wanted for. The search starts from the nearest and from the farthest depth around; of the two results the nearer counts.
+// A place is found backwards, by a fixed point (Bowles et al. 2012, Iterative Image Warping): the depth at a
+// place says where the place is. Such a search always finds something, so a place counts only if the
+// history's pixel there, moved forwards, meets the pixel for which it is wanted. The search starts from the
+// nearest and from the farthest depth around; of the two results, the nearer one counts.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -10,7 +11,7 @@
 
 layout(constant_id = 0) const bool kHalfColours = false;
 layout(constant_id = 1) const bool kHiddenTiles = false;  // a lens hides parts
-layout(constant_id = 2) const bool kByAddress = false;    // lib/past.glsl; of software devices
+layout(constant_id = 2) const bool kByAddress = false;    // lib/past.glsl; for software devices
 
 layout(local_size_x = kGroupSize) in;
 layout(push_constant, scalar) uniform Push { WarpPastPass pass; };
@@ -25,7 +26,7 @@ layout(push_constant, scalar) uniform Push { WarpPastPass pass; };
 
 const uint kBlockPixels = kPastColumns * kPastRows;
 
-// How wide a pixel of the history is at a place: wider than one if the view has turned towards it.
+// How wide a pixel of the history is at a place: more than one pixel if the view has turned towards it.
 vec2 widthOfPixel(PastView view, vec2 wanted_px) {
     const PixelMap map = view.past_from_now;
     const vec3 place = movePixelAnywhere(map, wanted_px, 0);
@@ -34,7 +35,7 @@ vec2 widthOfPixel(PastView view, vec2 wanted_px) {
     return vec2(abs(down.x) + abs(down.y), abs(across.x) + abs(across.y)) / abs(across.x * down.y - across.y * down.x);
 }
 
-// Searches, from a first guess, where the history shows what is wanted; true if found.
+// Searches, from a first guess, for where the history shows what is wanted; true if found.
 bool search(PastView view, vec2 wanted_px, float guess, vec2 agrees, out Seen seen, out vec2 place_px) {
     float inverse_depth = guess;
     bool found = false, inside = true;
@@ -59,7 +60,7 @@ bool search(PastView view, vec2 wanted_px, float guess, vec2 agrees, out Seen se
     return found;
 }
 
-// The nearest content around a place, as the picture that is made sees its inverse depth.
+// The nearest content around a place, as inverse depth in the picture that is being made.
 float frontAround(PastView view, vec2 place_px) {
     const ivec2 last = ivec2(view.past_size_px) - 1, middle = ivec2(clamp(place_px, vec2(0), vec2(last)));
     uint nearest = 0;
@@ -104,7 +105,8 @@ Sample sampleSmoothly(vec2 place_px, ivec2 size, vec2 direction) {
                   dot(across, across) + dot(down, down));
 }
 
-// Makes one pixel; returns its expected squared error, of which `unseen` is for that the history did not see it.
+// Makes one pixel; returns its expected squared error, with `unseen` the part of it due to what the history
+// did not see.
 float makePixel(PastView view, uvec2 pixel, vec2 depths, out float unseen, out float squared_gradient) {
     const vec2 wanted_px = vec2(pixel) + 0.5;
     Seen from_near, from_far;
@@ -133,7 +135,7 @@ float makePixel(PastView view, uvec2 pixel, vec2 depths, out float unseen, out f
     }
     const float own = kSpreadWeight * sqrt(varianceShareOf(seen.word)) * seen.inverse_depth;
     vec2 uncertain_px = uncertainMove(disparity_px, own + 0.5 * (depths.y - depths.x));
-    // Beside what was hidden a pixel is taken as it is, off by up to half of its width.
+    // Next to what was hidden, a pixel is taken as it is, off by up to half its width.
     const vec2 middle_px = floor(place_px) + 0.5;
     if (reachesHidden(view, ivec2(middle_px), ivec2(middle_px))) {
         uncertain_px = abs(uncertain_px) + abs(place_px - middle_px);

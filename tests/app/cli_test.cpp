@@ -1,4 +1,4 @@
-// Facts about the program as its user meets it: exit codes, one line for each error, and nothing left behind.
+// Facts about the program as its user meets it: exit codes, one line per error, and nothing left behind.
 #include "engine/picture/join.h"
 #include "tests/app/program_script.h"
 
@@ -24,7 +24,8 @@ TEST_CASE_FIXTURE(AtWork, "render writes its files and nothing else") {
             const Image display = readPicture(folder / (name + display_extension));
             CHECK(picture.size_px == glm::uvec2(40, 24));
             CHECK(display.channels == 3);
-            // The middle of the disc: opacity 0.8 and colour (0.9, 0.6, 0.3), a little less beside its centre.
+            // The middle of the disc: opacity 0.8 and colour (0.9, 0.6, 0.3); a little less beside its
+            // centre.
             const std::size_t middle = 12 * 40 + 20;
             CHECK(picture.values[middle * static_cast<std::size_t>(picture.channels)] == doctest::Approx(0.72).epsilon(0.05));
             CHECK(display.values[middle * 3] == doctest::Approx(0.72).epsilon(0.05));

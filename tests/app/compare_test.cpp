@@ -1,4 +1,4 @@
-// `binosplat compare`, run as a program. Pictures are PFM and PPM, which every build reads.
+// `binosplat compare`, run as a program. Pictures are PFM and PPM, which every build can read.
 #include "engine/picture/netpbm.h"
 #include "tests/app/program_script.h"
 #include "tests/app/scores/lpips_weights.h"
@@ -6,7 +6,8 @@
 
 SUITE(compare) {
 
-// Two pictures of waves, one of them with a value that is none, one of another size, one of one channel, and weights for LPIPS.
+// Two pictures of waves, one with a value that is not a number, one of another size, one with a single
+// channel, and weights for LPIPS.
 struct Pictures : Workplace {
     Pictures() {
         writePfm(path / "a.pfm", makeWaves({40, 30}, 0.0));
@@ -79,7 +80,7 @@ TEST_CASE("of two paths come the mean, the worst frame, and how much more one ch
             write("flickers" + name, frame == 1 ? 0.8f : 0.5f + 0.1f * static_cast<float>(frame));
         }
     }
-    // Off by 0.2 in one frame of three; changes by 0.3 and -0.1 instead of 0.1 twice.
+    // One frame of three is off by 0.2, so the changes are 0.3 and -0.1 instead of 0.1 twice.
     const auto scores = pictures.scores("flickers still");
     REQUIRE(scores.size() == 4);
     CHECK(scores[0] == std::pair(std::string("pictures"), 6.0));

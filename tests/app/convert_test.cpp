@@ -7,7 +7,7 @@ SUITE(convert) {
 using Files = std::set<std::string>;
 
 struct Converted : Workplace {
-    // The line of what was written, and what it loses.
+    // The line that says what was written, and the one that says what was lost.
     struct Said {
         std::string written, loses;
     };

@@ -1,4 +1,5 @@
-// Facts about the documents: what they link to is there, the options and files that they name exist, and their commands are understood.
+// Facts about the documents: their links lead somewhere, the options and files they name exist, and the
+// program understands their commands.
 #include "app/command_line/commands_table.h"
 #include "app/command_line/option_documents.h"
 #include "tests/app/options/parsed.h"
@@ -32,7 +33,7 @@ std::vector<std::string> findAll(const std::string& text, const char* pattern) {
     return found;
 }
 
-// The anchor that a heading gets: lower case, spaces as dashes, punctuation left out.
+// The anchor of a heading: lower case, dashes for spaces, no punctuation.
 std::string anchorOf(const std::string& heading) {
     std::string anchor;
     for (const char c : heading) {
@@ -50,7 +51,8 @@ bool hasAnchor(const fs::path& document, const std::string& anchor) {
     return std::ranges::any_of(headings, [&](const std::string& heading) { return anchorOf(heading) == anchor; });
 }
 
-// Of cmake, ctest, doctest, apt-get, compare_frame_logs and others whose commands the documents show.
+// Options of cmake, ctest, doctest, apt-get, compare_frame_logs and other programs whose commands the
+// documents show.
 const std::set<std::string> kForeignOptions{"--preset",    "--build",   "--install", "--config",    "--test-dir",
                                             "--test-case", "--target",  "--prefix",  "--component", "--output-on-failure",
                                             "--help",      "--version", "--success", "--pictures",  "--share",
@@ -65,7 +67,7 @@ bool isOption(const std::string& name) {
     return kForeignOptions.contains(name) || std::ranges::any_of(commands(), has);
 }
 
-// Lines of fenced blocks and spans of inline code.
+// Lines of fenced blocks, and spans of inline code.
 std::vector<std::string> codeLines(const std::string& text) {
     std::vector<std::string> lines;
     std::istringstream stream(text);
@@ -82,7 +84,7 @@ std::vector<std::string> codeLines(const std::string& text) {
     return lines;
 }
 
-// The words of a command, up to what a shell would read as its end; brackets around what may be left out are taken off.
+// The words of a command, up to where a shell would end it, without the brackets around optional parts.
 std::vector<std::string> wordsOf(const std::string& line) {
     std::vector<std::string> words;
     std::istringstream stream(line);
@@ -98,7 +100,8 @@ std::vector<std::string> wordsOf(const std::string& line) {
     return words;
 }
 
-// What follows "binosplat" where a line calls it, with or without its folder and variables in front; nothing otherwise.
+// The words after "binosplat" in a line that calls it, with or without a folder and variables in front; empty
+// otherwise.
 std::vector<std::string> callOfProgram(const std::string& line) {
     const std::vector<std::string> words = wordsOf(line);
     const auto is_variable = [](const std::string& word) { return std::regex_match(word, std::regex("[A-Z_]+=.*")); };
@@ -107,18 +110,20 @@ std::vector<std::string> callOfProgram(const std::string& line) {
     return {program + 1, words.end()};
 }
 
-// Words that stand for others: capitals, or one of a few names.
+// Words that stand for others: in capitals, or a choice between names.
 bool isPlaceholder(const std::string& word) {
     return std::isupper(static_cast<unsigned char>(word[0])) != 0 || word.find('|') != std::string::npos;
 }
 
-// "" or what `binosplat CALL` would refuse; values only where all words are what they say.
+// The reason why `binosplat CALL` would be refused, or "". Values are checked only where no word is a
+// placeholder.
 std::string wrongCall(std::vector<std::string> call) {
-    if (call.size() == 1 && std::ranges::find(commands(), call[0], &Command::name) != commands().end()) { return ""; }  // named, not shown
-    // A file in the place of a command is viewed.
+    // Mentioned, not called.
+    if (call.size() == 1 && std::ranges::find(commands(), call[0], &Command::name) != commands().end()) { return ""; }
+    // A file in place of a command means `view`.
     if (call[0] == "FILE" || call[0].ends_with(".ply")) { call.insert(call.begin(), "view"); }
     std::erase(call, "OPTIONS");
-    for (std::string& word : call) { std::ranges::replace(word, '\\', '/'); }  // of Windows
+    for (std::string& word : call) { std::ranges::replace(word, '\\', '/'); }  // Windows paths
     try {
         test::parseWords(call);
     } catch (const Error& error) {
@@ -167,7 +172,7 @@ TEST_CASE_FIXTURE(test::AtWork, "desktops accept the program's entry, formats an
         const Outcome judged = work.runCommand(command);
         CHECK_MESSAGE(judged.exit_code == 0, command << ": " << judged.output << judged.errors);
     }
-    std::string opened;  // in the order of the entry
+    std::string opened;  // in the order of the desktop entry
     for (const std::string& type : findAll(textIn(base + ".metainfo.xml"), "<mediatype>([^<]+)</mediatype>")) { opened += type + ";"; }
     CHECK(findAll(textIn(base + ".desktop"), "MimeType=(.*)\n") == std::vector<std::string>{opened});
     for (const std::string& type : findAll(textIn(base + ".xml"), "mime-type type=\"([^\"]+)\"")) {
@@ -229,7 +234,7 @@ TEST_CASE("commands that the documents show are understood" * test::nightly()) {
     const std::vector<std::string> run_commands = findAll(textIn(kSource / "run"), R"(\n    ([a-z0-9]+)\)\n)");
     REQUIRE(run_commands.size() == 5);
     const std::string presets = textIn(kSource / "CMakePresets.json");
-    fs::current_path(kSource);  // configs are named from there
+    fs::current_path(kSource);  // configs are named relative to it
     for (const fs::path& document : documents()) {
         CAPTURE(document);
         for (const std::string& line : codeLines(textIn(document))) {

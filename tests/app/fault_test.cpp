@@ -1,5 +1,6 @@
-// Facts about machines that fail under the program: a device that is lost or full, a disk that is full, a signal. What fails, and where, a
-// Vulkan layer says (tests/faults), or the shell's limit of file sizes; each time one line, its exit code, and nothing left behind.
+// Facts about machines that fail under the program: a device that is lost or full, a full disk, a signal. A
+// Vulkan layer (tests/faults) or the shell's limit of file sizes makes the failure. Each time the program
+// prints one line, ends with the right exit code and leaves nothing behind.
 #include "engine/builtin/procedural.h"
 #include "engine/files/ply.h"
 #include "engine/places/standpoint.h"
@@ -7,7 +8,7 @@
 
 SUITE(fault) {
 
-// The Nth call fails, or a signal comes with it.
+// Makes the Nth call fail, or raises a signal with it.
 std::string fault(const std::string& call, int number, const std::string& what) {
     return fmt::format("VK_ADD_LAYER_PATH='" BINOSPLAT_FAULT_LAYER
                        "' VK_INSTANCE_LAYERS=VK_LAYER_BINOSPLAT_faults BINOSPLAT_FAULT={}:{}:{}",
@@ -40,8 +41,8 @@ SCRIPT(fault, "app/fault") {
 
 #ifdef BINOSPLAT_LIBRARY_USER
 
-// What tests/app/library_user.cpp says of its second scene where the Nth allocation fails, and of the pictures after it; empty: it came to
-// none.
+// What tests/app/library_user.cpp says of its second scene when the Nth allocation fails, and of the pictures
+// after it; empty if there was no Nth allocation.
 std::string loadWithout(const Machine& machine, int number) {
     CAPTURE(number);
     const Outcome outcome = machine.runCommand(fault("allocate", number, "no-device-memory-once") + " '" BINOSPLAT_LIBRARY_USER "'");
@@ -57,7 +58,7 @@ TEST_CASE_FIXTURE(Machine, "the library draws a small scene as near as it is sma
         double share = 0.0;
         glm::dvec3 from{0.0};
     };
-    // A room of this size.
+    // An atelier scaled to this size.
     const auto look = [&](double size, const glm::dvec3& at) {
         Scene scene = makeBuiltin("builtin:atelier", 3000);
         const double factor = size / coreSize(scene);
@@ -117,7 +118,7 @@ TEST_CASE_FIXTURE(Machine, "faults end the viewer in its own line, behind what t
         CHECK(own == 1);
         for (const std::string& name : files()) { CHECK(name.find("unfinished") == std::string::npos); }
     };
-    // The scene is on its way up beside the first frames, so it may be either side's call.
+    // The scene is uploaded beside the first frames, so the call may belong to either.
     checkEnds(fault("submit", 2, "lost"), 3, "DeviceLost");
     checkEnds(fault("wait", 12, "lost"), 3, "DeviceLost");
     checkEnds(fault("allocate", 1, "no-device-memory"), 1, "not enough memory for this scene and picture size");

@@ -1,4 +1,4 @@
-// The program in a fork of a test program that is linked with it.
+// Runs the program in a fork of a test program that is linked with it.
 #include "app/program.h"
 #include "tests/run_program.h"
 
@@ -27,10 +27,11 @@ namespace {
 std::ptrdiff_t countThreads() {
     return std::distance(std::filesystem::directory_iterator("/proc/self/task"), std::filesystem::directory_iterator());
 }
-// Those that libraries start when they are loaded (log4cplus, which comes with OpenImageIO) and never need again. A fork has none of them.
+// Threads that libraries start when they are loaded (log4cplus, which comes with OpenImageIO) and never need
+// again. A fork does not have them.
 const std::ptrdiff_t threads_of_libraries = countThreads();
 
-// As the shell takes them apart; false where it takes a shell: redirections, pipes, jobs.
+// The words as the shell splits them; false if the text needs a shell: redirections, pipes, jobs.
 bool areWords(const std::string& text, wordexp_t& words) { return wordexp(text.c_str(), &words, WRDE_NOCMD | WRDE_UNDEF) == 0; }
 
 bool isOneCommand(const std::string& text) { return text.find_first_of("|&;<>(){}`\n") == std::string::npos; }
@@ -63,7 +64,8 @@ int runInFork(const std::string& arguments, const std::string& environment, cons
     const pid_t child = fork();
     if (child < 0) { return -1; }
     if (child == 0) {
-        for (const int signal : {SIGINT, SIGILL, SIGFPE, SIGSEGV, SIGTERM, SIGABRT}) { std::signal(signal, SIG_DFL); }  // not the test's
+        // Instead of the test's handlers.
+        for (const int signal : {SIGINT, SIGILL, SIGFPE, SIGSEGV, SIGTERM, SIGABRT}) { std::signal(signal, SIG_DFL); }
         redirect(STDOUT_FILENO, outputs / "output");
         redirect(STDERR_FILENO, outputs / "errors");
         std::filesystem::current_path(folder);
@@ -75,8 +77,8 @@ int runInFork(const std::string& arguments, const std::string& environment, cons
     return status;
 }
 
-// What the loaders of Vulkan and OpenXR load in every run, where it is there: to link LLVM alone takes as long as a small frame. Drivers
-// and layers are found as the loaders find them, by their manifests.
+// Loads what the loaders of Vulkan and OpenXR load in every run, if it is there: linking LLVM alone takes as
+// long as a small frame. Drivers and layers are found as the loaders find them, by their manifests.
 bool loadAhead() {
     dlopen("libVkLayer_khronos_validation.so", RTLD_NOW | RTLD_NODELETE);
     for (const char* folder :
@@ -94,7 +96,8 @@ bool loadAhead() {
     return true;
 }
 
-// OpenEXR's threads would stay after the first picture that a test reads, and then there would be no fork any more.
+// OpenEXR's threads would outlive the first picture that a test reads, and a process with threads cannot be
+// forked.
 bool readWithoutThreads() {
 #ifdef BINOSPLAT_OPENIMAGEIO
     return OIIO::attribute("exr_threads", -1);

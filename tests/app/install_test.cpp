@@ -23,7 +23,7 @@ void checkLinks(const fs::path& documents) {
     CHECK(links > 50);
 }
 
-// The example draws a scene from a server as it does the file.
+// The example draws a scene from a server just as it draws the file.
 void checkFetched(const Workplace& work, const std::string& scene) {
     const WebServer server(WebPages{{"/" + scene, work.bytesOf(scene)}});
     const Outcome fetched =

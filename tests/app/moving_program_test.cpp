@@ -1,4 +1,4 @@
-// moving_program_test.txt, with four frames of 2000 splats that slide, and a head that stands still.
+// moving_program_test.txt, with four frames of 2000 sliding splats and a head that stands still.
 #include "tests/app/program_script.h"
 #include "tests/engine/stream/moving_frames.h"
 

@@ -1,4 +1,4 @@
-// Facts about pictures of all around: where things are in them, that no seam shows, and what their files say to players.
+// Facts about panoramas: where things are in them, that no seam shows, and what their files tell players.
 #include "app/scores/metrics.h"
 #include "engine/picture/image_io.h"
 #include "engine/picture/panorama_tags.h"
@@ -8,7 +8,7 @@ SUITE(panorama) {
 
 constexpr double kPi = std::numbers::pi;
 
-// 3D Gaussians, whose shape depends on the axes of the camera; from a place within the room.
+// 3D Gaussians, whose shape depends on the camera's axes; seen from a place within the room.
 const std::string kPlace = "--eye 0.02,-1.5,1.2 --up 0,-1,0 ";
 
 glm::vec3 colourAt(const Image& image, std::size_t x, std::size_t y) {
@@ -16,7 +16,8 @@ glm::vec3 colourAt(const Image& image, std::size_t x, std::size_t y) {
     return {p[0], p[1], p[2]};
 }
 
-// The mean square of how much more a picture differs from another, turned to the left by `shift` columns, in a column than in the next one.
+// How a picture differs from another one turned left by `shift` columns: the mean square of the step of this
+// difference from one column to the next.
 double stepAt(const Image& a, const Image& b, std::size_t shift, std::size_t column) {
     double sum = 0.0;
     for (std::size_t y = 0; y < a.size_px.y; ++y) {
@@ -27,7 +28,7 @@ double stepAt(const Image& a, const Image& b, std::size_t shift, std::size_t col
     return sum / a.size_px.y;
 }
 
-// The bytes of the first box or chunk with these four letters, from these on.
+// The bytes from the first box or chunk with these four letters on.
 std::string after(const std::string& bytes, const std::string& letters) {
     const std::size_t at = bytes.find(letters);
     return at == std::string::npos ? "" : bytes.substr(at + 4);
@@ -62,7 +63,7 @@ TEST_CASE("what the faces show of a direction, the panorama shows there, also wh
                 worst = std::max(worst, std::abs(seen.values[4 * i + static_cast<std::size_t>(c)] - expected[c]));
             }
         }
-        CHECK(worst < 5e-4f);  // the mean over a pixel is not its middle
+        CHECK(worst < 5e-4f);  // the mean over a pixel is not the value at its middle
     }
 }
 
@@ -71,7 +72,7 @@ TEST_CASE_FIXTURE(AtWork, "where faces of a picture of all around meet, nothing 
         work.go("render builtin:atelier --projection 360 --size 256x128 " + kPlace + look + " --out around");
         return readPicture(work.path / "around/mono" BINOSPLAT_FLOAT_EXTENSION);
     };
-    // An eighth of a turn to the right: what was an edge of a face is the middle of one, and the other way round.
+    // An eighth of a turn to the right: edges of faces and their middles change places.
     const Image ahead = around("--look 0.02,-1.5,2.2"), aside = around("--look 1.02,-1.5,2.2");
     REQUIRE(ahead.size_px == glm::uvec2(256, 128));
     const Image nothing{ahead.size_px, 4, std::vector<float>(ahead.values.size(), 0.0f)};
@@ -97,7 +98,7 @@ TEST_CASE_FIXTURE(AtWork, "each direction is where a flat picture has it, for ea
                 const double right = (static_cast<double>(x) + 0.5) * kPi / 256.0 - kPi / 2.0,
                              down = (static_cast<double>(y) + 0.5) * kPi / 256.0 - kPi / 2.0;
                 const glm::dvec2 at(std::tan(right), std::tan(down) / std::cos(right));
-                // The mean of the four pixels around, which are half as wide.
+                // The mean of the four surrounding pixels, which are half as wide.
                 const glm::dvec2 place = glm::floor(256.0 * at + 256.0 - 0.5);
                 glm::vec3 flat_colour(0.0f);
                 for (int i = 0; i < 4; ++i) {
@@ -127,7 +128,7 @@ TEST_CASE_FIXTURE(AtWork, "a picture of all around tells galleries so, and is a 
         CHECK(text.find(said) != std::string::npos);
     }
     CHECK(readPicture(work.path / "out/mono.png").size_px == glm::uvec2(64, 32));
-    // The same as JPEG, where the build has a library for it: the tags are in the second segment.
+    // The same for JPEG, if the build has a library for it: the tags are in the second segment.
     if (work.holds("out/mono.jpg")) {
         const std::string jpg = work.bytesOf("out/mono.jpg"), xmp = "http://ns.adobe.com/xap/1.0/";
         REQUIRE(jpg.starts_with("\xff\xd8\xff\xe0"));
@@ -155,7 +156,7 @@ std::string box(const std::string& type, const std::string& content) {
     for (const int shift : {24, 16, 8, 0}) { bytes += static_cast<char>(size >> shift); }
     return bytes + type + content;
 }
-// The index of a film as ffmpeg writes it, as far as it matters.
+// The parts of a film's index, as ffmpeg writes it, that matter here.
 std::string indexOf(const std::string& tags) {
     const std::string picture = std::string(78, 'p') + box("avcC", "decoder") + tags + box("pasp", "12345678");
     const std::string table = box("stsd", std::string(7, '\0') + '\1' + box("avc1", picture)) + box("stts", "times");
@@ -178,7 +179,7 @@ TEST_CASE("the boxes that say how a film was projected lie after the decoder's, 
 TEST_CASE_FIXTURE(AtWork,
                   "a path becomes a film, at its rate and with both eyes in each picture; without ffmpeg one line says what is missing") {
     work.write("poses.csv", "time_s,x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,0,1\n0.04,0.01,0,0,0,0,0,1\n0.08,0.02,0,0,0,0,0,1\n");
-    // A program that does what is asked of it: it leaves a film, and says how it was called.
+    // A stand-in for the encoder: it leaves a film, and records how it was called.
     work.write("film", box("ftyp", "isom") + box("mdat", "pictures") + indexOf(""));
     std::filesystem::create_directories(work.path / "bin");
     const std::string here = work.path.string();

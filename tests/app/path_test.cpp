@@ -1,4 +1,5 @@
-// Facts about rendering along a path: numbered frames of both eyes, between poses too, and nothing half-written.
+// Facts about rendering along a path: numbered frames of both eyes, between poses too, and nothing
+// half-written.
 #include "tests/app/program_script.h"
 
 SUITE(path) {
@@ -6,7 +7,7 @@ SUITE(path) {
 const double kPi = std::acos(-1.0);
 const std::string kScene = "render builtin:fence --size 64x48 --up 0,-1,0 --fov-x 60 ";
 const std::string kRender = kScene + "--eye 0,0,0 --look 0,0,3 ";
-// A tenth of a metre to the right and 20 degrees to the left in half a second, and back again in another one.
+// A tenth of a metre to the right and 20 degrees to the left in half a second, and back again in the next.
 const std::string kPoses = fmt::format("time_s,x,y,z,qx,qy,qz,qw\n5,0,0,0,0,0,0,1\n5.5,0.1,0,0,0,{:.9f},0,{:.9f}\n6.5,0,0,0,0,0,0,1\n",
                                        std::sin(kPi / 18.0), std::cos(kPi / 18.0));
 const std::string kExtension = extensionOf(PictureKind::kDisplay);
@@ -16,7 +17,8 @@ struct Way : Workplace {
     [[nodiscard]] nlohmann::json report() const { return nlohmann::json::parse(bytesOf("frames/report.json")); }
 };
 
-// frame NUMBER TIME X SINE: when a frame of one eye is, how far aside, and the sine of half its turn.
+// frame NUMBER TIME X SINE: the time of one eye's frame, its offset to the side, and the sine of half its
+// turn.
 SCRIPT(path, "app/path") {
     const Way way;
     ScriptHost host = programIn(way);
@@ -33,7 +35,7 @@ SCRIPT(path, "app/path") {
     runScript(host);
 }
 
-// Stops with a signal at the Nth submission to the device.
+// Raises a signal at the Nth submission to the device.
 std::string stoppedAt(int submission) {
     return fmt::format("VK_ADD_LAYER_PATH='" BINOSPLAT_FAULT_LAYER
                        "' VK_INSTANCE_LAYERS=VK_LAYER_BINOSPLAT_faults BINOSPLAT_FAULT=submit:{}:SIGINT",

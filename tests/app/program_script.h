@@ -29,7 +29,7 @@ inline ScriptHost programIn(const Workplace& work) {
 #ifdef BINOSPLAT_HAS_PNG
     host.features.insert("png");
 #endif
-    // psnr FIRST SECOND > DB, of pictures as they are shown.
+    // psnr FIRST SECOND > DB, of pictures as they are displayed.
     host.verbs["psnr"] = [&](const std::string& line) {
         const std::vector<std::string> words = wordsIn(line);
         const auto picture = [&](std::size_t i) { return readPicture(work.path / (words.at(i) + extensionOf(PictureKind::kDisplay))); };

@@ -1,4 +1,4 @@
-// What the program says of a scene, and how it takes one of several levels.
+// What the program says about a scene, and how it chooses one of several levels.
 #include "app/scores/metrics.h"
 #include "engine/builtin/procedural.h"
 #include "engine/files/ply.h"
@@ -14,7 +14,7 @@ TEST_CASE_FIXTURE(AtWork, "info says what a scene is made of, and what would tak
     PlyText ply = makePly(0, true);
     for (const char* name : {"scale_0", "scale_1", "scale_2"}) { ply[name].values.assign(3, std::log(0.01)); }
     for (Column& column : ply.columns) { column.values.resize(3000, column.values[0]); }
-    for (std::size_t i = 0; i < 3000; ++i) {  // a patch, whose corners are alone, too
+    for (std::size_t i = 0; i < 3000; ++i) {  // a patch; its corners count as alone, too
         ply["x"].values[i] = 0.05 * static_cast<double>(i % 60);
         ply["y"].values[i] = 0.05 * static_cast<double>(i / 60);
     }
@@ -36,7 +36,7 @@ TEST_CASE_FIXTURE(AtWork, "info says what a scene is made of, and what would tak
     }
     CHECK_FALSE(contains(info, "--sh-degree"));
     CHECK(contains(info, "\nup                 0,-1,0: by convention, as no floor was found\n"));
-    // What is proposed can be done, far from the origin, too, and where all is small.
+    // The advice can be followed, also far from the origin and in a tiny scene.
     for (const auto& [scale, away, type] :
          {std::tuple(1.0, 0.0, "float"), {1.0, 40000.0, "float"}, {1.0, 4e6, "double"}, {1e-4, 0.5, "float"}}) {
         CAPTURE(away);
@@ -89,7 +89,7 @@ TEST_CASE("a scene and its cameras that are moved together give the same picture
     const Image home = rendered("home", glm::dvec3(0.0), "--view 0"), far = rendered("far", away, "--view 0");
     CHECK(std::ranges::max(home.values) > 0.3f);
     CHECK(psnrOf(compare(home, far).mean_square) > 60.0);
-    // By its own cameras, and from a place that is given: with other angles, but alike.
+    // From its own cameras, and from a given place: the angles differ, but the pictures agree.
     const Image at_home = rendered("home-eye", glm::dvec3(0.0), "--eye 0,0,-1 --look 0,0,5"),
                 there = rendered("far-eye", away, "--eye 500000,0,-500001 --look 500000,0,-499995");
     CHECK(psnrOf(compare(at_home, there).mean_square) > 60.0);

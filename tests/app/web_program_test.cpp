@@ -1,4 +1,4 @@
-// Commands whose SCENE is an address, run as a program.
+// Commands whose SCENE is a web address, run as a program.
 #include "engine/builtin/procedural.h"
 #include "engine/files/ply.h"
 #include "engine/picture/image_io.h"
@@ -7,7 +7,7 @@
 
 SUITE(web_program) {
 
-// With a cache beside its folder.
+// With a cache beside the workplace's folder.
 std::string environmentOf(const Workplace& work) {
     return fmt::format("no_proxy=127.0.0.1 XDG_CACHE_HOME='{0}/caches' XDG_CONFIG_HOME='{0}/config'", work.base.string());
 }
@@ -37,7 +37,7 @@ TEST_CASE_FIXTURE(AtWork, "render, bench, info, convert and view take an address
     work.write("one.toml", "[bench]\nmodes = [\"mono\"]\nscores = [\"none\"]\nwarm-up = 0\nrepeats = 1\n");
     CHECK(contains(done("bench " + address + " --out bench --config one.toml --size 64x64"), "wall.ply"));
 #ifdef BINOSPLAT_OPENXR
-    // Also by itself, as a file is.
+    // Without a command as well, as for a file.
     work.go(address + " --simulate --frames 2 --load-first --mode mono --hide-panel --hide-hands --out seen", environmentOf(work));
 #endif
     server.stop();

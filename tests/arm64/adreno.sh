@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
-# Compiles the kernels of a frame of temporal for Adrenos that are not here: Turnip under qemu, on a stand-in for the kernel's driver that executes
-# nothing. Prints their statistics, then a table (docs/results/gpu.md); ends with 1 where registers spill. First `./run arm64`.
+# Compiles the kernels of a frame of temporal for Adrenos that this machine does not have: Turnip under qemu,
+# on a stand-in for the kernel's driver that executes nothing. Prints their statistics, then a table
+# (docs/results/gpu.md); exits with 1 if registers spill. Run `./run arm64` first.
 #   tests/arm64/adreno.sh [FILTER]     of `binosplat kernels --filter`, in place of these kernels
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 # shellcheck source=tests/arm64/root.sh
 . tests/arm64/root.sh
-# Those of 3D Gaussians, for chosen tiles, with pictures in half precision.
+# Kernels of 3D Gaussians, for chosen tiles, with pictures in half precision.
 kernels='cull kSplatKind=1 kMasked=1 kInPages=0|compact kInPages=0|sort_|project .*kMasked=1 kSplatKind=1 kPlaced=0|bin$'
 kernels+='|bin_large kSplatKind=1|tile_ranges kMasked=1 kHalfColours=1|rasterize .*kHalfColours=1 kSplatKind=1 .*kMasked=1 kPast=1'
 kernels+='|warp_past kHalfColours=1 kHiddenTiles=1 kWholeBlocks=1|warp_pixels kHalfColours=1 kHiddenTiles=1'

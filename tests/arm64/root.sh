@@ -1,4 +1,5 @@
-# For the scripts of this folder, which read this file: the packed program in build/arm64-tried, and Debian 13's libraries, with Mesa 25, for it.
+# Sourced by the scripts of this folder: the packed program in build/arm64-tried, with Debian 13's libraries
+# and Mesa 25 for it.
 # shellcheck shell=bash
 tarball=$(find build/arm64 -maxdepth 1 -name 'binosplat-*-linux-arm64.tar.gz' -printf '%T@ %p\n' 2>/dev/null | sort -n | tail -n 1 | cut -d' ' -f2-)
 [[ -n $tarball ]] || {

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Tries the tarball for aarch64 under qemu, among Debian 13's libraries and on its Mesa's lavapipe, against the program of build/release: what it
-# prints, writes and draws. Ends with 1 where anything differs. First `./run arm64` and `./run build`. What was drawn stays in build/arm64-tried.
+# Tries the tarball for aarch64 under qemu, with Debian 13's libraries and its Mesa's lavapipe, against the
+# program in build/release: what it prints, writes and draws. Exits with 1 if anything differs. Run `./run
+# arm64` and `./run build` first. What was drawn stays in build/arm64-tried.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 # shellcheck source=tests/arm64/root.sh
@@ -26,7 +27,7 @@ writesTheSame() { # FILE ARGUMENTS...
 drawsAlike() { # PICTURE ARGUMENTS...
     both "${@:2}" && "$here" compare $tried/{here,there}/"$1" | awk '/^psnr/ { print "  " $2 " dB"; alike = $2 == "inf" || $2 >= 60 } END { exit !alike }'
 }
-# No library asks for a newer glibc, and none for a libstdc++ newer than GCC 12's.
+# No library needs a newer glibc, or a libstdc++ newer than GCC 12's.
 isOldEnough() {
     { find build/arm64-tried/{bin,lib} -type f -exec aarch64-linux-gnu-objdump -T {} + 2>/dev/null || true; } | grep -oE '\((GLIBC|GLIBCXX)_[0-9.]+\)' | tr -d '()' | sort -Vu |
         awk -F_ '{ last[$1] = $2 } END { print "  glibc " last["GLIBC"] ", libstdc++ " last["GLIBCXX"]; split(last["GLIBC"], c, "."); split(last["GLIBCXX"], x, ".")
@@ -35,7 +36,7 @@ isOldEnough() {
 
 try "glibc 2.35 is enough" isOldEnough
 try "info" saysTheSame info builtin:fence
-# With this machine's version of the C library: sines and powers of a newer one differ in last digits.
+# With this machine's version of the C library: sines and powers of a newer one differ in the last digits.
 system=build/arm64-root try "a scene's bytes" writesTheSame atelier.ply scene atelier --splats 20000 --out
 for kind in ply spz sog; do try "convert to $kind" writesTheSame "a.$kind" convert $tried/here/atelier.ply; done
 try "render" drawsAlike picture/right.png render $tried/here/atelier.ply --size 64x64 --out %OUT/picture

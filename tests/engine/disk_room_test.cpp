@@ -1,4 +1,4 @@
-// Facts about the room that is left on disks.
+// Facts about the free space on disks.
 #include "engine/disk_room.h"
 
 #include "engine/platform.h"

@@ -1,4 +1,5 @@
-// Facts about what the operating system is asked for, and about files prepared by somebody else: links, pipes, long ones.
+// Facts about requests to the operating system, and about files that somebody else prepared: links, pipes,
+// long ones.
 
 #include "engine/part_file.h"
 #include "engine/picture/image_io.h"
@@ -21,7 +22,7 @@ SUITE(platform) {
 
 void makePipe(const fs::path& path) { REQUIRE(::mkfifo(path.c_str(), 0600) == 0); }
 
-// A pipe that nobody writes to would be waited for without end: the test then ends by SIGALRM.
+// Waiting for a pipe that nobody writes to would never end: the test then ends by SIGALRM.
 struct Patience {
     Patience() { ::alarm(60); }
     ~Patience() { ::alarm(0); }
@@ -136,7 +137,7 @@ TEST_CASE_FIXTURE(AtWork, "files that appear together do not replace a pipe, a d
     CHECK(fs::is_fifo(work.path / "report"));
     CHECK_FALSE(fs::exists(work.path / "another"));
     fs::remove(work.path / "report");
-    // A link makes way; what it leads to stays.
+    // A link is replaced; what it points to stays.
     work.write("victim", "keep me");
     fs::create_symlink(work.path / "victim", work.path / "report");
     files.publish();
@@ -173,7 +174,7 @@ TEST_CASE("settings, headsets, cameras, head motion and pictures are files of a 
         const std::string message = path.string() + ": cannot be read (not a regular file), must be an image file";
         CHECK_THROWS_WITH_AS((void)readPicture(path), message.c_str(), Error);
     }
-    // The most bytes are read, one more is too many.
+    // The largest allowed size is read, one byte more is too much.
     const fs::path path = work.path / "text";
     for (const std::size_t size : {std::size_t{0}, kMostTextBytes, kMostTextBytes + 1}) {
         work.write("text", std::string(size, 'a'));

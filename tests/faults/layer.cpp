@@ -1,11 +1,16 @@
-// A Vulkan layer in which a call fails, or a signal comes, at a place that a test names: what machines do at a place nobody knows.
-// BINOSPLAT_FAULT=CALL:N:FAULT with CALL submit, wait, present or allocate, N from 1, and FAULT lost, surface-lost, surface-lost-once,
-// no-device-memory, no-device-memory-once, no-host-memory, type-full, SIGINT or SIGTERM. From the Nth such call on what is lost stays lost
-// and memory stays full; signals come once. Of a lost device no wait until it is idle succeeds. type-full: buffers may lie in one more type
-// of memory, and the first type has no more of it. BINOSPLAT_FAULT_TICKS=N: timestamps are N ticks apart, however long the work between
-// them took. BINOSPLAT_FAULT_TRACE=FILE: a line for each submission and each wait, in their order, with the fence: "submit 55d0", "wait
-// 55d0"; "wait all" where the queue or the device is waited for. BINOSPLAT_FAULT_LIVE=FILE: what is alive, see live.h.
-// BINOSPLAT_FAULT_LOAD=...: how long frames take, see load.h. BINOSPLAT_FAULT_WAITS=FILE: what frames do that may wait, see waits.h.
+// A Vulkan layer in which a call fails, or a signal arrives, at a point that a test names: machines do this
+// at unknown points.
+// BINOSPLAT_FAULT=CALL:N:FAULT with CALL submit, wait, present or allocate, N from 1, and FAULT lost,
+// surface-lost, surface-lost-once, no-device-memory, no-device-memory-once, no-host-memory, type-full, SIGINT
+// or SIGTERM. From the Nth such call on, what is lost stays lost and memory stays full; signals come once. On
+// a lost device, waiting until it is idle always fails. type-full: buffers may lie in one more type of
+// memory, and the first type is full.
+// BINOSPLAT_FAULT_TICKS=N: timestamps are N ticks apart, however long the work between them took.
+// BINOSPLAT_FAULT_TRACE=FILE: a line for each submission and each wait, in their order, with the fence:
+// "submit 55d0", "wait 55d0"; "wait all" for a wait for the queue or the device.
+// BINOSPLAT_FAULT_LIVE=FILE: what is alive, see live.h.
+// BINOSPLAT_FAULT_LOAD=...: how long frames take, see load.h.
+// BINOSPLAT_FAULT_WAITS=FILE: work in frames that could wait, see waits.h.
 // BINOSPLAT_FAULT_ANY=1: any call may fail, see any.h.
 #include "tests/faults/any.h"
 #include "tests/faults/live.h"
@@ -45,7 +50,7 @@ struct Plan {
     }
 };
 
-// One instance and one device a process, as the program has them.
+// One instance and one device per process, as the program has them.
 PFN_vkGetInstanceProcAddr g_instance_next = nullptr;
 VkInstance g_instance = VK_NULL_HANDLE;
 PFN_vkGetPhysicalDeviceMemoryProperties g_memory_properties = nullptr;
@@ -57,7 +62,7 @@ const Plan& thePlan() {
     return plan;
 }
 
-// What the call returns instead of being made; VK_SUCCESS: make it.
+// What the call returns instead of being executed; VK_SUCCESS: execute it.
 VkResult strike(const char* call) {
     const Plan& plan = thePlan();
     static std::atomic<int> calls{0};
@@ -102,7 +107,7 @@ VKAPI_ATTR VkResult VKAPI_CALL present(VkQueue queue, const VkPresentInfoKHR* in
     return result != VK_SUCCESS ? result : BINOSPLAT_NEXT(vkQueuePresentKHR)(queue, info);
 }
 
-// A device is lost while it works: the wait itself is made, so that nothing is destroyed that is still in use.
+// A device is lost while it works: the wait itself is executed, so nothing is destroyed that is still in use.
 VKAPI_ATTR VkResult VKAPI_CALL wait(VkDevice device, std::uint32_t count, const VkFence* fences, VkBool32 all, std::uint64_t timeout) {
     for (std::uint32_t i = 0; i < count; ++i) {
         trace("wait", fences[i]);
@@ -152,7 +157,7 @@ VKAPI_ATTR VkResult VKAPI_CALL allocate(VkDevice device, const VkMemoryAllocateI
     return result;
 }
 
-// The program reads 64 bits each.
+// The program reads 64 bits for each.
 VKAPI_ATTR VkResult VKAPI_CALL results(VkDevice device, VkQueryPool pool, std::uint32_t first, std::uint32_t count, std::size_t bytes,
                                        void* data, VkDeviceSize stride, VkQueryResultFlags flags) {
     const VkResult result = BINOSPLAT_NEXT(vkGetQueryPoolResults)(device, pool, first, count, bytes, data, stride, flags);

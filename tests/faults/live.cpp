@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::uint64_t kEvery = 10;
 
-// A number that comes and goes, and between which bounds it did since somebody looked.
+// A number that goes up and down, and its bounds since it was last read.
 struct Bounds {
     std::int64_t now = 0, least = 0, most = 0;
 
@@ -42,7 +42,7 @@ void count(std::int64_t more) {
     g_objects.add(more);
 }
 
-// What has one info and makes one object.
+// Calls that have one create info and make one object.
 #define BINOSPLAT_EACH_KIND(of)                                                                                                  \
     of(Buffer) of(Image) of(ImageView) of(ShaderModule) of(PipelineLayout) of(CommandPool) of(Fence) of(Semaphore) of(QueryPool) \
         of(DescriptorPool) of(DescriptorSetLayout) of(Sampler) of(RenderPass) of(Framebuffer) of(PipelineCache)
@@ -96,7 +96,7 @@ VKAPI_ATTR void VKAPI_CALL freeMemory(VkDevice device, VkDeviceMemory memory, co
     BINOSPLAT_NEXT(vkFreeMemory)(device, memory, callbacks);
 }
 
-// Of the host, by the sanitizer where there is one.
+// The host's memory, counted by the sanitizer if there is one.
 std::uint64_t heapBytes() {
     static const auto ask = reinterpret_cast<std::size_t (*)()>(dlsym(RTLD_DEFAULT, "__sanitizer_get_current_allocated_bytes"));
     if (ask != nullptr) { return ask(); }

@@ -1,7 +1,9 @@
-// What of a device is alive: objects, device memory and the host's heap, counted by the layer while a program runs.
-// BINOSPLAT_FAULT_LIVE=FILE: a line for every tenth submission: "submissions objects device-bytes heap-bytes resident-bytes kernels-made",
-// the objects and the device's bytes as the least and the most since the line before: "10 120-140 5242880-6291456 1048576 3145728 24".
-// BINOSPLAT_FAULT_READ=FILE: how many bytes the program has read of files when it lets go of the layer.
+// What is alive on a device: objects, device memory and the host's heap, counted by the layer while a program
+// runs.
+// BINOSPLAT_FAULT_LIVE=FILE: a line for every tenth submission: "submissions objects device-bytes heap-bytes
+// resident-bytes kernels-made". The objects and the device's bytes are given as the minimum and maximum since
+// the line before: "10 120-140 5242880-6291456 1048576 3145728 24".
+// BINOSPLAT_FAULT_READ=FILE: how many bytes the program has read from files when it unloads the layer.
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -11,13 +13,13 @@
 
 namespace binosplat::faults {
 
-// The file that an environment variable names; null: not set.
+// The file that an environment variable names; null if it is not set.
 inline std::FILE* openNamedBy(const char* variable) {
     const char* const name = std::getenv(variable);
     return name != nullptr ? std::fopen(name, "w") : nullptr;
 }
 
-// The one device of a process, and where the next layer's functions of it are found.
+// The only device of a process, and where to find the next layer's functions for it.
 inline VkDevice the_device = VK_NULL_HANDLE;
 inline PFN_vkGetDeviceProcAddr device_next = nullptr;
 #define BINOSPLAT_NEXT(function) \
@@ -28,9 +30,9 @@ PFN_vkVoidFunction asVoid(Function* function) {
     return reinterpret_cast<PFN_vkVoidFunction>(function);
 }
 
-// Whether the counts are wanted.
+// Whether the counts are requested.
 bool countsLive();
-// A function of the device that makes or destroys something; null: it does neither.
+// A device function that creates or destroys something; null if it does neither.
 PFN_vkVoidFunction countingFunction(const char* name);
 // Objects and allocations at present.
 long long liveObjects();

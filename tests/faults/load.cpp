@@ -17,7 +17,7 @@ namespace {
 struct Recording {
     VkQueryPool timestamps = VK_NULL_HANDLE;
     bool is_in_present = false;
-    std::uint64_t groups = 0;  // that present pixels
+    std::uint64_t groups = 0;  // groups that present pixels
 };
 
 std::mutex g_load_mutex;
@@ -25,7 +25,7 @@ std::map<VkCommandBuffer, Recording> g_recordings;
 std::uint64_t g_frames = 0, g_first_groups = 0;
 double g_tick_ns = 1.0;
 
-// In milliseconds, by the frame from which on it is so.
+// In milliseconds, by the frame from which it applies.
 const std::map<std::uint64_t, double>& loads() {
     static const std::map<std::uint64_t, double> all = [] {
         std::map<std::uint64_t, double> found;

@@ -1,6 +1,7 @@
 // Frames that take as long as a test says, whatever the device makes of them.
-// BINOSPLAT_FAULT_LOAD=FRAME:MS[,FRAME:MS...], by FRAME from 0: from that frame on, a frame of as many pixels as the first one takes this
-// time; fewer pixels take their share of it. Frames are what has a pass "present".
+// BINOSPLAT_FAULT_LOAD=FRAME:MS[,FRAME:MS...], with FRAME from 0: from that frame on, a frame with as many
+// pixels as the first one takes this long; fewer pixels take a proportional share. Anything with a pass
+// "present" is a frame.
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -10,14 +11,14 @@
 
 namespace binosplat::faults {
 
-// Whether a test says so.
+// Whether a test requests this.
 bool hasLoad();
 // On a device whose timestamps tick every `tick_ns`.
 void beginLoad(double tick_ns);
-// A function of the device that records something of interest; null: it does not.
+// A device function that records something of interest; null if it does not.
 PFN_vkVoidFunction loadFunction(const char* name);
-// How many ticks the frame with these timestamps took; empty if it is not a frame, or the test says nothing
-// about it.
+// How many ticks the frame with these timestamps took; empty if it is not a frame, or if the test says
+// nothing about it.
 std::optional<std::uint64_t> ticksOf(VkQueryPool pool);
 
 }  // namespace binosplat::faults

@@ -1,10 +1,12 @@
-// An OpenXR API layer in which calls fail as a test says: what runtimes do that the simulated one does not.
-// BINOSPLAT_XR_FAULT=CALL:RESULT[:N[:AFTER]] and more of these after commas: N calls of CALL, or all, return the number RESULT and are not
-// made, once AFTER others were. In the place of RESULT, "missing": the runtime does not have the function; "crash": it ends the program.
-// xrCreateInstance:hang never returns.
-// BINOSPLAT_XR_EARLY=METRES: what a frame asks first about its eyes is a worse prediction, so much too high; what it asks then is right.
-// BINOSPLAT_XR_LOSE=TYPE: events of this XrStructureType are lost, and the runtime says that one was.
-// For BINOSPLAT_FAULT_WAITS (waits.h) it tells when a frame ends and what the runtime does itself.
+// An OpenXR API layer in which calls fail as a test says: things that runtimes do, but the simulated one does
+// not.
+// BINOSPLAT_XR_FAULT=CALL:RESULT[:N[:AFTER]], and more of these after commas: N calls of CALL, or all, return
+// the number RESULT and are not executed, once AFTER others were. Instead of RESULT, "missing": the runtime
+// does not have the function; "crash": it ends the program. xrCreateInstance:hang never returns.
+// BINOSPLAT_XR_EARLY=METRES: a frame's first request for its eyes gets a worse prediction, too high by this
+// much; later requests get the right one.
+// BINOSPLAT_XR_LOSE=TYPE: events of this XrStructureType are lost, and the runtime reports the loss of one.
+// For BINOSPLAT_FAULT_WAITS (waits.h), it tells when a frame ends and what the runtime does itself.
 #include <vulkan/vulkan.h>
 #define XR_USE_GRAPHICS_API_VULKAN
 #include <openxr/openxr.h>
@@ -29,10 +31,10 @@ namespace {
 struct Fault {
     bool is_missing = false, is_crash = false;
     XrResult result = XR_SUCCESS;
-    std::atomic<int> before{0}, left{INT_MAX};  // calls that do not fail yet, and those that do then
+    std::atomic<int> before{0}, left{INT_MAX};  // calls that do not fail yet, and calls that fail afterwards
 };
 
-// By the name of the function. Only ever read after the first call.
+// By the name of the function. Only read after the first call.
 std::map<std::string, Fault>& faults() {
     static std::map<std::string, Fault> all = [] {
         std::map<std::string, Fault> found;
@@ -57,7 +59,8 @@ std::map<std::string, Fault>& faults() {
 
 PFN_xrGetInstanceProcAddr g_next = nullptr;
 
-// A function that fails as long as its fault lasts, and then is the next one. `Tag` is a struct of its own for each function.
+// A function that fails as long as its fault lasts, and then calls the next one. `Tag` is a separate struct
+// for each function.
 template <typename Tag, typename Function>
 struct Faulty;
 template <typename Tag, typename... Arguments>
@@ -89,7 +92,7 @@ struct Faulty<Tag, XrResult(XRAPI_PTR*)(Arguments...)> {
     };
 BINOSPLAT_FAULTY(BINOSPLAT_TAG)
 
-// Of the open frame: how often its eyes were located.
+// How often the open frame's eyes were located.
 std::atomic<int> g_looks{0};
 PFN_xrLocateViews g_locate_views = nullptr;
 PFN_xrBeginFrame g_begin_frame = nullptr;
@@ -117,14 +120,14 @@ XRAPI_ATTR XrResult XRAPI_CALL pollEvent(XrInstance instance, XrEventDataBuffer*
     return result;
 }
 
-// Whether BINOSPLAT_XR_LOSE takes the function.
+// Whether BINOSPLAT_XR_LOSE takes over the function.
 bool takesEvents(const char* name, PFN_xrVoidFunction* function) {
     if (std::getenv("BINOSPLAT_XR_LOSE") == nullptr || std::strcmp(name, "xrPollEvent") != 0) { return false; }
     g_poll_event = reinterpret_cast<PFN_xrPollEvent>(std::exchange(*function, reinterpret_cast<PFN_xrVoidFunction>(pollEvent)));
     return true;
 }
 
-// Whether BINOSPLAT_XR_EARLY takes the function.
+// Whether BINOSPLAT_XR_EARLY takes over the function.
 bool takesEarly(const char* name, PFN_xrVoidFunction* function) {
     if (std::getenv("BINOSPLAT_XR_EARLY") == nullptr) { return false; }
     if (std::strcmp(name, "xrLocateViews") == 0) {
@@ -158,7 +161,7 @@ XRAPI_ATTR XrResult XRAPI_CALL getInstanceProcAddr(XrInstance instance, const ch
     return result;
 }
 
-// What loader and layers tell each other (openxr_loader_negotiation.h, which Debian's package lacks).
+// What the loader and layers tell each other (openxr_loader_negotiation.h, which Debian's package lacks).
 struct LoaderInfo {
     std::int32_t type;
     std::uint32_t version;

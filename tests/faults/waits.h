@@ -24,7 +24,7 @@ namespace binosplat::faults {
 
 inline std::recursive_mutex waits_mutex;
 inline std::map<std::string_view, unsigned> waits_of_frame;
-inline std::map<VkFence, unsigned> fences_in_frames;  // in which frame its thread submitted them
+inline std::map<VkFence, unsigned> fences_in_frames;  // the frame in which their thread submitted them
 inline unsigned frame_now = 0;
 inline bool has_runtime = false;
 inline thread_local bool shows_frames = false, is_in_runtime = false;
@@ -82,7 +82,7 @@ auto runInRuntime(std::string_view name, const Call& call) {
     return result;
 }
 
-// A function of the device that counts its calls, and then is the next one.
+// A device function that counts its calls, and then calls the next one.
 struct WatchedCall {
     std::string_view name;
     PFN_vkVoidFunction call;
@@ -122,7 +122,7 @@ inline const auto& watchedCalls() {
     return calls;
 }
 
-// The function of this name that counts; null: it is not watched, or there is no next one yet.
+// The counting function of this name; null if it is not watched, or if there is no next one yet.
 inline PFN_vkVoidFunction watchedFunction(std::string_view name) {
     const auto found = std::ranges::find(watchedCalls(), name, &WatchedCall::name);
     return waitsFile() != nullptr && found != watchedCalls().end() && *found->next != nullptr ? found->call : nullptr;

@@ -1,4 +1,5 @@
-# Unpacks the inputs that fuzzing kept, an archive for each target (tests/fuzz/run.sh --keep packs them), for fuzz_corpus_test.
+# Unpacks the inputs that fuzzing kept, one archive per target (tests/fuzz/run.sh --keep packs them), for
+# fuzz_corpus_test.
 if(WIN32)
     return()
 endif()

@@ -1,9 +1,12 @@
 #!/usr/bin/env bash
-# Fuzzes every parser for SECONDS of processor time each (60), one after the other, with address and undefined-behaviour sanitizers; needs clang.
+# Fuzzes every parser for SECONDS of processor time each (60), one after the other, with address and
+# undefined-behaviour sanitizers; needs clang.
 # usage: tests/fuzz/run.sh [SECONDS] [TARGET...]
-# New inputs lie in build/fuzz/corpus/TARGET, findings in build/fuzz/findings; what libFuzzer prints, in build/fuzz/TARGET.log.
+# New inputs lie in build/fuzz/corpus/TARGET, findings in build/fuzz/findings; what libFuzzer prints, in
+# build/fuzz/TARGET.log.
 # usage: tests/fuzz/run.sh --keep TARGET FILE...
-# Adds inputs to those of tests/fuzz/corpus/TARGET.tar.gz, which every run begins with and fuzz_corpus_test replays.
+# Adds inputs to those of tests/fuzz/corpus/TARGET.tar.gz, which every run begins with and fuzz_corpus_test
+# replays.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
@@ -42,7 +45,9 @@ TIMEFORMAT='%U %S'
 for target in "${targets[@]}"; do
     unpack "$target"
     mkdir -p "build/fuzz/corpus/$target"
-    spent=0 # of processor time; libFuzzer itself stops by the wall's clock, so that a round on a busy machine is followed by another
+    # Processor time; libFuzzer itself stops by the wall clock, so a round on a busy machine is followed by
+    # another.
+    spent=0
     while ((spent < seconds)); do
         if ! { time ASAN_OPTIONS=allocator_may_return_null=1 build/fuzz/bin/fuzz_"$target" -max_total_time=$((seconds - spent)) -rss_limit_mb=2048 \
             -malloc_limit_mb=1024 -timeout=10 -max_len=8192 -print_final_stats=1 -artifact_prefix=build/fuzz/findings/"$target"- \

@@ -1,4 +1,4 @@
-// Readers take files: the inputs are given to them in memory, under a name in /proc.
+// Readers take files, so the inputs are given to them in memory, under a name in /proc.
 #include "tests/fuzz/targets.h"
 
 #include "app/summary/survey.h"
@@ -49,14 +49,14 @@ std::string textOf(Bytes input) { return {input.begin(), input.end()}; }
 void readScene(Bytes input) { (void)loadScene(MemoryFile(input).path()); }
 void readScene(const std::string& input) { readScene({reinterpret_cast<const std::uint8_t*>(input.data()), input.size()}); }
 
-// Files begin as their format says, so that no time goes by finding it.
+// Files begin as their format requires, so that no time is spent finding that.
 void readPly(Bytes input) { readScene("ply\n" + textOf(input)); }
-// The stream before compression: a fuzzer does not find its way through gzip.
+// The stream before compression, since a fuzzer does not find its way through gzip.
 void readSpz(Bytes input) { readScene(test::deflated("NGSP" + textOf(input), MAX_WBITS + 16, 1)); }
 // Without gzip: versions 2 and 3, and the container of version 4.
 void readBareSpz(Bytes input) { readScene("NGSP" + textOf(input)); }
 
-// A folder that goes away with its files.
+// A folder that is removed with its files.
 class WrittenFiles {
 public:
     WrittenFiles() : path_(createFolder(std::filesystem::temp_directory_path(), "binosplat_fuzz")) {}
@@ -76,7 +76,7 @@ bool isFinite(const Scene& scene) {
                        [&](const glm::vec3& p) { return finite(p.x) && finite(p.y) && finite(p.z); });
 }
 
-// What is read can be written in every format, and read again with as many splats.
+// What was read can be written in every format, and read again with as many splats.
 void convert(Bytes input) {
     const Scene scene = loadScene(MemoryFile(input).path());
     (void)surveyScene(scene);
@@ -120,7 +120,8 @@ void readCameras(Bytes input) { (void)readCameraFile(MemoryFile(input).path(), g
 void readMotion(Bytes input) { (void)parseHeadMotion(textOf(input), "motion.csv", MotionAxes::kUnity); }
 
 #ifdef BINOSPLAT_OPENXR
-// A script that is read is asked, too: before, within and after its keys. What it names lies in a folder that is not there.
+// A script that was read is also queried: before, within and after its keys. The files it names are in a
+// folder that does not exist.
 void readScript(Bytes input) {
     const simulated::Script script = simulated::Script::parse(textOf(input), "/nowhere/a.script");
     (void)script.stageFromLocal();

@@ -1,4 +1,4 @@
-// The fuzzed parsers, by name. An ordinary test replays the same list over the kept inputs.
+// The fuzzed parsers, by name. An ordinary test replays the same list on the inputs that were kept.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@ struct Target {
     void (*read)(std::span<const std::uint8_t> input);
 };
 
-// All targets of this build: it may be without SOG.
+// All targets of this build, which may lack SOG.
 std::span<const Target> targets();
 
 // Reads `input` as target `name` does. Ends the process if anything but an Error is thrown, or if its message

@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
-# Tries what people install, in bare Debian trees. As root, with debootstrap and a network.
+# Tries what people install, in bare Debian trees. Run as root, with debootstrap and a network.
 #   tests/packages/run.sh [BUILD]
 #       Makes the Debian packages and the tarball of a finished build, and tries each: some ten minutes.
 #   tests/packages/run.sh --whole [options of ctest]
-#       Begins with a clean clone of the last commit in a fresh tree: `./run demo`, `./run test` and `cmake --install`, each tried, then the
-#       packages made there. Hours the first time; the compiler's cache is kept.
-# In build/ stay bare-debian, where packages are tried, bare-whole, the other tree, and bare-ccache.
+#       Starts from a clean clone of the last commit in a fresh tree: tries `./run demo`, `./run test` and
+#       `cmake --install`, then the packages made there. Takes hours the first time; the compiler's cache is
+#       kept.
+# Leaves in build/: bare-debian, where packages are tried; bare-whole, the other tree; and bare-ccache.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
@@ -25,7 +26,7 @@ openTree() { # TREE
     mounted+=("$1/dev/pts")
 }
 
-# In the tree, with what follows on standard input; a step's time after it.
+# Runs standard input as a script in the tree; prints the time it took.
 enter() { # TREE
     {
         cat <<'END'
@@ -35,7 +36,7 @@ step() {
     "$@"
     echo "packages: $1 ${2:-}: $((SECONDS - begin)) s"
 }
-# The program that is on the PATH, from a folder that is nobody's.
+# Runs the program on the PATH, from an unrelated folder.
 tryProgram() {
     local work
     work=$(mktemp -d)
@@ -101,14 +102,14 @@ tryPackages() {
     rm -rf "$tree/tmp/examples"
     cp -r docs/examples "$tree/tmp/examples"
     enter "$tree" <<'END'
-# Those of an earlier run may be newer, or of the same version.
+# Packages from an earlier run may be newer, or have the same version.
 dpkg --remove python3-binosplat libbinosplat-dev libbinosplat0 binosplat binosplat-simulated-runtime
 apt-get update -q
 step apt-get install -y -q --no-install-recommends /tmp/packages/*.deb mesa-vulkan-drivers
 step tryProgram
 python3 -c 'import binosplat; scene = binosplat.Scene.from_file("builtin:fence"); assert scene.render(scene.start_view(64, 64))[0].max() > 0'
 
-# Somebody's program against what libbinosplat-dev brings, as pkg-config and as CMake have it.
+# A foreign program built against libbinosplat-dev, with pkg-config and with CMake.
 tryLibrary() {
     local work
     work=$(mktemp -d)
@@ -128,7 +129,7 @@ tryLibrary() {
 apt-get install -y -q --no-install-recommends g++ pkg-config cmake make
 step tryLibrary
 
-# The tarball, from a folder of its own; what it is linked with stays from the packages.
+# The tarball, in a folder of its own; the libraries it links come from the packages.
 dpkg --remove binosplat binosplat-simulated-runtime
 if command -v binosplat; then exit 1; fi
 rm -rf /opt/binosplat

@@ -1,5 +1,6 @@
-// Reads a streamed SOG folder as PlayCanvas does: lod-meta.json by the engine's own class, and every chunk by splat-transform's reader.
-// Prints what it found; ends with 1 where a leaf names what is not there, or its splats lie elsewhere.
+// Reads a streamed SOG folder as PlayCanvas does: lod-meta.json with the engine's own class, and every chunk
+// with splat-transform's reader. Prints what it found; exits with 1 if a leaf names something that does not
+// exist, or if its splats lie elsewhere.
 //   node read_levels.mjs FOLDER      with both packages in node_modules of the current folder
 import { readFileSync } from 'node:fs';
 import { dirname, join, resolve } from 'node:path';
@@ -51,7 +52,7 @@ for (const [file, parts] of ranges) {  // they cover their chunk, and do not ove
     }
     expect(end === chunks.get(file).numRows, `${file}: splats from ${end} on`);
 }
-// The format: a value for each level, not below the one before.
+// The format requires a value for each level, never below the one before.
 const leavesOf = (node) => (node.lods ? [node] : node.children.flatMap(leavesOf));
 for (const { errors } of meta.lodErrors ? leavesOf(meta.tree) : []) {
     expect(errors.length === meta.lodLevels && errors[0] === 0 && errors.every((e, i) => i === 0 || e >= errors[i - 1]), `errors: ${errors}`);

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Tries what `binosplat convert` writes as levels of detail with PlayCanvas's own readers, from npm. First `./run build`. Needs node, npm and a
-# network; the packages and the scene go into build/playcanvas.
+# Tries the levels of detail that `binosplat convert` writes with PlayCanvas's own readers, from npm. Run
+# `./run build` first. Needs node, npm and a network; the packages and the scene go into build/playcanvas.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 folder=$PWD/build/playcanvas binosplat=$PWD/build/release/bin/binosplat reader=$PWD/tests/playcanvas/read_levels.mjs

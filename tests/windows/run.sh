@@ -1,8 +1,10 @@
 #!/usr/bin/env bash
-# Tries the package for Windows under Wine, on Mesa's lavapipe, from a folder with a space and an umlaut: what it prints, draws and says of
-# mistakes must be what Linux's program does. Ends with 1 where anything differs.
+# Tries the package for Windows under Wine, on Mesa's lavapipe, from a folder with a space and an umlaut: what
+# it prints, draws and reports about mistakes must equal the Linux program's. Exits with 1 if anything
+# differs.
 #   tests/windows/run.sh [PART...]     of: info render path bench view trouble hello; all, where none is named
-# First third_party/windows.sh (the package), `./run build` (Linux's program) and, for the part "hello", third_party/windows/libraries.sh hello.
+# First run third_party/windows.sh (the package), `./run build` (the Linux program) and, for the part "hello",
+# third_party/windows/libraries.sh hello.
 # What was drawn stays in build/windows-tried, what Wine needs in build/windows-wine (or WINEPREFIX).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
@@ -38,7 +40,8 @@ wrong() {
 }
 linux() { timeout 600 "$linux_program" "$@"; }
 windows() { timeout 600 wine "$program/binosplat.exe" "$@"; }
-# For both, each in a file of its own, without carriage returns; the exit codes in $code_linux and $code_windows.
+# Both programs' output, each in a file of its own, without carriage returns; exit codes in $code_linux and
+# $code_windows.
 both() { # ARGUMENTS..., where %OUT is Linux or Windows
     local code=0
     linux "${@//%OUT/Linux}" >Linux/said 2>Linux/complained || code=$?
@@ -55,7 +58,7 @@ bothSucceed() {
     wrong "$*: exit codes $code_linux and $code_windows: $(cat Linux/complained) / $(cat Windows/complained)"
     return 1
 }
-# The lowest PSNR of Linux's pictures to those of the same names. A picture that is missing counts as 0 dB.
+# The lowest PSNR between Linux's pictures and those of the same names. A missing picture counts as 0 dB.
 worst_db() { # FOLDER PATTERN
     local picture
     find "Linux/$1" -name "$2" | sort | while read -r picture; do
@@ -71,7 +74,8 @@ pictures() { # WHAT FOLDER PATTERN
         wrong "$1: a picture has ${db:-0} dB only, must be $least_db at least"
     fi
 }
-registerRuntime() { # of the loader: a program of an administrator, as Wine's user is, does not go by XR_RUNTIME_JSON
+# For the loader: a program run by an administrator, as Wine's user is, ignores XR_RUNTIME_JSON.
+registerRuntime() {
     wine reg add 'HKLM\Software\Khronos\OpenXR\1' /v ActiveRuntime /t REG_SZ /d "$(winepath -w "$1")" /f >/dev/null
 }
 forgetRuntime() { wine reg delete 'HKLM\Software\Khronos\OpenXR\1' /v ActiveRuntime /f >/dev/null 2>&1 || true; }
@@ -87,13 +91,14 @@ makeScenes() {
 
 tryInfo() {
     local scene
-    # The LGPL wants it.
+    # The LGPL requires it.
     if compgen -G "$program/licences/fribidi/source/*.orig.tar.*" >/dev/null; then right "FriBidi's source is there"; else wrong "no source of FriBidi"; fi
     for scene in "${scenes[@]}" "$fence"; do
         bothSucceed info "$scene" || continue
         if diff Linux/said Windows/said; then right "info $scene: the same words"; else wrong "info $scene"; fi
     done
-    # What it writes looks like what Linux's writes; bytes differ, since logarithms of two C libraries do.
+    # What it writes looks like what the Linux program writes; the bytes differ, since logarithms of the two C
+    # libraries do.
     local file system
     for file in "Zimmer.ply über.spz" "Zimmer.ply über.sog" "房間.spz über.ply"; do
         bothSucceed convert "${file% *}" "%OUT/${file#* }" || continue
@@ -155,7 +160,8 @@ head 0.0 position 0.0 1.60  0.0 turn 0 0
 head 0.7 position 0.1 1.62 -0.2 turn 8 -3
 frames every 19
 SCRIPT
-    # Points at *Balanced*, clicks; at *Quit*, and does not; then both hands grab the scene, turn it and make it larger.
+    # Points at *Balanced* and clicks; points at *Quit* and does not click; then both hands grab the scene,
+    # turn it and enlarge it.
     cat >Griffe.script <<'SCRIPT'
 rate 90
 size 384 384
@@ -180,7 +186,8 @@ SCRIPT
     forgetRuntime
 }
 
-# Both end with this code, and the same line on standard error: less what the systems call things, in $systems.
+# Both end with this code and the same line on standard error, except for what the systems call things, in
+# $systems.
 systems=
 refused() { # CODE ARGUMENTS...
     local code=$1
@@ -211,7 +218,7 @@ tryTrouble() {
     refused 2 Zimmer.ply halb.ply
     refused 2 rendre "$fence"
     refused 2 render "$fence"
-    # Wine has no Vulkan where there is no display.
+    # Wine has no Vulkan without a display.
     local display=$DISPLAY
     export DISPLAY='' VK_ICD_FILENAMES=/nowhere.json
     systems="Vulkan.*install" refused 3 render "$fence" --out "%OUT/nichts"
@@ -242,14 +249,15 @@ tryTrouble() {
     if [[ -e Linux/nichts || -e Windows/nichts ]]; then wrong "something was left of what was refused"; else right "nothing was left of what was refused"; fi
 }
 
-# Khronos's example program on the simulated runtime. Its loader reads no names beyond the system's code page: from a plain folder.
+# Khronos's example program on the simulated runtime. Its loader cannot read names outside the system's code
+# page, so it starts from a plain folder.
 tryHello() {
     local hello=$build/windows-prefix/installed/bin/hello_xr.exe code=0
     [[ -e $hello ]] || { wrong "hello_xr.exe is missing: third_party/windows/libraries.sh hello"; return; }
     cp "$program"/{binosplat_simulated_runtime.dll,simulated_runtime.json} "$hello" "$tried/plain"
     printf 'size 256 256\nframes every 20\nat 0.5 exit\n' >"$tried/plain/hello.script"
     registerRuntime "$tried/plain/simulated_runtime.json"
-    # It ends when its input does: a pipe that stays open.
+    # It ends when its input does, so that is a pipe that stays open.
     rm -f "$tried/plain/keys"
     mkfifo "$tried/plain/keys"
     (

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Whether two folders of `binosplat bench` have the same files, rows and scores, whatever took how long: `same_bench.py EXPECTED ACTUAL`.
-Prints what differs, and ends with 1 then."""
+"""same_bench.py EXPECTED ACTUAL: checks whether two folders of `binosplat bench` have the same files, rows and
+scores; times may differ. Prints the differences, and exits with 1 if there are any."""
 
 import csv
 import pathlib

@@ -1,6 +1,6 @@
-# Wine with a screen of its own and a prefix of its own, for the scripts of this folder, which read this file. Sets WINEPREFIX and DISPLAY.
+# Sourced by the scripts of this folder: Wine with its own screen and prefix. Sets WINEPREFIX and DISPLAY.
 # shellcheck shell=bash
-# One script at a time: the end of one ends all that runs in its prefix.
+# One script at a time: when one ends, everything in its prefix ends.
 for tool in wine Xvfb unzip python3; do
     command -v "$tool" >/dev/null || {
         echo "$0: $tool is missing; install wine64 wine xvfb unzip python3" >&2

@@ -1,4 +1,5 @@
-// Facts about the pace of displays: what the times that a runtime predicts say of frames that came late, and what says nothing.
+// Facts about the pace of displays: what predicted times say about frames that came late, and when they say
+// nothing.
 #include "xr/display_pace.h"
 #include "tests/suite.h"
 
@@ -11,7 +12,7 @@ using binosplat::xr::DisplayPace;
 constexpr XrDuration kPeriod = 10'000'000;
 constexpr double kQuick = 0.004, kSlow = 0.011;
 
-// A frame after so many periods since the one before.
+// A frame this many periods after the one before.
 struct Pace : DisplayPace {
     XrTime now = 1'000'000'000;
 
@@ -60,10 +61,10 @@ TEST_CASE_FIXTURE(Pace, "a stated period of several displays is not the display'
     CHECK(period() == kPeriod);
     CHECK(after(1.0) == 0.0);
     CHECK(after(9.0, true, kQuick, 9 * kPeriod) == doctest::Approx(8.0));
-    // What is measured at three frames a second.
+    // As measured at three frames per second.
     CHECK(after(33.3, true, kQuick, kPeriod * 333 / 10) == 0.0);
     CHECK(period() == kPeriod);
-    // A shorter one, or one that is no multiple, is always the display's.
+    // A shorter period, or one that is not a multiple, is always the display's own.
     CHECK(after(1.0) == 0.0);
     CHECK(period() == kPeriod);
     CHECK(after(1.5, true, kQuick, kPeriod * 3 / 2) == 0.0);
@@ -73,7 +74,7 @@ TEST_CASE_FIXTURE(Pace, "a stated period of several displays is not the display'
 TEST_CASE_FIXTURE(Pace, "where the runtime says what the display's period is, it is that") {
     after(1.0);
     CHECK(after(2.0, true, kQuick, 2 * kPeriod, kPeriod) == doctest::Approx(1.0));
-    // The display is slower now, and what is stated follows a frame later.
+    // The display is slower now, and the reported period follows a frame later.
     CHECK(after(1.0, true, kQuick, kPeriod, 2 * kPeriod) == 0.0);
     CHECK(after(2.0, true, kQuick, 2 * kPeriod, 2 * kPeriod) == 0.0);
     CHECK(after(4.0, true, kQuick, 2 * kPeriod, 2 * kPeriod) == doctest::Approx(1.0));

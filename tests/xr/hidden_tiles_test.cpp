@@ -8,7 +8,8 @@ SUITE(hidden_tiles) {
 using xr::findHiddenTiles;
 using xr::HiddenMesh;
 
-// A picture of 48 x 40 pixels, three tiles by three (the last row half), that spans -1.5 to 1.5 by -1 to 1.5 in the plane.
+// A picture of 48 x 40 pixels, three tiles by three (the last row half), that spans -1.5 to 1.5 by -1 to 1.5
+// in the plane.
 constexpr glm::uvec2 kSizePx(48, 40);
 const Intrinsics kIntrinsics{16.0, 16.0, 24.0, 24.0};
 
@@ -18,7 +19,8 @@ HiddenMesh rectangle(float left, float right, float bottom, float top) {
 
 using Tiles = std::vector<std::uint8_t>;
 
-// A view of both eyes in which a rectangle of the plane hides what lies to its left, and what a mask makes of it for the left one.
+// A view of both eyes in which a rectangle of the plane hides what lies to its left, and the mask for the
+// left eye.
 struct MaskedView {
     std::array<HiddenMesh, 2> meshes;
     std::array<xr::EyeView, 2> views{};
@@ -33,14 +35,14 @@ struct MaskedView {
         const std::span<const std::uint8_t> tiles = mask.update(meshes, version, views, {64, 64})[0];
         return {tiles.begin(), tiles.end()};
     }
-    // Made anew.
+    // From a new mask.
     [[nodiscard]] Tiles hidden() const {
         LensMask mask;
         return hidden(mask, 0);
     }
 };
 
-// The value from which on, less than 1e-5 further, another mask would be made.
+// The last value before the mask changes, to within 1e-5.
 template <typename Make>
 float lastBeforeChange(float from, const Make& make) {
     constexpr float kStep = 1e-5f;
@@ -52,16 +54,16 @@ float lastBeforeChange(float from, const Make& make) {
 }
 
 TEST_CASE("a tile is hidden if all of it is, and up is up") {
-    // The upper left tile exactly: x from -1.5 to -0.5, y from 0.5 to 1.5.
+    // Exactly the upper left tile: x from -1.5 to -0.5, y from 0.5 to 1.5.
     CHECK(findHiddenTiles(rectangle(-1.5f, -0.5f, 0.5f, 1.5f), kIntrinsics, kSizePx) == Tiles{1, 0, 0, 0, 0, 0, 0, 0, 0});
-    // A pixel less.
+    // One pixel less.
     CHECK(findHiddenTiles(rectangle(-1.5f, -0.57f, 0.5f, 1.5f), kIntrinsics, kSizePx) == Tiles(9, 0));
-    // The lowest row, of half tiles, and more than the picture.
+    // The bottom row of half tiles, and more than the picture.
     CHECK(findHiddenTiles(rectangle(-9.0f, 9.0f, -9.0f, -0.5f), kIntrinsics, kSizePx) == Tiles{0, 0, 0, 0, 0, 0, 1, 1, 1});
 }
 
 TEST_CASE("a margin about what shows keeps whole tiles, and none beyond it") {
-    // All but the middle tile's middle pixel, from four sides; five tiles by five.
+    // Everything but the middle pixel of the middle tile, from four sides; five tiles by five.
     constexpr glm::uvec2 size(80, 80);
     const Intrinsics intrinsics{1.0, 1.0, 0.0, 0.0};
     HiddenMesh mesh;
@@ -78,7 +80,7 @@ TEST_CASE("a margin about what shows keeps whole tiles, and none beyond it") {
         const Tiles tiles = findHiddenTiles(mesh, intrinsics, size, margin_px);
         return std::count(tiles.begin(), tiles.end(), 0);
     };
-    // 7: 33 to 47; 8: to 48, in the next tile.
+    // With 7: 33 to 47. With 8: up to 48, in the next tile.
     for (const auto& [margin_px, tiles] : {std::pair(0u, 1), {7u, 1}, {8u, 4}, {9u, 9}, {24u, 16}, {1000u, 25}}) {
         CHECK(shown(margin_px) == tiles);
     }
@@ -105,7 +107,7 @@ TEST_CASE("no mesh, and broken ones, hide nothing") {
 }
 
 TEST_CASE("angles and meshes that shiver make no mask anew, others do") {
-    // Where a shiver would tell: the least further and another column of tiles is hidden, or shown.
+    // Where a tremor would show: with the slightest change, another column of tiles is hidden or shown.
     const auto byMesh = [](float edge) { return MaskedView(edge, -0.7f).hidden(); };
     const float edge = lastBeforeChange(-0.6f, byMesh);
     CHECK(byMesh(edge + 5e-5f) != byMesh(edge));

@@ -9,7 +9,7 @@ TEST_CASE_FIXTURE(Gpu, "smaller copies of a picture are the mean of its pixels, 
     constexpr std::uint32_t kLevels = 4;
     REQUIRE(canMakeMips(context(), DeviceImage::kFormat));
     const DeviceImage image(context(), kSize, DeviceImage::kFormat, kLevels);
-    // Black and white in turn on the left, white on the right.
+    // Black and white alternate on the left; on the right everything is white.
     std::vector<std::uint32_t> texels;
     for (std::uint32_t i = 0; i < kSize.x * kSize.y; ++i) {
         const std::uint32_t x = i % kSize.x, y = i / kSize.x;
@@ -24,7 +24,7 @@ TEST_CASE_FIXTURE(Gpu, "smaller copies of a picture are the mean of its pixels, 
     });
     const std::vector<std::uint32_t> small = readBack<std::uint32_t>(out, 3);
     const auto isNear = [](std::uint32_t texel, int grey) { return std::abs(static_cast<int>(texel & 255) - grey) <= 2; };
-    // Half and three quarters of white's light, as sRGB writes them.
+    // Half and three quarters of white's light, in sRGB.
     CHECK(isNear(small[0], 188));
     CHECK(small[1] == 0xffffffffu);
     CHECK(isNear(small[2], 225));

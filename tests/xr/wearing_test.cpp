@@ -8,7 +8,7 @@ using binosplat::xr::Wearing;
 
 constexpr double kStep = 0.01;
 
-// The seconds until it begins, with a head that is at `place(seconds)`; none if it does not within ten.
+// The seconds until wearing begins, for a head at `place(seconds)`; none if it does not begin within ten.
 std::optional<double> beginsAfter(Wearing wearing, const std::function<glm::dvec3(double)>& place, double focus_from = 0.0) {
     for (double t = 0.0; t < 10.0; t += kStep) {
         if (wearing.begins(t >= focus_from, {glm::dquat(1.0, 0.0, 0.0, 0.0), place(t)}, kStep)) { return t; }

@@ -1,5 +1,6 @@
-# What is special about the packages for aarch64. They are for any distribution since 2022: libraries that one of these may lack, or have in
-# another version, come with the program, and their licences with them. The others are named in the package's Depends.
+# What is special about the packages for aarch64. They are for any distribution since 2022: libraries that one
+# of these may lack, or have in another version, come with the program, and their licences with them. The
+# others are named in the package's Depends.
 set(system_libraries ${CMAKE_SYSROOT}/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE})
 foreach(library zip bz2 OpenEXR-* Iex-* IlmThread-* Imath-* openxr_loader jsoncpp glfw stb webp fmt)
     file(GLOB files ${system_libraries}/lib${library}.so.*)
@@ -15,7 +16,8 @@ endforeach()
 set_target_properties(binosplat PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}/binosplat")
 set_target_properties(binosplat_library PROPERTIES INSTALL_RPATH "$ORIGIN/binosplat")
 foreach(target binosplat binosplat_library)
-    target_link_options(${target} PRIVATE LINKER:--disable-new-dtags)  # these libraries find each other there, too
+    # These libraries find each other there, too.
+    target_link_options(${target} PRIVATE LINKER:--disable-new-dtags)
 endforeach()
 
 set(CPACK_SYSTEM_NAME linux-arm64)

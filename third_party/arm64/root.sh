@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Unpacks Debian's arm64 packages into a folder that the cross compiler takes for a system: headers and libraries, of the release and the mirror
-# that this machine has. Nothing is installed here. A folder that has these packages already is left alone.
+# Unpacks Debian's arm64 packages into a folder that the cross compiler takes for a system: headers and
+# libraries, of the release and the mirror that this machine has. Nothing is installed here. A folder that has
+# these packages already is left alone.
 #   third_party/arm64/root.sh FOLDER SUITE PACKAGE...
 set -euo pipefail
 folder=$1 suite=$2

@@ -1,4 +1,5 @@
-# Debian's cross compiler for aarch64, with the folder that third_party/install.sh --arm64 unpacks as its system: for the preset "arm64".
+# Debian's cross compiler for aarch64, with the folder that third_party/install.sh --arm64 unpacks as its
+# system: for the preset "arm64".
 set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_SYSTEM_PROCESSOR aarch64)
 set(CMAKE_LIBRARY_ARCHITECTURE aarch64-linux-gnu)

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Compiles what Debian has for Linux only, from Debian's source packages, into build/windows-prefix/installed: static libraries for mingw-w64,
-# and FriBidi, whose licence wants it to be replaceable, as a DLL.
+# Compiles what Debian has for Linux only, from Debian's source packages, into build/windows-prefix/installed:
+# static libraries for mingw-w64, and FriBidi, whose licence wants it to be replaceable, as a DLL.
 # A library that is there in the same version, made by the same recipe and compiler, is left alone.
 #   third_party/windows/libraries.sh          those of the program
 #   third_party/windows/libraries.sh hello    and hello_xr.exe, which tests the simulated runtime
@@ -26,7 +26,8 @@ apt() { # of source packages alone, and with lists of its own
         -o APT::Sandbox::User="$(id -un)" -o Dir::Cache::pkgcache= -o Dir::Cache::srcpkgcache= "$@"
 }
 
-# The source package NAME with Debian's patches in $sources/NAME. apt compares it with the checksums that Debian has signed.
+# The source package NAME with Debian's patches in $sources/NAME. apt compares it with the checksums that
+# Debian has signed.
 are_lists_new=
 fetch() {
     local name=$1
@@ -46,7 +47,8 @@ fetch() {
     mv "$(find "$sources/unpacked" -mindepth 1 -maxdepth 1 -type d)" "$sources/$name"
     mkdir -p "$installed/licences/$name"
     cp "$sources/$name/debian/copyright" "$installed/licences/$name/"
-    # The LGPL wants the source of a library to come with it: the archives that it was compiled from, with Debian's patches.
+    # The LGPL wants the source of a library to come with it: the archives that it was compiled from, with
+    # Debian's patches.
     if [ "$name" = fribidi ]; then
         rm -rf "$installed/licences/$name/source"
         mkdir "$installed/licences/$name/source"
@@ -104,8 +106,10 @@ add_headers() {
         mkdir -p "$installed/licences/$package"
         cp "/usr/share/doc/$package/copyright" "$installed/licences/$package/"
     done
-    cp -L /usr/share/common-licenses/{Apache-2.0,GPL-2,GPL-3,LGPL-2.1} "$installed/licences"  # which these name
-    # Nothing of Vulkan is linked: the program loads vulkan-1.dll when it needs it. CMake wants a file nevertheless.
+    # Some of the licences refer to these.
+    cp -L /usr/share/common-licenses/{Apache-2.0,GPL-2,GPL-3,LGPL-2.1} "$installed/licences"
+    # Nothing of Vulkan is linked: the program loads vulkan-1.dll when it needs it. CMake wants a file
+    # nevertheless.
     rm -f "$installed/lib/libvulkan-1.a"
     $host-ar rcs "$installed/lib/libvulkan-1.a"
 }
@@ -144,7 +148,8 @@ make_fribidi() {
         ./configure --host=$host --prefix="$installed" --enable-shared --disable-static CC=$host-gcc-posix LDFLAGS=-static-libgcc
         make -C lib -j "$jobs" install
     ) >>"$log" 2>&1
-    mv "$installed/lib/libfribidi.dll.a" "$installed/lib/libfribidi.a"  # by the name that is looked for where all else is static
+    # Renamed, since this name is looked for when everything else is static.
+    mv "$installed/lib/libfribidi.dll.a" "$installed/lib/libfribidi.a"
     describe fribidi "-I$installed/include/fribidi" -lfribidi
 }
 make_imgui() {

@@ -1,4 +1,5 @@
-# mingw-w64 on Debian, and the prefix of third_party/windows/libraries.sh: for the preset "windows" and for those libraries themselves.
+# mingw-w64 on Debian, and the prefix of third_party/windows/libraries.sh: for the preset "windows" and for
+# those libraries themselves.
 set(CMAKE_SYSTEM_NAME Windows)
 set(CMAKE_SYSTEM_PROCESSOR x86_64)
 set(CMAKE_C_COMPILER x86_64-w64-mingw32-gcc-posix)

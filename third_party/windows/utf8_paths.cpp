@@ -1,5 +1,5 @@
-// Makes libstdc++ take narrow texts for UTF-8 where it makes paths of them. It goes by mbrtowc, which Microsoft's old C library lets turn
-// letter by letter; linked with --wrap=mbrtowc.
+// Makes libstdc++ take narrow texts for UTF-8 where it makes paths of them. It goes by mbrtowc, which
+// Microsoft's old C library lets turn letter by letter; linked with --wrap=mbrtowc.
 #include <cstddef>
 #include <cstdint>
 #include <cwchar>

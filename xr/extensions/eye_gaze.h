@@ -14,12 +14,13 @@ class EyeGaze {
 public:
     // `actions` outlives this.
     EyeGaze(const Session& session, const Actions& actions) : session_(session), actions_(actions) {}
-    // bind() comes before the actions are attached, makeSpace() after. Without eye tracking, or if it was not requested, they do nothing.
+    // bind() comes before the actions are attached, makeSpace() after. Without eye tracking, or if it was not
+    // requested, they do nothing.
     void bind();
     void makeSpace();
 
-    // As of the last sync: a direction in the room (our axes). Empty if the headset does not track it reliably, or this program may not
-    // see it.
+    // As of the last sync: a direction in the room (our axes). Empty if the headset does not track it
+    // reliably, or this program may not see it.
     [[nodiscard]] std::optional<glm::dvec3> find();
 
 private:

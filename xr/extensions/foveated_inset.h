@@ -1,5 +1,5 @@
-// XR_VARJO_quad_views, in the core of OpenXR 1.1: besides each eye's view (the context) the program draws an inset: a smaller part of it at
-// more pixels per degree, which the runtime moves with the gaze.
+// XR_VARJO_quad_views, in the core of OpenXR 1.1: besides each eye's view (the context) the program draws an
+// inset: a smaller part of it at more pixels per degree, which the runtime moves with the gaze.
 #pragma once
 
 #include "xr/instance.h"

@@ -25,7 +25,8 @@ HandTracking::HandTracking(const Session& session) : session_(session) {
             auto info = structure<XrHandTrackerCreateInfoEXT>(XR_TYPE_HAND_TRACKER_CREATE_INFO_EXT);
             info.hand = h == kLeft ? XR_HAND_LEFT_EXT : XR_HAND_RIGHT_EXT;
             info.handJointSet = XR_HAND_JOINT_SET_DEFAULT_EXT;
-            // A runtime may offer hand tracking that this headset or its wearer does not allow; then controllers are drawn.
+            // A runtime may offer hand tracking that this headset or its wearer does not allow; then
+            // controllers are drawn.
             XrHandTrackerEXT made = XR_NULL_HANDLE;
             checkResult(create(session.handle(), &info, &made), "xrCreateHandTrackerEXT");
             trackers_[h] = Tracker(made, destroy);

@@ -1,4 +1,5 @@
-// XR_EXT_local_floor: a space on the floor, below the wearer. Its names are those of OpenXR 1.1; older headers lack them.
+// XR_EXT_local_floor: a space on the floor, below the wearer. Its names are those of OpenXR 1.1; older
+// headers lack them.
 #pragma once
 
 #include <openxr/openxr.h>

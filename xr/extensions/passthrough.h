@@ -16,7 +16,8 @@ public:
 
     // Whether the room is to be seen from the next frame on. The cameras rest while it is not.
     void show(bool shown);
-    // For a frame's layers, below all others; null: the room is not seen. It stays as it is until the next call of show().
+    // For a frame's layers, below all others; null: the room is not seen. It stays as it is until the next
+    // call of show().
     [[nodiscard]] const XrCompositionLayerBaseHeader* layer() const;
 
 private:

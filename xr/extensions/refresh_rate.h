@@ -16,8 +16,8 @@ public:
     [[nodiscard]] std::vector<double> list() const;
     // The display's period; 0 if the runtime does not report it.
     [[nodiscard]] XrDuration period() const;
-    // Requests a rate, unless it was the last one requested; 0: the runtime's choice. Returns a message for people if that fails,
-    // otherwise empty.
+    // Requests a rate, unless it was the last one requested; 0: the runtime's choice. Returns a message for
+    // people if that fails, otherwise empty.
     std::string request(double rate_hz);
 
 private:

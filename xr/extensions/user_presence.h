@@ -1,4 +1,5 @@
-// XR_EXT_user_presence: whether somebody wears the headset. Its names are those of OpenXR 1.1; older headers lack them.
+// XR_EXT_user_presence: whether somebody wears the headset. Its names are those of OpenXR 1.1; older headers
+// lack them.
 #pragma once
 
 #include <openxr/openxr.h>

@@ -9,7 +9,8 @@
 
 namespace binosplat::xr {
 
-// A part of an eye's picture that the lenses never show: triangles in the plane z = -1 of the eye (OpenXR axes).
+// A part of an eye's picture that the lenses never show: triangles in the plane z = -1 of the eye (OpenXR
+// axes).
 struct HiddenMesh {
     std::vector<XrVector2f> vertices;
     std::vector<std::uint32_t> indices;

@@ -1,4 +1,5 @@
-// XR_KHR_vulkan_enable2: the runtime makes the Vulkan instance and the device that it shares with the program.
+// XR_KHR_vulkan_enable2: the runtime makes the Vulkan instance and the device that it shares with the
+// program.
 #pragma once
 
 #include "engine/gpu/context.h"

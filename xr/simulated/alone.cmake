@@ -1,5 +1,5 @@
-# This folder as a project of its own. Debian packages: g++ cmake pkg-config libvulkan-dev libopenxr-dev libglm-dev libfmt-dev
-# nlohmann-json3-dev libtomlplusplus-dev libpng-dev.
+# This folder as a project of its own. Debian packages: g++ cmake pkg-config libvulkan-dev libopenxr-dev
+# libglm-dev libfmt-dev nlohmann-json3-dev libtomlplusplus-dev libpng-dev.
 set(SIMULATED_ALONE ON)
 set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)

@@ -1,5 +1,6 @@
-# The library, its manifest for XR_RUNTIME_JSON, the tool that compares two logs, the licence, and the pages that lie in docs/ unless this
-# folder was copied without them. The manifest finds the library relative to itself.
+# The library, its manifest for XR_RUNTIME_JSON, the tool that compares two logs, the licence, and the pages
+# that lie in docs/ unless this folder was copied without them. The manifest finds the library relative to
+# itself.
 include(GNUInstallDirs)
 set(manifest_folder ${CMAKE_INSTALL_DATADIR}/openxr/1)
 file(RELATIVE_PATH library_folder /prefix/${manifest_folder} /prefix/${CMAKE_INSTALL_LIBDIR})

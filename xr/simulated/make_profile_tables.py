@@ -15,7 +15,8 @@ import sys
 import xml.etree.ElementTree as ElementTree
 
 PREFIX = "/interaction_profiles/"
-# In the order in which the simulated controllers like to play them, those that they cannot play last; and what a person calls them.
+# In the order in which the simulated controllers like to play them, those that they cannot play last; and
+# what a person calls them.
 PLAYED = {
     "oculus/touch_controller": "Touch controller",
     "valve/index_controller": "Index controller",

@@ -1,4 +1,5 @@
-// OpenXR's and Vulkan's types, without the prototypes: the functions of this runtime carry the same names in their own namespace.
+// OpenXR's and Vulkan's types, without the prototypes: the functions of this runtime carry the same names in
+// their own namespace.
 #pragma once
 
 #define XR_NO_PROTOTYPES

@@ -16,9 +16,11 @@ namespace {
 // Settings that are still unproven, and calm changes, must need even less; so must a change after one that
 // was not enough.
 constexpr double kTarget = 0.9, kCalmly = 0.85, kAgain = 0.8;  // kAgain: times as much for each
-// A smaller rise of the budget is not worth a change; if a smaller share of it is spent, it does not determine the frame time.
+// A smaller rise of the budget is not worth a change; if a smaller share of it is spent, it does not
+// determine the frame time.
 constexpr double kLeastRise = 1.1, kSpent = 0.75;
-// Pixels are not all of a frame's cost: fewer of them save less than their share, more are assumed to cost all of it.
+// Pixels are not all of a frame's cost: fewer of them save less than their share, more are assumed to cost
+// all of it.
 constexpr double kPowerDown = 1.2, kPowerUp = 2.0;
 constexpr int kSettlingFrames = 1;
 constexpr std::size_t kOverAtOnce = 3, kOverAgain = 2, kCalmFrames = 8;

@@ -1,5 +1,6 @@
-// Holds the frame rate: chooses how much of the eyes is rendered again, and how large their pictures are, so that frames fit into the
-// runtime's period, as measured. Pure: no clock, no device; a frame goes in, the next frame's settings come out.
+// Holds the frame rate: chooses how much of the eyes is rendered again, and how large their pictures are, so
+// that frames fit into the runtime's period, as measured. Pure: no clock, no device; a frame goes in, the
+// next frame's settings come out.
 #pragma once
 
 #include "app/view/governor/knobs.h"
@@ -19,7 +20,8 @@ inline constexpr const char* kQualityNames[] = {"off", "sharp", "balanced", "fas
 
 // The chosen settings.
 struct GovernedSettings {
-    double budget = 0.0;            // for modes that have one, see hasBudget: the share of work that is rendered again
+    // For modes with a budget, see hasBudget: the share of work that is rendered again.
+    double budget = 0.0;
     double resolution_scale = 1.0;  // each way
     double error_bound_db = 0.0;    // for `temporal`, in place of a lower budget; 0: none
     bool operator==(const GovernedSettings&) const = default;
@@ -29,11 +31,13 @@ struct GovernedSettings {
 struct GovernedFrame {
     double gpu_ms = 0.0;     // 0: the device does not measure it
     double period_ms = 0.0;  // the runtime's time for a frame
-    bool is_old = false;     // drawn with earlier settings: it says nothing about the present ones, but time has passed
+    // Drawn with earlier settings: it says nothing about the present ones, but time has passed.
+    bool is_old = false;
     // Periods beyond its own that passed before the frame was displayed, by the runtime's times: independent
     // of the device's.
     double lost_periods = 0.0;
-    double work = 1.0;                         // the share that was rendered again: less than the budget if there was less to re-render
+    // The share that was rendered again: less than the budget if there was less to re-render.
+    double work = 1.0;
     double warp_error = 0.0, half_loss = 0.0;  // see KnobFrame
 };
 
@@ -42,8 +46,8 @@ constexpr bool hasBudget(Mode mode) { return mode == Mode::kPredicted || mode ==
 
 class Governor {
 public:
-    // From the next frame on. Another wish or quality starts over with the wearer's own settings: the resolution never exceeds them, while
-    // the budget may rise to all work.
+    // From the next frame on. Another wish or quality starts over with the wearer's own settings: the
+    // resolution never exceeds them, while the budget may rise to all work.
     void wish(Quality quality, Mode mode, const GovernedSettings& own);
     // From the next frame on, another scene is shown: the measurements do not apply to it.
     void forget();
@@ -62,13 +66,14 @@ private:
     [[nodiscard]] std::size_t countOver(std::size_t of_last) const;
     // The time for a frame: the period, or the share of it that others leave.
     [[nodiscard]] double roomMs() const { return misses_.share() * period_ms_; }
-    // True if giving up quality has gained nothing: then it is given back, and misses are ignored for a while.
+    // True if giving up quality has gained nothing: then it is given back, and misses are ignored for a
+    // while.
     [[nodiscard]] bool missesWhateverIsDrawn() const;
     void leaveMissesAlone();
     // The resolution, in tenths of the wearer's, whose expected cost is `ratio` times the present one's.
     [[nodiscard]] double scaleFor(double ratio) const;
-    // Settings whose expected cost is `ratio` times that of the present ones, if `work` is rendered again: first the budget is lowered,
-    // then the resolution.
+    // Settings whose expected cost is `ratio` times that of the present ones, if `work` is rendered again:
+    // first the budget is lowered, then the resolution.
     [[nodiscard]] GovernedSettings lowered(double ratio, double work, bool as_usual = false) const;
     // The reverse; the budget rises only if it is spent.
     [[nodiscard]] GovernedSettings raised(double ratio) const;
@@ -97,7 +102,8 @@ private:
     int downs_ = 0;                               // changes in a row that were not enough
     double changed_s_ = 0.0, lowered_s_ = 0.0;
     bool is_raised_ = false;  // the last change was a rise
-    double wait_s_ = 0.0;     // from lowering the settings until something is given back: longer each time that this was too early
+    // From lowering the settings until something is given back: longer each time that this was too early.
+    double wait_s_ = 0.0;
     std::string why_, sentence_;
     bool beaten_ = false;
     MissedDisplays misses_;

@@ -149,8 +149,8 @@ KnobModel::Terms KnobModel::usualShares() const {
     return usual;
 }
 
-// Shares of at least 0 that fit the visits' times, relatively, and stay near the usual ones where the visits do not say: coordinate
-// descent.
+// Shares of at least 0 that fit the visits' times, relatively, and stay near the usual ones where the visits
+// do not say: coordinate descent.
 void KnobModel::fit() {
     const Visit& now = visits_.back();
     const Terms usual = usualShares();

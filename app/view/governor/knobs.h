@@ -1,5 +1,5 @@
-// What a step of resolution or of the error bound saves of time and costs in errors, learned from frames of `temporal`. Pure: no clock, no
-// device. Errors are mean squares over pixels and channels, of values 0 to 1.
+// What a step of resolution or of the error bound saves of time and costs in errors, learned from frames of
+// `temporal`. Pure: no clock, no device. Errors are mean squares over pixels and channels, of values 0 to 1.
 #pragma once
 
 #include <array>
@@ -21,7 +21,8 @@ struct KnobFrame {
     double seconds = 0.0;     // since the one before
     double work = 0.0;        // the rendered share of both eyes' pairs
     double warp_error = 0.0;  // the expected error of the tiles that were not rendered; 0 if unknown
-    double half_loss = 0.0;   // what half of the resolution would lose, as measured on a few tiles; 0 if unknown
+    // What half of the resolution would lose, as measured on a few tiles; 0 if unknown.
+    double half_loss = 0.0;
 };
 
 // The limits of a choice: resolution in tenths of `whole`, bounds in whole dB.
@@ -49,7 +50,8 @@ public:
     [[nodiscard]] Knobs bestAsUsual(double ratio, const KnobLimits& limits) const;
 
 private:
-    // A frame's time is the sum of these, each times a share of its own: 1, pixels, work, pixels that are rendered.
+    // A frame's time is the sum of these, each times a share of its own: 1, pixels, work, pixels that are
+    // rendered.
     using Terms = std::array<double, 4>;
     // A pair of knobs that was in use, with the medians of its last frames.
     struct Visit {

@@ -15,7 +15,8 @@ namespace binosplat {
 
 class MetDisplays {
 public:
-    // A frame: when it is displayed, in nanoseconds of any clock, and the display's period. `follows`: the frame before was shown, too.
+    // A frame: when it is displayed, in nanoseconds of any clock, and the display's period. `follows`: the
+    // frame before was shown, too.
     void add(std::int64_t display_time_ns, double period_ms, bool follows) {
         if (!(period_ms > 0.0)) { return; }
         const std::int64_t step_ns = frames_.empty() ? 0 : display_time_ns - frames_.back().time_ns;
@@ -41,8 +42,10 @@ public:
     }
 
 private:
-    static constexpr std::int64_t kSecondNs = 1'000'000'000, kPauseNs = 5 * kSecondNs;  // longer: the machine slept
-    static constexpr double kLatePeriods = 1.5;                                         // displays may be irregular
+    // longer: the machine slept
+    static constexpr std::int64_t kSecondNs = 1'000'000'000, kPauseNs = 5 * kSecondNs;
+    // Displays may be irregular.
+    static constexpr double kLatePeriods = 1.5;
 
     struct Frame {
         std::int64_t time_ns;
@@ -53,7 +56,8 @@ private:
     std::deque<Frame> frames_;
 };
 
-// What a frame took, in milliseconds: the GPU, the program's thread of a processor, and the time until the frame was handed over.
+// What a frame took, in milliseconds: the GPU, the program's thread of a processor, and the time until the
+// frame was handed over.
 struct FrameCost {
     double gpu_ms = 0.0, busy_ms = 0.0, open_ms = 0.0;
 };

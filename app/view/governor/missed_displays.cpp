@@ -10,8 +10,8 @@ namespace binosplat {
 
 namespace {
 
-// A single late frame may have any cause, however late it is: it counts as one period. If periods are irregular, early frames make up for
-// late ones, so that the sum stays below one.
+// A single late frame may have any cause, however late it is: it counts as one period. If periods are
+// irregular, early frames make up for late ones, so that the sum stays below one.
 constexpr double kMostLostByOne = 1.0, kLostSlack = 0.5;
 // If displays are missed, there is less time than was used; after a while without a miss, the share grows
 // each second.

@@ -47,8 +47,9 @@ private:
     std::deque<double> recent_;  // newest last
     double now_s_ = 0.0;
     double share_ = 1.0, held_until_s_ = 0.0, hold_s_ = 0.0;
-    bool is_raised_ = false;                                         // since it was lowered last
-    double missed_s_ = 0.0, heeds_from_s_ = 0.0, unheeded_s_ = 0.0;  // the last miss; when misses count again, and how long not
+    bool is_raised_ = false;  // since it was lowered last
+    // The last miss; from when on misses count again, and for how long they do not.
+    double missed_s_ = 0.0, heeds_from_s_ = 0.0, unheeded_s_ = 0.0;
 };
 
 }  // namespace binosplat

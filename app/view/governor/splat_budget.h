@@ -13,8 +13,9 @@ public:
     explicit SplatBudget(std::uint64_t most) : most_(most), splats_(most) {}
 
     [[nodiscard]] std::uint64_t splats() const { return splats_; }
-    // A frame's GPU time, with `shown` splats. The time of forty frames as a share of their periods decides: above nine tenths the budget
-    // falls below the splats shown, below six tenths it may rise. True if the budget has changed.
+    // A frame's GPU time, with `shown` splats. The time of forty frames as a share of their periods decides:
+    // above nine tenths the budget falls below the splats shown, below six tenths it may rise. True if the
+    // budget has changed.
     bool measure(double gpu_ms, double period_ms, std::uint64_t shown);
 
 private:

@@ -1,4 +1,5 @@
-// The viewer's objects of one session with the headset. A session may be lost, and another one takes its place.
+// The viewer's objects of one session with the headset. A session may be lost, and another one takes its
+// place.
 #pragma once
 
 #include "app/view/headset/eye_images.h"
@@ -14,8 +15,8 @@
 namespace binosplat {
 
 struct ConnectedHeadset {
-    // `panel_px` is the size of the panel's picture. The session has foveated insets if `instance` was asked for them and the headset takes
-    // them. Throws xr::Lost if the session is lost at once.
+    // `panel_px` is the size of the panel's picture. The session has foveated insets if `instance` was asked
+    // for them and the headset takes them. Throws xr::Lost if the session is lost at once.
     ConnectedHeadset(const xr::Instance& instance, const Context& context, glm::uvec2 panel_px);
 
     std::optional<xr::InsetSizes> inset;  // as recommended

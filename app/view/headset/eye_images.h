@@ -24,11 +24,13 @@ public:
     void dropDepth();
     [[nodiscard]] bool takesDepth() const { return depth_[0].handle() != XR_NULL_HANDLE; }
 
-    // Before anything is recorded: takes an eye's image of this frame, and its depth image if `with_depth` and the runtime takes depth.
+    // Before anything is recorded: takes an eye's image of this frame, and its depth image if `with_depth`
+    // and the runtime takes depth.
     void acquire(int eye, bool with_depth);
     // Whether alpha is kept, to show the room behind the scene.
     void seeThrough(bool see_through) { see_through_ = see_through; }
-    // Between begin and submit of `commands`, into the images that acquire() took; may be repeated. `near` in scene units.
+    // Between begin and submit of `commands`, into the images that acquire() took; may be repeated. `near` in
+    // scene units.
     void present(Commands& commands, int eye, const Picture& image, const WarpBuffers* tinted_by, double near);
     void clear(Commands& commands, int eye, const glm::vec4& colour);
     // After submit: releases what acquire() took.

@@ -14,7 +14,8 @@ namespace {
 
 // How often to look whether an unplugged headset is back.
 constexpr std::chrono::milliseconds kBetweenSearches(200), kPause(5);
-// How often, and how far apart, to ask again for a session that a headset refuses just after it was plugged in.
+// How often, and how far apart, to ask again for a session that a headset refuses just after it was plugged
+// in.
 constexpr int kMostFailures = 10;
 constexpr std::chrono::milliseconds kBetweenFailures(1000);
 

@@ -11,8 +11,8 @@ namespace binosplat {
 
 namespace {
 
-// Angles, and with them the corners of meshes, may jitter by float32 rounding; a tenth of a milliradian is less than a pixel of any
-// headset.
+// Angles, and with them the corners of meshes, may jitter by float32 rounding; a tenth of a milliradian is
+// less than a pixel of any headset.
 bool areNear(float a, float b) { return std::abs(a - b) <= 1e-4f; }
 
 bool areSame(const XrFovf& a, const XrFovf& b) {

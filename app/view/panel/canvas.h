@@ -1,5 +1,5 @@
-// Dear ImGui on a picture of our own, which is copied to a headset's panel or a window. Values are display-encoded: an sRGB image or a
-// window shows them as they are.
+// Dear ImGui on a picture of our own, which is copied to a headset's panel or a window. Values are
+// display-encoded: an sRGB image or a window shows them as they are.
 #pragma once
 
 #include "app/view/room/panel_pointer.h"
@@ -43,7 +43,8 @@ public:
     void giveUp();
     // Draws, unless the image is up to date; then the canvas may be copied from.
     void record(Commands& commands);
-    // After record(): the picture in an image of the format that it was made for; as linear light if that format is not sRGB.
+    // After record(): the picture in an image of the format that it was made for; as linear light if that
+    // format is not sRGB.
     void copyTo(Commands& commands, vk::Image image) const;
 
     // The revision that the image shows once record() has run: changes with the picture, never 0.
@@ -82,8 +83,9 @@ private:
     vk::raii::Framebuffer framebuffer_{nullptr};
     vk::raii::DescriptorPool descriptors_{nullptr};
     std::vector<std::pair<void*, vk::raii::DescriptorPool>> old_;  // backends that frames in flight may use
-    bool has_letters_ = false, is_uploading_ = false;              // the backend; its letters may not be there yet
-    int records_ = 0;                                              // since they were uploaded
+    // Whether the backend exists; its letters may not be there yet.
+    bool has_letters_ = false, is_uploading_ = false;
+    int records_ = 0;  // since they were uploaded
 };
 
 }  // namespace binosplat

@@ -95,7 +95,8 @@ FormedWords formWords(const std::set<std::u32string>& words, std::span<const Loa
     const UniqueOf<FT_LibraryRec_, FT_Done_FreeType> library(begun);
     std::vector<FormingFont> forming;
     for (const LoadedFont& font : fonts) { forming.emplace_back(library.get(), font); }
-    // Fonts with tall letters have high lines, which would make all their letters small: all fonts get the first one's em.
+    // Fonts with tall letters have high lines, which would make all their letters small: all fonts get the
+    // first one's em.
     const int em = forming.empty() ? 0 : forming.front().em(line_px);
     if (em == 0) { return formed; }
     for (FormingFont& font : forming) { font.setEm(em); }

@@ -23,7 +23,8 @@ struct LoadedFont {
 struct FormedSign {
     glm::uvec2 size_px;                   // of its picture, whose pixels are half as wide as the panel's
     std::vector<unsigned char> coverage;  // row by row
-    glm::vec2 low_px;                     // the picture's upper left corner, relative to the glyph's start on the base line; y down
+    // The picture's upper left corner, relative to the glyph's start on the base line; y down.
+    glm::vec2 low_px;
     float advance_px;
 };
 

@@ -1,4 +1,5 @@
-// The page that says what hands and controllers do: a drawing of what the hands hold, with words, and more words below it.
+// The page that says what hands and controllers do: a drawing of what the hands hold, with words, and more
+// words below it.
 #include "app/view/panel/panel_pages.h"
 #include "app/view/panel/panel_style.h"
 #include "engine/geometry.h"
@@ -23,8 +24,8 @@ constexpr std::array<std::pair<const char*, const char*>, 5> kDeeds{{
     {"pinch, palm to you", "the panel goes, or comes before the eyes"},
 }};
 
-// A part of a controller: its place in the drawing of a left one, in radii of its round head from that one's middle; its input, and what
-// that does.
+// A part of a controller: its place in the drawing of a left one, in radii of its round head from that one's
+// middle; its input, and what that does.
 struct Part {
     glm::vec2 place;
     const char* input;

@@ -16,7 +16,8 @@ struct DrawnPoint {
 // Of a square, from -1 to 1 each way, y down.
 using Drawing = std::function<DrawnPoint(const glm::dvec2&)>;
 
-// In the current ImGui context's letters, white on a dark plate as wide as they need; with a drawing beside them, if there is one.
+// In the current ImGui context's letters, white on a dark plate as wide as they need; with a drawing beside
+// them, if there is one.
 TexelPicture drawMessage(std::string_view message, const TexelLayout& layout, const Drawing& drawing = {});
 
 }  // namespace binosplat

@@ -1,4 +1,5 @@
-// The panel, frame by frame: its content, who points at it, and where it is drawn: in the headset, in the window, or in both.
+// The panel, frame by frame: its content, who points at it, and where it is drawn: in the headset, in the
+// window, or in both.
 #pragma once
 
 #include "app/view/headset/connected_headset.h"

@@ -16,7 +16,8 @@ namespace binosplat {
 
 namespace {
 
-constexpr float kTabsShare = 0.64f, kMoreTabsShare = 0.78f;  // of the width; Quit is at the right, away from what is pressed often
+// Shares of the width; Quit is on the right, away from what is pressed often.
+constexpr float kTabsShare = 0.64f, kMoreTabsShare = 0.78f;
 
 // Chooses the page; the list of scenes is refreshed when its page is opened.
 void drawTabs(PanelWidgets& widgets, ViewSettings& settings, SceneChooser& chooser, const PanelStatus& status) {

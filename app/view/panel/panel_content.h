@@ -1,4 +1,5 @@
-// The panel's widgets: where the wearer stands and how it looks, which scenes there are, and how the pictures are made.
+// The panel's widgets: where the wearer stands and how it looks, which scenes there are, and how the pictures
+// are made.
 #pragma once
 
 #include "app/view/panel/panel_font.h"
@@ -23,21 +24,23 @@ namespace binosplat {
 
 // How the scene is placed around the wearer.
 struct ShownPlace {
-    double size_m = 0.0;              // of the scene as shown, along its longest side; 0: unknown
-    double growth = 1.0;              // times its true size
-    double eyes_m = 0.0;              // the eyes' height above the scene's floor or, if that is unknown, above their start
+    double size_m = 0.0;  // of the scene as shown, along its longest side; 0: unknown
+    double growth = 1.0;  // times its true size
+    // The eyes' height above the scene's floor or, if that is unknown, above their start.
+    double eyes_m = 0.0;
     bool has_floor = false;           // the floor is known
     std::optional<std::size_t> view;  // the viewpoint gone to last
 };
 
 // The rate and resolution that reach the eyes.
 struct ShownRate {
-    double met_hz = 0.0, display_hz = 0.0;  // frames that the wearer got in the last second, and displays; 0: not known yet
-    int late = 0;                           // of these frames
-    double resolution = 1.0;                // each way, relative to the headset's recommendation
-    std::optional<double> budget;           // the most that is rendered again, if the method has a budget
-    std::optional<double> bound_db;         // in place of it: the errors that are left
-    bool is_beaten = false;                 // the rate cannot be held even with the least settings
+    // Frames that the wearer got in the last second, and displays; 0: not known yet.
+    double met_hz = 0.0, display_hz = 0.0;
+    int late = 0;                    // of these frames
+    double resolution = 1.0;         // each way, relative to the headset's recommendation
+    std::optional<double> budget;    // the most that is rendered again, if the method has a budget
+    std::optional<double> bound_db;  // in place of it: the errors that are left
+    bool is_beaten = false;          // the rate cannot be held even with the least settings
 };
 
 // The time of a scene that moves.
@@ -112,10 +115,12 @@ std::string namesOn(const ViewSettings& settings, const SceneChooser& chooser, c
 // All pictures on it.
 std::vector<ScenePicture> picturesOn(const ViewSettings& settings, const SceneChooser& chooser);
 
-// Does what was asked for with viewpoints, apart from going to one and keeping one. A new name is asked for by `entry`.
+// Does what was asked for with viewpoints, apart from going to one and keeping one. A new name is asked for
+// by `entry`.
 void followViewpoints(const PanelRequests& requests, TextEntry& entry, ViewpointList& viewpoints);
 
-// Draws the widgets that fill a canvas of `size_px`, between Canvas::begin and record. Changes `chooser` as the wearer does.
+// Draws the widgets that fill a canvas of `size_px`, between Canvas::begin and record. Changes `chooser` as
+// the wearer does.
 PanelRequests drawPanel(glm::uvec2 size_px, const ViewSettings& current, SceneChooser& chooser, const PanelStatus& status);
 
 }  // namespace binosplat

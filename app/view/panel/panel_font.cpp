@@ -22,8 +22,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr ImWchar kBox = 0x25a1;
-// Latin with all its marks (also combining ones, which some systems use in names), Greek, Cyrillic, punctuation, currencies, the box,
-// stars.
+// Latin with all its marks (also combining ones, which some systems use in names), Greek, Cyrillic,
+// punctuation, currencies, the box, stars.
 constexpr std::array<ImWchar, 17> kRanges{0x0020, 0x024f, 0x0300, 0x052f, 0x1e00, 0x1fff, 0x2010, 0x205e, 0x20a0,
                                           0x20bf, 0x2190, 0x2193, kBox,   kBox,   0x2605, 0x2606, 0};
 // Fonts with all of Unicode take 20 MB.
@@ -59,7 +59,8 @@ std::string readFont(const fs::path& file, std::string& complaint) {
 struct AtlasPicture {
     glm::uvec2 size_px;
     std::vector<unsigned char> rgba;
-    std::function<void(ImFont& font, const ImVec2& low, const ImVec2& high)> use;  // takes its corners, in shares of the texture
+    // Takes the corners, in shares of the texture.
+    std::function<void(ImFont& font, const ImVec2& low, const ImVec2& high)> use;
 };
 
 void drawPictures(ImFontAtlas& atlas, std::span<const AtlasPicture> pictures, int first_rect) {
@@ -80,7 +81,8 @@ void drawPictures(ImFontAtlas& atlas, std::span<const AtlasPicture> pictures, in
     }
 }
 
-// With the initial letters and those added, each from the first font that has it. False, and an empty atlas, if one is not a font.
+// With the initial letters and those added, each from the first font that has it. False, and an empty atlas,
+// if one is not a font.
 bool buildAtlas(ImFontAtlas& atlas, std::span<const LoadedFont> fonts, const std::set<ImWchar>& added,
                 std::span<const AtlasPicture> pictures = {}) {
     atlas.Clear();
@@ -231,7 +233,8 @@ void PanelFont::build() {
     for (const FormedSign& sign : formed.signs) {
         pictures.push_back(pictureOf(sign, static_cast<ImWchar>(kFirstPrivate + pictures.size() - scenes)));
     }
-    // ImGui counts allocations of the context, if there is one, for a window of its own that is never opened: nothing else is shared.
+    // ImGui counts allocations of the context, if there is one, for a window of its own that is never opened:
+    // nothing else is shared.
     built_.reset(IM_NEW(ImFontAtlas)());
     if (buildAtlas(*built_, fonts_, added_, pictures)) {
         for (const auto& [word, signs] : formed.words) {

@@ -18,14 +18,15 @@
 
 namespace binosplat {
 
-// Height of a line. Capitals of DejaVu Sans are 0.63 times as high: half a degree, legible at arm's length in any headset.
+// Height of a line. Capitals of DejaVu Sans are 0.63 times as high: half a degree, legible at arm's length in
+// any headset.
 inline constexpr float kFontPx = 24.0f;
 
 // Candidate font files, the best first: only BINOSPLAT_FONT if it is set, otherwise the system's fonts.
 std::vector<std::filesystem::path> fontFiles();
 
-// True if the tables that a TrueType or OpenType font lists, including all needed ones, lie within these bytes; for a collection, its first
-// font.
+// True if the tables that a TrueType or OpenType font lists, including all needed ones, lie within these
+// bytes; for a collection, its first font.
 bool looksLikeFont(std::span<const unsigned char> bytes);
 
 // Where a picture lies in the font's texture.
@@ -34,17 +35,17 @@ struct PictureCorners {
 };
 using PicturePlaces = std::map<std::string, PictureCorners>;  // by ScenePicture::key
 
-// The font of the current ImGui context, with the letters that are shown: Latin, Greek and Cyrillic from the start, others as names need
-// them, boxes for letters that no font has; and the context's UserData, see asShown. want() and take() are for the drawing thread, build()
-// for any thread.
+// The font of the current ImGui context, with the letters that are shown: Latin, Greek and Cyrillic from the
+// start, others as names need them, boxes for letters that no font has; and the context's UserData, see
+// asShown. want() and take() are for the drawing thread, build() for any thread.
 class PanelFont {
 public:
     // Before the font is made a texture. If there is no vector font, ImGui's own small one is used.
     PanelFont();
     // Empty, or why ImGui's own font is used: one line.
     [[nodiscard]] const std::string& complaint() const { return complaint_; }
-    // Between two frames. True: the text (UTF-8, in reading order) has new letters or words, or there are new pictures; then call build()
-    // once. Nothing more is wanted until take().
+    // Between two frames. True: the text (UTF-8, in reading order) has new letters or words, or there are new
+    // pictures; then call build() once. Nothing more is wanted until take().
     [[nodiscard]] bool want(std::string_view text, const std::vector<ScenePicture>& pictures = {});
     // Makes a font of all that was wanted, reading font files for further letters.
     void build();
@@ -55,7 +56,8 @@ public:
     [[nodiscard]] const PicturePlaces& pictures() const { return places_; }
 
 private:
-    std::vector<LoadedFont> fonts_;  // the chosen one first, then the system's once it lacks a letter; none: ImGui's own
+    // The chosen one first, then the system's once it lacks a letter; none: ImGui's own.
+    std::vector<LoadedFont> fonts_;
     std::string complaint_;
     std::set<ImWchar> added_;  // beyond the initial ones, whether a font has them or not
     std::set<std::u32string> words_;

@@ -1,4 +1,5 @@
-// Looking for a scene on the panel: the open folder, and the part of it that is shown. It reads no folders itself, see takeWish().
+// Looking for a scene on the panel: the open folder, and the part of it that is shown. It reads no folders
+// itself, see takeWish().
 #pragma once
 
 #include "app/view/scenes/scene_list.h"

@@ -20,8 +20,8 @@ bool mayChange(std::string_view text) {
     return std::ranges::any_of(text, [](char byte) { return static_cast<unsigned char>(byte) >= 0xd6; });
 }
 
-// The scripts from Hebrew to Burmese, Korean in parts, the rest of South and South-East Asia, and letters beyond the 16 bits of
-// ImGui's.
+// The scripts from Hebrew to Burmese, Korean in parts, the rest of South and South-East Asia, and letters
+// beyond the 16 bits of ImGui's.
 bool isOfWord(char32_t letter) {
     constexpr std::array<std::pair<char32_t, char32_t>, 4> kScripts{
         {{0x0590, 0x11ff}, {0x1700, 0x1cff}, {0xa800, 0xabff}, {0x10000, 0x10ffff}}};
@@ -88,7 +88,8 @@ std::string changed(const std::string& text) {
     const std::u32string* before = nullptr;
     for (std::size_t i = 0; i < letters.size(); ++i) {
         const std::u32string* const form = forms_at[static_cast<std::size_t>(places[i])];
-        if (form == nullptr && seen[i] != FRIBIDI_CHAR_FILL) { append(shown, seen[i]); }  // fill: left over from letters that became one
+        // fill: left over from letters that became one
+        if (form == nullptr && seen[i] != FRIBIDI_CHAR_FILL) { append(shown, seen[i]); }
         if (form != nullptr && form != before) {
             for (const char32_t letter : *form) { append(shown, letter); }
         }

@@ -15,9 +15,10 @@ inline constexpr char32_t kFirstPrivate = 0xe000, kLastPrivate = 0xf8ff;
 // from left to right.
 using WordForms = std::map<std::u32string, std::u32string>;
 
-// Any text as UTF-8 from left to right, as ImGui draws it: control characters and private letters become boxes, words of Hebrew and Arabic
-// are reversed (Unicode's bidirectional algorithm, by FriBidi), and words for which the current ImGui context has forms (WordForms, its
-// UserData) take these; in other words Arabic letters are at least joined.
+// Any text as UTF-8 from left to right, as ImGui draws it: control characters and private letters become
+// boxes, words of Hebrew and Arabic are reversed (Unicode's bidirectional algorithm, by FriBidi), and words
+// for which the current ImGui context has forms (WordForms, its UserData) take these; in other words Arabic
+// letters are at least joined.
 std::string asShown(std::string_view text);
 // Only replaces control characters by boxes.
 std::string withoutControls(std::string_view text);

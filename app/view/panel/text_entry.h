@@ -1,4 +1,5 @@
-// Something that people write on the panel: with its keys, at which a ray or a mouse points, or with a keyboard.
+// Something that people write on the panel: with its keys, at which a ray or a mouse points, or with a
+// keyboard.
 #pragma once
 
 #include <string>

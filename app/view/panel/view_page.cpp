@@ -123,7 +123,8 @@ void drawRates(PanelWidgets& widgets, ViewSettings& settings, const std::vector<
     std::optional<std::size_t> chosen;
     if (settings.refresh_rate == 0.0) { chosen = 0; }
     for (std::size_t i = 0; i < shown; ++i) {
-        // As people write them: 72 for 71.999. Rates that look alike, such as 59.94 and 60, get different names for ImGui.
+        // As people write them: 72 for 71.999. Rates that look alike, such as 59.94 and 60, get different
+        // names for ImGui.
         const std::string hz = fmt::format("{:.0f} Hz", rates_hz[i]);
         words.push_back(std::ranges::find(words, hz) == words.end() ? hz : fmt::format("{}##{}", hz, i));
         if (std::abs(settings.refresh_rate - rates_hz[i]) < 0.5) { chosen = i + 1; }

@@ -9,7 +9,8 @@ namespace binosplat {
 namespace {
 
 const glm::dvec3 kDown(0.0, 1.0, 0.0);
-// Hands closer together than this tell nothing about size; if their horizontal distance is less, nothing about direction.
+// Hands closer together than this tell nothing about size; if their horizontal distance is less, nothing
+// about direction.
 constexpr double kLeastSpanMetres = 0.02;
 constexpr double kLeastScale = 1e-6, kMostScale = 1e6;
 

@@ -14,7 +14,8 @@ public:
     [[nodiscard]] bool isOpen() const { return is_open_; }
     [[nodiscard]] bool hasFirst() const { return first_.has_value(); }
 
-    // One of the two places, in scene units. With the second one the ruler closes, and the answer is their distance.
+    // One of the two places, in scene units. With the second one the ruler closes, and the answer is their
+    // distance.
     std::optional<double> add(const glm::dvec3& place) {
         if (!first_) {
             first_ = place;

@@ -11,8 +11,8 @@ namespace binosplat {
 // Makes angles up and down equal if they differ only by rounding, so that the rows of parallel eyes coincide.
 std::array<xr::EyeView, 2> withoutNoise(std::array<xr::EyeView, 2> views);
 
-// Both eyes in room axes. Removes float32 noise from parallel, side-by-side eyes, so that they are exactly parallel: under 2 micrometres
-// and microradians, hundredths of a pixel.
+// Both eyes in room axes. Removes float32 noise from parallel, side-by-side eyes, so that they are exactly
+// parallel: under 2 micrometres and microradians, hundredths of a pixel.
 std::array<Pose, 2> roomFromEyes(const std::array<xr::EyeView, 2>& views);
 
 // The midpoint between the eyes.

@@ -9,7 +9,8 @@ namespace binosplat {
 namespace {
 
 constexpr double kSeconds = 0.3;
-// A stick walks 15 cm at most from frame to frame, and turns by 30 degrees, which the wearer asks for again and again.
+// A stick walks 15 cm at most from frame to frame, and turns by 30 degrees, which the wearer asks for again
+// and again.
 constexpr double kJumpMetres = 0.3, kJumpRadians = 0.6, kJumpGrowth = 1.3;
 
 bool isJump(const Similarity& from, const Similarity& to, const Pose& room_from_head) {

@@ -9,7 +9,8 @@ namespace binosplat {
 
 class Fade {
 public:
-    // `placed`: where the room lies in the scene in this frame; `is_new`: what is seen has changed by more than a place.
+    // `placed`: where the room lies in the scene in this frame; `is_new`: what is seen has changed by more
+    // than a place.
     void update(const Similarity& placed, const Pose& room_from_head, bool is_new, double step_seconds);
     // 0 to 1.
     [[nodiscard]] double darkness() const { return darkness_; }

@@ -1,4 +1,5 @@
-// The panel as a thing in the room: its place, and the hands that point at it or carry it. Room axes: x right, y down, z forward; metres.
+// The panel as a thing in the room: its place, and the hands that point at it or carry it. Room axes: x
+// right, y down, z forward; metres.
 #pragma once
 
 #include "app/view/room/panel_pointer.h"
@@ -16,8 +17,8 @@ public:
     // A canvas of `size_px`, `width_m` wide.
     PanelInRoom(glm::uvec2 size_px, double width_m);
 
-    // Follows the hands while the panel is `shown`. Both may point; the one that clicked last is the pointer, as long as it hits the panel.
-    // A hand that squeezes while it points carries the panel until it lets go.
+    // Follows the hands while the panel is `shown`. Both may point; the one that clicked last is the pointer,
+    // as long as it hits the panel. A hand that squeezes while it points carries the panel until it lets go.
     void update(const std::array<xr::Hand, 2>& hands, bool shown);
     // While it is shown: if the wearer looks elsewhere for long enough, and neither points at it nor carries
     // it, it moves to in front of the eyes.

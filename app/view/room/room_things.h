@@ -1,5 +1,6 @@
-// Things in the room besides the panel: hands or controllers, rays, the teleport target, and the vignette. All are layers of their own,
-// which the runtime blends over the scene, so that our frames take no longer for them.
+// Things in the room besides the panel: hands or controllers, rays, the teleport target, and the vignette.
+// All are layers of their own, which the runtime blends over the scene, so that our frames take no longer for
+// them.
 #pragma once
 
 #include "app/view/room/arc_picture.h"
@@ -22,16 +23,18 @@ struct RoomSight {
     std::optional<TexelPicture> message;
 };
 
-// All of them fit into the 16 layers that every runtime takes: the vignette, two parts of each controller, a ray, the arc's pieces and
-// its end, a message.
+// All of them fit into the 16 layers that every runtime takes: the vignette, two parts of each controller, a
+// ray, the arc's pieces and its end, a message.
 class RoomThings {
 public:
-    // For the session's lifetime, with images of `format`. Things whose images the runtime cannot make are not drawn: see xr::Troubles.
+    // For the session's lifetime, with images of `format`. Things whose images the runtime cannot make are
+    // not drawn: see xr::Troubles.
     RoomThings(const xr::Session& session, const Context& context, vk::Format format);
 
     // Before anything is recorded: acquires the images that this frame needs.
     void choose(const RoomSight& sight);
-    // After choose(): in place of a vignette, the whole view is dark; 0: it is not. `width_m`: see coverMetres().
+    // After choose(): in place of a vignette, the whole view is dark; 0: it is not. `width_m`: see
+    // coverMetres().
     void darken(double darkness, double width_m);
     // Between begin and submitAndWait.
     void record(Commands& commands);

@@ -124,7 +124,8 @@ std::optional<double> SceneProbe::depthIn(const Asked& asked, std::size_t point)
     const float alpha = asked.half_floats ? glm::unpackHalf2x16(words[1]).y : std::bit_cast<float>(words[3]);
     const gpu::uint word = words[kDepthByte / sizeof(gpu::uint)];
     if (alpha < 0.5f || word == 0) { return std::nullopt; }
-    const double units = asked.has_words ? 1.0 / static_cast<double>(std::bit_cast<float>(((word >> 6) - 1) << 5))  // lib/moving_pixel.glsl
+    // See lib/moving_pixel.glsl.
+    const double units = asked.has_words ? 1.0 / static_cast<double>(std::bit_cast<float>(((word >> 6) - 1) << 5))
                                          : static_cast<double>(std::bit_cast<float>(word)) / static_cast<double>(alpha);
     return units / asked.scene_from_room.scale;
 }

@@ -20,7 +20,8 @@ using ProbePath = std::array<glm::dvec3, kProbePoints>;  // in the room, from a 
 
 // Of a path, as an eye sees it.
 struct PathSeen {
-    // The point at which it first meets something, between points as a fraction; empty: none, or none that is seen.
+    // The point at which it first meets something, between points as a fraction; empty: none, or none that is
+    // seen.
     std::optional<double> meets;
     bool is_hidden = false;  // some of it lies far behind something
 };
@@ -50,8 +51,8 @@ public:
     ProbesSeen ask(const std::array<std::optional<ProbePath>, kProbePaths>& paths);
     // Another scene is shown: what was asked before is of no use.
     void forget();
-    // Within the frame's commands, after its pictures; may be repeated. The scene is `scene_from_room`, the picture that of `eye`. Pictures
-    // without depth tell nothing.
+    // Within the frame's commands, after its pictures; may be repeated. The scene is `scene_from_room`, the
+    // picture that of `eye`. Pictures without depth tell nothing.
     void record(Commands& commands, const Picture& picture, const Eye& eye, const Similarity& scene_from_room);
 
 private:
@@ -61,7 +62,8 @@ private:
         std::array<std::optional<ProbePath>, kProbePaths> paths;
         Pose scene_from_eye;
         Similarity scene_from_room;
-        std::array<std::optional<double>, kProbePaths * kProbePoints> depths_m;  // of the points themselves, where they are in the picture
+        // Depths of the points themselves, where they are in the picture.
+        std::array<std::optional<double>, kProbePaths * kProbePoints> depths_m;
         bool is_recorded = false, half_floats = false, has_words = false;
     };
     [[nodiscard]] static std::optional<double> depthIn(const Asked& asked, std::size_t point);

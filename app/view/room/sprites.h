@@ -1,4 +1,5 @@
-// The small pictures that hang in the room beside the panel: rays, controllers, the teleport target. Drawn by the program.
+// The small pictures that hang in the room beside the panel: rays, controllers, the teleport target. Drawn by
+// the program.
 #pragma once
 
 #include "app/view/room/strips.h"

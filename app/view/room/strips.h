@@ -1,5 +1,5 @@
-// Flat pictures in the room that look solid: strips that turn about their length towards the eyes, and pictures that face them.
-// Room axes: x right, y down, z forward; metres.
+// Flat pictures in the room that look solid: strips that turn about their length towards the eyes, and
+// pictures that face them. Room axes: x right, y down, z forward; metres.
 #pragma once
 
 #include "engine/geometry.h"
@@ -14,8 +14,8 @@ struct Strip {
     glm::dvec2 size_m{0.0};
 };
 
-// From `from`, the picture's top, to `to`, `width_m` wide, turned about its length towards `eye`. Empty if that is undefined: the ends
-// coincide, or the eye looks along it.
+// From `from`, the picture's top, to `to`, `width_m` wide, turned about its length towards `eye`. Empty if
+// that is undefined: the ends coincide, or the eye looks along it.
 std::optional<Strip> stripBetween(const glm::dvec3& from, const glm::dvec3& to, double width_m, const glm::dvec3& eye);
 
 // Faces `eye`, upright if possible.

@@ -1,4 +1,5 @@
-// The view's edge is dark while the wearer moves by stick, since motion seen only at the edge makes people ill.
+// The view's edge is dark while the wearer moves by stick, since motion seen only at the edge makes people
+// ill.
 #pragma once
 
 #include "xr/session.h"
@@ -20,8 +21,8 @@ class Vignette {
 public:
     // Closes while the wearer `moves` and opens again otherwise, each within a moment.
     void update(bool moves, double step_seconds);
-    // The width of its picture, at least coverMetres(). Its opening grows with it: the wider it is, the less of it is seen. Empty while
-    // nothing of it would be seen.
+    // The width of its picture, at least coverMetres(). Its opening grows with it: the wider it is, the less
+    // of it is seen. Empty while nothing of it would be seen.
     [[nodiscard]] std::optional<double> widthMetres(const std::array<xr::EyeView, 2>& views) const;
 
 private:

@@ -76,7 +76,8 @@ void makeKernelsAt(std::uint32_t width_px, StereoFrame& small, const CameraOptio
 }  // namespace
 
 bool FramesAhead::isLike(const FramesAhead& other) const {
-    // These change while a slider is dragged, and are parameters of kernels; any foveation needs the same kernels.
+    // These change while a slider is dragged, and are parameters of kernels; any foveation needs the same
+    // kernels.
     const auto withoutNumbers = [](StereoOptions options) {
         options.warp.budget = 0.0;
         options.warp.margin_px = 0;

@@ -25,9 +25,10 @@ struct FramesAhead {
     [[nodiscard]] bool isLike(const FramesAhead& other) const;
 };
 
-// A frame of `scene` that is never drawn and has the kernels for whatever may come without a click, for StereoFrame::takeKernels: those of
-// the chosen method, with and without hidden tiles and foveation, with parallel and canted eyes. Takes as long as the driver needs;
-// `between` is called now and then and may throw.
+// A frame of `scene` that is never drawn and has the kernels for whatever may come without a click, for
+// StereoFrame::takeKernels: those of the chosen method, with and without hidden tiles and foveation, with
+// parallel and canted eyes. Takes as long as the driver needs; `between` is called now and then and may
+// throw.
 std::unique_ptr<StereoFrame> makeKernelsAhead(const Context& context, const GpuScene& scene, const CameraOptions& camera,
                                               const FramesAhead& ahead, const std::function<void()>& between);
 

@@ -5,8 +5,8 @@
 
 namespace binosplat {
 
-// Runs of digits count as numbers, of any length; ASCII letters compare without case. Names that are otherwise equal are compared by bytes,
-// so that the order is total.
+// Runs of digits count as numbers, of any length; ASCII letters compare without case. Names that are
+// otherwise equal are compared by bytes, so that the order is total.
 bool comesBefore(std::string_view a, std::string_view b);
 
 }  // namespace binosplat

@@ -1,4 +1,5 @@
-// The scenes that were shown last, the latest first, and the favourites, from one run of the viewer to the next.
+// The scenes that were shown last, the latest first, and the favourites, from one run of the viewer to the
+// next.
 #pragma once
 
 #include <cstddef>

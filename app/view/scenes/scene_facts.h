@@ -15,9 +15,10 @@ struct SceneFacts {
     std::string kind;                        // how splats are drawn, and what they are in the file
     int sh_degree = 0, sh_degree_in_file = 0;
     std::uint64_t device_bytes = 0;
-    double size_units = 0.0;       // of its core, see SceneCore
-    glm::dvec3 middle{0.0};        // the core's
-    std::uint64_t file_bytes = 0;  // for a folder, of everything in it; 0: made by the program, or from the web
+    double size_units = 0.0;  // of its core, see SceneCore
+    glm::dvec3 middle{0.0};   // the core's
+    // Everything in it, for a folder; 0: made by the program, or from the web.
+    std::uint64_t file_bytes = 0;
     bool is_from_web = false;
 };
 

@@ -29,24 +29,26 @@ struct LoadedScene {
     }
     // Before a frame of these eyes: requests what they need, and moves a moving scene on. Never waits.
     void follow(std::span<const Eye> eyes, double step_seconds);
-    // Of one that moves: plays or pauses it, steps, or goes to a frame. Returns what it does now in a line; empty: nothing was asked for.
+    // Of one that moves: plays or pauses it, steps, or goes to a frame. Returns what it does now in a line;
+    // empty: nothing was asked for.
     std::string moveTime(bool play, int step, std::optional<std::size_t> frame);
     // Adds what is resident of it to a frame's counters.
     void count(FrameCounters& counters) const;
 
     std::string name;
-    std::unique_ptr<GpuScene> whole;       // or
-    std::unique_ptr<LiveScene> live;       // one that loads while it is shown
-    SceneStream* stream = nullptr;         // the same, if it is streamed
-    MovingScene* moving = nullptr;         // the same, if it moves
-    const GpuScene& gpu_scene;             // of either
-    SceneClock clock;                      // of one that moves
-    std::unique_ptr<StereoFrame> kernels;  // for frames that show it, see makeKernelsAhead; null: none were made
-    glm::dvec3 origin{0.0};                // see Scene
-    View start_view{};                     // see startView
-    Similarity start;                      // see startPlacement
-    glm::dvec3 up{0.0, -1.0, 0.0};         // see upOfScene
-    std::optional<double> floor;           // see floorHeight, along `up`
+    std::unique_ptr<GpuScene> whole;  // or
+    std::unique_ptr<LiveScene> live;  // one that loads while it is shown
+    SceneStream* stream = nullptr;    // the same, if it is streamed
+    MovingScene* moving = nullptr;    // the same, if it moves
+    const GpuScene& gpu_scene;        // of either
+    SceneClock clock;                 // of one that moves
+    // For frames that show it, see makeKernelsAhead; null: none were made.
+    std::unique_ptr<StereoFrame> kernels;
+    glm::dvec3 origin{0.0};         // see Scene
+    View start_view{};              // see startView
+    Similarity start;               // see startPlacement
+    glm::dvec3 up{0.0, -1.0, 0.0};  // see upOfScene
+    std::optional<double> floor;    // see floorHeight, along `up`
     std::vector<Viewpoint> viewpoints;
     LoadNotes notes;
     SceneFacts facts;
@@ -74,7 +76,8 @@ public:
     // Gives up if it can, and waits for the rest.
     ~SceneLoader();
 
-    // Tells it to give up; then, or if it was done already, there is nothing to take, and it keeps nothing in memory.
+    // Tells it to give up; then, or if it was done already, there is nothing to take, and it keeps nothing in
+    // memory.
     void cancel();
     // Frames will need other kernels than those it began with.
     void expect(const FramesAhead& ahead);

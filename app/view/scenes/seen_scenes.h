@@ -12,8 +12,8 @@ namespace binosplat {
 
 inline constexpr glm::uvec2 kScenePicturePx(88, 66);
 
-// In 8-bit RGBA, kScenePicturePx large. `key` differs for each picture, and is empty if there is none; a later picture in the same file
-// replaces an earlier one.
+// In 8-bit RGBA, kScenePicturePx large. `key` differs for each picture, and is empty if there is none; a
+// later picture in the same file replaces an earlier one.
 struct ScenePicture {
     std::string key, file;
     std::vector<unsigned char> rgba;

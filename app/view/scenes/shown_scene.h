@@ -18,7 +18,8 @@ namespace binosplat {
 
 class ShownScene {
 public:
-    // Begins to load the scene of the options. `context`, `options` and `log` outlive this. With `ahead` scenes come with their kernels.
+    // Begins to load the scene of the options. `context`, `options` and `log` outlive this. With `ahead`
+    // scenes come with their kernels.
     ShownScene(const Context& context, const ViewOptions& options, const FrameLog& log, std::optional<FramesAhead> ahead = {});
 
     // Null until the first scene is loaded.
@@ -55,8 +56,9 @@ public:
     // True while kernels for drawable() are being made.
     [[nodiscard]] bool isMakingKernels() const { return maker_ != nullptr; }
 
-    // The wearer's settings of frames. The next scene comes with kernels for them; for the current one they are made beside the frames,
-    // unless the options have the scene loaded first, so that runs are repeatable.
+    // The wearer's settings of frames. The next scene comes with kernels for them; for the current one they
+    // are made beside the frames, unless the options have the scene loaded first, so that runs are
+    // repeatable.
     void expect(const StereoOptions& stereo, glm::uvec2 size_px, bool tint);
     // `settings`, with the method replaced by one that can be drawn until its kernels are ready.
     [[nodiscard]] ViewSettings drawable(ViewSettings settings) const;
@@ -66,10 +68,10 @@ public:
     void begin(const std::string& scene, const std::string& compared = {});
     // The same for the scene `step` further on in the folder of the last requested one, once `files` has found it.
     void beginBeside(int step, FileWorker& files);
-    // Waits for the next scene, shows it (or, where it lacks memory beside the one shown, has that one go and begins again: then there is
-    // none for a while) and places the wearer: where they left it, where `state` was asked for (only for the first scene),
-    // or where the scene was saved. Returns what went wrong, or empty; throws it if the options' scene cannot be loaded and there is no
-    // other to stay with.
+    // Waits for the next scene, shows it (or, where it lacks memory beside the one shown, has that one go and
+    // begins again: then there is none for a while) and places the wearer: where they left it, where `state`
+    // was asked for (only for the first scene), or where the scene was saved. Returns what went wrong, or
+    // empty; throws it if the options' scene cannot be loaded and there is no other to stay with.
     [[nodiscard]] std::string take(ViewState& state);
 
     // A scene of the same place that the shown one is compared with; null: none. It goes when another scene is shown.
@@ -125,7 +127,8 @@ private:
     [[nodiscard]] std::vector<Eye> seenFromResting(std::span<const Eye> eyes) const;
     // Within a handler: the next scene cannot be shown. Returns `why`, or rethrows.
     [[nodiscard]] std::string goOnWithout(const std::string& why);
-    // What is shown goes, so that the scene that was asked for has its memory, and that one is loaded again; says so.
+    // What is shown goes, so that the scene that was asked for has its memory, and that one is loaded again;
+    // says so.
     [[nodiscard]] std::string makeWay(const ViewState& state);
 
     const Context& context_;

@@ -132,7 +132,8 @@ void ViewpointList::read(std::string file) {
         } catch (const Error& error) { trouble = error.what(); }
         return [this, source, from, trouble, found] {
             if (!trouble.empty()) { return say_(trouble); }
-            if (scene_ != nullptr && scene_->name == source) { add(found, from); }  // else another one came meanwhile
+            // Otherwise another scene came meanwhile.
+            if (scene_ != nullptr && scene_->name == source) { add(found, from); }
         };
     });
 }

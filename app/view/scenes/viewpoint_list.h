@@ -1,4 +1,5 @@
-// The viewpoints of the scene that is shown: which one people are at, what they do with the list, and a tour through it.
+// The viewpoints of the scene that is shown: which one people are at, what they do with the list, and a tour
+// through it.
 #pragma once
 
 #include "app/view/files/file_worker.h"
@@ -24,7 +25,8 @@ public:
     [[nodiscard]] std::optional<std::size_t> at() const { return at_; }
     [[nodiscard]] const Viewpoint* current() const { return at_ ? &scene_->viewpoints[*at_] : nullptr; }
 
-    // Each of these returns where to go now; null: nowhere. The first one by its number, the other so many further on, wrapping around.
+    // Each of these returns where to go now; null: nowhere. The first one by its number, the other so many
+    // further on, wrapping around.
     const Viewpoint* go(std::size_t index);
     const Viewpoint* goBy(int step);
     // "viewpoint 2 of 3: door".
@@ -46,7 +48,8 @@ public:
     void toggleTour();
     void endTour() { tour_.reset(); }
     [[nodiscard]] bool isTouring() const { return tour_.has_value(); }
-    // `is_there`: not on the way to one. Where the tour goes now, if it is time; null: nowhere yet, or it has ended.
+    // `is_there`: not on the way to one. Where the tour goes now, if it is time; null: nowhere yet, or it has
+    // ended.
     const Viewpoint* pass(double seconds, bool is_there);
 
 private:

@@ -118,7 +118,7 @@ std::vector<Viewpoint> keptViewpoints(const std::string& source) {
     const auto read = [&](const auto& find) -> std::optional<std::vector<Viewpoint>> {
         try {
             return find();
-        } catch (const Error&) { return std::nullopt; }  // there is none, or one that cannot be read, which the next viewpoint replaces
+        } catch (const Error&) { return std::nullopt; }  // none, or unreadable: will be replaced
     };
     if (const auto kept = read([&] { return readViewpoints(keptFile(source)); })) { return *kept; }
     if (const auto old = read([&] { return readOld(oldFile(source)); })) { return *old; }

@@ -1,5 +1,5 @@
-// What somebody has set on the panel, for all scenes: kept by itself in one file of the user's, of which --config and the command line need
-// not know.
+// What somebody has set on the panel, for all scenes: kept by itself in one file of the user's, of which
+// --config and the command line need not know.
 #pragma once
 
 #include "app/view/settings/view_settings.h"
@@ -15,7 +15,8 @@ namespace binosplat {
 // Empty if the user has no folder for it.
 std::filesystem::path preferencesFile();
 
-// Of a config's tables; and as the file has them. What only one run is about is left out: whether the panel is shown, its page, the tint.
+// Of a config's tables; and as the file has them. What only one run is about is left out: whether the panel
+// is shown, its page, the tint.
 using PreferenceLines = std::map<std::pair<std::string, std::string>, std::string>;  // by table and key
 PreferenceLines readPreferences(const std::vector<SettingsTable>& tables);
 std::string preferencesToml(const PreferenceLines& lines);
@@ -34,7 +35,8 @@ private:
     double still_s_ = 0.0;
 };
 
-// Adds them to the file. Throws Error if it cannot be written; one that cannot be read is kept as FILE.unread.
+// Adds them to the file. Throws Error if it cannot be written; one that cannot be read is kept as
+// FILE.unread.
 void keepPreferences(const PreferenceLines& changes);
 
 }  // namespace binosplat

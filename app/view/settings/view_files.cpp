@@ -25,7 +25,8 @@ std::uint64_t fingerprint(const std::string& text) {
     return hash;
 }
 
-// File names have at most 255 bytes. Cut between letters (UTF-8); scenes whose names begin alike differ in their fingerprints.
+// File names have at most 255 bytes. Cut between letters (UTF-8); scenes whose names begin alike differ in
+// their fingerprints.
 std::string withRoomFor(std::size_t more_bytes, std::string name) {
     std::size_t bytes = std::min(name.size(), std::size_t{255} - more_bytes);
     while (bytes > 0 && bytes < name.size() && (static_cast<std::uint8_t>(name[bytes]) & 0xc0) == 0x80) { --bytes; }

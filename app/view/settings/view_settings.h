@@ -30,13 +30,14 @@ struct ViewSettings {
     bool submit_depth = true;     // give the runtime depth, too; off at the start, it is off for good
     bool visibility_mask = true;  // ask the runtime what the lenses hide; only at the start
     bool eye_tracking = false;    // whether the headset may track the eyes; only at the start
-    bool foveated_inset = true;   // with half_periphery: leave that to the runtime if it has insets; only at the start
-    bool tilt = false;            // whether two hands may tilt the scene
-    double refresh_rate = 0.0;    // frames per second; 0: the runtime's choice
-    bool hands = true;            // draw them, or the controllers they hold
-    bool teleport = false;        // in place of walking
-    bool smooth_turn = false;     // in place of turns by 30 degrees
-    bool follow_ground = false;   // the wearer stands on the scene's ground
+    // With half_periphery: leave that to the runtime if it has insets; only at the start.
+    bool foveated_inset = true;
+    bool tilt = false;           // whether two hands may tilt the scene
+    double refresh_rate = 0.0;   // frames per second; 0: the runtime's choice
+    bool hands = true;           // draw them, or the controllers they hold
+    bool teleport = false;       // in place of walking
+    bool smooth_turn = false;    // in place of turns by 30 degrees
+    bool follow_ground = false;  // the wearer stands on the scene's ground
     Backdrop backdrop = Backdrop::kAsSet;
     PanelPage page = PanelPage::kView;
     bool vignette = true;  // while the wearer moves by stick
@@ -44,7 +45,8 @@ struct ViewSettings {
     bool passthrough = false;              // the room in place of the background, if the headset can
     Quality quality = Quality::kBalanced;  // how the frame rate is held
     bool picture_both_eyes = false;        // pictures as files show both, side by side
-    double last_foveation_deg = 15.0;      // for the panel's box: as far as eyes usually turn before the head does
+    // For the panel's box: as far as eyes usually turn before the head does.
+    double last_foveation_deg = 15.0;
     // Of a window without a headset, see WindowSight.
     WindowStereo window_stereo = WindowStereo::kMono;
     double window_eyes = 0.033, window_plane = 1.0;
@@ -58,8 +60,8 @@ struct ViewSettings {
     [[nodiscard]] bool wantsInset() const { return foveated_inset && stereo.half_periphery && stereo.foveation_deg > 0.0; }
 };
 
-// The config's [view] over `settings`: the rows of view_settings_table.h, and together scene-position, scene-orientation (w, x, y, z) and
-// units-per-metre. Throws Error with file and line.
+// The config's [view] over `settings`: the rows of view_settings_table.h, and together scene-position,
+// scene-orientation (w, x, y, z) and units-per-metre. Throws Error with file and line.
 ViewSettings readViewSettings(const std::vector<SettingsTable>& tables, ViewSettings settings);
 
 // A config for --config, also for that of `render`.

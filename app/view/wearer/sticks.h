@@ -1,11 +1,13 @@
-// Moving the wearer with the thumbsticks. The stick of the hand that points at the panel scrolls there instead.
+// Moving the wearer with the thumbsticks. The stick of the hand that points at the panel scrolls there
+// instead.
 #pragma once
 
 #include "app/view/wearer/wearer_tool.h"
 
 namespace binosplat {
 
-// A stick acts when it is pushed this far, and again only after it came back below the second value. Thumbs tremble within the dead zone.
+// A stick acts when it is pushed this far, and again only after it came back below the second value. Thumbs
+// tremble within the dead zone.
 inline constexpr double kStickPushed = 0.7, kStickRests = 0.4, kStickDeadZone = 0.15;
 
 // The left stick walks along the head's direction, unless it teleports; the right one rises and sinks.

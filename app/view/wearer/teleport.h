@@ -10,12 +10,12 @@ struct TeleportAim {
     std::optional<glm::dvec3> target;  // on the floor; empty: the hand is below it, and there is no arc
 };
 
-// The arc of something thrown from the hand along its aim: the higher it points, the farther, up to some six metres. The floor's y is
-// `floor_m`.
+// The arc of something thrown from the hand along its aim: the higher it points, the farther, up to some six
+// metres. The floor's y is `floor_m`.
 TeleportAim aimTeleport(const Pose& room_from_aim, double floor_m);
 
-// If chosen: pushing the left stick ahead, or a trigger pulled away from the panel, aims at the floor; letting go moves the wearer there,
-// unless the scene is in the way.
+// If chosen: pushing the left stick ahead, or a trigger pulled away from the panel, aims at the floor;
+// letting go moves the wearer there, unless the scene is in the way.
 class Teleport : public WearerTool {
 public:
     void update(const WearerNow& now, const PanelInRoom& panel, ViewState& state) override;

@@ -14,7 +14,8 @@ public:
 
     void update(const WearerNow& now, PanelInRoom& panel, ViewState& state);
 
-    // 1 if the right stick was just pressed in (next viewpoint), -1 for the left one (previous), or their sum.
+    // 1 if the right stick was just pressed in (next viewpoint), -1 for the left one (previous), or their
+    // sum.
     [[nodiscard]] int viewpointStep() const { return viewpoint_step_; }
     // True if a hand has just pressed the button that plays or pauses a scene.
     [[nodiscard]] bool playPressed() const { return play_pressed_; }

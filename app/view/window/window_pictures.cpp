@@ -14,7 +14,8 @@ namespace {
 
 constexpr std::uint64_t kLongestWaitNs = 1'000'000'000;  // for a display that has gone away
 
-// Two frames are in flight, and a frame waits for the one before the last: by then what is before it was drawn and shown.
+// Two frames are in flight, and a frame waits for the one before the last: by then what is before it was
+// drawn and shown.
 constexpr int kCallsUntilUnused = 4;
 
 }  // namespace
@@ -85,7 +86,8 @@ void WindowPictures::acquire() {
     if (is_stale_ || hold_ == Hold::kOurs) { return; }  // minimized; or still held from a dropped frame
     try {
         const auto [result, index] = swapchain_.acquireNextImage(0, {}, *acquired_fence_);
-        if (result != vk::Result::eSuccess && result != vk::Result::eSuboptimalKHR) { return; }  // none is free
+        // No picture is free.
+        if (result != vk::Result::eSuccess && result != vk::Result::eSuboptimalKHR) { return; }
         index_ = index;
         hold_ = Hold::kPromised;
     } catch (const vk::OutOfDateKHRError&) {

@@ -12,15 +12,16 @@ namespace binosplat {
 
 class WindowPictures {
 public:
-    // `window_size_px` returns the window's current size. Without `paced` a headset sets the pace, otherwise the display. Throws Error if
-    // the device cannot show on the surface.
+    // `window_size_px` returns the window's current size. Without `paced` a headset sets the pace, otherwise
+    // the display. Throws Error if the device cannot show on the surface.
     WindowPictures(const Context& context, vk::raii::SurfaceKHR surface, std::function<glm::uvec2()> window_size_px, bool paced = false);
 
     WindowPictures(const WindowPictures&) = delete;
     WindowPictures& operator=(const WindowPictures&) = delete;
     ~WindowPictures();
 
-    // Before anything is recorded, once a frame: a picture to draw on, if one is free; first that of a dropped frame, if there is one.
+    // Before anything is recorded, once a frame: a picture to draw on, if one is free; first that of a
+    // dropped frame, if there is one.
     void acquire();
     // That picture; null if none was free.
     [[nodiscard]] vk::Image current() const { return hold_ == Hold::kOurs ? images_[index_] : vk::Image(); }

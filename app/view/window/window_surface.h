@@ -8,8 +8,9 @@
 
 namespace binosplat {
 
-// The size of pictures: the compositor's, or if it leaves that to the program (Wayland reports 0xffffffff) the window's, within the allowed
-// range. Empty while there is nothing to draw on, as when the window is minimized.
+// The size of pictures: the compositor's, or if it leaves that to the program (Wayland reports 0xffffffff)
+// the window's, within the allowed range. Empty while there is nothing to draw on, as when the window is
+// minimized.
 std::optional<vk::Extent2D> windowExtent(const vk::SurfaceCapabilitiesKHR& able, vk::Extent2D window);
 
 // A format that shows bytes as they are; empty if there is none.

@@ -17,7 +17,8 @@ namespace binosplat {
 struct FetchSettings {
     using Milliseconds = std::chrono::milliseconds;
     std::uint64_t most_bytes = std::uint64_t{64} << 30;  // for one file
-    std::uint64_t cache_bytes = 0;                       // the most for the whole cache; 0: nothing is kept, and there is no limit
+    // Limit for the whole cache; 0: nothing is kept, and downloads have no limit.
+    std::uint64_t cache_bytes = 0;
     int attempts = 4;
     Milliseconds first_pause{500};   // before the second attempt, then doubled each time
     Milliseconds most_pause{20000};  // the longest that a server may ask for

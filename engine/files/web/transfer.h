@@ -25,7 +25,8 @@ struct CurlCloser {
 struct FetchTally {
     std::atomic<std::uint64_t> got_bytes = 0, expected_bytes = 0;
     std::atomic<std::size_t> asked = 0, sized = 0;  // files, and those of known length
-    std::optional<bool> began_private;              // whether the first server is on a private network; only curl's thread uses it
+    // Whether the first server is on a private network; only curl's thread uses it.
+    std::optional<bool> began_private;
 };
 
 // Must not move: curl has its address.
@@ -93,17 +94,19 @@ private:
     // An attempt that brought this much, and whose rest can be requested, does not count: large files may
     // break off often.
     static constexpr std::uint64_t kWorthwhileBytes = 1 << 20;
-    int attempts_ = 0;                                   // since the last one that does not count
-    std::uint64_t worthwhile_bytes_ = kWorthwhileBytes;  // with this much of the file, the next one does not count; it never falls, or a
-                                                         // server whose file is always a different one would be asked forever
+    int attempts_ = 0;  // since the last one that does not count
+    // With this much of the file, the next one does not count; it never falls, or a server whose file is
+    // always a different one would be asked forever.
+    std::uint64_t worthwhile_bytes_ = kWorthwhileBytes;
     Clock::time_point due_{}, watched_since_{};
     std::uint64_t got_bytes_ = 0, watched_bytes_ = 0, expected_bytes_ = 0;
     bool is_sized_ = false;    // the server has stated its length
     bool is_unpacked_ = true;  // according to Content-Encoding
     std::unique_ptr<IncomingFile> file_;
-    FileVersion version_;           // of the bytes in file_
-    std::uint64_t kept_bytes_ = 0;  // how many are from earlier attempts; more than 0: only the rest was requested
-    std::string refused_;           // why the body was not used
+    FileVersion version_;  // of the bytes in file_
+    // How many are from earlier attempts; more than 0: only the rest was requested.
+    std::uint64_t kept_bytes_ = 0;
+    std::string refused_;  // why the body was not used
 };
 
 }  // namespace binosplat

@@ -1,4 +1,5 @@
-// The folder's names: FINGERPRINT.json, FINGERPRINT.data, and FINGERPRINT-PROCESS-N.part while a file is on its way.
+// The folder's names: FINGERPRINT.json, FINGERPRINT.data, and FINGERPRINT-PROCESS-N.part while a file is on
+// its way.
 #include "engine/files/web/web_cache.h"
 
 #include "engine/error.h"

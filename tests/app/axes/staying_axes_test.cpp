@@ -1,4 +1,5 @@
-// Facts about pictures whose axes stay while the head turns: what they cover and hide, when they move, and how a compositor shows them.
+// Facts about pictures whose axes stay fixed while the head turns: what they cover and hide, when they move,
+// and how a compositor shows them.
 #include "app/axes/staying_axes.h"
 #include "engine/picture/turned.h"
 #include "tests/engine/frame/frame_runs.h"
@@ -17,7 +18,7 @@ Eye turned(const Eye& eye, double degrees, const glm::dvec3& axis) {
     return other;
 }
 
-// Where a place of the view lies in the picture.
+// Where a place in the view lies in the picture.
 glm::dvec2 placeIn(const Eye& picture, const Eye& view, const glm::dvec2& place_px) {
     const Intrinsics &k = picture.intrinsics, &l = view.intrinsics;
     const glm::dvec3 ray = glm::conjugate(picture.world_from_camera.orientation) *
@@ -40,7 +41,7 @@ TEST_CASE("a picture covers turns within its margin with the view's own pixels, 
 TEST_CASE("all that a view shows lies in tiles that are not hidden, and most of the rest in hidden ones") {
     const Eye eye = eyeOf({200, 150}), picture = coverOf(eye, glm::radians(20.0));
     const glm::uvec2 tiles = tilesOf(picture.size_px), view_tiles = tilesOf(eye.size_px);
-    // A lens that shows the middle columns alone.
+    // A lens that shows only the middle columns.
     std::vector<std::uint8_t> lens(std::size_t{view_tiles.x} * view_tiles.y, 0);
     for (std::size_t t = 0; t < lens.size(); ++t) { lens[t] = t % view_tiles.x < 4 || t % view_tiles.x > 8 ? 1 : 0; }
     for (const bool has_lens : {false, true}) {
@@ -82,8 +83,9 @@ TEST_CASE("axes stay until the view leaves the picture, then move ahead of a hea
     }
     REQUIRE(moves.size() >= 3);
     CHECK(moves.size() <= 4);
-    CHECK(moves[2] - moves[1] > 1.5 * kMarginDegrees / 0.5);  // nearly twice the margin, since they went ahead
-    // Other angles have a picture of their own.
+    // Nearly twice the margin, since they moved ahead of the head.
+    CHECK(moves[2] - moves[1] > 1.5 * kMarginDegrees / 0.5);
+    // Other angles get a picture of their own.
     for (Eye& view : views) { view.size_px.x += 16; }
     CHECK(axes.follow(views)[0].size_px.x != 0);
     CHECK(covers(axes.follow(views)[0], views[0]));
@@ -126,7 +128,7 @@ TEST_CASE_FIXTURE(Gpu, "while the head turns, what was seen before is the same b
     std::array<std::vector<std::uint8_t>, 2> hidden_before;
     for (int step = 0; step < 4; ++step) {
         std::array<Eye, 2> views = stereoPair(view.eye, 0.063);
-        for (Eye& eye : views) { eye = turned(eye, 0.8 * step, {0.1, 1.0, 0.0}); }  // about itself
+        for (Eye& eye : views) { eye = turned(eye, 0.8 * step, {0.1, 1.0, 0.0}); }  // about the eye itself
         const auto pictures = axes.follow(views);
         settings.hidden_tiles = axes.hiddenTiles();
         const FrameResult result = frame.render(pictures, settings);

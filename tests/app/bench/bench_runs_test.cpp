@@ -1,11 +1,11 @@
-// bench_runs_test.txt, and how frames that may take next to nothing end.
+// bench_runs_test.txt, and how a bench ends when frames are limited to next to no time.
 #include "tests/app/bench/benches.h"
 #include "tests/app/program_script.h"
 #include "tests/app/scores/lpips_weights.h"
 
 SUITE(bench_runs) {
 
-// Walks, or stands before the photograph of a scene that is the scene itself, seen by one eye in the middle.
+// A short walk, and a camera whose photograph is a render of the scene, seen by one eye in the middle.
 struct Walk : Bench {
     Walk() {
         write("m.csv", "time_s,x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,0,1\n0.1,0.02,0,0,0,0,0,1\n0.2,0.04,0,0,0,0,0,1\n");
@@ -15,7 +15,7 @@ struct Walk : Bench {
     }
 };
 
-// front: one of the first two results is on the front of time and error.
+// front: one of the first two results lies on the Pareto front of time and error.
 SCRIPT(bench_runs, "app/bench/bench_runs") {
     const Walk bench;
     ScriptHost host = programIn(bench);

@@ -40,7 +40,7 @@ TEST_CASE("a level fits if its splats do, which take less memory with fewer colo
         const RunOptions run = renderOptions(options);
         return levelChoice(run.load, run.memory_limit_mib);
     };
-    CHECK(!choose("--lod 1").fits);  // as fine as there is
+    CHECK(!choose("--lod 1").fits);  // already the finest level
     CHECK(choose("--lod 1").level == 1u);
     const LevelChoice discs = choose("--memory-limit 3 --flatten");
     CHECK(discs.fits(65536, 0));  // 48 bytes a splat
@@ -114,7 +114,7 @@ TEST_CASE("size, camera, headset and repeats of the command line take the place 
     CHECK(bench.plan(sizes).series.at(0).sizes_px == std::vector{glm::uvec2(64, 48), glm::uvec2(128, 96)});
     CHECK(bench.plan(sizes, "--size 32x16").series.at(0).sizes_px == std::vector{glm::uvec2(32, 16)});
     CHECK(these(bench.plan(fence + "repeats = 7\n").repeats, bench.plan(fence + "repeats = 7\n", "--repeats 3").repeats) == these(7, 3));
-    // A config's own camera is what its series and views start from.
+    // The series and views start from the config's own camera.
     const std::string camera = "[camera]\nsize = \"256x256\"\neye = [0, 0, -1]\n" + fence +
                                "headsets = [\"quest2\", \"index\"]\n[[series]]\nname = \"a\"\nsizes = \"64x48\"\n"
                                "[[series]]\nname = \"b\"\n[[views]]\nname = \"near\"\nfov_x = 90\n";
@@ -176,14 +176,14 @@ TEST_CASE("ratios compare modes at the same point only, by the medians of frames
     std::vector<BenchResult> results{makeResult("a", Mode::kTwoPass, 1, 4.0), makeResult("a", Mode::kShared, 1, 2.0),
                                      makeResult("a", Mode::kShared, 2, 3.0), makeResult("b,c", Mode::kMono, 1, 3.0),
                                      makeResult("a", Mode::kShared, 1, 5.0)};
-    results[4].backbone = "3DGS";  // the same scene as discs is another point
+    results[4].backbone = "3DGS";  // the same scene as discs is a separate point
     compareModes(results);
     CHECK(!results[4].ratio_to_two_pass.has_value());
     CHECK(these(results[1].ratio_to_two_pass, results[0].ratio_to_shared) == these(0.5, 2.0));
     CHECK(!results[2].ratio_to_two_pass.has_value());
     CHECK(!results[3].ratio_to_shared.has_value());
     CHECK(contains(benchCsv({"GPU", "", results}), "\"b,c\""));
-    // What slows two neighbours for a while changes no ratio.
+    // A slowdown that hits two neighbouring runs alike changes no ratio.
     results[0].frame_ms = {4.0, 8.0, 4.0};
     results[1].frame_ms = {3.0, 6.0, 1.0};
     compareModes(results);
@@ -217,7 +217,7 @@ TEST_CASE("what moving a tile costs is told in pairs of shared's affiliated eye"
                       {{Role::kAffiliated, FrameStage::kSplat, "project"}, 1.5},
                       {{Role::kAffiliated, FrameStage::kSplat, "rasterize"}, 2.5}};
     shared.counters = {{"tile_pairs_left", 9000}, {"tile_pairs_right", 8000}};
-    // 10 us a tile, 0.5 us a pair.
+    // 10 us a tile and 0.5 us a pair.
     std::vector<BenchResult> results{predicted, shared};
     compareModes(results);
     CHECK(these(results[0].move_cost.value(), results[1].move_cost.has_value()) == these(doctest::Approx(20.0), false));
@@ -260,7 +260,7 @@ TEST_CASE("a table that is wider than a terminal is several, each with its metho
         CHECK_MESSAGE(found != words.end(), word);
         if (found != words.end()) { words.erase(found); }
     }
-    // What is there more than once are the names of rows.
+    // Words that occur more than once name rows.
     CHECK(words.count("method") >= 1);
     std::istringstream lines(parts);
     for (std::string line; std::getline(lines, line);) { CHECK_MESSAGE(line.size() <= 100, line); }
@@ -270,13 +270,13 @@ TEST_CASE("of an error an eye sees each tile's share, and notices it from a hund
     const glm::uvec2 size_px(32, 16);  // two tiles
     const Image full{size_px, 4, std::vector<float>(4 * 512, 0.5f)};
     Image picture = full;
-    // Squares of 0.1024 and 0.0064 a tile.
+    // Sums of squares per tile: 0.1024 and 0.0064.
     for (std::size_t i = 0; i < 512; ++i) { picture.values[4 * i] += i % 32 < 16 ? 0.02f : 0.005f; }
     const SeenScores seen = measureSeen(full, picture, std::array{0.5, 1.0});
     CHECK(seen.mean_square == doctest::Approx((0.5 * 0.1024 + 0.0064) / (3 * 512)).epsilon(1e-4));
     CHECK(these(seen.psnrDb(), seen.noticed) == these(doctest::Approx(10.0 * std::log10(3 * 512 / 0.0576)).epsilon(1e-4), 0.5));
     CHECK(measureSeen(full, full, std::array{0.5, 1.0}).noticed == 0.0);
-    // It stands in the tables, and has a panel of its own in the plot.
+    // The score appears in the tables and has its own panel in the plot.
     BenchResult result = withError(1.0, 0.01);
     CHECK(!contains(benchPlot({"GPU", "", {result}}), "of what the eye sees"));
     result.seen = seen;
@@ -287,7 +287,7 @@ TEST_CASE("of an error an eye sees each tile's share, and notices it from a hund
 }
 
 TEST_CASE("of the tiles that were not rendered, those count as far under a bound that are more than 2 dB under it") {
-    // Two by two tiles, of which those at the right and below stick out, so that one row of two is whole.
+    // Three by two tiles; those on the right and at the bottom stick out, so one row of two is whole.
     const glm::uvec2 size_px(40, 24);
     const auto squareOf = [](double psnr_db) { return static_cast<float>(std::pow(10.0, -0.1 * psnr_db)); };
     const std::vector<float> squares{squareOf(26.01), squareOf(25.99)};
@@ -298,8 +298,8 @@ TEST_CASE("of the tiles that were not rendered, those count as far under a bound
     using Counts = std::pair<std::uint64_t, std::uint64_t>;
     CHECK(these(find({0, 0, 0, 0, 0, 0}, 28.0), find({0, 0, 3, 3, 3, 3}, 29.0), find({0, 0, 0, 0, 0, 0}, 27.9)) ==
           these(Counts(2, 1), Counts(2, 2), Counts(2, 0)));
-    CHECK(find({0, 3, 0, 0, 0, 0}, 28.0) == Counts(1, 0));  // rendered
-    CHECK(find({}, 28.0) == Counts(0, 0));                  // in full
+    CHECK(find({0, 3, 0, 0, 0, 0}, 28.0) == Counts(1, 0));  // the second one is rendered
+    CHECK(find({}, 28.0) == Counts(0, 0));                  // a full render
     BoundedTiles both{2, 1};
     both += {6, 1};
     CHECK(both.underShare() == 0.25);

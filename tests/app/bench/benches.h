@@ -10,7 +10,7 @@ namespace binosplat::test {
 using Names = std::vector<std::string>;
 
 struct Bench : Workplace {
-    // A config in b.toml, and further words of the command line.
+    // A config in b.toml, and more words on the command line.
     [[nodiscard]] BenchOptions options(const std::string& toml, const std::string& words = "") const {
         write("b.toml", toml);
         return parse<BenchOptions>(fmt::format("bench --out out --config {} {}", (path / "b.toml").string(), words));

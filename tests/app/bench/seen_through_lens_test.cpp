@@ -1,4 +1,5 @@
-// Facts about what a wearer notices through a headset's lenses, by the program's model of an eye.
+// Facts about which errors a wearer notices through a headset's lenses, according to the program's model of
+// an eye.
 #include "app/bench/seen_through_lens.h"
 #include "tests/engine/picture/pictures.h"
 
@@ -10,7 +11,8 @@ Cameras wideCameras() {
     return {eye, stereoPair(eye, 0.06), 0.06, std::nullopt};
 }
 
-// A grey picture with a square of 128 pixels that is brighter by 0.06, of which the squares are 3.6 times what a bad tile has.
+// A grey picture with a square of 128 pixels that is 0.06 brighter: 3.6 times the squared error of a bad
+// tile.
 Image brightSquare(std::uint32_t left_px) {
     return makePicture({1024, 1024}, [&](std::uint32_t x, std::uint32_t y) {
         const bool inside = x >= left_px && x < left_px + 128 && y >= 448 && y < 576;
@@ -29,11 +31,12 @@ TEST_CASE("within 15 degrees of a lens's centre an error counts as it is, at 43 
     CHECK(badTiles(middle) == doctest::Approx(64.0));
     CHECK(worst(middle) == doctest::Approx(whole).epsilon(1e-4));
     CHECK(badTiles(border) == 0.0);
-    // Two pixels there are 0.248 degrees, and the finest cycle is 1/48 + 0.022 (angle - 15), at the tile's 35 to 46 degrees.
+    // Two pixels span 0.248 degrees there, and the finest visible cycle is 1/48 + 0.022 (angle - 15) degrees,
+    // at the tile's 35 to 46 degrees.
     CHECK(worst(border) == between(whole * std::pow(0.248 / (1.0 / 48.0 + 0.022 * (46.0 - 15.0)), 2.0) * 0.85,
                                    whole * std::pow(0.248 / (1.0 / 48.0 + 0.022 * (35.0 - 15.0)), 2.0)));
     CHECK(worst(find(full, full)) == 0.0);
-    // Where the lenses have their centres to the left, what is there is seen.
+    // With the lens centres moved to the left, an error there is seen.
     Cameras aside = wideCameras();
     aside.lens_centres = {glm::dvec3(-0.93, 0.0, 1.0), glm::dvec3(-0.93, 0.0, 1.0)};
     const SeenThroughLens there(aside);

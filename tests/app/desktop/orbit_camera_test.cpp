@@ -1,4 +1,4 @@
-// Facts about the camera of a window, and about what its eyes see.
+// Facts about a window's camera and what its eyes see.
 #include "app/desktop/camera_mover.h"
 #include "app/desktop/desktop_pictures.h"
 #include "tests/suite.h"
@@ -38,7 +38,7 @@ TEST_CASE("what is under the pointer stays there while one orbits and nears it, 
     mover.beginDrag(CameraMover::Drag::kPan, start, kUnder, focal_px, kSizePx.y);
     mover.dragTo(start + step);
     CHECK(glm::distance(pixelOf(eyeOf(mover.camera()), kUnder), start + step) < 1e-6);
-    // Upside down it never is.
+    // It is never upside down.
     mover.beginDrag(CameraMover::Drag::kOrbit, start, kUnder, focal_px, kSizePx.y);
     mover.dragTo(start + glm::dvec2(0.0, 5000.0));
     checkUpright(mover.camera());

@@ -1,4 +1,4 @@
-// Facts about options: the command line over the config, what of both is refused, and the documents.
+// Facts about options: the command line overrides the config, what is refused in either, and the documents.
 #include "app/command_line/option_documents.h"
 #include "app/options/camera_options.h"
 #include "app/options/modes.h"
@@ -25,7 +25,7 @@ void checkRefused(const std::string& line, ExitCode code, const std::string& par
     }
 }
 
-// What a command line gives, a key and a value a line.
+// The settings that a command line gives: one key and value per line.
 std::string describe(const Options& options) {
     std::string text;
     const auto addRows = [&](const RunOptions& run) {
@@ -47,7 +47,7 @@ std::string describe(const Options& options) {
     return text;
 }
 
-// `> cameras FILE OPTIONS` reads a file of cameras, too.
+// `> cameras FILE OPTIONS` also reads a file of cameras.
 SCRIPT(options, "app/options/options") {
     const Workplace work;
     const auto run = [&](const std::string& line, const std::string&) {
@@ -110,7 +110,8 @@ TEST_CASE_FIXTURE(AtWork, "the documents of the options are those that the progr
     CHECK_MESSAGE(textIn(kSource / "docs/options.md") == documentOf("markdown"), "run `binosplat document markdown > docs/options.md`");
     const std::string text = textIn(kSource / "configs/default.toml");
     CHECK_MESSAGE(text == documentOf("config"), "run `binosplat document config > configs/default.toml`");
-    // Every key of a config is there, those without a default as comments; whoever takes out the mark has a key that is taken.
+    // The file has every key of a config, as a comment if the key has no default; uncommented, each key is
+    // accepted.
     const std::string one = (work.path / "one.toml").string();
     std::size_t keys = 0;
     std::istringstream lines(text);
@@ -136,11 +137,11 @@ TEST_CASE_FIXTURE(AtWork, "the documents of the options are those that the progr
     writeText(one, "[view]\n" + placement);
     CHECK(readViewSettings(parse<ViewOptions>("view a --config " + one).tables, {}).scene_from_room.has_value());
     CHECK(text.find("\n# mode = \"predicted\"") != std::string::npos);
-    // It says the defaults.
+    // The values in the file are the defaults.
     const RunOptions none = renderOptions(""), file = renderOptions("--config " + (kSource / "configs/default.toml").string());
     CHECK(these(file.camera.near, file.camera.background, file.stereo, file.metres_per_unit) ==
           these(none.camera.near, none.camera.background, none.stereo, none.metres_per_unit));
-    CHECK_FALSE(none.camera.near);  // by the size of the scene
+    CHECK_FALSE(none.camera.near);  // depends on the size of the scene
     CHECK(none.stereo.mode == Mode::kPredicted);
 }
 

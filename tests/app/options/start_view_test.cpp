@@ -1,4 +1,5 @@
-// Facts about the eyes of a picture: where one stands at first, at a camera that lies with the scene or where the options say.
+// Facts about the eyes of a picture: at first they stand where the program chooses, at a camera that comes
+// with the scene, or where the options say.
 #include "app/options/start_view.h"
 #include "app/options/camera_options.h"
 #include "engine/builtin/procedural.h"
@@ -29,11 +30,11 @@ TEST_CASE("eyes look at their lenses or where they are said to") {
     REQUIRE(at_lenses[kLeft]);
     CHECK(these(at_lenses[kLeft]->clear_rad, at_lenses[kLeft]->direction, at_lenses[kRight]->direction) ==
           these(doctest::Approx(glm::radians(15.0)), headset.lens_centres[kLeft], headset.lens_centres[kRight]));
-    // Ahead of the head is inwards for eyes that are turned outwards.
+    // For eyes that are turned outwards, the direction ahead of the head points inwards.
     const auto ahead = gazes("--foveation 15 --gaze 0,0,1");
     CHECK(ahead[kLeft]->direction.x == doctest::Approx(std::sin(0.1)));
     CHECK(ahead[kRight]->direction.x == doctest::Approx(-std::sin(0.1)));
-    // The one eye of mono looks between where both look, or where it is told to.
+    // The single eye of mono looks midway between both eyes' gazes, or where the options say.
     const auto of_one = gazes("--mode mono --foveation 15");
     REQUIRE(of_one[0]);
     CHECK_FALSE(of_one[1]);
@@ -48,7 +49,7 @@ TEST_CASE("eyes stand half their distance from the middle") {
     options.metres_per_unit = 2.0;
     const Cameras cameras = makeCameras(options, {}, makeBox("box.ply"));
     CHECK(cameras.eye_distance == doctest::Approx(0.04));
-    // Up is -y by default, so camera x is world x here.
+    // Up is -y by default, so the camera's x is the world's x here.
     CHECK(glm::length(cameras.eyes[kLeft].world_from_camera.position - glm::dvec3(0.98, 2.0, 3.0)) < 1e-12);
     CHECK(glm::length(cameras.eyes[kRight].world_from_camera.position - glm::dvec3(1.02, 2.0, 3.0)) < 1e-12);
     CHECK(these(cameras.middle.intrinsics.fx, cameras.middle.intrinsics.fy, cameras.middle.intrinsics.cx, cameras.middle.intrinsics.cy) ==
@@ -66,7 +67,7 @@ TEST_CASE("a file is framed whole: upright and from its front where its y is up,
         CHECK(std::abs(k.fy * c.y / c.z) < 512.0);
     }
     CHECK_NOTHROW(makeCameras(renderOptions(""), {}, Scene{}));
-    // What is drawn begins as near as the scene is small, or where it is told to.
+    // The near plane is as near as the scene is small, or where the options put it.
     Scene small = scene;
     for (glm::vec3& p : small.positions) { p *= 0.01f / static_cast<float>(coreSize(scene)); }
     CHECK(cameras.near == doctest::Approx(0.2 * std::min(coreSize(scene), 1.0)));
@@ -99,7 +100,7 @@ TEST_CASE_FIXTURE(AtWork, "cameras lie with a scene in its folder, beside it, or
     CHECK(findCameraFile(scene).empty());
     writeText(beside, "[]");
     CHECK(these(findCameraFile(scene), findCameraFile(sog), findCameraFile(work.path / "sog/")) == these(beside, beside, beside));
-    CHECK(findCameraFile(garden).empty());  // of another scene
+    CHECK(findCameraFile(garden).empty());  // these cameras belong to another scene
     CHECK(errorOf([&] { with("--view 1"); }).starts_with("--view is given without --cameras"));
     writeText(trained, "[]");
     writeText(sog / "cameras.json", "[]");
@@ -119,7 +120,7 @@ TEST_CASE_FIXTURE(AtWork, "cameras lie with a scene in its folder, beside it, or
     const auto bench = parse<BenchOptions>("bench " + garden.string() + " --out out --view 1");
     CHECK(these(bench.run.camera.cameras_file, bench.asked.cameras_file) == these(trained.string(), trained.string()));
     CHECK(errorOf([&] { parseLine("bench " + garden.string() + " builtin:fence --out out --view 1"); }) != "");
-    writeText(garden / "meta.json", "{}");  // a SOG scene is no training's output
+    writeText(garden / "meta.json", "{}");  // a SOG scene is not the output of a training
     CHECK(with("--view 1").cameras_file == trained.string());
 }
 
@@ -129,7 +130,8 @@ TEST_CASE_FIXTURE(AtWork, "one stands at the first camera that sees the scene, u
         return fmt::format(R"({{"img_name": "{}", "position": {}, "rotation": {}, "width": 100, "height": 80, "fx": 80, "fy": 80}})", name,
                            position, rotation);
     };
-    // The first looks away from the scene; the second looks along z, tilted by 0.2 to one side as the third is to the other.
+    // The first looks away from the scene. The second looks along z, tilted by 0.2 to one side, and the third
+    // by as much to the other.
     const std::string away = camera("away", "[0, 0, -9]", "[[-1, 0, 0], [0, 1, 0], [0, 0, -1]]"),
                       right = camera("right", "[0, 0, -9]", "[[0.98, -0.198997487, 0], [0.198997487, 0.98, 0], [0, 0, 1]]"),
                       left = camera("left", "[1, 0, -9]", "[[0.98, 0.198997487, 0], [-0.198997487, 0.98, 0], [0, 0, 1]]");
@@ -142,19 +144,19 @@ TEST_CASE_FIXTURE(AtWork, "one stands at the first camera that sees the scene, u
     CHECK(glm::distance(start.view.up, glm::dvec3(0, -1, 0)) < 1e-6);
     CHECK(glm::distance(glm::normalize(start.view.look - start.view.eye), glm::dvec3(0, 0, 1)) < 1e-6);
     CHECK(start.view.look.z == doctest::Approx(0.0));  // among the splats
-    // A place that is given wins, and so does a camera.
+    // A given place or camera comes first.
     const RunOptions placed = renderOptions("--eye 0,0,5");
     CHECK(startView(scene, placed.camera, 1.0).eye == glm::dvec3(0, 0, 5));
     CHECK(makeCameras(placed, {}, scene).view->up == start.view.up);
     CHECK(startView(scene, renderOptions("--view 2 --cameras " + file.string()).camera, 1.0).eye == glm::dvec3(1, 0, -9));
-    // Cameras of another scene and broken ones are said, and left.
+    // Cameras of another scene and broken ones are reported and ignored.
     writeText(file, "[" + away + "]");
     CHECK(startView(scene).why.ends_with("cameras.json sees the scene"));
     CHECK(startView(scene).why.starts_with("outside"));
     writeText(file, "[{}]");
     CHECK(startView(scene).why.find("not at a camera: " + file.string() + ": camera 0") != std::string::npos);
     CHECK(startView(loadScene("builtin:fence")).why == "at the built-in scene's own view");
-    // A drone's look straight down, headed to either side; what they see has its z up.
+    // A drone's cameras look straight down, headed either way; z is up in what they see.
     Scene ground = makeBuiltin("builtin:atelier", 5000);
     for (glm::vec3& p : ground.positions) { p = {p.x, p.z, -p.y}; }
     ground.rotations.assign(ground.size(), glm::quat(1, 0, 0, 0));
@@ -187,7 +189,8 @@ TEST_CASE("the up of cameras that all look straight down on one course is the gr
         scene.opacities.assign(scene.size(), 0.9f);
         return scene;
     };
-    // A grid of cameras above the field, `apart` from one another, that look down with the pictures' upper edge along u.
+    // A grid of cameras above the field, `apart` from one another, that look down with the top of their
+    // pictures along u.
     const auto grid = [](const glm::dvec3& up, const glm::dvec3& u, double apart) {
         std::vector<FileCamera> cameras;
         for (int i = 0; i < 16; ++i) {
@@ -203,17 +206,17 @@ TEST_CASE("the up of cameras that all look straight down on one course is the gr
         CAPTURE(found->why);
         CHECK(glm::dot(found->up, up) > 0.999);
         CHECK(found->why.find("straight down") != std::string::npos);
-        // Close together, as by hand before a wall, they are believed.
+        // Cameras that are close together, as if held by hand before a wall, are believed.
         const auto close = upOfCameras(grid(up, x, 1.0), field(up, x));
         REQUIRE(close);
         CHECK(glm::dot(close->up, x) > 0.999);
         CHECK(close->why == "the mean of all cameras'");
     }
-    // Nothing but a wall may look as the ground does. Who stands before one keeps level, and turns; who looks down keeps plumb, and turns,
-    // too.
+    // Only a wall may look like the ground does. Cameras in front of a wall stay level and turn about the
+    // vertical; cameras that look down stay plumb, and turn as well.
     std::mt19937 random(1);
     std::normal_distribution<double> normal;
-    // Turned about their own up, their sight and their right by so many degrees.
+    // Turned by so many degrees about their own up, line of sight and right.
     const auto shaken = [&](double about_up, double about_sight, double about_right) {
         std::vector<FileCamera> cameras = grid(-z_up, x, 8.0);
         for (FileCamera& camera : cameras) {
@@ -237,7 +240,7 @@ TEST_CASE("the up of cameras that all look straight down on one course is the gr
             CHECK(glm::dot(found->up, -z_up) > 0.999);
         }
     }
-    // Those before a wall that has a street at its foot are believed, however far apart.
+    // Cameras in front of a wall with a street at its foot are believed, however far apart they are.
     Scene wall = field(-z_up, x);
     for (double u = -20.0; u < 20.0; u += 0.5) {
         for (double w = 0.0; w < 16.0; w += 0.5) {
@@ -255,7 +258,7 @@ TEST_CASE("the up of cameras that all look straight down on one course is the gr
 
 TEST_CASE("a scene in the coordinates of a country is seen as the same one at 0: from its own cameras, from given ones and from --eye") {
     const Workplace work;
-    // The splats and a camera so far on, in a folder of their own.
+    // The splats and a camera, moved by this much, in a folder of their own.
     const auto place = [&](const std::string& name, const glm::dvec3& moved) {
         fs::create_directory(work.path / name);
         Scene scene = makeBuiltin("builtin:fence");

@@ -1,4 +1,4 @@
-// Facts about plots: axes with round ends and few enough ticks for their labels, and names that do not lie on each other.
+// Facts about plots: axes have round ends and few enough ticks for their labels, and names do not overlap.
 #include "app/plot/plot_axis.h"
 #include "app/plot/svg_plot.h"
 #include "tests/suite.h"
@@ -17,7 +17,7 @@ TEST_CASE("any range has three to ten ticks, in order, within an axis that holds
     for (const Scale scale : {Scale::kLog, Scale::kLinear}) {
         for (const double low : {1e-38, 1e-15, 3e-7, 0.02, 1.0, 7.0, 4e5}) {
             for (const double ratio : {3.0, 9.0, 40.0, 999.0, 1e4, 1e7, 1e12, 1e30, 1e60}) {
-                if (scale == Scale::kLinear && low < 1e-3) { continue; }  // steps of 1e-6 at least
+                if (scale == Scale::kLinear && low < 1e-3) { continue; }  // steps are at least 1e-6
                 const PlotAxis axis = axisOver(scale, low, low * ratio);
                 INFO("low ", low, ", ratio ", ratio);
                 CHECK(axis.ticks().size() == within(3, 10));
@@ -55,11 +55,11 @@ TEST_CASE("names stand beside their points where there is room, and never on eac
         return places;
     };
     CHECK(namesOf({{2.0, 2.0}, {2.0, 8.0}, {8.0, 2.0}, {8.0, 8.0}}, 10.0).size() == 4);
-    // One point has four sides: of six names that want to be there, four are.
+    // A point has four sides, so four of six names find a place.
     const auto crowd = namesOf(std::vector(6, std::pair(5.0, 5.0)), 10.0);
     CHECK(std::set<std::string>(crowd.begin(), crowd.end()).size() == 4);
     CHECK(crowd.size() == 4);
-    // In a corner three sides are outside.
+    // In a corner, three sides are outside.
     CHECK(namesOf(std::vector(6, std::pair(0.0, 0.0)), 10.0).size() == 1);
 }
 

@@ -1,4 +1,4 @@
-// Facts about pictures as they reach an eye through a lens, and about what it sees of their errors.
+// Facts about pictures as they reach an eye through a lens, and about which of their errors it sees.
 #include "app/scores/lens_view.h"
 #include "app/scores/visible_errors.h"
 #include "tests/engine/picture/pictures.h"
@@ -26,7 +26,7 @@ struct Lens {
         for (const int side : {kLeft, kRight}) {
             Sight& sight = sights[static_cast<std::size_t>(side)];
             sight.rendered_tiles = view.tilesOf(side);
-            // All that is within 20 degrees is seen, and a hundredth of the rest.
+            // Everything within 20 degrees is seen fully, the rest by a hundredth.
             for (unsigned tile = 0; tile < tiles.x * tiles.y; ++tile) {
                 const glm::dvec3 direction = view.directionAt(16.0 * (glm::dvec2(tile % tiles.x, tile / tiles.x) + 0.5), side);
                 sight.shares.push_back(direction.z > std::cos(glm::radians(20.0)) ? 1.0 : 0.01);
@@ -44,12 +44,12 @@ struct Lens {
     std::array<Sight, 2> sights;
 };
 
-// Stripes with strong edges, and a fine pattern on them.
+// Stripes with strong edges and a fine pattern on them.
 float stripesAt(std::uint32_t x, std::uint32_t y) {
     return (x / 12 % 2 == 0 ? 0.35f : 0.6f) + 0.05f * std::sin(1.1f * static_cast<float>(x) + 0.9f * static_cast<float>(y));
 }
 
-// Changed where `isThere`.
+// The stripes, changed where `isThere`.
 template <typename Place, typename Change>
 Image draw(Place&& isThere, Change&& change) {
     return makePicture({512, 512},
@@ -73,12 +73,12 @@ TEST_CASE("every pixel of the lens's picture is as wide in angle as one in the m
         const glm::dvec3 there = lens.view.directionAt(middle_px + glm::dvec2(glm::radians(angle_deg) * focal_px, 0.0), kLeft);
         CHECK(glm::degrees(std::atan2(there.x, there.z)) == doctest::Approx(angle_deg));
         CHECK(std::abs(there.y) < 1e-12);
-        // As what lies beside two pixels: their directions in radians.
+        // The solid angle, from the directions of neighbouring pixels in radians.
         const double across = angle_deg > 0.0 ? std::sin(glm::radians(angle_deg)) / glm::radians(angle_deg) : 1.0;
         CHECK(lens.view.solidAngleAt(middle_px + glm::dvec2(0.0, glm::radians(angle_deg) * focal_px)) ==
               doctest::Approx(across / (focal_px * focal_px)));
     }
-    // Flat pictures have their corners beyond the lens's: nothing is shown in the grid's.
+    // The corners of flat pictures lie beyond the lens's view; the grid's corners show nothing.
     CHECK(lens.view.tilesOf(kLeft).front() == LensView::kNowhere);
     const std::size_t middle = static_cast<std::size_t>(middle_px.y) * lens.view.sizePx().x + static_cast<std::size_t>(middle_px.x);
     CHECK(lens.view.tilesOf(kLeft).at(middle) == 16 * 32 + 16);
@@ -92,7 +92,7 @@ TEST_CASE("a picture keeps its colours through the lens: a pixel is the mean of 
     CHECK(glm::length(colourOf(flat, middle.x, middle.y) - glm::vec3(0.25f, 0.5f, 0.75f)) < 1e-6f);
     CHECK(glm::length(colourOf(flat, middle.x, 20) - glm::vec3(0.25f, 0.5f, 0.75f)) < 1e-6f);
     CHECK(colourOf(flat, 0, 0) == glm::vec3(0.0f));
-    // At 45 degrees, 256 * tan(45) / tan(48) = 230 of the flat picture's pixels from its middle.
+    // At 45 degrees, 256 * tan(45) / tan(48) = 230 pixels of the flat picture from its middle.
     const Image ramp = lens.view.show(
         makePicture({512, 512}, [](std::uint32_t x, std::uint32_t) { return glm::vec3(static_cast<float>(x) / 512.0f); }), kLeft);
     const double focal_px = wideEyes()[0].intrinsics.fx;
@@ -101,7 +101,8 @@ TEST_CASE("a picture keeps its colours through the lens: a pixel is the mean of 
         const double place_px = focal_px * std::tan((at + 0.5 - middle.x) / focal_px);
         CHECK(colourOf(ramp, at, middle.y).x == doctest::Approx(0.5 + (place_px - 0.5) / 512.0).epsilon(0.001));
     }
-    // Stripes a pixel wide: at 45 degrees a pixel of the lens's covers two of them, so little is left there.
+    // Stripes one pixel wide: at 45 degrees a pixel of the lens covers two of them, so little of them is
+    // left.
     const Image fine =
         lens.view.show(makePicture({512, 512}, [](std::uint32_t x, std::uint32_t) { return glm::vec3(x % 2 == 0 ? 0.0f : 1.0f); }), kLeft);
     const auto contrastFrom = [&](std::uint32_t first) {
@@ -139,7 +140,7 @@ TEST_CASE("an error in the middle counts through the lens as without one, at the
     CHECK(these(badTiles(flat_border), badTiles(seen_border)) == these(doctest::Approx(2 * 16), 0.0));
     CHECK(seen_border.edge == 0.0);
     CHECK(worstTiles(seen_border.tile_squares, 0.001) == between(0.0, 0.02 * worstTiles(flat_border.tile_squares, 0.001)));
-    // Less than a hundredth of the contrast is left of this: nobody notices it there.
+    // Less than a hundredth of this contrast is left there, so nobody notices it.
     const auto faint = [](std::uint32_t x, std::uint32_t y) { return stripesAt(x, y) + 0.02f; };
     const auto worst = [&](const Image& picture) { return worstTiles(lens.find(lens.show(picture, picture), full).tile_squares, 0.001); };
     CHECK(worst(draw(atTheBorder, faint)) == 0.0);
@@ -153,12 +154,12 @@ TEST_CASE("steps between rendered tiles are seen where these meet through the le
                  seam_border = lens.find(lens.show(border, border), full).seam;
     CHECK(seam_middle > 5e-5);
     CHECK(std::abs(seam_border) < 0.2 * seam_middle);
-    // The same steps within tiles are none.
+    // The same steps inside tiles are not seams.
     const auto moved = [](std::uint32_t x, std::uint32_t y) { return brighter(x + 8, y) - stripesAt(x + 8, y) + stripesAt(x, y); };
     const Image within = draw([](std::uint32_t x, std::uint32_t y) { return x >= 232 && x < 280 && y >= 232 && y < 280; }, moved);
     CHECK(lens.find(lens.show(within, within), full).seam < 0.0);
-    // Nor is an error that is everywhere alike, although its steps are seen less towards the border, where tiles are small:
-    // a hundredth of them.
+    // Nor is an error that is the same everywhere, even though its steps are seen a hundred times less
+    // towards the border, where tiles are small.
     const Image noisy = makePicture({512, 512}, [&](std::uint32_t x, std::uint32_t y) {
         return glm::vec3(brighter(x, y) + ((x * 7919 + y * 104729) % 101 < 50 ? 0.04f : -0.04f));
     });
@@ -174,7 +175,7 @@ TEST_CASE("blur in one eye alone is rivalry, in both eyes none, and canted eyes 
         CHECK(one > 0.1);
         CHECK(lens.find(lens.show(border, full), full).rival < 0.2 * one);
         if (canting_deg == 0.0) { CHECK(lens.find(lens.show(middle, middle), full).rival == 0.0); }
-        // What is far ahead is in the middle of both eyes.
+        // What lies far ahead is in the middle of both eyes.
         const glm::dvec2 middle_px = glm::dvec2(lens.view.sizePx()) / 2.0;
         for (const int side : {kLeft, kRight}) {
             const glm::dvec3 ahead =

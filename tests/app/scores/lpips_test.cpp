@@ -1,4 +1,4 @@
-// Facts about LPIPS and the network below it.
+// Facts about LPIPS and its network.
 #include "app/scores/lpips.h"
 #include "engine/picture/image_io.h"
 #include "tests/app/scores/lpips_weights.h"
@@ -11,7 +11,7 @@ SUITE(lpips) {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInfinity = std::numeric_limits<float>::infinity();
 
-// A file of weights that is removed with the test.
+// A file of weights that is deleted with the test.
 struct WeightsFile {
     fs::path path = fs::temp_directory_path() / ("binosplat-lpips-" + std::to_string(getpid()) + ".bin");
     explicit WeightsFile(const std::vector<float>& values) { writeFloats(path, values); }
@@ -25,7 +25,7 @@ const std::vector<float>& randomWeights() {
     return values;
 }
 
-// Made of the random weights, once.
+// Made once, from the random weights.
 const Lpips& randomLpips() {
     static const Lpips lpips(WeightsFile(randomWeights()).path);
     return lpips;
@@ -42,8 +42,8 @@ std::optional<fs::path> trainedWeights() {
 }
 
 TEST_CASE("the distance is that of the network's description, at every size across the boundaries of pooling") {
-    // Computed in float64 with a loop for every index. Each pooling halves odd sides and even ones. float32 is off by 2e-7; a channel of
-    // the last stage that is 0.1 % too large, by 1.5e-6.
+    // Computed in float64 with a loop for every index. Pooling halves odd sides and even ones. float32 is off
+    // by 2e-7; one channel of the last stage that is 0.1 % too large changes the result by 1.5e-6.
     struct {
         glm::uvec2 size_px;
         double distance;

@@ -7,8 +7,8 @@ namespace binosplat::test {
 
 inline constexpr std::size_t kNetworkWeights = 722'496, kHeadWeights = 2'240;
 
-// Of either sign in the network, and large enough that features keep their size from layer to layer; heads
-// from 0 to 1.
+// Of either sign in the network, and large enough that features keep their size from layer to layer; the
+// heads' weights lie between 0 and 1.
 inline std::vector<float> makeLpipsWeights(unsigned seed) {
     std::mt19937 random(seed);
     const auto next = [&] { return static_cast<float>(drawUnit(random)); };

@@ -1,4 +1,4 @@
-// Facts about the picture comparer, among them that it fails what must fail.
+// Facts about the picture comparer, including that it fails pictures that must fail.
 #include "app/scores/metrics.h"
 #include "app/scores/resize.h"
 #include "app/scores/visible_errors.h"
@@ -8,7 +8,7 @@ SUITE(metrics) {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// What a test of a GPU picture asks: close nearly everywhere, with a budget of flips at thresholds.
+// What a test demands of a GPU's picture: close nearly everywhere, with a budget of flips at thresholds.
 bool passesBudget(const Image& a, const Image& b) {
     const Difference difference = compare(a, b);
     return difference.psnrDb() > 50.0 && difference.shareOff() < 0.001 && difference.not_finite == 0;
@@ -66,7 +66,7 @@ TEST_CASE("pictures of other sizes or too few channels are refused") {
 }
 
 TEST_CASE("each way to be wrong that a wearer notices has a figure of its own") {
-    // A wall with a pattern, and an edge every 40 pixels.
+    // A wall with a pattern and an edge every 40 pixels.
     const auto patternAt = [](std::uint32_t x) {
         return x / 40 % 2 == 1 ? 0.5f + 0.02f * std::sin(1.5707963f * static_cast<float>(x)) : 0.375f;
     };

@@ -1,4 +1,4 @@
-// Facts about the scores of each pixel, SSIM and FLIP, and about the filters and colour spaces below them.
+// Facts about the scores of each pixel, SSIM and FLIP, and about their filters and colour spaces.
 #include "app/scores/colour.h"
 #include "app/scores/flip.h"
 #include "app/scores/ssim.h"
@@ -12,10 +12,10 @@ struct Score {
     const char* name;
     PixelScores (*of)(const Image& a, const Image& b, int threads);
     float alike, worst;
-    float rounding;           // of a pixel that is alike
+    float rounding;           // of a pixel that is equal in both
     double mirror_rounding;   // of the mean
-    double shifted, swapped;  // how far those are at least from being alike
-    double hardly;            // and a ten-thousandth of a pixel at most
+    double shifted, swapped;  // how far from `alike` the means of such pictures are at least
+    double hardly;            // and at most, for a shift by a ten-thousandth of a pixel
 
     [[nodiscard]] double mean(const Image& a, const Image& b) const { return of(a, b, 2).mean().value(); }
     [[nodiscard]] double off(const Image& a, const Image& b) const { return std::abs(mean(a, b) - static_cast<double>(alike)); }
@@ -33,10 +33,10 @@ const Score kScores[]{{"SSIM", ssimWith<Border::kCutWindow>, 1.0f, -1.0f, 2e-6f,
 
 constexpr double kC1 = 1e-4, kC2 = 9e-4;
 
-// The luminance term: all that is left of SSIM between two flat windows.
+// The luminance term: the only part of SSIM that differs between two flat windows.
 double luminanceTerm(double a, double b) { return (2.0 * a * b + kC1) / (a * a + b * b + kC1); }
 
-// What the definition gives at a pixel, in float64 and with whole two-dimensional filters.
+// The score that the definition gives at a pixel, in float64 and with full two-dimensional filters.
 struct Known {
     int x, y;
     double score;
@@ -44,8 +44,8 @@ struct Known {
 
 double hyab(const glm::dvec3& a, const glm::dvec3& b) { return std::abs(a.x - b.x) + std::hypot(a.y - b.y, a.z - b.z); }
 
-// HyAB of hunt-adjusted green and blue, from the textbook Lab of sRGB's primaries: green (87.735, -86.183, 83.180) and blue
-// (32.299, 79.191, -107.865).
+// HyAB of hunt-adjusted green and blue, from the textbook Lab of sRGB's primaries: green (87.735, -86.183,
+// 83.180) and blue (32.299, 79.191, -107.865).
 const double kLargest = std::pow(hyab({87.735, 0.87735 * -86.183, 0.87735 * 83.180}, {32.299, 0.32299 * 79.191, 0.32299 * -107.865}), 0.7);
 
 double colourScore(double distance) {
@@ -118,7 +118,7 @@ TEST_CASE("between flat pictures SSIM is the luminance term, of any size, and an
     const double expected = luminanceTerm(0.4, 0.5);
     const Image a = flat({20, 15}, 0.4f), b = flat({20, 15}, 0.5f, 4);
     for (const float score : ssim(a, b).values) { CHECK(score == doctest::Approx(expected).epsilon(5e-4)); }
-    // With zeros beyond the border the windows there are not flat; in the middle of the picture they are.
+    // With zeros beyond the border, the windows there are not flat; those in the middle of the picture are.
     const PixelScores zero = ssim(a, b, Border::kZero);
     CHECK(zero.values[7 * 20 + 10] == doctest::Approx(expected).epsilon(5e-4));
     CHECK(std::abs(static_cast<double>(zero.values[0]) - expected) > 1e-3);
@@ -133,7 +133,7 @@ TEST_CASE("between flat pictures SSIM is the luminance term, of any size, and an
 TEST_CASE("every pixel's SSIM is the definition's, which sees 11 by 11 pixels") {
     const Image waves = makeWaves({37, 70}, 0.0), moved = makeWaves({37, 70}, 0.8);
     const PixelScores scores = ssim(waves, moved), with_zeros = ssim(waves, moved, Border::kZero);
-    // Corners, borders, both sides of where one band of rows ends, and the middle.
+    // Corners, borders, both sides of the boundary between two bands of rows, and the middle.
     for (const Known& at : {Known{0, 0, 0.936256328},
                             {36, 69, 0.953579881},
                             {5, 0, 0.943520026},
@@ -171,7 +171,7 @@ TEST_CASE("between flat pictures FLIP is their colours' difference, of any size"
     for (const float score : flip(makeFlat({9, 9}, glm::vec3(0.5f)), makeFlat({9, 9}, glm::vec3(0.55f))).values) {
         CHECK(score == doctest::Approx(colourScore(light - dark)).epsilon(1e-3));
     }
-    // The largest difference that is told apart is green against blue.
+    // The largest difference that the score tells apart is green against blue.
     CHECK(meanFlip({9, 9}, {0.0f, 1.0f, 0.0f}, {0.0f, 0.0f, 1.0f}) == doctest::Approx(1.0).epsilon(1e-5));
     const glm::vec3 one{0.2f, 0.7f, 0.4f}, other{0.9f, 0.1f, 0.3f};
     CHECK(meanFlip({1, 1}, one, other) ==
@@ -204,7 +204,7 @@ TEST_CASE("means by class are over that class alone") {
 }
 
 TEST_CASE("colours have the figures of their standards, there and back") {
-    // Primaries with the four decimals of IEC 61966-2-1, and white, which is D65.
+    // Primaries to the four decimals of IEC 61966-2-1, and white, which is D65.
     struct {
         glm::vec3 rgb, xyz;
         float tolerance;
@@ -221,7 +221,8 @@ TEST_CASE("colours have the figures of their standards, there and back") {
     }
     CHECK(isNear(ycxczFromXyz(xyzFromLinear(glm::vec3(1.0f))), {100.0f, 0.0f, 0.0f}, 1e-4f));
     CHECK(isNear(ycxczFromXyz(glm::vec3(0.0f)), {-16.0f, 0.0f, 0.0f}, 1e-6f));
-    // Encoded 0.5 is linear 0.21404; middle grey 119/255 is 0.1845; the straight part ends at 0.04045 / 12.92.
+    // Encoded 0.5 is linear 0.21404; middle grey 119/255 is 0.1845; the straight part ends at 0.04045 /
+    // 12.92.
     CHECK(isNear(linearFromEncoded({0.0f, 0.5f, 1.0f}), {0.0f, 0.21404f, 1.0f}, 1e-5f));
     CHECK(isNear(linearFromEncoded({0.04045f, 0.04046f, 119.0f / 255.0f}), {0.0031308f, 0.0031316f, 0.18447f}, 1e-5f));
     for (const glm::vec3& rgb : {glm::vec3(0.1f, 0.5f, 0.9f), {1.0f, 0.0f, 0.3f}, {0.0f, 0.0f, 0.0f}}) {

@@ -1,4 +1,5 @@
-// Facts about extreme cases: the catalogue of `binosplat stability` but for its largest picture, and its sequences.
+// Facts about extreme cases: the catalogue of `binosplat stability` without its largest picture, and its
+// sequences.
 #include "app/stability_cases/extreme_scenes.h"
 #include "app/stability_cases/run_case.h"
 #include "tests/engine/frame/frame_runs.h"
@@ -37,7 +38,8 @@ TEST_CASE_FIXTURE(Gpu, "every case is finite, repeats and keeps to its bounds be
     CaseRunner runner(context());
     for (const Case& one : makeCatalogue()) {
         CHECK(names.insert(one.name()).second);
-        CHECK(std::min(one.rendered.psnr_db, one.moved.psnr_db) > 10.0);  // less is no bound
+        // Anything less would not be a bound.
+        CHECK(std::min(one.rendered.psnr_db, one.moved.psnr_db) > 10.0);
         if (one.large) { continue; }
         const CaseScore score = runner.run(one);
         CHECK(score.pictures.size() == 11);
@@ -82,7 +84,7 @@ TEST_CASE_FIXTURE(Gpu,
             checkSeesOnlyTheFirst(context(), stage, stage.scene.size() - broken_splats);
         }
     }
-    // Points and lines, after the wall and the clutter.
+    // Points and lines, behind the wall and the clutter.
     for (const double flat_axes : {2.0, 3.0}) {
         const Stage stage = asDimmed(makeFlatAxes(flat_axes));
         checkSeesOnlyTheFirst(context(), stage, stage.scene.size() - 60);
@@ -91,7 +93,8 @@ TEST_CASE_FIXTURE(Gpu,
 
 TEST_CASE_FIXTURE(Gpu, "rotations of any length are those of length one" * nightly()) {
     const auto unit = render(context(), makeQuaternions(1.0), Mode::kShared);
-    for (const double length : {std::ldexp(1.0, -60), 0.25, std::ldexp(1.0, 60)}) {  // powers of two round nothing
+    // Powers of two cause no rounding.
+    for (const double length : {std::ldexp(1.0, -60), 0.25, std::ldexp(1.0, 60)}) {
         CHECK(render(context(), makeQuaternions(length), Mode::kShared) == unit);
     }
 }

@@ -1,4 +1,5 @@
-// What is counted in a scene: shares of splats that cost more than they show, floaters, and what would take less memory.
+// Facts about counts in a scene: splats that cost more than they show, floaters, and ways to take less
+// memory.
 #include "app/summary/survey.h"
 #include "tests/suite.h"
 
@@ -13,7 +14,7 @@ void addSplat(Scene& scene, const glm::vec3& position, const glm::vec3& scales, 
     scene.sh.insert(scene.sh.end(), 3, 0.5f);
 }
 
-// A dense patch, so that none of its splats is alone.
+// A dense patch, so none of its splats is alone.
 Scene makePatch() {
     Scene scene;
     for (int i = 0; i < 40'000; ++i) {
@@ -23,7 +24,7 @@ Scene makePatch() {
 }
 
 TEST_CASE("opacities, thicknesses and sizes are counted against their bounds") {
-    Scene scene;  // a thousand splats in a cube of a side of 9, one unit apart, a centimetre large
+    Scene scene;  // a thousand splats of a centimetre, one unit apart, in a cube with a side of 9
     for (int i = 0; i < 1000; ++i) { addSplat(scene, glm::vec3(i / 100, i / 10 % 10, i % 10), glm::vec3(0.01f), 0.5f); }
     const SceneSurvey before = surveyScene(scene);
     CHECK(these(before.size, before.transparent + before.opaque + before.thin + before.large) == these(doctest::Approx(9.0), 0));
@@ -34,7 +35,7 @@ TEST_CASE("opacities, thicknesses and sizes are counted against their bounds") {
     CHECK(these(survey.size, survey.transparent, survey.opaque, survey.thin, survey.large) == these(doctest::Approx(9.0), 1, 1, 1, 1));
     CHECK(surveyScene(scene, 0.1).thin == 2);  // a unit is a decimetre
     scene.thicknesses.clear();
-    CHECK(surveyScene(scene).thin == 0);  // of discs the shorter axis counts
+    CHECK(surveyScene(scene).thin == 0);  // of a disc, the shorter axis counts
 }
 
 TEST_CASE("a floater is seen, small and alone; half of the splats lie within the sphere that is proposed") {
@@ -43,8 +44,8 @@ TEST_CASE("a floater is seen, small and alone; half of the splats lie within the
     CHECK(survey.floaters == 0);
     for (int i = 0; i < 4; ++i) { addSplat(scene, {5.0f, 5.0f, 3.0f}, glm::vec3(0.01f), 0.5f); }
     CHECK(surveyScene(scene).floaters == 4);
-    addSplat(scene, {5.0f, 5.15f, 3.0f}, glm::vec3(0.01f), 0.5f);     // a fifth one beside them
-    addSplat(scene, {-40.0f, 5.0f, 3.0f}, glm::vec3(0.01f), 0.003f);  // not seen
+    addSplat(scene, {5.0f, 5.15f, 3.0f}, glm::vec3(0.01f), 0.5f);     // a fifth splat beside them
+    addSplat(scene, {-40.0f, 5.0f, 3.0f}, glm::vec3(0.01f), 0.003f);  // invisible
     addSplat(scene, {-50.0f, 5.0f, 3.0f}, glm::vec3(5.0f), 0.5f);     // a large one, as in a sky
     CHECK(surveyScene(scene).floaters == 0);
     addSplat(scene, glm::vec3(3e38f, -3e38f, 3e38f), glm::vec3(0.01f), 0.5f);

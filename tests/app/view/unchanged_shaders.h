@@ -6,8 +6,8 @@
 
 namespace binosplat::test {
 
-// Writes it into `folder`, which must come first in PATH. Shell lines may follow for each shader; they know
-// its $name and file, $last.
+// Writes the compiler into `folder`, which must come first in PATH. For each shader, the shell lines `then`
+// run afterwards; they can use its $name and its file, $last.
 inline void writeCompilerOfChangedShaders(const std::filesystem::path& folder, const std::string& then = "") {
     std::filesystem::create_directory(folder);
     const std::filesystem::path compiler = folder / "glslangValidator";

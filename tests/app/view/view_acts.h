@@ -1,4 +1,4 @@
-// A wearer of the simulated headset who does one thing after the other.
+// A wearer of the simulated headset who does one thing after another.
 #pragma once
 
 #include "tests/app/view/panel/panel_sketch.h"
@@ -13,7 +13,7 @@ struct Panel {
 };
 inline const glm::dvec2 kPanelMetres(0.468, 0.585);
 
-// In front of a head that looks along -z, as docs/simulated_script.md says.
+// In front of a head that looks along -z, as docs/simulated_script.md describes.
 inline Panel panelBefore(const glm::dvec3& head = {0.0, 1.6, 0.0}) {
     const glm::dvec3 to_head(0.45, 0.1, 0.9), out = glm::normalize(to_head);
     const glm::dvec3 right = glm::normalize(glm::cross(glm::dvec3(0.0, 1.0, 0.0), out));
@@ -24,10 +24,10 @@ inline Panel panelOf(const ViewRun& run, std::size_t frame) {
     return {pose.position, pose.orientation};
 }
 
-// Beside all widgets of the pages View and Method.
+// Clear of all widgets on the pages View and Method.
 inline const glm::dvec2 kBeside(0.9, 0.95);
 
-// Poses of hands: one that looks at a place, and one 30 cm in front of a place of the panel that points
+// Poses of hands: one looks at a place, the other is 30 cm in front of a place on the panel and points
 // straight at it.
 inline std::string lookingAt(const glm::dvec3& at, const glm::dvec3& look) {
     return fmt::format("position {} {} {} look {} {} {}", at.x, at.y, at.z, look.x, look.y, look.z);
@@ -38,10 +38,10 @@ inline std::string pointingAt(const Panel& panel, const glm::dvec2& share) {
     const glm::dquat& q = panel.orientation;
     return fmt::format("position {:.6f} {:.6f} {:.6f} rotation {:.6f} {:.6f} {:.6f} {:.6f}", at.x, at.y, at.z, q.x, q.y, q.z, q.w);
 }
-// At the floor.
+// Pointing at the floor.
 inline const std::string kLeftDown = "position -0.2 1.2 -0.35 turn 0 -80", kRightDown = "position 0.2 1.2 -0.35 turn 0 -80";
 
-// A script that grows. The left hand points at the floor.
+// Builds a script, act by act. The left hand points at the floor.
 class Acts {
 public:
     explicit Acts(const std::string& begin, const glm::dvec3& head = {0.0, 1.6, 0.0})
@@ -60,7 +60,7 @@ public:
         now_s += seconds;
         return *this;
     }
-    // When the part to be looked at begins; nothing else happens for this long.
+    // Nothing else happens for this long; returns the time at which it begins.
     double look(double seconds = 0.1) {
         const double begin_s = now_s;
         now_s += seconds;
@@ -76,8 +76,8 @@ public:
         poses_[who] = pose;
         return wait(seconds + 0.001);
     }
-    // These three continue while time passes: an input such as "right trigger", and a stick or pad such as
-    // "left thumbstick".
+    // These three go on while time passes. Inputs are named as in "right trigger", a stick or pad as in "left
+    // thumbstick".
     Acts& hold(const std::string& input, double seconds) {
         text_ += fmt::format("press {} {:.3f} {:.3f}\n", input, now_s, now_s + seconds);
         return *this;
@@ -94,11 +94,11 @@ public:
         return *this;
     }
     Acts& press(const std::string& input, double seconds = 0.05) { return hold(input, seconds).wait(2.0 * seconds); }
-    // The right hand, at a place of the panel.
+    // Points the right hand at a place on the panel.
     Acts& point(const glm::dvec2& share) { return move("controller right", pointingAt(panel, share)).wait(0.03); }
     Acts& click(const glm::dvec2& share, const std::string& input = "right trigger") { return point(share).press(input); }
 
-    // The whole script, if the wearer leaves now.
+    // The whole script, with the wearer leaving now.
     [[nodiscard]] std::string script() const { return text_ + fmt::format("at {:.3f} exit\n", now_s); }
 
 private:
@@ -106,7 +106,7 @@ private:
     std::map<std::string, std::string> poses_;
 };
 
-// Both eyes of a frame, compared with what `binosplat render` makes of the fence and the head's logged pose.
+// Compares both eyes of a frame with what `binosplat render` makes of the fence from the head's logged pose.
 // The wearer stood at `start` in the scene, looking along its z, when the head was at (0, 1.6, 0).
 inline void checkAgreesWithRender(const Workplace& work, const ViewRun& run, std::size_t frame, const glm::dvec3& start,
                                   const std::string& arguments) {
@@ -124,17 +124,16 @@ inline void checkAgreesWithRender(const Workplace& work, const ViewRun& run, std
         const Image expected = readPicture(work.path / "expected" / (side == kLeft ? "left.png" : "right.png"));
         CAPTURE(side);
         CHECK(compare(run.eye(frame, side), expected).psnrDb() > 50.0);
-        // Which it would not for the other eye.
+        // It must not agree for the other eye.
         CHECK(compare(run.eye(frame, 1 - side), expected).psnrDb() < 30.0);
     }
 }
 
-// Few splats, for when any picture will do.
+// Few splats, for tests that are content with any picture.
 inline const std::string kWall = "builtin:slanted-wall --load-first --hide-hands",
                          kOneSplat = "builtin:one-splat --load-first --hide-hands";
 
-// Where the wearer was when *Keep this one* was clicked, in the axes of the only scene for which places were
-// kept.
+// Where the wearer was when *Keep this one* was clicked, in the axes of the only scene with kept places.
 struct KeptPlace {
     glm::dvec3 eye, look, up;
 };

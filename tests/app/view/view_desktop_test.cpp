@@ -1,4 +1,5 @@
-// Facts about the window without a headset: what mouse and keys do there, what it shows, and that it rests.
+// Facts about the window without a headset: what mouse and keys do in it, what it shows, and that it idles
+// when nothing changes.
 #include "tests/app/view/view_window.h"
 
 SUITE(view_desktop) {
@@ -13,14 +14,15 @@ public:
         REQUIRE(program_.waitFor("shows builtin:slanted-wall") != "");
         hands("search --sync --onlyvisible --name '^builtin:slanted-wall - binosplat$' mousemove --window %1 20 20");
     }
-    // The help goes or comes: by then everything before has reached the window. The number of its last picture.
+    // Shows or hides the help: once it has changed, everything before has reached the window. Returns the
+    // number of its latest picture.
     std::uint64_t help() {
         hands("key h");
         const std::string lines = program_.waitFor("help");
         REQUIRE(lines != "");
         return pictureOf(lines);
     }
-    // Until it shows all pixels: then it writes a picture that was asked for.
+    // Waits until the window shows all pixels: only then does it write a picture that was requested.
     void rest() {
         hands("key p");
         picture_ = program_.waitFor("/pictures/");
@@ -28,8 +30,8 @@ public:
         picture_ = picture_.substr(picture_.rfind(": picture ") + 10);
         picture_.pop_back();
     }
-    [[nodiscard]] const std::string& picture() const { return picture_; }  // the last one's file
-    // What is seen at a place, after the keys and clicks that come before; back at the start view.
+    [[nodiscard]] const std::string& picture() const { return picture_; }  // file of the latest picture
+    // The colour at a place, after the keys and clicks that came before; then returns to the start view.
     glm::dvec3 seenAt(const glm::dvec2& place) {
         help();
         rest();
@@ -49,7 +51,7 @@ public:
             hands(does);
         }
     }
-    // On its panel, at a scale of 0.7 in the upper right corner.
+    // Clicks on the panel, which has a scale of 0.7 and is in the upper right corner.
     void click(const std::string& widget, PanelPage page) {
         PanelSketch sketch;
         sketch.status.window.emplace();
@@ -90,21 +92,21 @@ TEST_CASE("without a runtime the scene is in a window, as render draws it; mouse
     const auto fromStart = [&](const glm::dvec2& at) { return glm::distance(window.seenAt(at), start); };
     constexpr double kSomePixels = 0.06;
     window.drag(1, place, beside);
-    CHECK(fromStart(place) < kSomePixels);  // around it
+    CHECK(fromStart(place) < kSomePixels);  // orbits around it
     window.drag(3, place, beside);
-    CHECK(fromStart(beside) < kSomePixels);  // with it
+    CHECK(fromStart(beside) < kSomePixels);  // moves with it
     hands(moveTo(place) + "click 4");
-    CHECK(fromStart(place) < kSomePixels);  // towards it
+    CHECK(fromStart(place) < kSomePixels);  // zooms towards it
     CHECK(fromStart({400.0, 300.0}) > 0.5);
 
-    // Whatever else happens, nothing is drawn.
+    // Other input causes no drawing.
     window.help();
     const std::uint64_t before = window.help();
     hands("key --repeat 20 --delay 30 F12");
     CHECK(window.help() <= before + 2);
     window.help();
 
-    // The panel goes, since the help has brought it.
+    // Hides the panel, which the help had brought up.
     hands("key Tab");
     REQUIRE(window.program().waitFor("panel = false") != "");
     REQUIRE(work.run("render builtin:slanted-wall --mode mono --order distance --size 1280x720 --fov-x 60 --out drawn").exit_code == 0);

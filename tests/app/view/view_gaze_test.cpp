@@ -1,13 +1,14 @@
-// The viewer where the headset sees where its wearer looks, or takes foveated insets: it is sharp there, if the wearer lets it.
+// The viewer in a headset that tracks the wearer's gaze or takes foveated insets: the picture is sharp where
+// the wearer looks, if the wearer allows it.
 #include "engine/builtin/procedural.h"
 #include "tests/app/view/view_acts.h"
 
 SUITE(view_gaze) {
 
-// A right-hand picture that is tinted by what made it: tiles that were chosen for their error are magenta.
+// Tiles of the right-hand picture that were chosen for their error: they are tinted magenta.
 struct Chosen {
     std::size_t pixels = 0;
-    double middle = 0.0;  // of them, from the left edge (0) to the right one (1)
+    double middle = 0.0;  // their mean position, from the left edge (0) to the right one (1)
 };
 
 Chosen findChosen(const ViewRun& run, std::size_t frame) {
@@ -23,7 +24,7 @@ Chosen findChosen(const ViewRun& run, std::size_t frame) {
     return chosen;
 }
 
-// The atelier of fewer splats, lit once for all runs.
+// The atelier with fewer splats, lit once for all runs.
 std::string room() {
     static const Workplace made;
     const std::filesystem::path file = made.path / "room.ply";
@@ -43,7 +44,7 @@ ViewRun look(const Workplace& work, const std::string& keys, const std::string& 
 std::size_t viewsOf(const ViewRun& run, std::size_t frame) { return run.layers(frame, "projection").at(0).at("views").size(); }
 
 TEST_CASE_FIXTURE(AtWork, "what is rendered again follows the eyes, and goes back to the lens's middle when they are lost") {
-    // The wearer looks to the left, from 0.55 s on to the right, and from 0.8 s on nobody sees where.
+    // The wearer looks to the left, from 0.55 s on to the right, and from 0.8 s on the gaze is lost.
     const ViewRun run = look(work, "eye-tracking = true\n",
                              "rate 20\nsize 384 384\nframes from 6 to 36 every 5\n"
                              "gaze 0.3 25 0\ngaze 0.35 25 0\ngaze 0.5 25 0\ngaze 0.55 -25 0\nat 0.8 gaze off\n",
@@ -53,15 +54,15 @@ TEST_CASE_FIXTURE(AtWork, "what is rendered again follows the eyes, and goes bac
     CHECK(right.pixels > 1000);
     CHECK(left.middle < 0.35);   // measured: 0.21
     CHECK(right.middle > 0.75);  // measured: 0.80
-    // While it is seen, and less than a blink's time after the loss, it is where it was; then on its way, and in the end as if nobody had
-    // ever seen the eyes.
+    // While the gaze is known, and for less than a blink's time after the loss, the choice follows it; then
+    // it moves back, and in the end it is as if the eyes had never been tracked.
     CHECK(findChosen(run, 11).middle == right.middle);
     const double on_way = findChosen(run, 26).middle;
     CHECK(on_way < right.middle - 0.1);
     CHECK(on_way > lost.middle + 0.05);  // measured: 0.58 and 0.46
     CHECK(lost.middle == between(0.4, 0.6));
     CHECK(lost.middle == findChosen(run, 31).middle);
-    // Nobody is told where the wearer looks.
+    // The program does not print where the wearer looks.
     CHECK_FALSE(run.says("gaze"));
 }
 
@@ -75,14 +76,15 @@ TEST_CASE_FIXTURE(AtWork, "where the wearer does not let the viewer see them, or
         const Chosen left = findChosen(run, 6), right = findChosen(run, 10);
         CHECK(left.pixels > 300);
         CHECK(left.middle == right.middle);
-        // Of a few tiles: beside those of a wearer who looks to the left or to the right, see above.
+        // Only a few tiles, so the bounds lie between those for gazes to the left and right above.
         CHECK(left.middle == between(0.35, 0.75));
     }
 }
 
 TEST_CASE("with foveation a headset that takes insets has one for each eye, with every method, as good as the full picture within") {
     const Workplace work;
-    // 45 degrees to each side in 256 pixels, and the middle half of them again: as many pixels as in the full picture, at the same places.
+    // 45 degrees to each side in 256 pixels, and half of that again for the inset: as many pixels as the full
+    // picture has, at the same places.
     constexpr std::uint32_t kSize = 256, kQuarter = kSize / 4;
     const std::string begin = "rate 50\nsize 256 256\ninset 26.565051177 size 128 128\nframes from 9 to 9 every 1\n";
     const auto runInset = [&](const std::string& name, const std::string& script, double foveation, bool wanted) {
@@ -93,7 +95,7 @@ TEST_CASE("with foveation a headset that takes insets has one for each eye, with
     Acts acts(begin);
     acts.press("right b");
     for (const char* mode : {"mono", "predicted", "temporal"}) { acts.click(onMethod(mode)); }
-    // The session after a lost one has them, too.
+    // A session that follows a lost one has insets, too.
     acts.at("lose-session").wait(0.3);
     const std::string rest = begin + "at 0.2 exit\n";
     const ViewRun full = runInset("full", rest, 0.0, true), inset = runInset("inset", acts.script(), 20.0, true);
@@ -114,9 +116,9 @@ TEST_CASE("with foveation a headset that takes insets has one for each eye, with
             return compare(partOf(whole, from, to), partOf(both, from, to)).psnrDb();
         };
         CHECK(psnrOf({kQuarter, kQuarter}, {3 * kQuarter, 3 * kQuarter}) >= 40.0);
-        CHECK(psnrOf({0, 0}, {kSize, kQuarter}) < 36.0);  // of half the size
+        CHECK(psnrOf({0, 0}, {kSize, kQuarter}) < 36.0);  // at half the size
     }
-    // They go with what was asked for, and with the runtime.
+    // The insets exist only if they were requested and if the runtime offers them.
     CHECK(viewsOf(runInset("unwanted", rest, 20.0, false), 9) == 2);
     CHECK(viewsOf(runInset("without", "extension XR_VARJO_quad_views off\n" + rest, 20.0, true), 9) == 2);
 }

@@ -1,11 +1,12 @@
-// Facts about controllers and hands: what buttons and sticks do, and what is seen of them: rays, hands, arcs, the vignette.
+// Facts about controllers and hands: what buttons and sticks do, and what one sees of hands: rays, arcs, the
+// vignette.
 #include "app/view/room/arc_picture.h"
 #include "tests/app/view/view_acts.h"
 
 SUITE(view_hands) {
 
 const std::string kSmall = "rate 100\nsize 128 128\nframes every 5\n";
-// Where nobody looks at what the headset shows.
+// For tests that do not look at the headset's pictures.
 const std::string kBlind = "rate 100\nsize 64 64\nframes none\n";
 const std::string kScene = kWall + " --mode mono", kWithHands = "builtin:slanted-wall --load-first --mode mono";
 const glm::dvec2 kMiddle(0.5, 0.5);
@@ -14,7 +15,8 @@ glm::dvec3 stagePlace(const nlohmann::json& quad) { return stagePose(quad).posit
 glm::dvec3 alongOf(const nlohmann::json& quad) { return stagePose(quad).orientation * glm::dvec3(0.0, 1.0, 0.0); }
 double heightOf(const nlohmann::json& quad) { return quad.at("size").at(1).get<double>(); }
 
-// What is as wide as a hand, the parts of a controller, and the place where one will stand.
+// Widths by which pictures are recognized: a hand, the parts of a controller, and the mark where a teleport
+// ends.
 constexpr double kHand = 0.3, kKnob = 0.055, kHandle = 0.035, kTarget = 0.5;
 std::size_t countSeen(const ViewRun& run, double seconds, double width_m) { return run.quadsAsWide(run.frameAt(seconds), width_m).size(); }
 std::size_t countPieces(const ViewRun& run, double seconds) {
@@ -28,7 +30,7 @@ std::vector<nlohmann::json> vignettes(const ViewRun& run, std::size_t frame) {
     return run.quadsWhere(frame, [](const nlohmann::json& quad) { return quad.at("space") == "VIEW"; });
 }
 
-// What the right hand feels, of so many frames.
+// Pulses that the right hand feels during these frames.
 std::size_t pulses(const ViewRun& run, std::size_t first, std::size_t count) {
     std::size_t found = 0;
     for (std::size_t i = first; i < first + count; ++i) {
@@ -37,7 +39,7 @@ std::size_t pulses(const ViewRun& run, std::size_t first, std::size_t count) {
     return found;
 }
 
-// Where the panel went, of a hand that squeezes and carries it up by 0.2 m.
+// The pose of a hand that squeezes and carries the panel 0.2 m up.
 std::string highUp(const Panel& panel) {
     Panel lifted = panel;
     lifted.middle.y += 0.2;
@@ -48,7 +50,7 @@ void checkLifted(const ViewRun& run, double seconds) {
     CHECK(these(way.y, way.x) == these(doctest::Approx(0.2).epsilon(0.01), doctest::Approx(0.0).epsilon(0.01)));
 }
 
-// The frame of a line counts the frames before it.
+// The frame in a line is the number of frames before it.
 void checkSaidAt(const ViewRun& run, const std::string& line, double seconds) {
     CAPTURE(line);
     const double said_s = ViewRun::secondsOf(run.frames.at(std::stoul(line.substr(line.find(' ')))));
@@ -56,7 +58,7 @@ void checkSaidAt(const ViewRun& run, const std::string& line, double seconds) {
 }
 
 TEST_CASE("every controller and bare hands show the panel, click and are felt; what is not in the hand does nothing") {
-    // One after the other, a fifth of a second each: these with B, and then with a menu button.
+    // Each for a fifth of a second: first those that use B, then those that use a menu button.
     const std::vector<std::string> controllers{
         "oculus/touch_controller",    "valve/index_controller",         "hp/mixed_reality_controller", "htc/vive_cosmos_controller",
         "htc/vive_focus3_controller", "bytedance/pico_neo3_controller", "bytedance/pico4_controller",  "facebook/touch_controller_pro",
@@ -72,7 +74,8 @@ TEST_CASE("every controller and bare hands show the panel, click and are felt; w
         acts.at("profile " + profile).wait(0.045).hold(profile == controllers.back() ? "right select" : "right trigger", 0.03);
         acts.wait(0.05).hold(menu, 0.02).wait(0.05).hold(menu, 0.02).wait(0.055);
     }
-    // A fist carries the panel up and down again. Buttons of others are pressed before the own one.
+    // A fist carries the panel up and back down. Buttons of other controllers are pressed before the right
+    // one.
     std::vector<double> clicks, lifts;
     const auto take = [&](const std::string& profile, const std::string& other, const std::string& click, const std::string& widget) {
         acts.at("profile " + profile).wait(0.05).point(onMethod(widget)).press("right " + other);
@@ -113,7 +116,7 @@ TEST_CASE("a grip that shivers holds the panel, one that only touches does not; 
     const Workplace work;
     Acts acts(kBlind + "profile valve/index_controller\n");
     std::vector<double> looks, clicks;
-    // Let go half the way up, at last.
+    // The last one lets go half way up.
     using Grip = std::vector<std::pair<double, double>>;
     for (const Grip& grip : {Grip{{0, 0}, {0.05, 0.45}}, Grip{{0, 0}, {0.05, 0.6}, {0.15, 0.35}, {0.4, 0.35}, {0.42, 0}},
                              Grip{{0, 0}, {0.05, 1}, {0.19, 1}, {0.2, 0.2}}}) {
@@ -148,7 +151,7 @@ TEST_CASE("a grip that shivers holds the panel, one that only touches does not; 
     for (const std::size_t i : {0, 1}) {
         CAPTURE(i);
         checkSaidAt(run, changes[i], clicks[2 * i]);
-        // The button that was held hides nothing; pressed again it does.
+        // A button that is held hides nothing; when pressed again, it does.
         CHECK(run.panels(run.frameAt(looks[3 + 4 * i + 2])).size() == 1);
         CHECK(run.panels(run.frameAt(looks[3 + 4 * i + 3])).empty());
     }
@@ -162,7 +165,7 @@ TEST_CASE("rays end at the panel, else fade; hands are seen as their joints are;
     const double both = acts.wait(0.03).look();
     const double lost = acts.at("controller right off").look();
     acts.at("controller right on").wait(0.05).press("left y");
-    // Without the panel there is a ray while the trigger is pulled.
+    // Without the panel, a ray shows while the trigger is pulled.
     const double hidden = acts.look(0.05);
     const double pulled = acts.hold("right trigger", 0.1).wait(0.03).look();
     const double let_go = acts.wait(0.03).look(0.05);
@@ -173,10 +176,10 @@ TEST_CASE("rays end at the panel, else fade; hands are seen as their joints are;
     const double moved = acts.look(0.05);
     const double gone = acts.press("left y").look(0.05);
     acts.move("head", "position 0 1.6 0 turn 0 0").press("left y");
-    // Both hands point at it; the left one clicks on Quit, though the right one hovers elsewhere.
+    // Both hands point at the panel; the left one clicks on Quit, although the right one hovers elsewhere.
     acts.move("controller right", lookingAt(right_at, {-0.45, 1.7, -0.9}));
     acts.move("controller left", pointingAt(acts.panel, placeOf("Quit"))).wait(0.05).press("left trigger").wait(1.0);
-    // There is no room to be seen.
+    // The runtime offers no passthrough.
     const ViewRun run =
         runClean(work, "run", acts.script(), kWithHands + " --background 1,0,0" + withConfig(work, "[view]\npassthrough = true\n"));
     CHECK(run.endSeconds() < acts.now_s - 0.5);
@@ -201,7 +204,7 @@ TEST_CASE("rays end at the panel, else fade; hands are seen as their joints are;
     CHECK(run.rays(run.frameAt(pulled)).size() == 1);
     const auto seen = run.quadsAsWide(run.frameAt(open), kHand);
     CHECK(std::ranges::count_if(seen, [](const auto& hand) { return glm::distance(stagePlace(hand), {0.1, 1.5, -0.4}) < 0.1; }) == 1);
-    // A fist is another picture than a hand that is open. The scene is in its grip, and does not move with it.
+    // A fist looks different from an open hand. It holds the scene, which does not move with it.
     const double likeness = run.likeness(run.pictureAt(open), run.pictureAt(fist));
     CHECK(likeness == between(15.0, 45.0));
     // The head looks along -x, from (1, 1.6, 0).
@@ -234,7 +237,7 @@ TEST_CASE("a ring shows where a ray meets the scene; an arc that something stand
     CHECK(rings(throws).empty());
     const auto ends = run.quadsAsWide(run.frameAt(throws), kTarget);
     REQUIRE(ends.size() == 1);
-    CHECK(ends[0].at("views").at(0).at("rect").at(2) == 96);  // the red one
+    CHECK(ends[0].at("views").at(0).at("rect").at(2) == 96);  // the red target
     const auto kept = keptPlaces(work);
     REQUIRE(kept.size() == 2);
     CHECK(kept[0].eye == kept[1].eye);
@@ -247,7 +250,8 @@ TEST_CASE("two ends that a ray clicks on, and a number, give the scene its true 
     PanelSketch sketch;
     sketch.status.entry = &entry;
     const WidgetPlaces keys = sketch.draw().places;
-    Acts acts(kSmall + "extension XR_EXT_hand_tracking off\n");  // a palm that is turned to the eyes points at nothing
+    // With hands, a palm that faces the eyes would point at nothing.
+    Acts acts(kSmall + "extension XR_EXT_hand_tracking off\n");
     acts.click(placeOf("True size"));
     for (const double x : {0.05, 0.65}) {
         acts.move("controller right", lookingAt({x, 1.2, -0.4}, {x, 1.2, -1.0})).wait(0.1).press("right trigger").wait(0.05);
@@ -256,7 +260,7 @@ TEST_CASE("two ends that a ray clicks on, and a number, give the scene its true 
     const ViewRun run = runClean(work, "run", acts.script(), kWithHands + " --eye 0,0,0 --look 0,0,9 --up 0,-1,0");
     INFO(run.outcome.output);
     checkOrder(run, {"click on one end", "and now on its other end", "as shown, it is ", "saved as "});
-    // The wall is 4 m away ahead, and as much farther as to the right.
+    // The wall is 4 m ahead, and recedes by as much as one goes to the right.
     const std::string text = textIn(work.base / "config" / "binosplat" / "scenes" / "slanted-wall.view.toml"), key = "metres-per-unit = ";
     REQUIRE(text.find(key) != std::string::npos);
     CHECK(std::stod(text.substr(text.find(key) + key.size())) == doctest::Approx(2.0 / (0.6 * std::sqrt(2.0))).epsilon(0.04));
@@ -278,7 +282,7 @@ TEST_CASE("controllers are drawn where grips are; the wearer teleports to where 
     const double by_stick = acts.push("left thumbstick", {0.0, 1.0}, 0.15).wait(0.06).look();
     const double there = acts.wait(0.02).look(0.05);
     acts.move("controller left", kLeftDown).press("left y").click(keep);
-    // The trigger of controllers that have no stick.
+    // Controllers without a stick use the trigger.
     acts.at("profile khr/simple_controller").move("controller right", lookingAt({0.2, 0.9, -0.35}, {0.2, 0.3, -0.75})).wait(0.05);
     const double by_trigger = acts.hold("right select", 0.2).wait(0.05).look();
     acts.wait(0.1).click(keep, "right select").wait(0.1);
@@ -287,12 +291,12 @@ TEST_CASE("controllers are drawn where grips are; the wearer teleports to where 
     const std::size_t frame = run.frameAt(one) + 1;
     REQUIRE(run.quadsAsWide(frame, kKnob).size() == 1);
     REQUIRE(run.quadsAsWide(frame, kHandle).size() == 1);
-    // The handle lies about the grip, along its axis.
+    // The handle surrounds the grip, along its axis.
     CHECK(glm::distance(stagePlace(run.quadsAsWide(frame, kHandle)[0]), right_at) < 0.02);
     CHECK(std::abs(alongOf(run.quadsAsWide(frame, kHandle)[0]).z) > 0.999);
     CHECK(run.layers(run.frameAt(none) + 1, "quad").empty());
     CHECK(run.likeness(run.pictureAt(one + 0.01), run.pictureAt(none + 0.01)) < 45.0);
-    // It is said beforehand where that will be.
+    // The target is shown beforehand.
     CHECK(countPieces(run, by_stick) == kArcPieces);
     CHECK(vignettes(run, run.frameAt(by_stick)).empty());
     CHECK(these(countPieces(run, there), countSeen(run, there, kTarget)) == these(0, 0));
@@ -313,7 +317,8 @@ TEST_CASE("controllers are drawn where grips are; the wearer teleports to where 
 }
 
 TEST_CASE("who follows the ground walks down a slope as it falls, by the depth of what was seen ahead; who does not stays as high") {
-    // The wall as a slope that falls by 10 degrees the way one looks: its own axes, turned by that. The feet are on it.
+    // The wall as a slope that falls by 10 degrees in the direction of view: its own axes, turned by that.
+    // The feet are on it.
     const double tilt = glm::radians(10.0), half = std::sqrt(0.5);
     const glm::dvec3 along(half, 0.0, half), out(half, 0.0, -half);
     const glm::dvec3 up = std::cos(tilt) * out - std::sin(tilt) * along, ahead = std::cos(tilt) * along + std::sin(tilt) * out;
@@ -351,11 +356,11 @@ TEST_CASE("the wearer is moved by sticks, pads, hands, viewpoints and buttons, a
     const auto keep = [&] { acts.click(onScenes("Keep this one")).wait(0.05); };
     acts.click(onScenes("Next viewpoint")).hold("right thumbstick", 0.08).wait(0.12).press("left thumbstick");
     keep();  // 0: where the camera was
-    // A hand holds the scene while the room begins elsewhere, and again where it was.
+    // A hand holds the scene while the room is recentred elsewhere, and then back again.
     acts.move("head", "position 0.5 1.6 0.4 turn 40 0").hold("left squeeze", 0.18).wait(0.1).at("recentre").wait(0.15);
     acts.move("head", "position 0 1.6 0 turn 0 0").wait(0.05).at("recentre").wait(0.1);
     keep();  // 1
-    // The stick of the hand that points at the panel moves nobody, the other one does.
+    // The stick of the hand that points at the panel moves nobody; the other stick does.
     acts.move("controller right", kRightDown).move("controller left", pointingAt(acts.panel, kMiddle));
     acts.push("left thumbstick", {0.0, 1.0}, 0.1).wait(0.15);
     keep();  // 2
@@ -363,21 +368,22 @@ TEST_CASE("the wearer is moved by sticks, pads, hands, viewpoints and buttons, a
     keep();  // 3
     acts.move("controller left", kLeftDown).push("left thumbstick", {0.0, 1.0}, 0.1).wait(0.15);
     keep();  // 4
-    // What is pushed mostly aside turns and does not lift.
+    // A push mostly to the side turns and does not lift.
     for (const glm::dvec2& aside : {glm::dvec2(0.9, 0.7), glm::dvec2(-1.0, 0.0)}) {
         acts.move("controller right", kRightDown).push("right thumbstick", aside, 0.1).wait(0.15);
         keep();  // 5 and 6
     }
-    // A pad moves while it is pressed, not while a thumb rests on it.
+    // A pad moves the wearer while it is pressed, not while a thumb rests on it.
     acts.at("profile htc/vive_controller").wait(0.1).push("left trackpad", {0.0, 1.0}, 1.0).wait(0.1);
     keep();  // 7
     acts.hold("left trackpad", 0.1).wait(0.2);
     keep();  // 8
     acts.at("profile oculus/touch_controller").wait(0.4);
-    // The scene that one hand holds moves as far as the hand does, and not about it.
+    // A scene held by one hand moves as far as the hand does, and does not turn about it.
     acts.hold("left squeeze", 0.2).wait(0.04).move("controller left", "position -0.1 1.4 -0.65 turn 30 -60", 0.1).wait(0.1);
     keep();  // 9
-    // Both hands turn it about the vertical and make it larger, and tilt it, where that is wanted; then it is levelled.
+    // Both hands turn it about the vertical and enlarge it, and tilt it if that is allowed; then it is
+    // levelled.
     const auto roll = [&](const std::string& left, const std::string& right) {
         acts.move("controller left", kLeftDown).move("controller right", kRightDown).hold("left squeeze", 0.34).hold("right squeeze", 0.34);
         acts.wait(0.05).move("controller left", "position " + left + " turn 0 -80", 0.1);
@@ -406,14 +412,14 @@ TEST_CASE("the wearer is moved by sticks, pads, hands, viewpoints and buttons, a
         CAPTURE(i);
         CHECK(isNear(step(i), {0.0, 0.0, 0.0}));
     }
-    // Half a metre is a unit, in our axes: x right, y down, z ahead.
+    // A unit is half a metre, in our axes: x right, y down, z ahead.
     CHECK(step(3).y < -0.05);
     CHECK(isNear(step(4), {0.0, 0.0, step(4).z}));
     CHECK(step(4).z > 0.1);
     CHECK(isNear(ahead(5), {1.0, 0.0, std::sqrt(3.0)}, 1e-5));  // by 30 degrees
     CHECK(isNear(ahead(6), {0.0, 0.0, 2.0}, 1e-5));
     CHECK(step(8).z > 0.1);
-    // The wearer's room lies in the scene as far the other way.
+    // The wearer's room moves through the scene by as much the other way.
     CHECK(isNear(step(9), {-0.2, 0.4, -0.6}, 1e-4));
     CHECK(isNear(ahead(9), {0.0, 0.0, 2.0}, 1e-4));
     CHECK(glm::length(ahead(10)) < 1.5);
@@ -435,7 +441,7 @@ TEST_CASE("the view's edge is dark while a stick moves the wearer, its middle is
     const double without = walk();
     acts.wait(0.05).click(placeOf("Hands", true)).click(placeOf("Passthrough", true)).click(placeOf("Teleport", true));
     const double end = acts.look();
-    // Nothing is to be seen where the wearer looks.
+    // Nothing is visible in the direction of view.
     const ViewRun run = runClean(work, "run", acts.script(), kWithHands + " --background 1,1,1 --eye 0,0,0 --look 0,0,-9 --up 0,-1,0");
     checkOrder(run, {"vignette = false", "hands = false", "passthrough = true", "locomotion = \"teleport\""});
     for (const double seconds : {before, after, without}) { CHECK(vignettes(run, run.frameAt(seconds)).empty()); }

@@ -1,20 +1,22 @@
-// Facts about a long stay in the headset: walking, grabs, scenes one after another, recentres, a headset that is taken off, tracking and
-// sessions that are lost. Memory does not grow and nobody complains. BINOSPLAT_WALK_SECONDS=7200 in the environment makes it two hours
-// of the wearer's time instead of a minute; frames come as fast as they can, ten to such a second. With BINOSPLAT_WALK_KEEP=FILE what was
-// alive stays there, see tests/faults/live.h. Under the address sanitizer ASAN_OPTIONS=malloc_context_size=1:quarantine_size_mb=16 keeps
-// its own memory from growing: it remembers each stack that it sees, and those of drivers without frame pointers are never the same.
+// Facts about a long stay in the headset: walking, grabs, scenes one after another, recentres, a headset that
+// is taken off, lost tracking and lost sessions. Memory does not grow, and no error is reported.
+// BINOSPLAT_WALK_SECONDS=7200 in the environment makes it two hours of the wearer's time instead of a minute;
+// frames come as fast as they can, ten to each such second. BINOSPLAT_WALK_KEEP=FILE keeps the list of what
+// was alive in that file, see tests/faults/live.h. Under the address sanitizer,
+// ASAN_OPTIONS=malloc_context_size=1:quarantine_size_mb=16 keeps the sanitizer's own memory from growing: it
+// remembers each stack that it sees, and those of drivers without frame pointers are never the same.
 #include "tests/app/view/view_acts.h"
 
 SUITE(view_long) {
 
-// As slow as a viewer believes of a headset: the wearer's time costs as little as it can.
+// The lowest rate that the viewer accepts from a headset, so the wearer's time costs as little as possible.
 constexpr int kRate = 10;
 constexpr double kRound = 10.0;  // seconds
-// After so many rounds whatever is kept for later is there: two scenes were shown in turn, and the panel has pictures of both. Ten minutes
-// for who walks longer.
+// After this many rounds, everything that is kept for later exists: two scenes were shown in turn, and the
+// panel has pictures of both. For longer walks, ten minutes.
 constexpr int kFewestWarm = 5, kMostWarm = 60;
 
-// Rounds of ten seconds. The wearer is at rest whenever the panel comes before the eyes, so that it can be pointed at.
+// Rounds of ten seconds. The wearer stands still whenever the panel appears, so that it can be pointed at.
 std::string walkOf(int rounds, const std::string& folder) {
     const std::string page = pointingAt(panelBefore(), placeOf("Scenes")),
                       next = pointingAt(panelBefore(), placeOfScene("Next scene", folder));
@@ -41,7 +43,7 @@ std::string walkOf(int rounds, const std::string& folder) {
     return script;
 }
 
-// What was alive in ten submissions.
+// What was alive during ten submissions.
 struct Alive {
     std::uint64_t submissions, fewest_objects, most_objects, least_device_bytes, most_device_bytes, heap_bytes, resident_bytes,
         kernels_made;
@@ -68,8 +70,9 @@ std::uint64_t medianHeapBytes(std::span<const Alive> lines) {
     return *middle;
 }
 
-// The C library hands out blocks below a size from a heap that others' small ones cut into pieces, and raises that size with what programs
-// free: then the heap grows with each scene though nothing more is in use. This holds the size where it begins.
+// The C library takes blocks below a certain size from a heap that small blocks fragment, and raises that
+// size as programs free memory. The heap then grows with each scene although no more is in use. This keeps
+// the size at its initial value.
 constexpr const char* kSteadyHeap = "MALLOC_MMAP_THRESHOLD_=131072";
 
 std::uint64_t mebibytes(std::uint64_t bytes) { return bytes >> 20; }
@@ -85,7 +88,7 @@ struct Walk : ViewRun {  // its frames are too many to be read
         std::ofstream(work.path / "walk.script") << walkOf(rounds, (work.path / "scenes").string());
         const char* const kept = std::getenv("BINOSPLAT_WALK_KEEP");
         const std::filesystem::path file = kept != nullptr ? std::filesystem::path(kept) : work.path / "alive.txt";
-        // In a process that begins with it: the C library reads its settings once.
+        // In a process that starts with it: the C library reads its settings only once.
         outcome = work.runCommand(fmt::format(
             "{} {} '" BINOSPLAT_PROGRAM "' view scenes/a.ply --load-first --frames {} --simulate walk.script --out walk", kSteadyHeap,
             withFaults("BINOSPLAT_FAULT_LIVE='" + file.string() + "'", environment), 2 * rounds * static_cast<int>(kRound) * kRate));
@@ -110,18 +113,18 @@ struct Walk : ViewRun {  // its frames are too many to be read
 TEST_CASE("however long somebody walks about, nobody complains, and of the device no more is in use than at first" * nightly()) {
     const Walk walk(kValidated);
     checkClean(walk);
-    // To the object: what is lost in a round adds up in the later ones.
+    // Not one object more: whatever a round leaks would add up in later ones.
     CHECK(most(walk.later, &Alive::most_objects) <= most(walk.warm, &Alive::most_objects));
-    // Where the wearer stands when a scene is there decides how long its lists are.
+    // The length of a scene's lists depends on where the wearer stands when it arrives.
     CHECK(most(walk.later, &Alive::most_device_bytes) <= most(walk.warm, &Alive::most_device_bytes) * 51 / 50);
 }
 
 TEST_CASE("nor does the host's memory grow, and what was made for one scene is not made again for another" * nightly()) {
-    // The validation layer itself, of Vulkan 1.3.239, keeps 60 KiB more with each scene.
+    // The validation layer of Vulkan 1.3.239 itself keeps 60 KiB more with each scene.
     const Walk walk("XDG_CONFIG_HOME=\"$PWD/../config\" DISPLAY= WAYLAND_DISPLAY=");
     INFO("stderr: " << walk.outcome.errors);
     CHECK(these(walk.outcome.exit_code, walk.outcome.errors.empty()) == these(0, true));
-    // Scenes take turns, and either half of the walk may have a little more of the larger one.
+    // Scenes alternate, and either half of the walk may contain slightly more of the larger one.
     CHECK(medianHeapBytes(walk.later) <= medianHeapBytes(walk.warm) + (512u << 10));
     const std::uint64_t resident = most(walk.warm, &Alive::resident_bytes);
     CHECK(most(walk.later, &Alive::resident_bytes) <= resident + resident / 50 + (8u << 20));

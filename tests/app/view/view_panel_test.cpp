@@ -1,4 +1,5 @@
-// Facts about the viewer's panel: a ray points, the trigger clicks, what was chosen is so and is seen, and what was saved comes back.
+// Facts about the viewer's panel: a ray points, the trigger clicks, choices take effect and are visible, and
+// saved settings come back.
 #include "app/view/panel/message_picture.h"
 #include "tests/app/view/unchanged_shaders.h"
 #include "tests/app/view/view_acts.h"
@@ -15,22 +16,23 @@ const std::string kAsHeadset = " --size 96x96 --fov-x 90 --ipd 0.063";
 TEST_CASE("what is clicked on the panel is so, beside it nothing is clicked, and the place is saved, and comes back") {
     const Workplace work;
     Acts acts("rate 50\nsize 160 160\nframes none\n");
-    // A step ahead.
+    // One step ahead.
     acts.push("left thumbstick", {0.0, 1.0}, 0.1).wait(0.15).click({1.2, 0.3}).click({-0.2, 0.3});
     const double beside = acts.look(0.05);
-    // Files are written and read beside the frames, which in lock-step come as fast as they can: within so many frames they are there.
+    // Files are written and read beside the frames, which come as fast as they can in lock-step: they are
+    // done within this many frames.
     constexpr double kFilesSeconds = 100 / 50.0;
     acts.click(onMethod("right")).click(onMethod("Save")).wait(kFilesSeconds);
     acts.click(onMethod("left")).click(onMethod("Load")).wait(kFilesSeconds);
     acts.click(onMethod("margin (paper)")).click(onMethod("budget"));
-    // The resolution changes once the trigger is let go.
+    // The resolution changes when the trigger is released.
     const double held = acts.point(onMethod("resolution")).hold("right trigger", 0.1).wait(0.05).look(0.1);
     const double let_go = acts.look(0.05);
-    // Nobody reloads shaders who was not told where they are.
+    // Shaders can be reloaded only if their folder was given.
     acts.click(onMethod("Shaders", true)).click(onMethod("reproject")).click(onMethod("View")).click(placeOf("120 Hz", true));
     const double other_rate = acts.wait(0.05).look(0.05);
     acts.click(placeOf("Quit")).wait(0.5);
-    // What the command line says of the simulated headset counts before the environment.
+    // What the command line says about the simulated headset overrides the environment.
     const ViewRun run = runClean(work, "click", acts.script(), kScene + withConfig(work, kMethodPage),
                                  kValidated + " BINOSPLAT_SHADERS= SIMULATED_OPENXR_OUT=elsewhere SIMULATED_OPENXR_SCRIPT=nowhere.script");
     CHECK_FALSE(fs::exists(work.path / "elsewhere"));
@@ -47,7 +49,7 @@ TEST_CASE("what is clicked on the panel is so, beside it nothing is clicked, and
         const std::string line = run.lines(key + " = ").at(0);
         return std::stod(line.substr(line.find(key + " = ") + key.size() + 3));
     };
-    // 0 to 128 pixels, 0 to 100 %, 0.1 to 2, all clicked at the same share of their length.
+    // Ranges of 0 to 128 pixels, 0 to 100 % and 0.1 to 2, all clicked at the same share of their length.
     const double share = valueOf("budget"), scale = valueOf("resolution-scale");
     CHECK(share == between(0.4, 0.6));
     CHECK(valueOf("margin") == doctest::Approx(128.0 * share).epsilon(0.02));
@@ -56,13 +58,13 @@ TEST_CASE("what is clicked on the panel is so, beside it nothing is clicked, and
           these(160, static_cast<int>(std::round(160.0 * scale)), 20'000'000));
     CHECK(run.periodNs(run.frameAt(other_rate)) == 8'333'333);
 
-    // The viewer and `render` take the file.
+    // Both the viewer and `render` accept the file.
     const std::string said = run.lines("saved as ").at(0);
     const fs::path file = said.substr(said.find("saved as ") + 9);
     CHECK(fs::weakly_canonical(file) == work.base / "config" / "binosplat" / "scenes" / "slanted-wall.view.toml");
     CHECK(run.says("loaded " + file.string()));
     REQUIRE(work.run("render builtin:slanted-wall --out rendered --size 32x32 --config '" + file.string() + "'").exit_code == 0);
-    // The wearer stands there again, unless told where to.
+    // The wearer stands there again, unless an option gives another place.
     const auto look = [&](const std::string& name, const std::string& arguments) {
         return runClean(work, name, "rate 50\nsize 96 96\nframes every 5\nat 0.15 exit\n", kWall + " --hide-panel " + arguments);
     };
@@ -73,8 +75,9 @@ TEST_CASE("what is clicked on the panel is so, beside it nothing is clicked, and
     CHECK_FALSE(before.says("where this scene was saved"));
     CHECK(compare(there.eye(5, kLeft), named.eye(5, kLeft)).psnrDb() > 60.0);
     CHECK(compare(there.eye(5, kLeft), before.eye(5, kLeft)).psnrDb() < 40.0);
-    // Another scene has another place, and a file that cannot be read is said and does not keep anybody out. A folder of shaders is read by
-    // the panel's button: not one that is not there, nor a pipe, which would keep the compiler, and the wearer, waiting.
+    // Another scene has another place. A file that cannot be read is reported and does not prevent the start.
+    // The panel's button reads a folder of shaders, but neither one that does not exist nor a pipe, which
+    // would keep the compiler, and the wearer, waiting.
     Acts reload(kBlind);
     reload.click(onMethod("Shaders", true)).wait(0.1);
     const std::string method_page = withConfig(work, kMethodPage);
@@ -92,7 +95,7 @@ TEST_CASE("what is clicked on the panel is so, beside it nothing is clicked, and
 TEST_CASE_FIXTURE(AtWork, "a rate that the headset lacks, or that it refuses, is said, and is no end") {
     Acts acts("rate 90 fixed\nsize 64 64\nframes none\n");
     acts.click(placeOf("120 Hz", true)).wait(0.1);
-    // The wearer's own changes, long after the end, are on the list as well.
+    // Rates that the script changes to, even long after the end, are on the headset's list, too.
     const ViewRun run = runView(work, "fixed", acts.script() + "at 20 rate 72\nat 21 rate 80\nat 22 rate 120\n",
                                 kScene + withConfig(work, "[view]\nrefresh-rate = 75\n"));
     CHECK(run.outcome.exit_code == 0);
@@ -103,7 +106,7 @@ TEST_CASE_FIXTURE(AtWork, "a rate that the headset lacks, or that it refuses, is
 }
 
 TEST_CASE_FIXTURE(AtWork, "shaders are reloaded by a button, all or none, with a verdict") {
-    // As they are; then one line is broken; then it draws nothing.
+    // First unchanged; then one line is broken; then it draws nothing.
     fs::copy(kSources, work.path / "edited", fs::copy_options::recursive);
     const fs::path present = fs::path("edited") / "present" / "present.comp";
     const std::string text = textIn(work.path / present), line = "    const uvec3 bytes = uvec3(colour * 255 + 0.5);";
@@ -157,7 +160,8 @@ TEST_CASE_FIXTURE(AtWork, "a resolution that the device has no memory for is ref
     CHECK(run.says("the limit is 16.0 MiB (memory-limit)"));
     CHECK(run.width(36) == 256);
     CHECK(compare(run.eye(36, kLeft), run.eye(12, kLeft), 3).psnrDb() > 60.0);
-    // At the slider's middle (some 896 pixels) the eyes' pictures fit, and what is to bring them to the headset does not.
+    // At the slider's middle (some 896 pixels) the eyes' pictures fit, but the pictures handed to the headset
+    // do not.
     CHECK(choose("brought", "size 853 853\nframes none\n", kOneSplat + " --hide-panel --mode shared --axes view --memory-limit 21")
               .says("presented pixels needs "));
 }
@@ -167,7 +171,7 @@ TEST_CASE("tint and centre ROIs are seen in the eye made from the other, and a r
     std::ofstream motion(work.path / "walk.csv");
     motion << "time_s,x,y,z,qx,qy,qz,qw\n";
     for (int i = 0; i <= 300; ++i) {
-        // It rests at first.
+        // The head is still at first.
         const double time_s = i / 90.0, t = std::max(0.0, time_s - 1.3), turn = 0.2 * std::sin(2.0 * t), nod = 0.1 * std::sin(3.0 * t);
         motion << fmt::format("{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},0,{:.6f}\n", time_s, 0.15 * std::sin(t),
                               1.6 + 0.02 * std::sin(9.0 * t), -0.1 * t, nod, turn, std::sqrt(1.0 - nod * nod - turn * turn));
@@ -181,14 +185,14 @@ TEST_CASE("tint and centre ROIs are seen in the eye made from the other, and a r
     const double centred = acts.look();
     acts.click(onMethod("Show how tiles were made")).wait(1.3 - acts.now_s).click(onMethod("predicted")).wait(0.25);
     const double walked = acts.click(onMethod("right")).press("right b").wait(0.2).look();
-    // Near enough to the bars that holes open inside the picture.
+    // So near to the bars that holes open inside the picture.
     const ViewRun run = runClean(
         work, "walk", acts.script(),
         "builtin:fence --load-first --hide-panel --hide-hands --axes view --mode paper --margin 0 --eye 0,0,0.5 --look 0,0,3 --up 0,-1,0" +
             withConfig(work, kMethodPage));
     checkOrder(run, {"tint = true", "center-roi = true", "tint = false", "mode = \"predicted\"", "dominant = \"right\"",
                      "the runtime asked for the end"});
-    // What is greener than the picture beside it.
+    // The share of pixels that are greener than in the other picture.
     const auto shareAt = [&](int side) {
         const Image before = run.eye(run.pictureAt(tinted), side), after = run.eye(run.pictureAt(centred), side);
         const auto isTinted = [](const Colour& was, const Colour& is) { return is[1] - was[1] > 0.06f && was[0] - is[0] > 0.03f; };
@@ -200,7 +204,7 @@ TEST_CASE("tint and centre ROIs are seen in the eye made from the other, and a r
     checkAgreesWithRender(work, run, run.pictureAt(plain), start, "--mode paper --margin 0" + kAsHeadset);
     checkAgreesWithRender(work, run, run.pictureAt(walked), start,
                           "--mode predicted --margin 0 --dominant right --center-roi" + kAsHeadset);
-    // The head walked, and every frame was shown as the eyes were.
+    // The head walked, and every frame matched the eyes' poses.
     for (const double seconds : {1.4, 1.6, walked}) {
         const std::size_t frame = run.frameAt(seconds);
         for (const std::size_t e : {0, 1}) {
@@ -235,8 +239,9 @@ TEST_CASE_FIXTURE(AtWork, "a runtime with no more than OpenXR 1.0 and Vulkan sho
     const std::size_t frame = run.pictureAt(shared);
     CHECK_FALSE(run.view(frame).contains("depth"));
     checkAgreesWithRender(work, run, frame, {}, "--mode shared" + kAsHeadset);
-    CHECK(run.layers(run.frameAt(aiming), "quad").size() > 10);  // rays, controllers and an arc beside the panel
-    // Without any floor it is as far below as people are high.
+    // Rays, controllers and an arc beside the panel.
+    CHECK(run.layers(run.frameAt(aiming), "quad").size() > 10);
+    // Without a floor, the target is as far below as people are tall.
     const auto targets = run.quadsAsWide(run.frameAt(aiming), 0.5);
     REQUIRE(targets.size() == 1);
     CHECK(poseOf(targets[0].at("pose")).position.y == doctest::Approx(-1.59));
@@ -256,7 +261,7 @@ TEST_CASE("the first start shows three gestures one after the other, and no othe
     const auto run = [&](const std::string& name, const std::string& when) {
         return runClean(work, name, script, kOneSplat + " --mode mono" + withConfig(work, "[view]\nfirst-steps = \"" + when + "\"\n"));
     };
-    // Three times seven seconds, but for the first frames, which wait for a file to be read.
+    // Three times seven seconds, minus the first frames, which wait for a file to be read.
     CHECK(shownIn(run("first", "once")) == between(std::size_t{380}, std::size_t{430}));
     CHECK(shownIn(run("second", "once")) == 0);
     CHECK(shownIn(run("never", "never")) == 0);

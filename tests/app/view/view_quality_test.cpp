@@ -1,4 +1,5 @@
-// Facts about holding the frame rate in the headset, by the device's times and by displays that are missed without them.
+// Facts about holding the frame rate in the headset: by the device's times, or without them by missed
+// displays.
 #include "tests/app/view/view_acts.h"
 
 SUITE(view_quality) {
@@ -8,7 +9,8 @@ const std::string kNothingElse = " --hide-panel --hide-hands --load-first ";
 // Ticks from one timestamp to the next: far more than a period on any device, and far less.
 const std::string kSlow = withFaults("BINOSPLAT_FAULT_TICKS=1000000000"), kQuick = withFaults("BINOSPLAT_FAULT_TICKS=1");
 
-// Slow displays, so that what the program itself does fits into a period on any machine. A layer says that frames take next to nothing.
+// The display is slow, so that the program's own work fits into a period on any machine. A layer reports that
+// frames take next to no time.
 constexpr int kWhole = 100;  // pixels
 
 struct Governed : ViewRun {
@@ -28,7 +30,7 @@ struct Governed : ViewRun {
     [[nodiscard]] bool isOver(std::size_t i) const {
         return frames[i].value("gpu_ms", 0.0) > 1e-6 * frames[i].at("period_ns").get<double>();
     }
-    // The longest row of frames that took longer than their period.
+    // The longest run of frames that took longer than their period.
     [[nodiscard]] std::size_t longestOver() const {
         std::size_t row = 0, longest = 0;
         for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -44,7 +46,7 @@ struct Governed : ViewRun {
         }
         return found;
     }
-    // From a frame on a second lies between two changes.
+    // From this frame on, changes are at least a second apart.
     void checkCalm(std::size_t first) const {
         double last_s = -10.0;
         for (const std::size_t i : changes()) {
@@ -71,7 +73,7 @@ TEST_CASE("where nothing fits the least settings of a quality are reached within
         "builtin:one-splat --load-first --hide-hands --mode temporal" + withConfig(work, "[view]\nresolution-scale = 0.8\n"), kSlow);
     std::vector<int> widths;
     for (const double seconds : looks) { widths.push_back(run.width(run.frameAt(seconds))); }
-    // Of what the wearer set, which is the most there is: 80 and 40 %.
+    // 80 and 40 % of the wearer's setting, which is the maximum.
     CHECK(widths == std::vector{160, 128, 64, 160});
     REQUIRE_FALSE(run.lines(" took ").empty());
     CHECK(run.lines(" took ")[0].find("; temporal at 80 %, errors within 34 dB took ") != std::string::npos);
@@ -92,7 +94,7 @@ TEST_CASE("no frame makes a kernel, also where the eyes come to look another way
     for (const auto& [mode, lines] : {std::pair("predicted", ""), std::pair("predicted", "visibility-mask on\n"),
                                       std::pair("temporal", "eye left cant 5\n"), std::pair("temporal", "visibility-mask on\n")}) {
         INFO("mode ", mode, ", lines ", lines);
-        // From side by side to angles of their own.
+        // From side-by-side eyes to eyes with angles of their own.
         const ViewRun run =
             runClean(work, "ready", fmt::format("rate 90\nsize 96 96\nframes none\n{}at 0.3 eye left angles -50 40 40 -50\n", lines),
                      fmt::format("builtin:one-splat{}--mode {} --move-cost 0 --frames 60", kNothingElse, mode),
@@ -107,8 +109,9 @@ TEST_CASE("no frame makes a kernel, also where the eyes come to look another way
 
 TEST_CASE("a load that comes and goes: a lower bound and resolution at once, and both back once it has gone, with the same method") {
     const Workplace work;
-    // The head moves before a display of 30 Hz. Of 33 ms: everything fits, then frames take 60 (tests/faults/load.h), then all fits again.
-    // Axes that stay would add more border to so small a picture than it is large.
+    // The head moves in front of a display of 30 Hz. First everything fits into 33 ms, then frames take 60
+    // (tests/faults/load.h), then everything fits again. Staying axes would add a border larger than a
+    // picture this small.
     constexpr int kComes = 40, kGoes = 100, kSecond = 30;
     const ViewRun run =
         runClean(work, "load", "rate 30\nsize 64 64\nframes none\nhead 0 position 0 1.6 0\nhead 20 position 2 1.6 0\n",
@@ -133,12 +136,12 @@ TEST_CASE("a load that comes and goes: a lower bound and resolution at once, and
 }
 
 TEST_CASE("displays that are missed though frames seem to fit lower the resolution until they are met; it comes back little by little") {
-    // 128 ms of 100 at full resolution.
+    // 128 ms with a period of 100, at full resolution.
     const Governed run("fast", "at 1.5 gpu-load 6400 ms-per-megapixel\nat 11 gpu-load 0 ms\n", 390);
     CHECK(run.widths[14] == kWhole);
     CHECK(run.longestOver() <= 10);
     CHECK(run.widths[80] < kWhole);
-    CHECK(run.widths[80] > kWhole / 2);  // and no more is given up than must be
+    CHECK(run.widths[80] > kWhole / 2);  // and no more is given up than necessary
     CHECK_FALSE(run.isOver(80));
     run.checkCalm(80);
     CHECK(run.says(" and missed displays"));

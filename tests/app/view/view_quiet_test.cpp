@@ -14,15 +14,15 @@ const std::string kWatched =
     "XDG_CONFIG_HOME=\"$PWD/../config\" DISPLAY= WAYLAND_DISPLAY= BINOSPLAT_VALIDATION=1 VK_ADD_LAYER_PATH='" BINOSPLAT_FAULT_LAYER
     "' VK_INSTANCE_LAYERS=VK_LAYER_BINOSPLAT_faults XR_API_LAYER_PATH='" BINOSPLAT_FAULT_LAYER
     "/openxr' XR_ENABLE_API_LAYERS=XR_APILAYER_BINOSPLAT_faults BINOSPLAT_FAULT_WAITS=waits.txt "
-    "BINOSPLAT_FAULT_TICKS=1";  // frames take no time, so that none is drawn smaller to be quicker
+    "BINOSPLAT_FAULT_TICKS=1";  // frames take no time, so none is drawn smaller to save time
 
-// What frames make or wait for between two times, until somebody mends it.
+// What frames create or wait for between two times, until that is fixed.
 struct Known {
     double begin_s, end_s;
     const char* kinds;
 };
 constexpr Known kKnown[]{
-    // Images are made once the eyes' angles are known.
+    // Images are created once the eyes' angles are known.
     {0.0, 1.0, "buffer fence-of-this-frame memory swapchain"},
     {3.2, 9.0, "buffer fence-of-this-frame memory queue swapchain"},
 };
@@ -161,7 +161,7 @@ TEST_CASE("new letters come without a wait") {
     CHECK(these(run.outcome.exit_code, run.outcome.errors.empty()) == these(0, true));
     std::ifstream file(work.path / "waits.txt");
     const std::string waits((std::istreambuf_iterator<char>(file)), {});
-    CHECK(waits.find("image") != std::string::npos);  // that of the letters: nothing else needs one
+    CHECK(waits.find("image") != std::string::npos);  // the letters' image: nothing else needs one
     CHECK_MESSAGE(waits.find("queue") == std::string::npos, waits);
 }
 

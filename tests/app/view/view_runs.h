@@ -10,8 +10,8 @@
 
 namespace binosplat::test {
 
-// Vulkan's and OpenXR's validation layers are on, and both must stay silent; no window opens, since a mouse
-// might pass over it.
+// The validation layers of Vulkan and OpenXR are on, and both must stay silent. No window opens, since a
+// mouse might pass over it.
 inline const std::string kValidated =
     "XDG_CONFIG_HOME=\"$PWD/../config\" DISPLAY= WAYLAND_DISPLAY= BINOSPLAT_VALIDATION=1 "
     "XR_ENABLE_API_LAYERS=XR_APILAYER_LUNARG_core_validation "
@@ -28,7 +28,7 @@ inline void picturesInto(const Workplace& work) {
     std::ofstream(work.base / "config" / "user-dirs.dirs") << fmt::format("XDG_PICTURES_DIR=\"{}/pictures\"\n", work.path.string());
 }
 
-// A pose of the log, in OpenXR's axes.
+// A pose from the log, in OpenXR's axes.
 struct LoggedPose {
     glm::dvec3 position;
     glm::dquat orientation;
@@ -53,13 +53,13 @@ inline Image partOf(const Image& picture, glm::uvec2 from, glm::uvec2 to) {
     }
     return part;
 }
-// Of a picture of both eyes, side by side.
+// One side of a picture with both eyes side by side.
 inline Image sideOf(const Image& both, int side) {
     const glm::uvec2 size(both.size_px.x / 2, both.size_px.y), from(static_cast<std::uint32_t>(side) * size.x, 0);
     return partOf(both, from, from + size);
 }
 
-// Where an eye is in STAGE, and the tangents of what it sees.
+// Where an eye is in STAGE, and the tangents of its field of view.
 struct LoggedEye : LoggedPose {
     double left, right, up, down;
 };
@@ -67,11 +67,11 @@ struct LoggedEye : LoggedPose {
 struct ViewRun {
     Outcome outcome;
     std::filesystem::path out;
-    std::vector<nlohmann::json> frames;   // of frames.jsonl
+    std::vector<nlohmann::json> frames;   // from frames.jsonl
     std::vector<nlohmann::json> between;  // its lines without a frame
 
     [[nodiscard]] bool says(const std::string& words) const { return outcome.output.find(words) != std::string::npos; }
-    // The lines of its output with these words.
+    // The lines of the output that contain these words.
     [[nodiscard]] std::vector<std::string> lines(const std::string& words) const {
         std::vector<std::string> found;
         std::istringstream output(outcome.output);
@@ -80,14 +80,14 @@ struct ViewRun {
         }
         return found;
     }
-    // The first frame that was displayed this many seconds after the script began, or later.
+    // The first frame displayed this many seconds after the script began, or later.
     [[nodiscard]] std::size_t frameAt(double seconds) const {
         const auto found = std::ranges::find_if(frames, [&](const nlohmann::json& frame) { return secondsOf(frame) > seconds - 1e-4; });
         CAPTURE(seconds);
         REQUIRE(found != frames.end());
         return static_cast<std::size_t>(found - frames.begin());
     }
-    // The same among frames with pictures.
+    // The same, among frames with pictures.
     [[nodiscard]] std::size_t pictureAt(double seconds) const {
         std::size_t frame = frameAt(seconds);
         while (frame < frames.size() && !frames[frame].contains("picture")) { ++frame; }
@@ -109,7 +109,7 @@ struct ViewRun {
         return {poseOf(eye.at("pose")), tangent("left"), tangent("right"), tangent("up"), tangent("down")};
     }
 
-    // The layers of a frame, of one type.
+    // The layers of one type in a frame.
     [[nodiscard]] std::vector<nlohmann::json> layers(std::size_t frame, const std::string& type) const {
         std::vector<nlohmann::json> found;
         for (const auto& layer : frames.at(frame).at("layers")) {
@@ -117,11 +117,11 @@ struct ViewRun {
         }
         return found;
     }
-    // The scene's view of an eye.
+    // The scene's view for an eye.
     [[nodiscard]] nlohmann::json view(std::size_t frame, std::size_t side = 0) const {
         return layers(frame, "projection").at(0).at("views").at(side);
     }
-    // The size of what an eye sees in its picture, which may be larger.
+    // The size of the part of the picture that the eye sees; the picture may be larger.
     [[nodiscard]] glm::ivec2 sizePx(std::size_t frame, std::size_t side) const {
         const nlohmann::json picture = view(frame, side), &fov = picture.at("fov"), &rect = picture.at("rect");
         const auto tangent = [&](const char* name) { return std::tan(fov.at(name).get<double>()); };
@@ -131,17 +131,17 @@ struct ViewRun {
         return glm::ivec2(glm::round(glm::dvec2(across * rect.at(2).get<double>(), down * rect.at(3).get<double>())));
     }
     [[nodiscard]] int width(std::size_t frame) const { return sizePx(frame, 0).x; }
-    // Where the eyes' views are, in the room.
+    // Where the eyes' views are in the room.
     [[nodiscard]] glm::dvec3 viewPlace(std::size_t frame, std::size_t side) const { return poseOf(view(frame, side).at("pose")).position; }
     [[nodiscard]] std::int64_t periodNs(std::size_t frame) const { return frames.at(frame).at("period_ns").get<std::int64_t>(); }
-    // Things in the room, by how they are drawn: the panel is the largest picture, rays are thin.
+    // Things in the room, told apart by their size: the panel is the largest picture, and rays are thin.
     [[nodiscard]] std::vector<nlohmann::json> panels(std::size_t frame) const {
         return quadsWhere(frame, [](const nlohmann::json& quad) { return quad.at("views").at(0).at("rect").at(3) > 256; });
     }
     [[nodiscard]] std::vector<nlohmann::json> rays(std::size_t frame) const {
         return quadsWhere(frame, [](const nlohmann::json& quad) { return quad.at("size").at(0) < 0.01; });
     }
-    // Of this width in metres: hands as their joints are, parts of controllers, where one will stand.
+    // Those of this width in metres: hands, parts of controllers, the target of a teleport.
     [[nodiscard]] std::vector<nlohmann::json> quadsAsWide(std::size_t frame, double width_m) const {
         return quadsWhere(frame, [&](const nlohmann::json& quad) {
             return quad.at("space") != "VIEW" && std::abs(quad.at("size").at(0).get<double>() - width_m) < 1e-4;
@@ -157,7 +157,7 @@ struct ViewRun {
     }
 };
 
-// `arguments` after `view`; a script with these lines drives the headset.
+// Runs `view` with `arguments`, while a script with these lines drives the headset.
 inline ViewRun runView(const Workplace& work, const std::string& name, const std::string& script, const std::string& arguments,
                        const std::string& environment = kValidated) {
     std::ofstream(work.path / (name + ".script")) << script;
@@ -172,7 +172,7 @@ inline ViewRun runView(const Workplace& work, const std::string& name, const std
     return run;
 }
 
-// For the arguments: a config with these lines.
+// An argument for a config with these lines.
 inline std::string withConfig(const Workplace& work, const std::string& lines) {
     std::ofstream(work.path / "view.toml") << lines;
     return " --config view.toml";
@@ -184,11 +184,12 @@ inline void checkClean(const ViewRun& run) {
     INFO("stdout: " << run.outcome.output);
     INFO("stderr: " << run.outcome.errors);
     CHECK(run.outcome.exit_code == 0);
-    CHECK(run.outcome.errors == "Core Validation output type: text, first time = true\n");  // the layer was there, and nothing else
+    // The layer was loaded, and reported nothing else.
+    CHECK(run.outcome.errors == "Core Validation output type: text, first time = true\n");
     CHECK(these(run.outcome.output.find("VUID"), run.outcome.output.find("ERROR")) == these(std::string::npos, std::string::npos));
 }
 
-// A run that ended like this, and showed no more layers than a runtime must take.
+// A run that ended like that, and never had more layers than a runtime must accept.
 inline ViewRun runClean(const Workplace& work, const std::string& name, const std::string& script, const std::string& arguments,
                         const std::string& environment = kValidated) {
     const ViewRun run = runView(work, name, script, arguments, environment);
@@ -197,7 +198,7 @@ inline ViewRun runClean(const Workplace& work, const std::string& name, const st
     return run;
 }
 
-// It printed these one after the other.
+// It printed these in this order.
 inline void checkOrder(const ViewRun& run, const std::vector<std::string>& said) {
     std::size_t from = 0;
     for (const std::string& words : said) {
@@ -213,7 +214,7 @@ inline Colour colourAt(const Image& image, glm::uvec2 at) {
     const float* value = &image.values.at((std::size_t{at.y} * image.size_px.x + at.x) * static_cast<std::size_t>(image.channels));
     return {value[0], value[1], value[2]};
 }
-// For pictures of the same size, at the same place.
+// For pictures of the same size; compares pixels at the same place.
 template <typename Condition>
 std::size_t countPixels(const Image& a, const Image& b, const Condition& condition) {
     std::size_t found = 0;

@@ -1,4 +1,5 @@
-// Facts about what is to be seen: the next scene, streamed and moving ones, the room behind, pictures, which way is up.
+// Facts about what is shown: the next scene, streamed and moving scenes, the room behind them, saved
+// pictures, and which way is up.
 #include "app/options/start_view.h"
 #include "app/view/scenes/scene_up.h"
 #include "engine/files/load_scene.h"
@@ -10,10 +11,11 @@
 
 SUITE(view_scenes) {
 
-// Scenes load in the meantime, as long as it takes them: not in lock-step, where frames come as fast as they can.
+// Scenes load meanwhile, and take their time: this needs the real clock, since frames in lock-step come as
+// fast as they can.
 const std::string kWhileLoading = kValidated + " SIMULATED_OPENXR_CLOCK=real";
 
-// There was always something to see.
+// Something was visible in every frame.
 void checkAlwaysShown(const ViewRun& run) {
     REQUIRE(run.frames.size() > 8);
     for (std::size_t frame = 4; frame + 4 < run.frames.size(); ++frame) { REQUIRE(run.layers(frame, "projection").size() == 1); }
@@ -75,7 +77,7 @@ TEST_CASE("a moving scene plays, rests while a button has it rest, and plays on;
                                     arguments + "--hide-panel", kWhileLoading);
     INFO(played.outcome.output);
     checkOrder(played, {"a moving scene of 12 frames, 15 a second", "paused at frame", "plays from frame"});
-    // It moves, and while it rests nothing does.
+    // The scene moves, and stands still while it is paused.
     const double begin_s = ViewRun::secondsOf(played.frames.front());
     std::size_t others = 0, same_at_rest = 0, at_rest = 0;
     for (std::size_t frame = 8; frame + 3 < played.frames.size(); ++frame) {
@@ -98,7 +100,7 @@ TEST_CASE("a moving scene plays, rests while a button has it rest, and plays on;
     acts.click(end).click(placeOfTime("Step on", false)).click(placeOfTime("Play", false));
     const ViewRun run = runClean(work, "panel", acts.script(), arguments);
     INFO(run.outcome.output);
-    // The one after the last is the first.
+    // After the last frame comes the first.
     checkOrder(run, {"paused at frame 12 of 12", "paused at frame 1 of 12", "plays from frame 1 of 12"});
     CHECK(run.lines("plays from frame 1 of 12").size() == 1);
     CHECK(run.lines("paused at frame ").size() >= 6);
@@ -131,12 +133,12 @@ TEST_CASE_FIXTURE(AtWork, "a picture of both eyes is a file that is not overwrit
         CHECK(readPicture(file).values == both.values);
     }
     CHECK(std::ranges::distance(fs::directory_iterator(work.path / "pictures")) == 4);
-    // One eye's, at the headset's size whatever the frames have.
+    // One eye's picture, at the headset's size whatever size the frames have.
     const ViewRun one = take("one", "off", withConfig(work, "[view]\nresolution-scale = 0.5\n"));
     const Image dominant = readPicture(filesOf(one).at(0));
     CHECK(dominant.size_px == glm::uvec2(160, 160));
     CHECK(compare(dominant, sideOf(both, kLeft)).psnrDb() > 50.0);
-    // As the wearer sees it, at the right, where no panel hangs.
+    // As the wearer sees it, on the right, where no panel hangs.
     for (const int side : {kLeft, kRight}) {
         const Image seen = run.eye(10, side);
         const glm::uvec2 from(120, 0), to(160, 160);
@@ -151,7 +153,7 @@ TEST_CASE_FIXTURE(AtWork, "the room shows behind the scene where the headset and
         return "rate 50\nsize 128 128\nframes every 5\nblend-modes " + modes + "\nroom-colour " + room + "\n";
     };
     const std::string both = "opaque alpha-blend", green_room = "0.2 0.9 0.4";
-    // The picture's corner, where the scene is not.
+    // The picture's corner, where there is no scene.
     const auto isCorner = [](const ViewRun& run, double seconds, int side, const glm::vec3& colour) {
         const auto [r, g, b] = colourAt(run.eye(run.pictureAt(seconds), side), {0, 0});
         return glm::length(glm::vec3(r, g, b) - colour) < 0.02f;
@@ -177,7 +179,7 @@ TEST_CASE_FIXTURE(AtWork, "the room shows behind the scene where the headset and
     }
     for (const int side : {kLeft, kRight}) { CHECK(isCorner(run, opaque, side, red)); }
 
-    // Where the scene is, it is as it was: over its own black, and over a room that is black.
+    // The scene itself looks the same over its own black as over a black room.
     Acts dark(begin(both, "0 0 0"));
     const double own = dark.look();
     dark.press("right b").click(placeOf("Passthrough", true)).press("right b");
@@ -187,7 +189,7 @@ TEST_CASE_FIXTURE(AtWork, "the room shows behind the scene where the headset and
     CHECK(in_the_dark.frames.at(in_the_dark.pictureAt(through)).at("blend_mode") == "ALPHA_BLEND");
     CHECK(in_the_dark.likeness(in_the_dark.pictureAt(own), in_the_dark.pictureAt(through)) > 40.0);
 
-    // A headset that adds light to the room's.
+    // A headset that adds its light to the room's.
     const ViewRun additive = runClean(work, "run", begin("additive", green_room) + "at 0.3 exit\n",
                                       ahead + "1,0,0" + withConfig(work, "[view]\npassthrough = true\n"));
     CHECK(additive.frames.at(10).at("blend_mode") == "ADDITIVE");
@@ -216,7 +218,7 @@ TEST_CASE_FIXTURE(AtWork, "where the room is a layer, it lies below the scene wh
         CHECK(run.layers(run.pictureAt(seconds), "projection").at(0).at("flags").empty() == !sees);
         CHECK(isNear(corner(seconds), sees ? glm::vec3(0.2f, 0.9f, 0.4f) : glm::vec3(1.0f, 0.0f, 0.0f)));
     }
-    // Of a headset whose pictures cover the room by their alpha, that is used.
+    // A headset that blends pictures with the room by alpha does so.
     const ViewRun alpha =
         runClean(work, "alpha", "rate 50\nsize 128 128\nframes none\npassthrough on\nblend-modes opaque alpha-blend\nat 0.3 exit\n",
                  ahead + withConfig(work, "[view]\npassthrough = true\n"));
@@ -234,7 +236,7 @@ TEST_CASE_FIXTURE(AtWork, "a picture that cannot be written is a message, and no
 }
 
 TEST_CASE_FIXTURE(AtWork, "up in a trained scene is the up of its cameras, or else of its floor") {
-    // The room of the atelier lies with its floor some 30 degrees aside in the file.
+    // In the file, the floor of the atelier is tilted by some 30 degrees.
     const fs::path folder = work.path / "trained" / "point_cloud" / "iteration_30000", file = folder / "point_cloud.ply";
     fs::create_directories(folder);
     const glm::dquat tilt = glm::angleAxis(0.5, glm::dvec3(0.0, 0.0, 1.0));
@@ -250,14 +252,14 @@ TEST_CASE_FIXTURE(AtWork, "up in a trained scene is the up of its cameras, or el
         const Scene loaded = loadScene(source.string());
         return upOfScene(loaded, source, startView(loaded, CameraOptions{}, 1.0).up);
     };
-    // Its files' y is down as in all scenes with cameras.
+    // The file's y points down, as in all scenes with cameras.
     const glm::dvec3 up = tilt * builtinView("builtin:atelier")->up;
     CHECK(glm::dot(upOf(file), up) > std::cos(glm::radians(2.0)));
-    // These cameras were held otherwise, and they know better.
+    // These cameras were held differently, and decide.
     std::ofstream(work.path / "trained" / "cameras.json")
         << R"([{"id": 0, "img_name": "a", "width": 64, "height": 64, "position": [0, 0, 0], "rotation": [[0.8, 0.6, 0], [-0.6, 0.8, 0], [0, 0, 1]], "fx": 60, "fy": 60}])";
     for (const fs::path& source : {file, work.path / "trained"}) { CHECK(glm::length(upOf(source) - glm::dvec3(-0.6, -0.8, 0.0)) < 1e-5); }
-    // One that cannot be read is as none.
+    // A file that cannot be read counts as none.
     std::ofstream(work.path / "trained" / "cameras.json") << "[{";
     CHECK(glm::dot(upOf(file), up) > std::cos(glm::radians(2.0)));
 }

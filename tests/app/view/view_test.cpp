@@ -1,4 +1,5 @@
-// Facts about `binosplat view`, driven through the standard OpenXR loader by scripts of the simulated headset: what is seen, and where.
+// Facts about `binosplat view`, driven through the standard OpenXR loader by scripts of the simulated
+// headset: what is seen, and where.
 #include "engine/picture/turned.h"
 #include "tests/app/view/view_acts.h"
 
@@ -24,7 +25,7 @@ std::optional<double> findEdge(const Image& picture, std::uint32_t row) {
     return std::nullopt;
 }
 
-// The edge in the scene, if the wall is where it should be: the mean of its x, and the largest deviation from it.
+// The edge in the scene, if the wall is where it should be: its mean x, and the largest deviation from that.
 struct Edge {
     double x, unevenness;
 };
@@ -45,7 +46,8 @@ Edge measureEdge(const LoggedEye& eye, const Image& picture) {
     return {mean, worst};
 }
 
-// `made`: the right eye was made from the left one, whose silhouettes may be off by most of a pixel. A pixel is 0.02 wide there.
+// `made`: the right eye was reprojected from the left one, so its silhouettes may be off by most of a pixel.
+// A pixel there is 0.02 wide.
 void checkEdge(const ViewRun& run, std::size_t frame, bool made) {
     CAPTURE(frame);
     const Edge left = measureEdge(run.loggedEye(frame, 0), run.eye(frame, kLeft));
@@ -56,7 +58,8 @@ void checkEdge(const ViewRun& run, std::size_t frame, bool made) {
     CHECK(std::abs(left.x) < 0.06);
 }
 
-// Where the wearer begins, pictures are of this size; what one loses where the runtime turns it by the last digit of a float.
+// For pictures from where the wearer begins. Two of the same view may differ a little, since the runtime
+// turns them by the last digit of a float.
 const std::string kBeginning = "rate 100\nsize 128 128\nframes every 5\n";
 constexpr double kSamePictureDb = 28.0, kOtherPictureDb = 25.0;
 
@@ -69,7 +72,7 @@ void checkAtTheBeginning(const ViewRun& run, std::size_t frame) {
 glm::dvec3 panelInRoom(const ViewRun& run, std::size_t frame) { return poseOf(run.panels(frame).at(0).at("pose")).position; }
 
 TEST_CASE_FIXTURE(AtWork, "in every mode a wall's edge stays straight and in its place, whatever the frusta, and depth goes along") {
-    // Asymmetric and canted; then another pose of a head that is tilted, and then other angles.
+    // Asymmetric and canted; then another pose with a tilted head; then other angles.
     const std::string left = "eye left angles -48 36 40 -44", right = "eye right angles -36 48 40 -44";
     Acts acts("rate 50\nsize 208 192\nframes every 5\nipd 0.068\n" + left + "\n" + right + "\neye left cant 8\neye right cant 8\n");
     const std::vector<std::string> modes{"two-pass", "shared", "predicted"};
@@ -107,7 +110,8 @@ TEST_CASE_FIXTURE(AtWork, "in every mode a wall's edge stays straight and in its
 
 TEST_CASE_FIXTURE(AtWork, "the wearer sees what render makes of the same poses and angles") {
     std::ofstream(work.path / "headset.toml") << kHeadset;
-    // From (0.05, -0.1, 0.2) of the scene; later a step, a turn of the head and a tilt, in OpenXR's axes, and another mode.
+    // From (0.05, -0.1, 0.2) in the scene; later a step, a turn and a tilt of the head, in OpenXR's axes, and
+    // another mode.
     const std::string start = "--eye 0.05,-0.1,0.2 --look 0.05,-0.1,3 --up 0,-1,0", dominant = " --dominant right --mode ";
     Acts acts("headset headset.toml\nframes from 30 to 90 every 60\n");
     acts.wait(0.2).press("right b").click(onMethod("predicted")).press("right b");
@@ -120,14 +124,14 @@ TEST_CASE_FIXTURE(AtWork, "the wearer sees what render makes of the same poses a
     checkAgreesWithRender(work, run, 90, eye, "--headset headset.toml" + dominant + "predicted");
 }
 
-// What an eye of the log sees, in its own axes.
+// What a logged eye sees, in its own axes.
 Eye eyeOf(const ViewRun& run, std::size_t frame, std::size_t side, glm::uvec2 size_px) {
     const LoggedEye logged = run.loggedEye(frame, side);
     const ViewAngles angles{std::atan(logged.left), std::atan(logged.right), std::atan(logged.up), std::atan(logged.down)};
     return {{}, intrinsicsFromAngles(angles, size_px), size_px};
 }
 
-// What the eye saw, of three channels, as showTurned takes it.
+// What the eye saw, as an opaque picture for showTurned.
 Image opaqueEye(const ViewRun& run, std::size_t frame, std::size_t side) {
     const Image seen = run.eye(frame, static_cast<int>(side));
     Image opaque{seen.size_px, 4, std::vector<float>(4 * seen.pixelCount(), 1.0f)};
@@ -137,7 +141,7 @@ Image opaqueEye(const ViewRun& run, std::size_t frame, std::size_t side) {
 
 TEST_CASE_FIXTURE(AtWork, "while the head turns, axes that stay show what axes that follow the view do, but for one resampling") {
     std::ofstream(work.path / "headset.toml") << kHeadset;
-    // There and back by some ten degrees, half a degree a frame, with a step and a tilt.
+    // There and back by some ten degrees, half a degree per frame, with a step and a tilt.
     const std::string script =
         "rate 50\nheadset headset.toml\nframes every 5\nhead 0.4 position 0 1.6 0 turn 0 0\n"
         "head 0.8 position 0.05 1.6 0 rotation -0.02 -0.04 0.01 1\nhead 1.2 position 0.05 1.62 -0.05 rotation 0.02 0.05 0.03 1\nat 1.3 "
@@ -161,8 +165,8 @@ TEST_CASE_FIXTURE(AtWork, "while the head turns, axes that stay show what axes t
                 CHECK(stayed.values == followed.values);
                 continue;
             }
-            // Between 36.8 and 41.2 dB; what two resamplings by half a pixel cost is 32.7 to 33.6, and a pose that is off by one at
-            // most 26.6.
+            // Measured: between 36.8 and 41.2 dB. Resampling twice by half a pixel costs 32.7 to 33.6, and a
+            // pose that is off by one pixel gives at most 26.6.
             const Eye eye = eyeOf(stay, frame, side, followed.size_px);
             const auto turned = [&](double px) {
                 Eye other = eye;
@@ -175,7 +179,7 @@ TEST_CASE_FIXTURE(AtWork, "while the head turns, axes that stay show what axes t
             CHECK(compare(showTurned(stayed, eye, turned(1.0)), followed).psnrDb() < bound_db);
         }
     }
-    CHECK(moves == 2 * 3);  // of 40 frames in which the head turned
+    CHECK(moves == 2 * 3);  // in the 40 frames in which the head turned
 }
 
 TEST_CASE_FIXTURE(AtWork, "two runs with the virtual clock write the same files, and stop after --frames") {
@@ -183,7 +187,7 @@ TEST_CASE_FIXTURE(AtWork, "two runs with the virtual clock write the same files,
     const std::string arguments = kWall + " --hide-panel --frames 22";
     const ViewRun first = runClean(work, "first", script, arguments), second = runView(work, "second", script, arguments);
     CHECK(first.frames.size() >= 22);
-    CHECK(first.frames.size() <= 26);  // STOPPING takes a few
+    CHECK(first.frames.size() <= 26);  // STOPPING takes a few frames
     CHECK(std::system(("diff -r '" + first.out.string() + "' '" + second.out.string() + "' >/dev/null").c_str()) == 0);
 }
 
@@ -202,10 +206,11 @@ TEST_CASE("the wearer begins at the scene's own view, upright, wherever the runt
     CHECK(usual.likeness(5, 20) < kOtherPictureDb);
     CHECK(usual.likeness(5, 55) > kSamePictureDb);  // out of the dark
     CHECK(glm::length(panelInRoom(usual, 5) - panelInRoom(usual, 25)) < 1e-5);
-    // Upright, too: a tilted head sees a tilted scene.
+    // The scene is also upright: a tilted head sees it tilted.
     CHECK(usual.likeness(5, 105) < kOtherPictureDb);
     CHECK(std::abs(panelInRoom(usual, 5).y - panelInRoom(usual, 105).y) < 1e-5);
-    // The first true pose of the head counts: it looks aside, before it was lost, and first its turn alone is known.
+    // The head's first valid pose counts. Here the head looks aside before it is lost, and at first only its
+    // orientation is known.
     const ViewRun away = runClean(work, "away",
                                   kBeginning +
                                       "local position 5 0.3 2 turn 40 0\nhead 0 position 0.4 1.25 -0.3 turn -130 0\n"
@@ -228,7 +233,7 @@ TEST_CASE_FIXTURE(AtWork, "the room begins anew where somebody puts the headset 
     const ViewRun run = runClean(work, "lifted", script, arguments);
     const std::vector<std::string> begins = run.lines("the room now begins where the wearer stands");
     REQUIRE(begins.size() == 2);
-    // As it was on the desk, after a frame in the dark.
+    // As it was on the desk, after a dark frame.
     CHECK(run.likeness(run.frameAt(1.0), run.frameAt(0.2)) > 40.0);
     const auto light = [&](std::size_t frame) {
         const Image seen = run.eye(frame, kLeft);
@@ -251,7 +256,7 @@ TEST_CASE_FIXTURE(AtWork, "with the panel hidden a message is a line before the 
 }
 
 TEST_CASE_FIXTURE(AtWork, "the near plane is in metres of the wearer, however large the scene is") {
-    // A metre is four scene units: the fence, a unit ahead, is nearer than 0.3 m.
+    // A metre is four scene units, so the fence, one unit ahead, is nearer than 0.3 m.
     const std::string camera = "--eye 0,0,0 --look 0,0,3 --up 0,-1,0 --mode two-pass --metres-per-unit 0.25";
     const ViewRun run =
         runClean(work, "near", kBeginning + "at 0.1 exit\n", "builtin:fence --load-first --hide-panel --hide-hands --near 0.3 " + camera);
@@ -263,7 +268,7 @@ TEST_CASE_FIXTURE(AtWork, "the near plane is in metres of the wearer, however la
     CHECK(compare(run.eye(5, kLeft), rendered("1.2")).psnrDb() > 45.0);
     CHECK(compare(run.eye(5, kLeft), rendered("0.3")).psnrDb() < kOtherPictureDb);
     for (const std::size_t side : {0, 1}) {
-        // Depth 0 is infinitely far, so that 1, the far end to OpenXR, is the near plane.
+        // Depth 0 is infinitely far away, so 1, OpenXR's far end, is the near plane.
         CHECK(run.view(5, side).at("depth").at("far").get<double>() == doctest::Approx(0.3));
     }
 }

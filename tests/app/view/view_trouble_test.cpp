@@ -1,10 +1,11 @@
-// Facts about `binosplat view` when the headset misbehaves: it carries on or ends cleanly, within the frames of the script.
+// Facts about `binosplat view` when the headset misbehaves: it carries on or ends cleanly, within the
+// script's frames.
 #include "tests/app/view/view_acts.h"
 
 SUITE(view_trouble) {
 
 const std::string kSmall = "rate 90\nsize 64 64\nframes none\n";
-// Without the end that the script brings about, the frames would.
+// If the end that the script causes never came, the limit of frames would end the run.
 const std::string kOneEye = kOneSplat + " --mode mono --frames 900";
 
 std::size_t countFramesWithLayers(const ViewRun& run, double until_s = 1e9) {
@@ -14,8 +15,8 @@ std::size_t countFramesWithLayers(const ViewRun& run, double until_s = 1e9) {
 
 TEST_CASE("whatever becomes of the session, the head, the hands and the view, it carries on, and ends while the headset is off") {
     const Workplace work;
-    // A runtime that adds Vulkan features of its own, that ends whoever asks it for the mask, and has no headset at first. Sessions are
-    // lost before their first frame, in it, and soon after it.
+    // A runtime that adds Vulkan features of its own, ends any program that asks it for the mask, and has no
+    // headset at first. Sessions are lost before their first frame, during it, and soon after it.
     Acts acts(
         "rate 100\nsize 64 64\nframes none\nvulkan-additions on\nvisibility-mask broken\nno-headset-for 3\n"
         "at 0 lose-session\nat 0.02 lose-session\nat 0.06 lose-session\n");
@@ -46,17 +47,18 @@ TEST_CASE("whatever becomes of the session, the head, the hands and the view, it
     for (const double seconds : {shown, hidden - 0.03, unseen - 0.02, off - 0.02, lost - 0.02, turning, other, end}) {
         CAPTURE(seconds);
         REQUIRE(run.layers(run.frameAt(seconds), "projection").size() == 1);
-        CHECK(run.view(run.frameAt(seconds)).contains("depth"));  // the scene's, not the colour of waiting
+        // The scene, not the colour shown while waiting.
+        CHECK(run.view(run.frameAt(seconds)).contains("depth"));
     }
     CHECK(run.frames.at(run.frameAt(hidden + 0.03)).at("session_state") == "SYNCHRONIZED");
     CHECK(run.frames.at(run.frameAt(unfocused + 0.03)).at("session_state") == "VISIBLE");
     CHECK(run.frames.at(run.frameAt(end)).at("session_state") == "FOCUSED");
-    // No picture is drawn when none is wanted.
+    // No picture is drawn when none is requested.
     CHECK(run.frames.at(run.frameAt(unseen + 0.02)).at("should_render") == false);
     for (const auto& frame : run.frames) { CHECK((frame.at("should_render") == true || frame.at("layers").empty())); }
     // Nor while the headset is off.
     CHECK(run.frameAt(off + 0.29) - run.frameAt(off) < 8);
-    // A lost head shows nothing, one of which only the turn is known stays where it was.
+    // A head without a known pose shows nothing; if only its orientation is known, it stays where it was.
     for (std::size_t frame = run.frameAt(lost + 0.01); frame <= run.frameAt(lost + 0.05); ++frame) {
         CHECK(run.layers(frame, "projection").empty());
     }
@@ -79,9 +81,9 @@ TEST_CASE("a headset that lies on the desk at first, and that is unplugged later
                                  "at 0.5 lose-session\nat 0.8 exit\n",
                                  kOneEye, kValidated + " BINOSPLAT_VISIBILITY_MASK=0");
     checkOrder(run, {"the headset is gone: waiting for it", "the headset is back", "the runtime asked for the end"});
-    // Which the panel says as well, below its widgets.
+    // The panel says so as well, below its widgets.
     const auto pixelOf = [](const glm::dvec2& share) {
-        const Panel panel = panelBefore({0.0315, 0.0, 0.0});  // of the left eye
+        const Panel panel = panelBefore({0.0315, 0.0, 0.0});  // for the left eye
         const glm::dvec3 at = panel.middle + panel.orientation * glm::dvec3((share - 0.5) * glm::dvec2(1.0, -1.0) * kPanelMetres, 0.0);
         return glm::uvec2(128.0 * (glm::dvec2(1.0) + glm::dvec2(at.x, -at.y) / -at.z));
     };
@@ -94,7 +96,7 @@ TEST_CASE("a headset that lies on the desk at first, and that is unplugged later
     CHECK(countFramesWithLayers(run, 0.19) == 0);
     CHECK(countFramesWithLayers(run, 0.5) > 10);
     CHECK(run.layers(run.frames.size() - 4, "projection").size() == 1);
-    // What it would be with the mask.
+    // With the mask, the run would fail.
     CHECK(runView(work, "with", kSmall + "visibility-mask broken\nat 0.1 exit\n", kOneEye, "2>/dev/null").outcome.exit_code != 0);
 }
 
@@ -128,7 +130,8 @@ TEST_CASE_FIXTURE(AtWork, "sessions that are lost again and again before they sh
 
 TEST_CASE("what only decorates and fails is said once and done without, and a first session that is lost is followed by another one") {
     const Workplace work;
-    // The hand points at the panel, which pulses; the fifth action space is the gaze's, the tenth frame has layers.
+    // The hand points at the panel, which pulses. The fifth action space is the gaze's, and the tenth frame
+    // has layers.
     const std::string script = kSmall + "controller right 0 position 0.2 1.2 -0.35 look -0.45 1.5 -0.9\nat 0.3 exit\n";
     const std::string arguments =
         "builtin:one-splat --load-first --mode mono --frames 200" + withConfig(work, "[view]\nrefresh-rate = 72\neye-tracking = true\n");
@@ -161,7 +164,8 @@ TEST_CASE("what only decorates and fails is said once and done without, and a fi
                     "refresh-rate is 72, this headset refuses it (XR_ERROR_FUNCTION_UNSUPPORTED)",
                     "xrEnumerateReferenceSpaces" + failed + "the stage's floor", "xrCreateActionSpace" + failed + "eye tracking",
                     "xrEndFrame" + failed + "hands, rays and the vignette: it refuses a ray"});
-    // The panel is the first to get its images; what hangs beside it gets none. And of a program that crashes each line was written.
+    // The panel gets its images first, and what hangs beside it gets none. If the program crashes, every line
+    // has been written by then.
     const ViewRun crash = runFaulty("crash",
                                     "xrCreateSwapchain:-2:1:1,xrCreateHandTrackerEXT:missing,xrEnumerateDisplayRefreshRatesFB:missing,"
                                     "xrApplyHapticFeedback:crash");
@@ -175,14 +179,14 @@ TEST_CASE("what only decorates and fails is said once and done without, and a fi
 TEST_CASE_FIXTURE(AtWork, "a lost runtime gives one line and exit code 3; without a stage the floor is that of LOCAL_FLOOR") {
     const std::string floor = "stage off\nhead 0 position 0.2 1.45 0.1\n";
     for (const char* time : {"0", "0.02", "0.2"}) {
-        // Elder validation layers do not know that space.
+        // Older validation layers do not know that space.
         const ViewRun run =
             runView(work, "gone", kSmall + floor + fmt::format("at {} lose-instance\n", time), kOneEye, "DISPLAY= BINOSPLAT_VALIDATION=1");
         INFO(run.outcome.errors);
         CHECK(these(run.outcome.exit_code, run.outcome.errors) == these(3, "binosplat: the OpenXR runtime is going away\n"));
         if (std::string(time) == "0.2") { CHECK(run.says("the room now begins where the wearer stands, 1.45 m above the floor")); }
     }
-    // Who does not make it, though it is offered, keeps nobody out.
+    // A runtime that offers the space and does not create it does not prevent the start.
     const ViewRun refused = runView(work, "refused", kSmall + floor + "at 0.1 exit\n", kOneEye);
     CHECK(refused.outcome.exit_code == 0);
     CHECK((refused.says("the room now begins where the wearer stands\n") || refused.says("1.45 m above the floor")));
@@ -208,13 +212,13 @@ TEST_CASE_FIXTURE(AtWork, "while a scene loads frames go on, with the room behin
     CHECK(countFramesWithLayers(run) >= 15);
     CHECK(run.frames.size() < 40);
     CHECK(colourAt(run.eye(3, kLeft), {31, 0})[1] == doctest::Approx(0.9).epsilon(0.01));
-    // Before the first picture, too.
+    // The same before the first picture.
     const ViewRun first = runClean(work, "first", kSmall + "at 0 exit\n", kOneEye);
     CHECK(first.frames.size() < 20);
 }
 
 TEST_CASE_FIXTURE(AtWork, "whoever leaves while a large scene loads does not wait for the rest of it") {
-    // Discs that are all alike, in a file of which no block is stored.
+    // Identical discs, in a file with no blocks on the disk.
     constexpr std::uintmax_t kSplats = 4'000'000;
     std::string header = "ply\nformat binary_little_endian 1.0\n" + fmt::format("element vertex {}\n", kSplats);
     const char* const names[]{"x",       "y",       "z",     "f_dc_0", "f_dc_1", "f_dc_2", "opacity",
@@ -232,7 +236,7 @@ TEST_CASE_FIXTURE(AtWork, "whoever leaves while a large scene loads does not wai
 }
 
 TEST_CASE_FIXTURE(AtWork, "what the lenses hide is not rendered, and nothing else changes") {
-    // 13 x 13 tiles of which the corners lie outside the lens; then wider on one side, with another mask.
+    // 13 x 13 tiles, whose corners lie outside the lens; then wider on one side, with another mask.
     std::vector<double> looks;
     double shared = 0.0;
     const auto runMasked = [&](const std::string& mask) {
@@ -250,7 +254,7 @@ TEST_CASE_FIXTURE(AtWork, "what the lenses hide is not rendered, and nothing els
     };
     const ViewRun without = runMasked("off"), with = runMasked("on");
     CHECK_FALSE(without.says("the lenses hide"));
-    // Seen with either eye, one picture has no tile that both lenses hide.
+    // In a picture for either eye, both lenses hide no tile.
     const std::vector<std::string> said = with.lines(": the lenses hide ");
     REQUIRE(said.size() >= 2);
     CHECK(std::stod(said[0].substr(6)) == between(50.0 * looks[0] + 5, 50.0 * shared));
@@ -267,7 +271,7 @@ TEST_CASE_FIXTURE(AtWork, "what the lenses hide is not rendered, and nothing els
                 continue;
             }
             CHECK(countPixels(a, b, isBlack) > 20 * 120);
-            // Made from the other eye, another choice of tiles is rendered again.
+            // In the eye that is reprojected, other tiles may be rendered.
             if (look == 1 || side == kLeft) { CHECK(countPixels(a, b, isOther) == 0); }
         }
     }
@@ -286,9 +290,10 @@ TEST_CASE_FIXTURE(AtWork, "events that the runtime loses are made up for: what t
         CHECK(run.lines("the OpenXR runtime lost ").size() == (lost.empty() ? 0 : 1));
         return run.lines(": the lenses hide ");
     };
-    // The mask of the new angles, of which an event tells (XrEventDataVisibilityMaskChangedKHR).
+    // The mask for the new angles, announced by an event (XrEventDataVisibilityMaskChangedKHR).
     const std::vector<std::string> told = lines("told", "");
-    CHECK(told.size() == 3);  // that of the old angles, then of the new ones with the old mask, and with theirs
+    // For the old angles, for the new ones with the old mask, and with their own mask.
+    CHECK(told.size() == 3);
     CHECK(lines("lost", fmt::format("BINOSPLAT_XR_LOSE={}", 1000031001)) == told);
 }
 

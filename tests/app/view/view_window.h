@@ -1,4 +1,5 @@
-// The viewer beside its window, on a display without a screen (Xvfb) and with a mouse and keys without hands (xdotool).
+// The viewer beside its window, on a display without a screen (Xvfb), with a mouse and keys that nobody
+// touches (xdotool).
 #pragma once
 
 #include "engine/similarity.h"
@@ -11,15 +12,15 @@
 
 namespace binosplat::test {
 
-inline constexpr int kPatienceMs = 60'000;  // after which a silent program counts as hung
+inline constexpr int kPatienceMs = 60'000;  // a program that is silent for longer counts as hung
 inline constexpr glm::ivec2 kScreenPx(1400, 800);
-// The dominant eye is shown on the left, the panel beside it.
+// The dominant eye is shown on the left, and the panel beside it.
 inline constexpr int kEyePx = 720;
 inline const glm::dvec2 kPanelInWindowPx(kEyePx* static_cast<double>(kPanelPx.x) / kPanelPx.y, kEyePx);
 
 inline bool haveScreen() { return isInstalled("Xvfb", "xvfb") && isInstalled("xdotool", "xdotool"); }
 
-// A command of the shell, in a folder.
+// A shell command, run in a folder.
 class Program {
 public:
     Program(const std::filesystem::path& folder, const std::string& command)
@@ -34,8 +35,8 @@ public:
         pclose(pipe_);
     }
 
-    // What it printed from the last awaited line to the end of the next line with `words` in it; empty if
-    // none comes.
+    // What it printed from the last awaited line up to the end of the next line that contains `words`; empty
+    // if there is none.
     std::string waitFor(const std::string& words) {
         std::size_t found = said_.find(words, read_), end = std::string::npos;
         while (found == std::string::npos || (end = said_.find('\n', found)) == std::string::npos) {
@@ -48,7 +49,7 @@ public:
     }
     [[nodiscard]] int exitCode() {
         while (readMore()) {}
-        kill(process_, SIGKILL);  // if it hangs
+        kill(process_, SIGKILL);  // in case it hangs
         ended_ = true;
         const int status = pclose(pipe_);
         return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
@@ -71,10 +72,10 @@ private:
     bool ended_ = false;
 };
 
-// Xvfb keeps its picture in a file. It ends when all clients have left, even if the test crashed.
+// Xvfb keeps its picture in a file. It ends when all clients have gone, even if the test crashed.
 class Screen {
 public:
-    // It first complains about display numbers that are taken.
+    // Before that it complains about display numbers that are taken.
     explicit Screen(const std::filesystem::path& folder)
         : folder_(folder),
           server_(folder, fmt::format("sh -c 'exec Xvfb -terminate -displayfd 1 -screen 0 {}x{}x24 -fbdir . 2> /dev/null'", kScreenPx.x,
@@ -82,7 +83,8 @@ public:
           name(":" + std::to_string(std::stoi(server_.waitFor("\n")))) {}
 
     [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
-    // An X window dump of 32 bits a pixel: header, colour table, rows; the header's numbers have their highest byte first.
+    // An X window dump with 32 bits per pixel: header, colour table, rows. The header's numbers have their
+    // highest byte first.
     [[nodiscard]] Image picture() const {
         const std::string bytes = textIn(folder_ / "Xvfb_screen0");
         const auto byte = [&](std::size_t at) { return static_cast<std::uint8_t>(bytes.at(at)); };
@@ -114,7 +116,8 @@ public:
     const std::string name;
 };
 
-// What Debian 12's xdotool cannot do, by Xlib, which GLFW loads anyway; for as long as the tests run.
+// What Debian 12's xdotool cannot do, done with Xlib, which GLFW loads anyway; connected as long as the tests
+// run.
 class XConnection {
 public:
     explicit XConnection(const std::string& name) {
@@ -122,19 +125,20 @@ public:
         display_ = find<void* (*)(const char*)>("XOpenDisplay")(name.c_str());
         REQUIRE(display_ != nullptr);
     }
-    // The magnification that desktops tell programs; for as long as a client is connected.
+    // The scale that desktops tell programs; it holds as long as a client is connected.
     void setDpi(int dpi) const {
         const std::string resources = fmt::format("Xft.dpi:\t{}\n", dpi);
         const unsigned long root = find<unsigned long (*)(void*)>("XDefaultRootWindow")(display_);
         constexpr unsigned long kResourceManager = 23, kString = 31;
         change(root, kResourceManager, kString, 8, resources.data(), resources.size());
     }
-    // What a window manager does when the user clicks on the cross: a message that the window may obey.
+    // What a window manager does when the user clicks the cross: it sends a message that the window may obey.
     void clickCross(unsigned long window) const {
-        // Xlib's XClientMessageEvent: its kind (33), sent, to which window, a message, bits of a number, a number.
+        // Xlib's XClientMessageEvent: its kind (33), sent, to which window, a message, bits of a number, a
+        // number.
         send(window, {33, 0, 1, reinterpret_cast<unsigned long>(display_), window, atomOf("WM_PROTOCOLS"), 32, atomOf("WM_DELETE_WINDOW")});
     }
-    // What a window manager notes at a window that it takes from the screen (3), or brings back (1).
+    // What a window manager records on a window that it takes off the screen (3), or brings back (1).
     void minimize(unsigned long window, bool is_gone) const {
         const std::array<unsigned long, 2> state{is_gone ? 3ul : 1ul, 0};
         change(window, atomOf("WM_STATE"), atomOf("WM_STATE"), 32, state.data(), 2);
@@ -148,7 +152,7 @@ public:
         // Xlib's XSelectionEvent: its kind (31), sent, to which window, what, as what, where it lies, when.
         send(window, {31, 0, 1, reinterpret_cast<unsigned long>(display_), window, place, kind, place, 0});
     }
-    // What the window tells a window manager: whether its size may change, and whether its shape stays.
+    // What the window tells a window manager: whether its size may change, and whether it keeps its shape.
     [[nodiscard]] std::pair<bool, bool> resizesInShape(unsigned long window) const {
         // Xlib's XSizeHints.
         struct {
@@ -188,8 +192,8 @@ private:
     void* display_ = nullptr;
 };
 
-// One screen for all, with a mouse and keys. A client stays connected: a server without clients starts
-// afresh, with its mouse in the middle.
+// One screen for all tests, with a mouse and keys. A client stays connected: without clients, the server
+// restarts with its mouse in the middle.
 struct Desk {
     Workplace folder;
     Screen screen{folder.path};
@@ -207,7 +211,7 @@ inline void hands(const std::string& does) {
     REQUIRE(std::system(command.c_str()) == 0);
 }
 
-// Of a window by its name, as xdotool says it: "WINDOW=2097154", "WIDTH=648" and so on, one of them.
+// A number of the window with this name, as xdotool prints it: "WINDOW=2097154", "WIDTH=648" and so on.
 inline unsigned long numberOfWindow(const std::string& name, const std::string& what) {
     const std::string file = (desk().screen.folder() / "number").string();
     hands(fmt::format("search --sync --onlyvisible --name '{}' getwindowgeometry --shell %1 | sed -n 's/^{}=//p' | tee '{}'", name, what,
@@ -219,7 +223,7 @@ inline unsigned long numberOfWindow(const std::string& name, const std::string& 
 }
 inline void clickCross(const std::string& window_name) { desk().connection.clickCross(numberOfWindow(window_name, "WINDOW")); }
 
-// In lock-step it would draw as much as it can while the input is on its way.
+// With the real clock: in lock-step it would draw as fast as it can while the input is on its way.
 inline std::string viewOnDesk(const std::string& arguments, int dpi = 96) {
     return "env DISPLAY=" + desk(dpi).screen.name +
            " WAYLAND_DISPLAY= BINOSPLAT_VALIDATION=1 SIMULATED_OPENXR_CLOCK=real XDG_CONFIG_HOME=\"$PWD/../config\" "
@@ -233,20 +237,20 @@ public:
     Viewer(const Workplace& work, const std::string& script, const std::string& options = "", int dpi = 96)
         : program_((std::ofstream(work.path / "desk.script") << script, work.path),
                    viewOnDesk("builtin:slanted-wall --load-first --mode mono --simulate desk.script --out seen " + options, dpi)) {
-        // While it loads, the panel has another layout.
+        // While the scene loads, the panel has another layout.
         REQUIRE(program_.waitFor("shows builtin:slanted-wall") != "");
-        // The keys go to the window that the mouse is in.
+        // Keys go to the window that contains the mouse.
         hands("search --sync --onlyvisible --name '^binosplat$' mousemove --window %1 20 20");
     }
 
-    // The panel is hidden or shown: by then everything before has reached the viewer.
+    // Hides or shows the panel: once that is done, everything before has reached the viewer.
     std::string tab() {
         hands("key Tab");
         const std::string lines = program_.waitFor("panel = ");
         CHECK(lines != "");
         return lines;
     }
-    // One after the other; each arrives before the next is sent.
+    // One after another; each arrives before the next is sent.
     void handsInTurn(const std::vector<std::string>& all) {
         for (const std::string& does : all) {
             if (&does != &all.front()) { tab(); }
@@ -259,7 +263,7 @@ public:
     void drag(int button, const glm::dvec2& from, const glm::dvec2& to) {
         handsInTurn({moveTo(from), fmt::format("mousedown {}", button), moveTo(to), fmt::format("mouseup {}", button)});
     }
-    // Where the wearer's room is now, as the viewer saves it.
+    // Where the wearer's room is now, according to the viewer's saved settings.
     Similarity placement(const Workplace& work) {
         click(placeOf("Save", true));
         REQUIRE(program_.waitFor("slanted-wall.view.toml") != "");

@@ -1,4 +1,5 @@
-// Facts about the window beside the headset: what mouse, keys and files do there, what it shows, and how it ends.
+// Facts about the window beside the headset: what mouse, keys and files do there, what it shows, and how it
+// ends.
 #include "tests/app/view/view_window.h"
 #include "app/view/window/mirror_window.h"
 #include "tests/app/view/unchanged_shaders.h"
@@ -15,12 +16,12 @@ const std::string kSmall = "rate 60\nsize 96 96\nframes none\n";
 
 std::string onDesk() { return "XDG_CONFIG_HOME=\"$PWD/../config\" WAYLAND_DISPLAY= DISPLAY=" + desk().screen.name; }
 
-// In the fork that is the viewer: files, with a colon between, that are dropped once it shows frames, and others, after a comma,
-// a second and a half later. What a desktop and a window say to each other meanwhile is GLFW's business: here GLFW only says that it has
-// happened.
+// In the fork that is the viewer: files, separated by colons, that are dropped once it shows frames, and,
+// after a comma, files dropped a second and a half later. How a desktop and a window talk to each other
+// during a drop is up to GLFW; here GLFW only reports that it happened.
 constexpr const char* kDropped = "BINOSPLAT_TEST_DROPPED";
 
-// There too: the log of frames for some of which the window's events hold the program up, once.
+// Also in the fork: the log of frames. Once, the window's events hold up the program for some of them.
 constexpr const char* kHeldUntil = "BINOSPLAT_TEST_HELD_UNTIL";
 constexpr std::size_t kFramesHeld = 60;
 
@@ -51,7 +52,7 @@ std::ptrdiff_t countFrames(const std::string& log) {
     return std::count(std::istreambuf_iterator<char>(file), {}, '\n');
 }
 
-// It gives up in the end, for a program in which no frame comes meanwhile.
+// It gives up in the end if the program shows no frame meanwhile.
 void holdUp() {
     static bool is_over = false;
     const char* const log = std::getenv(kHeldUntil);
@@ -65,7 +66,8 @@ void holdUp() {
     std::ofstream(std::string(log) + ".went-on");
 }
 
-// The pixels of the window next to the middles of the eye's, which it shows magnified.
+// The eye's picture, from the window's magnified one: the window's pixels nearest to the middles of the
+// eye's.
 Image eyeInWindow(const Image& screen, glm::uvec2 eye_px) {
     Image eye{eye_px, 3, {}};
     const glm::dvec2 scale = glm::dvec2(kEyePx) / glm::dvec2(eye_px);
@@ -78,7 +80,7 @@ Image eyeInWindow(const Image& screen, glm::uvec2 eye_px) {
     return eye;
 }
 
-// Of the last composed picture.
+// From the last composed picture.
 Image lastLeftEye(const std::filesystem::path& folder) {
     ViewRun run;
     run.out = folder;
@@ -95,23 +97,23 @@ double turnBetween(const Similarity& a, const Similarity& b) {
 }
 glm::dvec3 stepBetween(const Similarity& a, const Similarity& b) { return glm::conjugate(a.orientation) * (b.position - a.position); }
 
-// Escape, or the window's cross, ends it in a headset that does this.
+// Escape, or the window's cross, ends the program in a headset with these script lines.
 void checkEnds(const std::string& lines, bool by_cross, int dpi = 96) {
     CAPTURE(lines);
     const Workplace work;
     Viewer viewer(work, kSmall + lines, "", dpi);
-    // Keys are obeyed, and the panel with them.
+    // Keys work, and the panel follows them.
     viewer.tab();
     viewer.tab();
     if (dpi != 96) {
-        // The window is as large as the desktop wants things to be, and may be made another size in its shape.
+        // The window follows the desktop's scale, and may be resized in its shape.
         const double scale = dpi / 96.0;
         const glm::dvec2 size(numberOfWindow("^binosplat$", "WIDTH"), numberOfWindow("^binosplat$", "HEIGHT"));
         CHECK(size == scale * glm::dvec2(kEyePx + kPanelInWindowPx.x, kEyePx));
         const auto [resizes, keeps_shape] = desk(dpi).connection.resizesInShape(numberOfWindow("^binosplat$", "WINDOW"));
         CHECK(resizes);
         CHECK(keeps_shape);
-        // Its widgets are where they are shown.
+        // The widgets are where they are drawn.
         viewer.handsInTurn(
             {moveTo(scale * (glm::dvec2(kEyePx, 0.0) + placeOf("Vignette", true) * kPanelInWindowPx)), "mousedown 1", "mouseup 1"});
         CHECK(viewer.program().waitFor("vignette = false") != "");
@@ -127,7 +129,7 @@ void checkEnds(const std::string& lines, bool by_cross, int dpi = 96) {
 const std::string kOff = "at -1 worn off\n", kElsewhere = "at -1 visible off\n",
                   kGone = "no-headset-for 1000000 after-loss\nat 0.1 lose-session\n";
 
-// The linker takes these two before GLFW's own.
+// The linker prefers these two to GLFW's own.
 extern "C" GLFWdropfun glfwSetDropCallback(GLFWwindow* window, GLFWdropfun callback) {
     window_of_drop = window;
     tell_of_drop = callback;
@@ -213,20 +215,21 @@ TEST_CASE("mouse and keys do in the window what hands do in the headset, and it 
     Viewer viewer(work, "rate 30\nsize 192 192\nframes all\n", "--shaders '" BINOSPLAT_SOURCE_DIR "/shaders'");
     Program& program = viewer.program();
 
-    // The panel by mouse: a click on a switch, and the same again.
+    // The panel by mouse: a click on a switch, and another on the same one.
     viewer.click(placeOf("Vignette", true));
     CHECK(program.waitFor("vignette = false") != "");
     viewer.click(placeOf("Vignette", true));
     CHECK(program.waitFor("vignette = true") != "");
 
-    // A drag of 100 pixels to the left turns by 0.4 radians, however many frames it takes; the scene follows the mouse, to the left.
+    // A drag of 100 pixels to the left turns by 0.4 radians, in however many frames; the scene follows the
+    // mouse to the left.
     const glm::dvec2 place(300.0, 300.0), beside(400.0, 300.0);
     const Similarity start = viewer.placement(work);
     viewer.drag(1, beside, place);
     const Similarity turned = viewer.placement(work);
     CHECK(turnBetween(start, turned) == doctest::Approx(0.4).epsilon(1e-6));
 
-    // Keys: forward is where the wearer now looks, arrows turn.
+    // Keys: forward is where the wearer now looks, and arrows turn.
     const auto hold = [&](const std::string& key) {
         hands(moveTo(place) + "keydown " + key);
         viewer.tab();
@@ -245,7 +248,7 @@ TEST_CASE("mouse and keys do in the window what hands do in the headset, and it 
     CHECK(stepBetween(right, back).z < -0.01);
     CHECK(turnBetween(back, left) < -0.01);
 
-    // The wheel makes the scene grow about the wearer, the right button tilts it about the line of sight.
+    // The wheel enlarges the scene about the wearer, and the right button tilts it about the line of sight.
     viewer.handsInTurn({moveTo(place), "click 4 click 4"});
     viewer.tab();
     const Similarity grown = viewer.placement(work);
@@ -256,11 +259,11 @@ TEST_CASE("mouse and keys do in the window what hands do in the headset, and it 
     CHECK(glm::angle(glm::conjugate(grown.orientation) * tilted.orientation) == doctest::Approx(0.4).epsilon(1e-4));
     viewer.drag(3, beside, place);
 
-    // R: the room begins where the head is.
+    // R recentres the room at the head.
     hands("key r");
     CHECK(program.waitFor("the room now begins where the wearer stands") != "");
 
-    // What stands in the window is what the dominant eye sees, also by new shaders. It is there some frames later.
+    // The window shows what the dominant eye sees, also after a reload of shaders, some frames later.
     if (viewer.tab().find("panel = true") != std::string::npos) { viewer.tab(); }
     hands("key F5");
     CHECK(program.waitFor(" shaders reloaded in ") != "");
@@ -273,7 +276,7 @@ TEST_CASE("mouse and keys do in the window what hands do in the headset, and it 
     const Image seen = lastLeftEye(work.path / "seen");
     REQUIRE(seen.channels == 3);
     CHECK(compare(eyeInWindow(screen, seen.size_px), seen).psnrDb() > 35.0);
-    // Beside it, the panel, in many colours.
+    // Beside it is the panel, which has many colours.
     std::set<Colour> colours;
     const auto isNew = [&](const Colour& colour, const Colour&) { return colours.insert(colour).second; };
     const Image panel = partOf(screen, {kEyePx, 0}, glm::uvec2(kEyePx + kPanelInWindowPx.x, kEyePx));
@@ -314,7 +317,7 @@ TEST_CASE("Escape, and the window's cross, end the wait for a headset") {
     }
 }
 
-// The last: after a device of its own the test program is forked no more.
+// The last test: once it has a device of its own, the test program is not forked any more.
 TEST_CASE("a picture of a frame that was given up is drawn in the next, and a window that cannot be drawn on is gone") {
     if (!haveScreen()) { return; }
     setenv("DISPLAY", desk().screen.name.c_str(), 1);
@@ -326,7 +329,7 @@ TEST_CASE("a picture of a frame that was given up is drawn in the next, and a wi
     {
         const Context context({.device = {}, .instance_extensions = WindowSystem::instanceExtensions(), .device_extensions = pictures});
         Canvas canvas(context, kPanelPx, vk::Format::eR8G8B8A8Unorm);
-        // Of the panel, too: its letters may change before it is drawn again.
+        // The panel, too: its letters may change before it is drawn again.
         canvas.begin({}, 0.01);
         canvas.giveUp();
         REQUIRE(canvas.font().want("\xd7\x90"));

@@ -1,4 +1,5 @@
-// Facts about scene files that change while they are read, which they do where reading reports its progress.
+// Facts about scene files that change while they are read; here they change when the reader reports its
+// progress.
 #include "engine/builtin/procedural.h"
 #include "engine/files/ply.h"
 #include "engine/files/read_ahead.h"
@@ -12,9 +13,9 @@
 
 SUITE(changing_file) {
 
-// Loads while `change` happens once; the message, or "read".
+// Loads a scene while `change` happens once; returns the error's message, or "read".
 std::string load(const std::string& path, const std::function<void()>& change, Scene* scene = nullptr) {
-    // Time stamps are coarse: what is written from now on is newer.
+    // Time stamps are coarse: make sure that what is written from now on is newer.
     if (fs::is_regular_file(path)) { fs::last_write_time(path, fs::file_time_type::clock::now() - std::chrono::hours(1)); }
     bool changed = false;
     try {
@@ -30,7 +31,7 @@ std::string load(const std::string& path, const std::function<void()>& change, S
     return "read";
 }
 
-// Small files of every format that is one file, and a PLY of several of the reader's blocks.
+// Small files of every format that consists of one file, and a PLY that fills several of the reader's blocks.
 std::vector<std::string> writeFiles(const Folder& folder) {
     std::vector<std::string> paths{folder.write("ascii.ply", makePly(9, true).bytes()), folder.write("packed.ply", makeCompressedPly()),
                                    folder.write("a.splat", makeSplatFile()), folder.write("a.spz", gzip(makeSpz(3).bytes())),
@@ -45,7 +46,7 @@ std::vector<std::string> writeFiles(const Folder& folder) {
 TEST_CASE("a file that is cut off, grows or is written to while it is read is refused; one that is removed or replaced is read as it was") {
     const Folder folder;
     for (const std::string change : {"cut", "grow", "write", "remove", "replace"}) {
-#ifdef _WIN32  // where a file that is open stays where it is
+#ifdef _WIN32  // on Windows, a file that is open stays where it is
         if (change.starts_with("re")) { continue; }
 #endif
         for (const std::string& path : writeFiles(folder)) {

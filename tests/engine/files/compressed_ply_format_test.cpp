@@ -1,4 +1,5 @@
-// PlayCanvas compressed PLY: values worked out by hand, a real file, and headers that do not fit.
+// PlayCanvas compressed PLY: values worked out by hand, a real file, and headers that do not match their
+// data.
 #include "tests/engine/files/hostile_scenes.h"
 #include "tests/shared_data.h"
 
@@ -8,21 +9,21 @@ double shown(const Scene& scene, std::size_t at) { return 0.5 + 0.28209479 * sta
 
 TEST_CASE_FIXTURE(InFolder, "words lie between the bounds of their chunk") {
     LoadNotes notes;
-    // x: all of 11 bits; y: none of 10; z: all of 11.
+    // x: all 11 bits set; y: none of 10; z: all of 11.
     const CompressedPly packed{.splats = 257, .position = 0x7ffu << 21 | 0x7ffu, .colour = 0xff0080ffu};
     const Scene scene = loadScene(folder.write("a.ply", packed.bytes()), 0, &notes);
     REQUIRE(scene.size() == 257);
     CHECK(these(scene.positions[0], scene.positions[255], scene.positions[256]) ==
           these(glm::vec3(1.0f, -2.0f, 8.0f), glm::vec3(1.0f, -2.0f, 8.0f), glm::vec3(2.0f, -2.0f, 8.0f)));
-    // Scales exp(-6), exp(-5), exp(-4): the first is dropped, the two others follow it.
+    // Scales exp(-6), exp(-5), exp(-4): the first is dropped, and the other two follow.
     CHECK(these(scene.scales[0].x, scene.scales[0].y, scene.opacities[0]) ==
           these(doctest::Approx(std::exp(-5.0)), doctest::Approx(std::exp(-4.0)), 1.0f));
-    // Colour between bounds: r all of -0.5 to 1.5, g none of 0 to 1, b 128/255 of 0 to 2.
+    // Colours between bounds: r is the maximum of -0.5 to 1.5, g the minimum of 0 to 1, b 128/255 of 0 to 2.
     CHECK(these(shown(scene, 0), shown(scene, 1), shown(scene, 2)) ==
           these(doctest::Approx(1.5), doctest::Approx(0.0), doctest::Approx(256.0 / 255.0)));
     CHECK(these(notes.three_scales, notes.median_flatness, notes.sh_degree_in_file) == these(true, doctest::Approx(std::exp(-1.0)), 0));
 
-    // Colours without bounds are from 0 to 1; zero opacity stays zero.
+    // Colours without bounds go from 0 to 1; an opacity of zero stays zero.
     const Scene plain = loadScene(folder.write("a.ply", CompressedPly{.colour = 0xff008000u, .has_colour_bounds = false}.bytes()));
     CHECK(these(shown(plain, 0), shown(plain, 1), shown(plain, 2)) ==
           these(doctest::Approx(1.0), doctest::Approx(0.0), doctest::Approx(128.0 / 255.0)));
@@ -31,7 +32,7 @@ TEST_CASE_FIXTURE(InFolder, "words lie between the bounds of their chunk") {
 
 TEST_CASE_FIXTURE(InFolder, "rotation words name their largest component") {
     for (std::uint32_t largest = 0; largest < 4; ++largest) {
-        // Scales -2, -1, -4 at their bounds keep z the shortest, so that the quaternion is the stored one.
+        // With scales of -2, -1 and -4, z stays the shortest, so the quaternion is the stored one.
         const CompressedPly packed{.rotation = largest << 30 | CompressedPly().rotation, .scale = 0x7ffu << 21 | 0x3ffu << 11};
         const glm::quat q = loadScene(folder.write("a.ply", packed.bytes())).rotations[0];
         const float stored[] = {q.w, q.x, q.y, q.z};

@@ -1,4 +1,4 @@
-// The same scene as SOG and as PLY: what each format keeps of it.
+// The same scene as SOG and as PLY: what each format preserves of it.
 #include "app/summary/survey.h"
 #include "engine/files/scene_targets.h"
 #include "engine/files/sog.h"
@@ -17,7 +17,7 @@ Scene loadFlat(const std::filesystem::path& path) {
     return scene;
 }
 
-// Of the float64 twin's pictures, against a peak of 1.
+// Computed from the float64 twin's pictures, with a peak of 1.
 double psnrDb(const Scene& a, const Scene& b, const glm::dvec3& place, const glm::dvec3& look) {
     Eye eye;
     eye.size_px = {320, 320};

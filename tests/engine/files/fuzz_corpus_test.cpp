@@ -1,4 +1,4 @@
-// The inputs that fuzzing kept, replayed.
+// Replays the inputs that fuzzing kept.
 #include "tests/engine/files/ply_files.h"
 #include "tests/fuzz/targets.h"
 

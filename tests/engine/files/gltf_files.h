@@ -8,7 +8,7 @@
 
 namespace binosplat::test {
 
-// As the format numbers component types.
+// The format's numbers for component types.
 inline constexpr int kGltfInt8 = 5120, kGltfUint8 = 5121, kGltfInt16 = 5122, kGltfUint16 = 5123, kGltfFloat = 5126;
 
 class GltfText {
@@ -17,7 +17,8 @@ public:
                 other_primitives, other_keys;
     int mode = 0;
 
-    // An attribute of the splats' primitive; those of the extension by the end of their name.
+    // Adds an attribute to the splats' primitive; an attribute of the extension is named by the end of its
+    // name.
     void add(const std::string& name, const std::string& type, std::vector<double> values, int component = kGltfFloat,
              bool normalized = false) {
         const std::size_t width = type == "SCALAR" ? 1 : type == "VEC3" ? 3 : 4;
@@ -35,7 +36,7 @@ public:
     void remove(const std::string& name) { attributes_.erase(name); }
 
     [[nodiscard]] const std::string& binary() const { return binary_; }
-    // `buffer` is the only one, without its length.
+    // `buffer` describes the only buffer, without its length.
     [[nodiscard]] std::string json(const std::string& buffer) const {
         std::vector<std::string> attributes;
         for (const auto& [name, index] : attributes_) { attributes.push_back(fmt::format("\"{}\":{}", name, index)); }

@@ -1,4 +1,4 @@
-// glTF with KHR_gaussian_splatting: values, nodes, buffers, what is left out and what is refused.
+// glTF with KHR_gaussian_splatting: values, nodes, buffers, what is ignored and what is refused.
 #include "engine/files/quantized.h"
 #include "engine/files/scene_series.h"
 #include "engine/files/spz.h"
@@ -56,7 +56,7 @@ TEST_CASE_FIXTURE(InFolder, "a glTF holds what a PLY of the same splats holds, w
 
 TEST_CASE_FIXTURE(InFolder, "a file with its values in turn, and one with other things in it, is read as well") {
     const Scene expected = loadScene(folder.write("same.ply", makePly(0, true).bytes()));
-    // One row of 56 bytes a splat: position, rotation, scale, opacity, colour.
+    // One row of 56 bytes per splat: position, rotation, scale, opacity, colour.
     const GltfText gltf = makeGltf(0);
     std::string rows, views, accessors;
     const std::size_t widths[] = {12, 16, 12, 4, 12}, starts[] = {0, 36, 84, 120, 132};
@@ -109,7 +109,7 @@ TEST_CASE_FIXTURE(InFolder, "nodes place their splats: positions, shapes and col
             }
         }
     }
-    // Stretched unevenly: the ellipsoids are stretched exactly.
+    // With uneven scales, the ellipsoids are stretched exactly.
     GltfText gltf = makeGltf(0);
     gltf.nodes = R"([{"children":[1],"scale":[2,1,-0.25]},{"mesh":0,"rotation":[0.5,0.5,0.5,0.5],"translation":[1,2,3]}])";
     const auto [notes, scene] = readScene(folder.write("stretched.glb", gltf.glb()));
@@ -134,12 +134,12 @@ TEST_CASE("a node that lies far from 0, as those of 3D Tiles do, keeps its splat
         const glm::dvec3 expected = turn * glm::dvec3(plain.positions[i]) + away;
         CHECK(glm::distance(glm::dvec3(scene.positions[i]) + scene.origin, expected) < 1e-6);
     }
-    // All files of a moving scene count from the first one's.
+    // All files of a moving scene take the first one's origin.
     (void)folder.write("f1.glb", gltf.glb());
     (void)folder.write("f2.glb", gltf.glb());
     const std::string all = std::filesystem::path(folder.file("f1.glb")).parent_path().string();
     CHECK(SceneSeries(all).load(1, notes).origin == scene.origin);
-    // Nearer than that it stays where it is.
+    // A scene that is nearer than that keeps its coordinates.
     gltf.nodes = R"([{"mesh":0,"translation":[100,0,-9000]}])";
     CHECK(loadScene(folder.write("near.glb", gltf.glb())).origin == glm::dvec3(0.0));
 }
@@ -156,7 +156,7 @@ TEST_CASE_FIXTURE(InFolder, "several primitives and nodes are one scene, of the 
     REQUIRE(scene.size() == 12);
     CHECK(these(scene.sh_degree, scene.positions[0].x, scene.positions[6].x) == these(1, 11.0f, 1.0f));
     CHECK(scene.sh[3] != 0.0f);           // of the first primitive
-    CHECK(scene.sh[3 * 12 + 3] == 0.0f);  // of the second, which has the constant band alone
+    CHECK(scene.sh[3 * 12 + 3] == 0.0f);  // of the second, which has only the constant band
     CHECK(scene.sh[3 * 12 + 1] == scene.sh[1]);
 }
 
@@ -243,7 +243,8 @@ TEST_CASE("the fifteen cases of the conformance matrix give the values that they
             CHECK(all.sh[48 * node + i] == doctest::Approx(i < 3 ? in_all : stored).epsilon(1e-5));
         }
         CHECK(these(scene.is_linear, scene.positions[0]) == these((name != "scale_f32"), glm::vec3(1.0f, 2.0f, 3.0f)));
-        // Half a turn about x, which changes no covariance along the axes; all scales are logarithms of the draft.
+        // Half a turn about x, which changes no covariance along the axes. As in the draft, all scales are
+        // logarithms.
         const std::map<std::string, glm::dvec3> scales{{"scale_f32", {0.2, -0.1, 0.7}},
                                                        {"scale_i8", {1, -2, 3}},
                                                        {"scale_i8_norm", {1, 0, -1}},

@@ -1,4 +1,4 @@
-// Broken scene files of every format: each loads into a whole scene or is refused in one line.
+// Broken scene files of every format: each either loads into a complete scene or is refused in one line.
 #include "engine/files/sog.h"
 #include "tests/engine/files/gltf_files.h"
 #include "tests/engine/files/hostile_scenes.h"
@@ -10,14 +10,15 @@
 
 SUITE(hostile_scene) {
 
-// A good file, or a part of one, that is broken, and how.
+// A good file, or a part of one, and how to break it.
 struct Target {
     std::string name, good;
-    int changes = 1000;                  // bits are flipped so many times, and bytes are spliced as often
-    std::size_t numbers = 0, lines = 0;  // of so many bytes the numbers are replaced and the lines shuffled
-    bool must_be_whole = true;           // cut off at any length it is refused
+    int changes = 1000;                  // bits are flipped this many times, and bytes are spliced as often
+    std::size_t numbers = 0, lines = 0;  // in this many bytes, numbers are replaced and lines shuffled
+    bool must_be_whole = true;           // it is refused whatever length it is cut to
     std::function<std::string(const std::string&)> wrap = [](const std::string& bytes) { return bytes; };
-    std::string file = "broken", source = "broken";  // what is written, and what is loaded then
+    // The file that is written, and the one that is then loaded.
+    std::string file = "broken", source = "broken";
     std::size_t most_splats = 1000;
     std::vector<std::string> more{};
 };
@@ -45,17 +46,19 @@ void checkWhole(const Scene& scene, std::size_t most_splats) {
     if (!whole) { FAIL_CHECK("a scene with values that are not to be"); }
 }
 
-// Of what could be broken one in `stride` is; of all more than one in `share` is to be refused.
+// One in `stride` of the possible breaks is tried; more than one in `share` of all must be refused.
 void attack(const Folder& folder, const std::vector<Target>& targets, std::size_t stride, std::size_t share, long most_mebibytes) {
     std::size_t inputs = 0, refused = 0;
     for (const Target& target : targets) {
         (void)folder.write(target.file, target.wrap(target.good));
         CHECK_MESSAGE(loadError(folder.file(target.source)).empty(), target.name);
-        if (const char* const seeds = std::getenv("BINOSPLAT_WRITE_SEEDS")) {  // a folder, for tests/fuzz/run.sh --keep
+        // A folder, for tests/fuzz/run.sh --keep.
+        if (const char* const seeds = std::getenv("BINOSPLAT_WRITE_SEEDS")) {
             std::ofstream(std::filesystem::path(seeds) / target.name, std::ios::binary) << target.wrap(target.good);
         }
         Tally tally;
-        std::size_t count = 0, step = stride * (1 + target.good.size() / 2000);  // a long file is cut off at fewer lengths
+        // A long file is cut at fewer lengths.
+        std::size_t count = 0, step = stride * (1 + target.good.size() / 2000);
         const Attempt attempt = [&](const std::string& what, const std::string& bytes) {
             if (count++ % step != 0) { return; }
             (void)folder.write(target.file, target.wrap(bytes));
@@ -97,7 +100,7 @@ std::vector<Target> sceneTargets() {
         KsplatText text;
         text.level = level;
         text.degrees = {1, 2};
-        // Most of the headers is empty: what is not is attacked.
+        // Most of a header is empty, so the rest is attacked.
         const Target whole{.name = fmt::format(".ksplat {}", level), .good = text.bytes()};
         for (const std::size_t begin : {0, 4096, 4096 + 1024}) { targets.push_back(partOf(whole, begin, begin + 44)); }
         targets.push_back(partOf(whole, 4096 + 2048));
@@ -133,7 +136,7 @@ std::vector<Target> sceneTargets() {
     return targets;
 }
 
-constexpr std::size_t kFew = kSanitized ? 1 : 7;  // no divisor of what there is of each kind
+constexpr std::size_t kFew = kSanitized ? 1 : 7;  // shares no divisor with the number of breaks of any kind
 
 TEST_CASE("broken files of every format but SOG, some of them") { attack(Folder(), sceneTargets(), kFew, 4, 512); }
 TEST_CASE("broken files of every format but SOG" * nightly()) { attack(Folder(), sceneTargets(), 1, 4, 512); }
@@ -174,14 +177,14 @@ std::vector<Target> sogTargets(const Folder& folder) {
          .numbers = levels.size(),
          .file = "streamed/lod-meta.json",
          .source = "streamed",
-         .most_splats = 32,  // of four chunks
+         .most_splats = 32,  // four chunks of them
          .more = {std::string(1'000'000, '['), R"({"lodLevels":1,"tree":)" + std::string(100'000, '[') + std::string(100'000, ']') + "}"}});
     for (const std::string picture : {"l.webp", "n.webp", "q.webp", "p.webp"}) {
         (void)writeSogFolder(folder, picture, makeSog());
         targets.push_back({.name = picture,
                            .good = makeSog().at(picture),
                            .changes = 400,
-                           .must_be_whole = false,  // its last byte may be there to make an even number
+                           .must_be_whole = false,  // its last byte may only be padding to an even number
                            .file = picture + "/" + picture,
                            .source = picture,
                            .most_splats = 9});
@@ -202,7 +205,8 @@ std::vector<Target> sogTargets(const Folder& folder) {
                            .good = makeZip(withShortText(makeSog(2, false)), are_deflated),
                            .most_splats = 9};
         targets.push_back(whole);
-        targets.push_back(partOf(whole, whole.good.find("PK\x01\x02")));  // most of the harm is done in the directory at the end
+        // Most of the damage is done in the directory at the end.
+        targets.push_back(partOf(whole, whole.good.find("PK\x01\x02")));
         targets.back().changes = 800;
     }
     // As `convert` writes them, alone and as chunks.

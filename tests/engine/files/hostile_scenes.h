@@ -5,10 +5,11 @@
 
 namespace binosplat::test {
 
-// A compressed PLY of `splats` times the same words; chunk i has its positions from i to i + 1 on x.
+// A compressed PLY of `splats` times the same words; the positions of chunk i go from i to i + 1 on x.
 struct CompressedPly {
     std::size_t splats = 1;
-    std::uint32_t position = 0, rotation = 512u << 20 | 512u << 10 | 512u;  // components of 0.5/1023 sqrt(2), w the largest
+    // Components of 0.5/1023 sqrt(2), w the largest.
+    std::uint32_t position = 0, rotation = 512u << 20 | 512u << 10 | 512u;
     std::uint32_t scale = 0, colour = 0xffffffffu;
     std::vector<int> rest{};
     bool has_colour_bounds = true;

@@ -7,14 +7,14 @@
 
 namespace binosplat::test {
 
-// Sections of five splats each, in buckets of two: two full ones and one that is not.
+// Sections of five splats each, in buckets of two: two full buckets and one that is not full.
 struct KsplatText {
     int level = 1;
-    std::vector<int> degrees{1};  // of the harmonics, by section
+    std::vector<int> degrees{1};  // degree of the harmonics, by section
     float least_harmonic = -2.0f, most_harmonic = 2.0f;
 
     static constexpr int kSplats = 5;
-    // Of splat i of a section; on the grid of level 1, whose steps are 1/32767 of 5.
+    // Of splat i in a section, on the grid of level 1, whose steps are 1/32767 of 5.
     static double coordinate(int section, int i, int axis) {
         return bucketCentre(section, i / 2, axis) + 5.0 * (1000.0 * i - 2000.0 * axis) / 32767.0;
     }
@@ -49,7 +49,7 @@ struct KsplatText {
 private:
     [[nodiscard]] std::string sectionData(int section) const {
         std::string data;
-        appendTyped(data, "uint", 1, Encoding::kLittle);  // splats of the last bucket
+        appendTyped(data, "uint", 1, Encoding::kLittle);  // splats in the last bucket
         for (int bucket = 0; bucket < 3; ++bucket) {
             for (int axis = 0; axis < 3; ++axis) { appendTyped(data, "float", bucketCentre(section, bucket, axis), Encoding::kLittle); }
         }

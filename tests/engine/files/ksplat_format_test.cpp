@@ -1,4 +1,4 @@
-// .ksplat: values in every level and degree, buckets and sections, and what does not fit.
+// .ksplat: values at every level and degree, buckets and sections, and what is refused.
 #include "tests/engine/files/ksplat_files.h"
 #include "tests/shared_data.h"
 
@@ -14,7 +14,7 @@ void checkContents(const Scene& scene, const KsplatText& text, int sh_degree) {
         for (int axis = 0; axis < 3; ++axis) {
             CHECK(scene.positions[splat][axis] == doctest::Approx(KsplatText::coordinate(section, i, axis)).epsilon(1e-5));
         }
-        // The first of three growing scales becomes the last, and the others follow it.
+        // The first of three growing scales becomes the last, and the others move up.
         CHECK(scene.scales[splat].x == doctest::Approx(KsplatText::scale(i, 1)));
         CHECK(scene.scales[splat].y == doctest::Approx(KsplatText::scale(i, 2)));
         CHECK(scene.thicknesses[splat] == doctest::Approx(KsplatText::scale(i, 0)));
@@ -48,11 +48,11 @@ TEST_CASE("a .ksplat of each level gives what its bytes mean: sections of each d
             CHECK(these(notes.lines.empty(), notes.three_scales) == these(true, true));
             if (degrees.size() == 1) { continue; }
             std::string shorter = text.bytes();
-            shorter[4096 + 1024] = 3;  // of five splats in the second section
+            shorter[4096 + 1024] = 3;  // instead of five splats in the second section
             CHECK(loadScene(folder.write("shorter", shorter)).size() == 13);
         }
     }
-    // Without bounds harmonics in bytes lie between -1.5 and 1.5.
+    // Without bounds, harmonics in bytes lie between -1.5 and 1.5.
     KsplatText text;
     text.level = 2;
     text.least_harmonic = text.most_harmonic = 0.0f;

@@ -13,7 +13,7 @@ inline std::string littleWord(std::uint64_t value, int bytes = 4) {
     return text;
 }
 
-// Zlib's `window_bits` name the wrapping: MAX_WBITS + 16 is gzip, -MAX_WBITS is none.
+// Zlib's `window_bits` choose the wrapping: MAX_WBITS + 16 is gzip, -MAX_WBITS is none.
 inline std::string deflated(const std::string& bytes, int window_bits, int level = 9) {
     std::string packed(compressBound(static_cast<uLong>(bytes.size())) + 64, '\0');
     z_stream stream{};

@@ -8,7 +8,7 @@
 
 namespace binosplat::test {
 
-// A folder of its own for each test case, removed afterwards.
+// A folder for each test case, removed afterwards.
 class Folder {
 public:
     Folder() : path_(std::filesystem::temp_directory_path() / fmt::format("binosplat_scene_test_{}", ::getpid())) {
@@ -19,7 +19,8 @@ public:
     Folder& operator=(const Folder&) = delete;
     [[nodiscard]] std::string file(const std::string& name) const { return (path_ / name).string(); }
     [[nodiscard]] std::string write(const std::string& name, const std::string& bytes) const {
-        std::filesystem::remove(file(name));  // some file systems wait for the disk when a file is truncated and written again
+        // Some file systems wait for the disk when a file is truncated and rewritten.
+        std::filesystem::remove(file(name));
         std::ofstream(file(name), std::ios::binary) << bytes;
         return file(name);
     }
@@ -68,7 +69,8 @@ inline void appendTyped(std::string& bytes, const std::string& type, double valu
     }
 }
 
-// A PLY file as other programs would write it; `before` and `after` are further elements (header lines and data).
+// A PLY file as other programs would write it; `before` and `after` are additional elements (header lines and
+// data).
 struct PlyText {
     std::vector<Column> columns;
     Encoding encoding = Encoding::kLittle;
@@ -104,7 +106,7 @@ struct PlyText {
     }
 };
 
-// Three plausible splats with numbers that are exact in float32.
+// Three plausible splats whose numbers are exact in float32.
 inline PlyText makePly(int rest_count = 0, bool three_scales = false) {
     PlyText ply;
     const auto add = [&](const std::string& name, double a, double b, double c) { ply.columns.push_back({name, "float", {a, b, c}}); };
@@ -130,7 +132,7 @@ inline std::string loadError(const std::string& source, std::uint64_t splats = 0
 }
 inline std::string loadError(const Folder& folder, const std::string& bytes) { return loadError(folder.write("broken.ply", bytes)); }
 
-// `action` reports progress from 0 to 1, at least this often, and ends when the callback throws.
+// `action` reports progress from 0 to 1 at least this often, and stops when the callback throws.
 inline void checkProgress(std::size_t times, const std::function<void(const Progress&)>& action) {
     std::vector<double> told;
     action([&](double share) { told.push_back(share); });
@@ -146,7 +148,7 @@ inline void checkProgress(std::size_t times, const std::function<void(const Prog
     }
 }
 
-// A message with the slashes of its paths turned, which Windows writes the other way.
+// A message with the backslashes that Windows writes in paths turned into slashes.
 inline std::string withSlashes(std::string text) {
     if constexpr (std::filesystem::path::preferred_separator != '/') { std::replace(text.begin(), text.end(), '\\', '/'); }
     return text;
@@ -154,7 +156,7 @@ inline std::string withSlashes(std::string text) {
 inline bool contains(const std::string& text, const std::string& part) {
     return withSlashes(text).find(withSlashes(part)) != std::string::npos;
 }
-// There is one line, with this part.
+// There is exactly one line, and it contains this part.
 inline void checkSays(const std::vector<std::string>& lines, const std::string& part) {
     REQUIRE(lines.size() == 1);
     CHECK_MESSAGE(contains(lines[0], part), lines[0]);
@@ -184,7 +186,7 @@ inline std::string replaced(std::string text, const std::string& from, const std
     return text.replace(at, from.size(), to);
 }
 
-// A script in which `> FROM => TO` reads `good` with FROM replaced by TO; `read` returns the error, if there is one.
+// A script in which `> FROM => TO` reads `good` with FROM replaced by TO; `read` returns the error, if any.
 inline void runFaults(const std::string& good, const std::function<std::string(const std::string& broken)>& read) {
     runScript({[&](const std::string& edit, const std::string&) {
         const std::string error = read(edited(good, edit));
@@ -192,7 +194,7 @@ inline void runFaults(const std::string& good, const std::function<std::string(c
     }});
 }
 
-// In a good file `from` is replaced by `to`; the error on reading it must contain `message`.
+// Replaces `from` by `to` in a good file; the error from reading it must contain `message`.
 struct Fault {
     std::string from, to, message;
 };

@@ -1,4 +1,5 @@
-// PLY files as other programs write them: what is read of each, what is said of it, and what is no scene.
+// PLY files as other programs write them: what is read from each, what the notes say about it, and what is
+// not a scene.
 #include "tests/engine/scene/scene_measures.h"
 
 SUITE(ply_of_others) {
@@ -101,10 +102,10 @@ TEST_CASE_FIXTURE(InFolder, "a byte order mark, CloudCompare's names and harmoni
     checkSameScene(loadScene(folder.write("marked.ply", "\xef\xbb\xbf" + makePly(45, true).bytes())), plain);
     PlyText renamed = makePly(45, true);
     for (Column& column : renamed.columns) { column.name.insert(0, column.name.size() > 2 ? "scalar_" : ""); }
-    renamed.columns.push_back({"scalar_x", "float", {7.0, 8.0, 9.0}});  // not the position
+    renamed.columns.push_back({"scalar_x", "float", {7.0, 8.0, 9.0}});  // this is not the position
     checkSameScene(loadScene(folder.write("renamed.ply", renamed.bytes()), 0, &notes), plain);
     CHECK(notes.lines.empty());
-    // Of each channel's 24 values the first 15.
+    // The first 15 of each channel's 24 values.
     PlyText larger = makePly(72, true);
     for (int i = 0; i < 72; ++i) {
         std::vector<double>& values = larger[fmt::format("f_rest_{}", i)].values;
@@ -133,12 +134,12 @@ TEST_CASE_FIXTURE(InFolder, "positions of float64 far from 0 keep their detail, 
             CHECK(glm::distance(glm::dvec3(scene.positions[i]), expected) < 1e-7);
             CHECK(glm::distance(glm::dvec3(again.positions[i]), expected) < 1e-7);
         }
-        if (encoding == Encoding::kAscii) {  // a blank line is none
+        if (encoding == Encoding::kAscii) {  // a blank line does not count
             std::string text = ply.bytes();
             text.insert(text.find("end_header\n") + 11, "\n");
             CHECK(loadScene(folder.write("blank.ply", text)).positions == scene.positions);
         }
-        // What is float32 in the file has lost its detail already, and stays where it is.
+        // A float32 in the file has already lost its detail, so it stays as it is.
         for (const char* name : {"x", "y", "z"}) { ply[name].type = "float"; }
         const Scene near = loadScene(folder.write("float.ply", ply.bytes()));
         CHECK(these(near.origin, near.positions[2]) == these(glm::dvec3(0.0), glm::vec3(431249.5f, -5412001.0f, 209.0f)));
@@ -154,9 +155,9 @@ TEST_CASE_FIXTURE(InFolder, "of splats that move and fade the still of one momen
     for (const Encoding encoding : kEncodings) {
         PlyText ply = makeIn(encoding, 9, true);
         const auto add = [&](const std::string& name, double a, double b, double c) { ply.columns.push_back({name, "float", {a, b, c}}); };
-        add("trbf_center", 0.25, 0.5, 1.0);  // shown at the median
+        add("trbf_center", 0.25, 0.5, 1.0);  // shown at the median time
         add("trbf_scale", std::log(0.25), 0.0, 0.0);
-        add("motion_0", 2.0, 9.0, 4.0);  // the speed along x, the square along z, the cube along y
+        add("motion_0", 2.0, 9.0, 4.0);  // linear along x, quadratic along z, cubic along y
         add("motion_5", 16.0, 9.0, 0.0);
         add("motion_7", 0.0, 9.0, 8.0);
         add("omega_1", 8.0, 9.0, 0.0);
@@ -176,7 +177,7 @@ TEST_CASE_FIXTURE(InFolder, "of splats that move and fade the still of one momen
     const Scene faded = load(fading, "(t, scale_t): shown as the still of one moment, 1");
     CHECK(faded.opacities[0] == doctest::Approx(0.5 * std::exp(-0.5)));
     CHECK(faded.opacities[2] == doctest::Approx(std::exp(-0.5) / (1.0 + std::exp(2.0))));
-    // Without harmonics Spacetime Gaussians store colours, or their logits.
+    // Without harmonics, Spacetime Gaussians store colours, or their logits.
     PlyText coloured = makePly();
     coloured.columns.push_back({"trbf_center", "float", {0.0, 0.0, 0.0}});
     const auto shown = [](const Scene& scene, std::size_t i) { return 0.5 + 0.28209479177387814 * double(scene.sh[i]); };
@@ -201,7 +202,7 @@ TEST_CASE_FIXTURE(InFolder, "a point cloud or a mesh is named as what it is, wit
         CHECK(contains(error(), "point_cloud/iteration_N/point_cloud.ply"));
         ply.header_after = "element face 1\nproperty list uchar int vertex_indices\n";
         CHECK(contains(error(), "a mesh (2 vertices, with colours, with normals)"));
-        ply.columns.push_back({"opacity", "float", {0.0, 1.0}});  // a splat scene that lacks the rest
+        ply.columns.push_back({"opacity", "float", {0.0, 1.0}});  // a splat scene that lacks everything else
         CHECK(contains(error(), "no property f_dc_0"));
     }
     PlyText anchors = makePly();

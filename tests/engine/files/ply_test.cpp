@@ -1,4 +1,5 @@
-// What a PLY file means: values, encodings, orders, types; what is written reads back; and what is said of a broken one.
+// What a PLY file means: values, encodings, orders, types; that written files read back; and what is reported
+// about broken ones.
 #include "engine/files/ply.h"
 #include "app/summary/describe.h"
 #include "engine/builtin/procedural.h"
@@ -52,7 +53,8 @@ TEST_CASE_FIXTURE(InFolder, "SH bands that are all zero are left out, even if a 
     CHECK(notes.sh_degree_in_file == 3);
     checkSays(notes.lines, "SH bands above degree 0");
 
-    // 700 splats are three blocks; the only coefficient of band 2 is in the last splat, so rows stored before are widened.
+    // 700 splats make three blocks. Only the last splat has a coefficient of band 2, so rows that were stored
+    // before must be widened.
     for (Column& column : ply.columns) { column.values.resize(700, column.values[0]); }
     ply["f_rest_0"].values[3] = 7.0;     // channel 0, k = 1
     ply["f_rest_21"].values[699] = 9.0;  // channel 1, k = 7
@@ -60,13 +62,14 @@ TEST_CASE_FIXTURE(InFolder, "SH bands that are all zero are left out, even if a 
     REQUIRE(scene.sh_degree == 2);
     REQUIRE(scene.sh.size() == 700 * 27);
     CHECK(these(scene.sh[3 * 27 + 3 * 1 + 0], scene.sh[699 * 27 + 3 * 7 + 1]) == these(7.0f, 9.0f));
-    CHECK(std::count(scene.sh.begin(), scene.sh.end(), 0.0f) == 700 * 25 - 2 + 0);  // f_dc_1 and f_dc_2 are not zero
+    // f_dc_1 and f_dc_2 are not zero
+    CHECK(std::count(scene.sh.begin(), scene.sh.end(), 0.0f) == 700 * 25 - 2 + 0);
 }
 
 TEST_CASE("blocks that are read ahead on a thread of their own come all and in order, and what goes wrong in one is said") {
     const Folder folder;
     LoadNotes notes;
-    // Around one block, one batch of eight, and the two from which on there is a thread.
+    // Around one block, one batch of eight, and two batches, from which on a thread is used.
     for (const std::size_t splats : {1u, 255u, 256u, 257u, 2048u, 2049u, 4096u, 4097u, 6145u, 20'000u}) {
         for (const std::size_t without_sh : {splats / 5, splats - 1, splats}) {
             INFO("splats ", splats, ", without_sh ", without_sh);
@@ -89,7 +92,7 @@ TEST_CASE("blocks that are read ahead on a thread of their own come all and in o
         CHECK(contains(loadError(folder, header + rows), fmt::format("splat {} of 20000: property x is 'x'", broken)));
         rows[broken * row.size()] = '0';
     }
-    // Whoever stops taking waits for nothing.
+    // A reader that stops taking blocks waits for nothing.
     (void)folder.write("whole.ply", header + rows);
     checkProgress(2, [&](const Progress& progress) { (void)loadScene(folder.file("whole.ply"), 0, nullptr, progress); });
 }
@@ -107,7 +110,8 @@ TEST_CASE_FIXTURE(InFolder, "of three scales the shortest becomes the last, the 
         const int u = static_cast<int>((shortest + 1) % 3), v = static_cast<int>((shortest + 2) % 3);
         CHECK(glm::length(kept[0] - trained[u]) < 1e-6f);
         CHECK(glm::length(kept[1] - trained[v]) < 1e-6f);
-        CHECK(glm::length(kept[2] - trained[static_cast<int>(shortest)]) < 1e-6f);  // the normal lies along the shortest axis
+        // The normal lies along the shortest axis.
+        CHECK(glm::length(kept[2] - trained[static_cast<int>(shortest)]) < 1e-6f);
         CHECK(glm::determinant(kept) == doctest::Approx(1.0));
         CHECK(these(scene.scales[0].x, scene.scales[0].y) == these(doctest::Approx(std::exp(logs[u])), doctest::Approx(std::exp(logs[v]))));
         CHECK(notes.three_scales);
@@ -126,7 +130,7 @@ TEST_CASE_FIXTURE(InFolder, "splats with NaN, infinity, overflow or no rotation 
     for (const Encoding encoding : kEncodings) {
         for (const std::string name : {"x", "z", "f_dc_1", "f_rest_8", "opacity", "scale_1", "rot_3"}) {
             for (const double bad : {kNan, kInfinity, -kInfinity}) {
-                if (name == "opacity" && bad == kInfinity) { continue; }  // is opacity 1
+                if (name == "opacity" && bad == kInfinity) { continue; }  // this means opacity 1
                 PlyText ply = makeIn(encoding, 9);
                 ply[name].values[1] = bad;
                 const auto [notes, scene] = readScene(folder.write("nan.ply", ply.bytes()));
@@ -138,9 +142,9 @@ TEST_CASE_FIXTURE(InFolder, "splats with NaN, infinity, overflow or no rotation 
         }
     }
     PlyText ply = makePly(9);
-    ply["scale_0"].values[0] = 89.0;  // exp(89) is beyond float32
+    ply["scale_0"].values[0] = 89.0;  // exp(89) exceeds float32
     ply["rot_2"].values[2] = 0.0;
-    ply["nx"].values[1] = kNan;  // of no interest
+    ply["nx"].values[1] = kNan;  // normals are not read
     LoadNotes notes;
     CHECK(loadScene(folder.write("bad.ply", ply.bytes()), 0, &notes).size() == 1);
     CHECK(these(notes.skipped_not_finite, notes.skipped_zero_rotation, notes.lines.size()) == these(1, 1, 2));
@@ -164,7 +168,7 @@ TEST_CASE_FIXTURE(InFolder, "a logit of infinity is opacity 1; the shortest of t
             const Scene disc = loadScene(folder.write("disc.ply", ply.bytes()), 0, &notes);
             REQUIRE(disc.size() == 3);
             CHECK(disc.thicknesses[0] == 0.0f);
-            const double kept = axis == 0 ? -3.0 : axis == 1 ? -5.0 : 0.0;  // the one that follows in cyclic order
+            const double kept = axis == 0 ? -3.0 : axis == 1 ? -5.0 : 0.0;  // the next axis in cyclic order
             CHECK(disc.scales[0].x == doctest::Approx(std::exp(kept)));
             CHECK(notes.lines.empty());
             CHECK(writtenAndRead(folder, disc).thicknesses[0] == 0.0f);
@@ -202,7 +206,7 @@ TEST_CASE_FIXTURE(InFolder, "a comment asks for antialiasing, the last one count
         CHECK(scene.antialiased == asks);
         CHECK(writtenAndRead(folder, scene).antialiased == asks);
     }
-    CHECK_FALSE(loadWith("comment SplatRenderMode: mip\n", false).antialiased);  // discs are not dimmed
+    CHECK_FALSE(loadWith("comment SplatRenderMode: mip\n", false).antialiased);  // discs do not dim
 }
 
 TEST_CASE_FIXTURE(InFolder, "an empty scene is a scene") {
@@ -245,7 +249,7 @@ TEST_CASE_FIXTURE(InFolder, "loading and writing report progress from 0 to 1, an
     CHECK(contains(errorTo(folder.file("device.ply")), "not a regular file"));
     std::filesystem::remove(folder.file("device.ply"));
 #endif
-    // An old file stays as it was if the new one does not come to its end.
+    // An old file stays as it was if the new one is not completed.
     checkProgress(4, [&](const Progress& progress) {
         writePly(scene, folder.file("kept.ply"));
         writePly(large, folder.file("kept.ply"), progress);

@@ -1,4 +1,4 @@
-// The built-in scenes, folders of scenes, moving ones among them, what `info` says of a scene, and the shared ones.
+// The built-in scenes, folders of scenes, moving scenes, what `info` says about a scene, and the shared ones.
 #include "app/summary/describe.h"
 #include "engine/builtin/procedural.h"
 #include "engine/files/scene_folder.h"
@@ -38,7 +38,7 @@ std::string withSplats(int splats) {
     return ply.bytes();
 }
 
-// A folder of scenes, by their names and numbers of splats; of none splats, what is no scene.
+// A folder of scenes, by name and number of splats; zero splats stand for something that is not a scene.
 struct Garden : Folder {
     void place(const std::vector<std::pair<std::string, int>>& scenes) const {
         for (const auto& [name, splats] : scenes) {
@@ -50,7 +50,7 @@ struct Garden : Folder {
     [[nodiscard]] std::string error() const {
         return errorOf([&] { (void)SceneSeries(path()); });
     }
-    // Splats of each frame's scene.
+    // The number of splats in each frame's scene.
     [[nodiscard]] std::vector<std::size_t> counts() const {
         const SceneSeries series(path());
         std::vector<std::size_t> counts;
@@ -64,7 +64,8 @@ TEST_CASE("every built-in scene is sound, repeats exactly and has a view") {
     for (const BuiltinInfo& info : listBuiltins()) {
         CAPTURE(info.name);
         LoadNotes notes;
-        const std::uint64_t splats = std::min<std::uint64_t>(info.default_splats, 20'000);  // baking light takes its time
+        // Baking light takes a while.
+        const std::uint64_t splats = std::min<std::uint64_t>(info.default_splats, 20'000);
         const Scene scene = loadScene("builtin:" + info.name, splats == info.default_splats ? 0 : splats, &notes);
         checkSound(scene, splats);
         CHECK(scene.name == "builtin:" + info.name);
@@ -91,7 +92,8 @@ TEST_CASE("the atelier has exactly the splats asked for, its light is baked alik
         if (splats < 50'000) { continue; }
         const SceneSummary summary = describeScene(scene);
         for (const std::size_t band : {1u, 2u, 3u}) { CHECK(summary.splats_using_band[band] == between(50, 5'000)); }
-        CHECK(summary.max_position.y < 50.0f);  // y is down: the feet of the hills lie a little below, the sky far above
+        // y points down: the feet of the hills lie slightly below, the sky far above
+        CHECK(summary.max_position.y < 50.0f);
         CHECK(summary.min_position.y < -100.0f);
         CHECK(summary.max_position.z > 300.0f);
     }
@@ -182,7 +184,7 @@ SCRIPT(scene, "engine/files/scene") {
         const std::vector<std::string> words = wordsIn(line);
         for (std::size_t i = 0; i < words.size(); i += 2) { garden.place({{words[i], std::stoi(words.at(i + 1))}}); }
     };
-    // A moving scene's frames, and after a colon its only note; `!` and what is said of none.
+    // A moving scene's frames, with its only note after a colon; `!` and the message if it is refused.
     host.verbs["frames"] = [&](const std::string& expected) {
         if (expected.starts_with('!')) {
             CHECK_FALSE(garden.error().empty());
@@ -198,7 +200,7 @@ SCRIPT(scene, "engine/files/scene") {
     };
 #ifdef BINOSPLAT_SOG
     host.features = {"sog"};
-    // Of a network: zip archives.
+    // A network's checkpoints: zip archives.
     host.verbs["checkpoints"] = [&](const std::string&) {
         using Entries = std::vector<std::pair<std::string, std::string>>;
         for (const char* weights : {"ckpt_6999_rank0.pt", "ckpt_29999_rank0.pt"}) {

@@ -1,4 +1,4 @@
-// SOG: values worked out by hand in both versions and both wrappings, and everything that does not fit.
+// SOG: values worked out by hand in both versions and both wrappings, and everything that is refused.
 #include "tests/engine/files/streamed_scenes.h"
 
 SUITE(sog_format) {
@@ -7,7 +7,8 @@ void checkContents(const Scene& scene, const LoadNotes& notes, bool version1) {
     REQUIRE(scene.size() == 8);
     CHECK(notes.skipped_not_finite + notes.skipped_zero_rotation == 0);
     for (std::size_t i = 0; i < 8; ++i) {
-        const double x = -1.0 + 2.0 * (32.0 * static_cast<double>(i) * 256.0 / 65535.0);  // in the logarithmic space
+        // In logarithmic space.
+        const double x = -1.0 + 2.0 * (32.0 * static_cast<double>(i) * 256.0 / 65535.0);
         CHECK(these(scene.positions[i].x, scene.positions[i].y, scene.positions[i].z) ==
               these(doctest::Approx(std::copysign(std::expm1(std::abs(x)), x)), doctest::Approx(-std::expm1(2.0)), doctest::Approx(1.0)));
         // The first of three growing scales is dropped.
@@ -35,7 +36,8 @@ TEST_CASE("a WebP picture among other chunks is found, and gives back the bytes 
     for (const glm::uvec2 size_px : {glm::uvec2(1, 1), glm::uvec2(5, 7), glm::uvec2(192, 7)}) {
         std::vector<std::uint8_t> rgba;
         for (std::uint32_t i = 0; i < 4 * size_px.x * size_px.y; ++i) { rgba.push_back(static_cast<std::uint8_t>(random())); }
-        for (std::size_t i = 3; i < rgba.size(); i += 8) { rgba[i] = 0; }  // the colours below are data, too
+        // Colours under an alpha of zero are data, too.
+        for (std::size_t i = 3; i < rgba.size(); i += 8) { rgba[i] = 0; }
         const std::string plain = makeWebp(size_px.x, size_px.y, rgba);
         const std::string chunks = "WEBPVP8X" + littleWord(10) + littleWord(0x10) + littleWord(size_px.x - 1, 3) +
                                    littleWord(size_px.y - 1, 3) + "ICCP" + littleWord(3) + std::string(4, 'i') + plain.substr(12);
@@ -62,7 +64,7 @@ TEST_CASE_FIXTURE(InFolder, "both versions mean what their tables say, in a dire
                 checkSameScene(scene, loadScene(folder.write("bundle.bin", makeZip(files, deflated, within))));
             }
         }
-        // As some writers have them: a byte order mark, a number with a point, paths of Windows.
+        // As some writers make them: a byte order mark, a number with a decimal point, Windows paths.
         SogText odd = files;
         std::string& meta = odd["meta.json"];
         meta = "\xef\xbb\xbf" + replaced(replaced(meta, "\"q.webp\"", R"(".\\q.webp")"), "\"l.webp\"", "\"./l.webp\"");
@@ -74,7 +76,7 @@ TEST_CASE_FIXTURE(InFolder, "both versions mean what their tables say, in a dire
 
 TEST_CASE_FIXTURE(InFolder, "rotations name their largest component; splats that use what is not there are skipped and counted") {
     SogText files = makeSog();
-    // Scales with the third the shortest keep the quaternion as it is stored.
+    // If the third scale is the shortest, the quaternion stays as stored.
     files["s.webp"] = makeNine([](int) { return std::array{9, 9, 0, 9}; });
     const Scene scene = loadScene(writeSogFolder(folder, "scene", files));
     for (std::size_t i = 0; i < 8; ++i) {
@@ -85,7 +87,8 @@ TEST_CASE_FIXTURE(InFolder, "rotations name their largest component; splats that
         }
     }
     files["q.webp"] = makeNine([](int i) { return std::array{128, 128, 128, i < 3 ? 251 : 252}; });
-    files["meta.json"] = replaced(files["meta.json"], "\"count\":128", "\"count\":65");  // even splats use entry 65
+    // Even splats use entry 65.
+    files["meta.json"] = replaced(files["meta.json"], "\"count\":128", "\"count\":65");
     LoadNotes notes;
     CHECK(loadScene(writeSogFolder(folder, "scene", files), 0, &notes).size() == 3);  // 3, 5, 7
     CHECK(these(notes.skipped_not_finite, notes.skipped_zero_rotation) == these(4, 1));
@@ -102,7 +105,7 @@ TEST_CASE_FIXTURE(InFolder, "a key asks for antialiasing, by the name of old wri
     CHECK(these(gaussians.isGaussian3d(), gaussians.antialiased) == these(true, false));
     CHECK(these(loadWith("\"antialias\":true,").antialiased, loadWith("\"antialias\":false,").antialiased) == these(true, false));
     CHECK(loadWith("\"model\":\"antialiased\",").antialiased);
-    // A streamed scene is, where one of its chunks is.
+    // A streamed scene is antialiased if one of its chunks is.
     const std::string streamed = writeStreamed(folder, "streamed", makeLodMeta());
     CHECK_FALSE(loadScene(streamed).antialiased);
     SogText chunk = makeChunk(2);
@@ -150,11 +153,11 @@ TEST_CASE_FIXTURE(InFolder, "pictures of the wrong size or kind are named, and t
         CHECK(contains(message, "scene/" + fault.from));
         return message;
     });
-    // An entry of 20 MB of blanks in a few KB.
+    // An entry of 20 MB of blanks, packed into a few KB.
     SogText blank = files;
     blank["q.webp"] = std::string(20'000'000, ' ');
     CHECK(contains(loadError(folder.write("a.sog", makeZip(blank, true))), "q.webp: is 20000000 bytes long, expected at most"));
-    // 16383 x 16383 pixels stated in a few hundred bytes.
+    // A few hundred bytes that claim to hold 16383 x 16383 pixels.
     for (const char* name : {"l.webp", "u.webp", "s.webp", "q.webp", "c.webp", "n.webp"}) {
         std::string& picture = files[name];
         picture.replace(21, 3, "\xff\xff\xff");
@@ -186,7 +189,7 @@ TEST_CASE_FIXTURE(InFolder, "a bundle's files may come in any order, and among o
         CHECK(contains(loadError(folder.write("a.sog", makeZip(less))), message));
     }
     std::string changed = makeZip(files);
-    changed[changed.find("RIFF") + 40] ^= 1;  // the checksum no longer fits
+    changed[changed.find("RIFF") + 40] ^= 1;  // the checksum no longer matches
     CHECK(contains(loadError(folder.write("a.sog", changed)), "cannot be read"));
     CHECK(contains(loadError(folder.write("a.sog", std::string("PK\x03\x04") + std::string(100, 'x'))), "not a whole zip archive"));
     std::string locked = makeZip(files);

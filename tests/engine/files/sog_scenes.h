@@ -32,8 +32,9 @@ inline std::string makeNine(const std::function<std::array<int, 4>(int)>& pixel)
     return makeWebp(3, 3, rgba);
 }
 
-// Eight splats in pictures of 3 x 3. Splat i lies at the share i/8 between the bounds on x (bytes 32 i above, 0 below), 0 on y, 1 on z;
-// its scales are the codebook's entries 10 i, 10 i + 1, 10 i + 2 and its colour 20 i, 20 i + 1, 20 i + 2; opacity i/8 of 255.
+// Eight splats in pictures of 3 x 3. On x, splat i lies at share i/8 between the bounds (bytes 32 i above, 0
+// below), on y at 0, on z at 1. Its scales are the codebook's entries 10 i, 10 i + 1, 10 i + 2, its colour 20
+// i, 20 i + 1, 20 i + 2, and its opacity i/8 of 255.
 inline SogText makeSog(int version = 2, bool with_palette = true) {
     using Rgba = std::array<int, 4>;
     SogText files;
@@ -45,13 +46,15 @@ inline SogText makeSog(int version = 2, bool with_palette = true) {
     const std::string means = R"("mins":[-1,-2,0],"maxs":[1,0,0.6931471805599453],"files":["l.webp","u.webp"])";
     std::string meta, palette;
     if (with_palette) {
-        // Degree 1: 64 entries of three pixels a row; entry e, coefficient k has the bytes (e, k, 100).
+        // Degree 1: 64 entries of three pixels in each row; coefficient k of entry e has the bytes (e, k,
+        // 100).
         std::vector<std::uint8_t> centroids;
         for (std::uint8_t entry = 0; entry < 128; ++entry) {
             for (std::uint8_t k = 0; k < 3; ++k) { centroids.insert(centroids.end(), {entry, k, 100, 255}); }
         }
         files["p.webp"] = makeWebp(192, 2, centroids);
-        files["n.webp"] = makeNine([](int i) { return Rgba{i % 2 == 0 ? 65 : 1, 0, 0, 0}; });  // of the palette's second row, or the first
+        // An entry in the palette's second row, or in the first.
+        files["n.webp"] = makeNine([](int i) { return Rgba{i % 2 == 0 ? 65 : 1, 0, 0, 0}; });
         palette = version == 2
                       ? R"(,"shN":{"count":128,"bands":1,"codebook":)" + codebook(-2, 1.0 / 64) + R"(,"files":["p.webp","n.webp"]})"
                       : R"(,"shN":{"shape":[8,9],"mins":-2,"maxs":1.984375,"quantization":8,"files":["p.webp","n.webp"]})";

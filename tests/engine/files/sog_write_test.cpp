@@ -1,4 +1,4 @@
-// SOG as it is written: codebooks and palettes that come near, and what a bundle keeps of a scene.
+// Written SOG: codebooks and palettes that come close, and what a bundle preserves of a scene.
 #include "engine/files/codebook.h"
 #include "engine/files/sh_palette.h"
 #include "engine/files/sog.h"
@@ -36,7 +36,7 @@ TEST_CASE("a codebook keeps few numbers as they are, and of many it keeps what i
     };
     const Codebook book(numbers);
     const double error = squares([&](float number) { return book.values()[book.nearest(number)]; });
-    // Panter and Dite: sqrt(3) pi / 2 / 256^2 for a normal distribution of variance 1.
+    // By Panter and Dite: sqrt(3) pi / 2 / 256^2 for a normal distribution with variance 1.
     CHECK(error < 1.1 * 2.7207 / 65536.0);
     const double even = squares([](float number) { return std::round((number + 5.0f) * 25.5f) / 25.5f - 5.0f; });
     CHECK(error < even / 2.0);
@@ -46,7 +46,7 @@ TEST_CASE("a codebook keeps few numbers as they are, and of many it keeps what i
                                    [&](float value) { return std::abs(value - numbers[i]) < std::abs(kept - numbers[i]) - 1e-7f; }));
     }
 
-    // An outlier does not cost the other numbers their values.
+    // An outlier does not take entries of the codebook away from the other numbers.
     for (std::size_t i = 0; i < 50'000; ++i) { numbers[i] = static_cast<float>(i) / 50'000.0f; }
     numbers.resize(50'000);
     numbers.push_back(1e12f);
@@ -91,7 +91,7 @@ TEST_CASE("a palette's rows come nearer to the harmonics the more there are") {
         CHECK(squares < 0.95 * before);
         before = squares;
     }
-    CHECK(before < 1e-9);  // an entry for each
+    CHECK(before < 1e-9);  // each has its own entry
 }
 
 TEST_CASE_FIXTURE(InFolder, "writing and reading back keeps every attribute within its quantum, along a curve through the scene") {
@@ -123,7 +123,8 @@ TEST_CASE_FIXTURE(InFolder, "writing and reading back keeps every attribute with
         const auto [colour, sh] = shDifferences(scene, back, order);
         CHECK(position < 0.6f);
         CHECK(opacity < 0.5f / 255.0f + 1e-5f);
-        CHECK(shape < 0.05);  // 256 scales within a factor of 100, and half a step of 1/(255 sqrt(2)) in three components
+        // 256 scales within a factor of 100, plus half a step of 1/(255 sqrt(2)) in three components
+        CHECK(shape < 0.05);
         CHECK(colour < 0.02f);
         CHECK(sh < (degree == 1 ? 0.11f : 0.25f));  // 4096 rows for 5000 splats of noise
         // The same scene gives the same file.

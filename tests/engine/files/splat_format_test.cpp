@@ -1,4 +1,4 @@
-// .splat files: values worked out by hand, and what is not taken for one.
+// .splat files: values worked out by hand, and files that are not taken for one.
 #include "tests/engine/files/hostile_scenes.h"
 
 SUITE(splat_format) {
@@ -21,7 +21,8 @@ TEST_CASE_FIXTURE(InFolder, "a .splat is read row by row, whatever its name") {
     CHECK(0.5f + 0.28209479f * scene.sh[3 * 299 + 0] == doctest::Approx(1.0));
     CHECK(0.5f + 0.28209479f * scene.sh[3 * 299 + 2] == doctest::Approx(0.2));
     CHECK(these(scene.positions[300], scene.opacities[300]) == these(glm::vec3(-4, 5, -6), 1.0f));
-    // The x axis is the shortest: t_w lies along it. (w, x) = (90, -90)/128 turns about x, which leaves that axis alone.
+    // The x axis is the shortest, and t_w lies along it. (w, x) = (90, -90)/128 turns about x, which leaves
+    // that axis unchanged.
     const glm::vec3 normal = scene.rotations[300] * glm::vec3(0, 0, 1);
     CHECK(glm::distance(normal, glm::vec3(1, 0, 0)) < 1e-5f);
     CHECK(these(notes.three_scales, notes.median_flatness) == these(true, doctest::Approx(0.5)));

@@ -10,7 +10,7 @@ namespace binosplat::test {
 
 inline std::string gzip(const std::string& bytes) { return deflated(bytes, MAX_WBITS + 16); }
 
-// The stream of an SPZ file before compression, a column per attribute.
+// The stream of an SPZ file before compression, with a column for each attribute.
 struct SpzText {
     std::uint32_t version = 3, splats = 0;
     int sh_degree = 0, fractional_bits = 12, flags = 0;
@@ -31,16 +31,16 @@ struct SpzText {
 inline SpzText makeSpz(std::uint32_t version) {
     SpzText spz{version, 2, 1, 8, 0, {256, -512, 128, 0, 1, -1}, {255, 51}, {0, 255, 128, 10, 20, 30}, {160, 176, 32, 0, 255, 160}, {}, {}};
     if (version == 2) {
-        spz.rotations = {128, 128, 128, 255, 128, 128};  // nearly none; half a turn about x
+        spz.rotations = {128, 128, 128, 255, 128, 128};  // almost no turn; half a turn about x
     } else {
-        // w largest, the others +0; z largest, x = -256/511/sqrt(2), the others +0.
+        // First: w largest, the others +0. Second: z largest, x = -256/511/sqrt(2), the others +0.
         spz.rotations = {0, 0, 0, 0xc0, 0, 0, 0, 0x80 | 0x20 | 0x10};
     }
     for (int i = 0; i < 18; ++i) { spz.sh.push_back(128 + 4 * i); }
     return spz;
 }
 
-// The same as a container of version 4, with `extension` between header and table.
+// The same in a container of version 4, with `extension` between header and table.
 inline std::string makeSpzContainer(const SpzText& spz, const std::string& extension = "") {
     const std::string plain = spz.bytes();
     std::string table, data;
@@ -59,12 +59,12 @@ inline std::string makeSpzContainer(const SpzText& spz, const std::string& exten
     return plain.substr(0, 15) + streams + littleWord(32 + extension.size()) + std::string(12, '\0') + extension + table + data;
 }
 
-// A record of an extension.
+// One record of an extension.
 inline std::string spzRecord(std::uint32_t type, const std::string& content) {
     return littleWord(type) + littleWord(content.size()) + content;
 }
 
-// Of the one that names axes.
+// The record that names the axes.
 inline std::string spzAxesRecord(int system) { return spzRecord(0xadbe0003u, std::string{static_cast<char>(system), '\0', '\0', '\0'}); }
 
 }  // namespace binosplat::test

@@ -1,4 +1,4 @@
-// SPZ: values worked out by hand, what writing and reading back keeps, and what does not fit.
+// SPZ: values worked out by hand, what survives writing and reading back, and what is refused.
 #include "engine/files/spz.h"
 #include "engine/twin/harmonics.h"
 #include "tests/engine/files/spz_files.h"
@@ -32,10 +32,11 @@ TEST_CASE_FIXTURE(InFolder, "both versions give what their bytes mean, in axes r
         REQUIRE(scene.sh_degree == 1);
         for (int i = 0; i < 9; ++i) {
             const float stored = static_cast<float>(4 * i) / 128.0f;
-            CHECK(scene.sh[static_cast<std::size_t>(3 + i)] == (i < 6 ? 0.0f - stored : stored));  // y and z change sign, x does not
+            // y and z change sign, x does not
+            CHECK(scene.sh[static_cast<std::size_t>(3 + i)] == (i < 6 ? 0.0f - stored : stored));
         }
         CHECK(std::abs(scene.rotations[0].w) == doctest::Approx(1.0).epsilon(1e-4));
-        // The normal of the second splat is its own x axis, turned.
+        // The normal of the second splat is its own x axis, rotated.
         const glm::vec3 normal = scene.rotations[1] * glm::vec3(0, 0, 1);
         const float x = version == 2 ? 1.0f : -256.0f / 511.0f * 0.70710678f;
         const glm::vec3 stored_axis =
@@ -63,7 +64,7 @@ TEST_CASE("every version is read without gzip, too, whatever follows, and a cont
 }
 
 TEST_CASE_FIXTURE(InFolder, "the axes that an extension names are honoured: places, ellipsoids and colours") {
-    // Right, left, down, up, front and back, in axes right, down, front.
+    // Right, left, down, up, front and back, in axes that point right, down and front.
     const std::map<char, glm::dvec3> directions{{'R', {1, 0, 0}},  {'L', {-1, 0, 0}}, {'D', {0, 1, 0}},
                                                 {'U', {0, -1, 0}}, {'F', {0, 0, 1}},  {'B', {0, 0, -1}}};
     const std::string names[] = {"",    "LDB", "RDB", "LUB", "RUB", "LDF", "RDF", "LUF", "RUF",
@@ -117,7 +118,7 @@ TEST_CASE_FIXTURE(InFolder, "files that name no axes, or unknown ones, are right
     checkSays(notes.lines, "names axes 17, which are not known; taken as x right, y up, z back; right-handed");
     (void)loadBytes(folder, makeSpzContainer(spz, spzAxesRecord(16)), &notes);
     CHECK(notes.axes == "x right, y front, z up; right-handed (named by the file)");
-    spz.flags = 0;  // then these are no records
+    spz.flags = 0;  // without the flag, these are not records
     checkSameScene(usual, loadBytes(folder, makeSpzContainer(spz, spzAxesRecord(6))));
 }
 
@@ -145,7 +146,8 @@ TEST_CASE_FIXTURE(InFolder, "writing and reading back keeps every attribute with
         const auto [colour, sh] = shDifferences(scene, back);
         CHECK(colour < 0.5f / 255.0f / 0.15f + 1e-4f);
         CHECK(sh <= 0.5f / 128.0f + 1e-5f);
-        // What was read is not changed again; of a rotation with two components of nearly the same size the other one may be left out.
+        // What was read does not change when written again, except that of two rotation components of nearly
+        // equal size, the other may be left out.
         writeSpz(back, folder.file("a.spz"));
         const Scene again = loadScene(folder.file("a.spz"));
         CHECK(these(again.positions, again.scales, again.opacities, again.sh) ==
@@ -163,7 +165,7 @@ TEST_CASE_FIXTURE(InFolder, "writing and reading back keeps every attribute with
 
 TEST_CASE_FIXTURE(InFolder, "large scenes get fewer fractional bits, and those beyond the format none") {
     Scene scene = randomScene(0, 2);
-    scene.positions[0] = {100000.0f + 1.0f / 64.0f, 0.0f, 0.0f};  // of 6 fractional bits
+    scene.positions[0] = {100000.0f + 1.0f / 64.0f, 0.0f, 0.0f};  // with 6 fractional bits
     writeSpz(scene, folder.file("a.spz"));
     CHECK(loadScene(folder.file("a.spz")).positions[0] == scene.positions[0]);
     scene.positions[0].x = 1e9f;
@@ -175,7 +177,7 @@ TEST_CASE_FIXTURE(InFolder, "whoever waits for a large scene hears how much is u
     constexpr std::uint32_t kSplats = 300'000;
     SpzText spz;
     spz.splats = kSplats;
-    // What compresses too well is refused.
+    // A stream that compresses too well is refused.
     for (std::uint32_t i = 0; i < 3 * kSplats; ++i) { spz.positions.push_back(static_cast<int>(i * 2654435761u >> 8)); }
     spz.alphas.assign(kSplats, 200);
     spz.rotations.assign(4 * kSplats, 200);
@@ -227,12 +229,12 @@ TEST_CASE_FIXTURE(InFolder, "an SPZ that does not fit is named") {
     CHECK(contains(loadError(folder, gzip("NGSP")), "header: ends after 4 bytes"));
     CHECK(contains(loadError(folder, gzip("something else in gzip")), "not a scene file"));
     const std::string packed = gzip(spz.bytes());
-    for (std::size_t at = 10; at < packed.size(); ++at) {  // gzip's own header has bytes without a meaning
+    for (std::size_t at = 10; at < packed.size(); ++at) {  // some bytes of gzip's own header have no meaning
         std::string changed = packed;
         changed[at] = static_cast<char>(changed[at] ^ 0x10);
-        CHECK(contains(loadError(folder, changed), "broken.ply: "));  // at the latest by the checksum
+        CHECK(contains(loadError(folder, changed), "broken.ply: "));  // by the checksum if by nothing else
     }
-    // Streams that are there to fill the memory.
+    // Streams made to fill the memory.
     spz.splats = 200'000;
     CHECK(contains(loadError(folder, gzip(spz.bytes() + std::string(5'800'000, '\x7f'))), "expected fewer than 256 per byte"));
     CHECK(contains(loadError(folder, gzip(makeSpz(3).bytes() + std::string(5'800'000, '\0'))), "and more behind the last splat"));

@@ -5,8 +5,9 @@
 
 namespace binosplat::test {
 
-// Two levels of three leaves. Level 0 is two chunks, a/meta.json (of SH degree 1) and b/meta.json (without SH); level 1 is one, c/meta.json
-// (version 1), and the last leaf does not have it. An environment on top. Every chunk has eight splats.
+// Two levels of three leaves, plus an environment. Level 0 is two chunks: a/meta.json (SH degree 1) and
+// b/meta.json (no SH). Level 1 is one chunk, c/meta.json (version 1), and the last leaf does not have it.
+// Every chunk has eight splats.
 inline std::string makeLodMeta() {
     const auto leaf = [](const std::string& lods) {
         return R"({"bound":{"min":[-1,-2,0],"max":[1,0.5,2e0]},"lods":{)" + lods + R"(},"errors":[0,0.5]})";
@@ -19,14 +20,14 @@ inline std::string makeLodMeta() {
            leaf(R"("0":{"file":1,"offset":0,"count":8})") + "]}]}}";
 }
 
-// A chunk with a place of its own: its splats begin at x = -expm1(-left).
+// A chunk at a place of its own: its splats begin at x = -expm1(-left).
 inline SogText makeChunk(int left, int version = 2, bool with_palette = true) {
     SogText files = makeSog(version, with_palette);
     files["meta.json"] = replaced(files["meta.json"], "\"mins\":[-1,", fmt::format("\"mins\":[-{},", left));
     return files;
 }
 
-// Returns the folder. `meta` is from makeLodMeta, or a broken one. Chunks in `bundles` are .sog files.
+// Returns the folder. `meta` is from makeLodMeta, or broken. Chunks listed in `bundles` are .sog files.
 inline std::string writeStreamed(const Folder& folder, const std::string& name, std::string meta,
                                  const std::vector<std::string>& bundles = {}) {
     std::filesystem::remove_all(folder.file(name));

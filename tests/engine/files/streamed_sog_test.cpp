@@ -1,4 +1,5 @@
-// Streamed SOG: a level is its chunks, splat by splat; the choice of a level; progress; and what does not fit.
+// Streamed SOG: each splat of a level comes from its chunks; the choice of a level; progress; and what is
+// refused.
 #include "engine/files/lod_meta.h"
 #include "tests/engine/files/streamed_scenes.h"
 
@@ -16,7 +17,8 @@ Scene loadLevel(const std::string& source, std::uint32_t level, LoadNotes* notes
     return loadScene(source, 0, notes, {}, {level, {}});
 }
 
-// Splats `first` to `first + count` of `part`, behind those of `whole`; rows of SH get the whole's width, zeros where the part has less.
+// Appends splats `first` to `first + count` of `part` to `whole`; rows of SH get the whole's width, with
+// zeros where the part has less.
 void addSplats(Scene& whole, const Scene& part, std::size_t first, std::size_t count) {
     const auto addTo = [&](auto& values, const auto& more) {
         values.insert(values.end(), more.begin() + static_cast<std::ptrdiff_t>(first),
@@ -55,7 +57,7 @@ TEST_CASE_FIXTURE(Streamed, "a level is its chunks in their order, with the envi
     CHECK(loadScene(source + "/other").name == source + "/other");
     std::filesystem::rename(source + "/other", source + "/lod-meta.json");
 
-    // One leaf has no splats at the other level, whose chunks alone need be there.
+    // One leaf has no splats at the other level; only that level's chunks need to exist.
     for (const char* chunk : {"/a", "/b"}) { std::filesystem::remove_all(source + chunk); }
     Scene coarse;
     coarse.sh_degree = 1;
@@ -67,7 +69,7 @@ TEST_CASE_FIXTURE(Streamed, "a level is its chunks in their order, with the envi
 }
 
 TEST_CASE("the tree says where each leaf lies and which splats show it, the finest level first") {
-    // Of each leaf its box, and of each of its levels the chunk and which of its splats.
+    // For each leaf its box, and for each of its levels the chunk and the range of its splats.
     const auto told = [](const std::string& text) {
         const LodMeta meta = parseLodMeta(std::as_bytes(std::span(text)), "lod-meta.json");
         std::string leaves = fmt::format("{}:", meta.leaves);
@@ -86,17 +88,17 @@ TEST_CASE("the tree says where each leaf lies and which splats show it, the fine
     const std::string two =
         "3: (-1,-2,0 to 1,0.5,2; 0: 3 from 5 of 0; 1: 6 from 0 of 2) (-1,-2,0 to 1,0.5,2; 0: 5 from 0 of 0; 1: 2 from 6 of 2)";
     CHECK(told(makeLodMeta()) == two + " (-1,-2,0 to 1,0.5,2; 0: 8 from 0 of 1)");
-    // Whoever has not measured what levels are off by says so, or nothing of it.
+    // A writer that has not measured the levels' errors says so, or leaves the field out.
     for (const char* without : {"", R"("lodErrors":false,)"}) {
         CHECK(told(replaced(makeLodMeta(), R"("lodErrors":true,)", without)).starts_with(two));
     }
-    // A leaf without splats has no place, and counts as a leaf.
+    // A leaf without splats has no place, but counts as a leaf.
     CHECK(told(replaced(makeLodMeta(), R"({"0":{"file":1,"offset":0,"count":8}})", "{}")) == two);
 }
 
 TEST_CASE("a leaf that has no splats at a level shows the next coarser one, if it has one; without its environment a scene is shown, too") {
     const Folder folder;
-    // The first leaf has level 1 alone; the third has, as before, level 0 alone.
+    // The first leaf has only level 1; the third, as before, has only level 0.
     const std::string less = replaced(makeLodMeta(), R"("0":{"file":0,"offset":5,"count":3},)", "");
     const std::string source = writeStreamed(folder, "scene", less);
     const Scene a = loadScene(source + "/a"), b = loadScene(source + "/b"), c = loadScene(source + "/c"), env = loadScene(source + "/env");
@@ -131,7 +133,7 @@ TEST_CASE_FIXTURE(Streamed, "chunks and the environment may be bundles") {
     }
     (void)folder.write("scene/b.sog", "no archive");
     CHECK(contains(loadError(source), "scene/b.sog: not a whole zip archive"));
-#ifndef _WIN32  // where links take a privilege
+#ifndef _WIN32  // on Windows, links need a privilege
     std::filesystem::remove(source + "/b.sog");
     std::filesystem::create_symlink("a.sog", source + "/b.sog");
     CHECK(contains(loadError(source), "b.sog is a link to a chunk that is named already"));
@@ -165,7 +167,7 @@ TEST_CASE("a scene may have more bundles than a program may have open files") {
 #endif
 
 TEST_CASE_FIXTURE(InFolder, "what a leaf names is counted in stored splats, broken ones among them") {
-    // Of the chunk only splats 2 to 4 and 6 are wanted; 3 and 7 are broken.
+    // Only splats 2 to 4 and 6 of the chunk are used; 3 and 7 are broken.
     std::string meta = replaced(makeLodMeta(), R"("offset":5,"count":3)", R"("offset":6,"count":1)");
     meta = replaced(meta, R"("offset":0,"count":5)", R"("offset":2,"count":3)");
     const std::string source = writeStreamed(folder, "scene", meta);
@@ -256,7 +258,7 @@ TEST_CASE_FIXTURE(InFolder, "a lod-meta.json that is none, is cut off or lies to
     }
 }
 
-#ifndef _WIN32  // where links take a privilege
+#ifndef _WIN32  // on Windows, links need a privilege
 TEST_CASE_FIXTURE(Streamed, "links that lead out of the folder or to the same chunk are refused") {
     std::filesystem::rename(source + "/b", folder.file("elsewhere"));
     std::filesystem::create_directory_symlink(folder.file("elsewhere"), source + "/b");
@@ -268,7 +270,7 @@ TEST_CASE_FIXTURE(Streamed, "links that lead out of the folder or to the same ch
     message = loadError(source);
     CHECK(contains(message, "filenames[1]: "));
     CHECK(contains(message, "is a link to a chunk that is named already"));
-    // A link to the whole scene leads nowhere else.
+    // A link to the whole scene stays within it.
     std::filesystem::remove(source + "/b");
     std::filesystem::rename(folder.file("elsewhere"), source + "/b");
     std::filesystem::create_directory_symlink("scene", folder.file("linked"));

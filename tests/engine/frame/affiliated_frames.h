@@ -1,4 +1,4 @@
-// Whole frames in which one eye is made from the other, with everything that they leave.
+// Whole frames in which one eye is reprojected from the other, with everything that they leave.
 #pragma once
 
 #include "engine/frame/stereo_frame.h"
@@ -20,7 +20,7 @@ inline AffiliatedFrame makeAffiliated(StereoFrame& frame, const std::array<Eye, 
     return {std::move(result), {frame.readPicture(kLeft), frame.readPicture(kRight)}, frame.readTileKinds(), frame.readPixelClasses()};
 }
 
-// The eyes of a headset: asymmetric angles, mirrored, the axes turned outwards by `canting_rad`.
+// A headset's eyes: asymmetric angles, mirrored, with axes turned outwards by `canting_rad`.
 inline std::array<Eye, 2> headsetEyes(const Eye& middle, double canting_rad, double eye_distance = 0.063) {
     std::array<Eye, 2> eyes = stereoPair(middle, eye_distance);
     const std::array<ViewAngles, 2> angles{ViewAngles{-0.7, 0.55, 0.6, -0.65}, ViewAngles{-0.55, 0.7, 0.6, -0.65}};
@@ -32,8 +32,8 @@ inline std::array<Eye, 2> headsetEyes(const Eye& middle, double canting_rad, dou
     return eyes;
 }
 
-// Makes splats invisible that either eye's near plane may cut: for these the device's bounds, and so the
-// tiles that it counts, are rougher than the twin's.
+// Makes splats invisible that either eye's near plane may cut: for these, the device's bounds, and so the
+// tiles it counts, are coarser than the twin's.
 inline void hideWhatMeetsTheNearPlane(Scene& scene, const std::array<Eye, 2>& eyes) {
     for (std::size_t i = 0; i < scene.size(); ++i) {
         for (const Eye& eye : eyes) {
@@ -43,7 +43,7 @@ inline void hideWhatMeetsTheNearPlane(Scene& scene, const std::array<Eye, 2>& ey
     }
 }
 
-// The marked tiles; everything else is black.
+// Only the marked tiles; everything else is black.
 inline Image keepTiles(Image image, const std::vector<std::uint32_t>& tile_kinds) {
     const std::size_t columns = (image.size_px.x + 15) / 16;
     for (std::size_t i = 0; i < image.pixelCount(); ++i) {

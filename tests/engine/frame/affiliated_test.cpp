@@ -1,4 +1,5 @@
-// Facts about the eye that is made from the other, as whole frames: what stays, that all is written, and what it costs.
+// Facts about whole frames with a reprojected eye: what stays the same, that every pixel is written, and what
+// it costs.
 #include "tests/engine/frame/affiliated_frames.h"
 #include "tests/engine/frame/frame_runs.h"
 
@@ -14,7 +15,7 @@ FrameSettings makeSettings(Mode mode, Side dominant = kLeft) {
     return settings;
 }
 
-// The paper to the letter.
+// Exactly as in the paper.
 FrameSettings makeLetterSettings(Side dominant = kLeft) {
     FrameSettings settings = makeSettings(Mode::kPaper, dominant);
     settings.stereo.depth_choice = gpu::kDepthSum;
@@ -29,20 +30,20 @@ std::vector<FrameSettings> makeReprojecting(Side dominant = kLeft) {
     return all;
 }
 
-// Values that should not be there, of a picture of a scene that closes the view, over a magenta background.
+// Values that must not occur in a picture of a scene that fills the view, over a magenta background.
 std::size_t countFlaws(const Image& image) {
     std::size_t flaws = 0;
     for (std::size_t i = 0; i < image.pixelCount(); ++i) {
         const float* pixel = &image.values[4 * i];
         for (int channel = 0; channel < 4; ++channel) { flaws += std::isfinite(pixel[channel]) && pixel[channel] >= 0.0f ? 0 : 1; }
-        // What lies in these bytes before a pixel is written is no alpha near 1: the last channel is an inverse depth.
+        // Before a pixel is written, its bytes hold no alpha near 1: the last channel is an inverse depth.
         flaws += pixel[3] > 0.9f && pixel[3] < 1.1f ? 0 : 1;
         flaws += pixel[0] > pixel[1] + 0.7f && pixel[2] > pixel[1] + 0.7f ? 1 : 0;
     }
     return flaws;
 }
 
-// Pixels that were moved before any tile was chosen for what is wrong with them.
+// Pixels that were reprojected before any tile was chosen for its errors.
 std::size_t countMoved(const AffiliatedFrame& made) {
     const glm::uvec2 size_px = made.pictures[kLeft].size_px;
     std::size_t moved = 0;
@@ -65,7 +66,7 @@ TEST_CASE_FIXTURE(Gpu, "without a distance between the eyes, the other eye's pic
             settings.stereo.depth_choice = depth_choice;
             const AffiliatedFrame made = makeAffiliated(frame, stereoPair(view.eye, 0.0), settings);
             CHECK(made.pictures[kLeft].values == made.pictures[kRight].values);
-            // Tiles that nothing is seen in are not worth moving.
+            // Tiles in which nothing is visible are not worth reprojecting.
             CHECK(countOf(made.result, "pixels_covered") == countMoved(made));
             CHECK(std::ranges::all_of(made.tile_kinds, [](std::uint32_t kind) { return kind == 0 || kind == gpu::kTileCheap; }));
             CHECK(countOf(made.result, "tiles_patched") == std::ranges::count(made.tile_kinds, gpu::kTileCheap));
@@ -134,7 +135,7 @@ TEST_CASE_FIXTURE(Gpu, "tiles that are rendered again are those of the full rend
         FrameSettings full_settings = makeSettings(Mode::kShared);
         full_settings.keep_both_depths = true;
         const Image full = makeAffiliated(frame, eyes, full_settings).pictures[kRight], full_depth = frame.readDepth(kRight);
-        // That odd rows are moved like even ones costs little.
+        // Moving odd rows like even ones costs little quality.
         double before_db = compare(makeAffiliated(frame, eyes, makeSettings(Mode::kReproject)).pictures[kRight], full).psnrDb() - 0.4;
         for (const auto& [mode, budget] : {std::pair(Mode::kPaper, 0.0), std::pair(Mode::kPredicted, 0.0), std::pair(Mode::kPredicted, 0.2),
                                            std::pair(Mode::kPredicted, 0.5), std::pair(Mode::kPredicted, 1.0)}) {
@@ -156,7 +157,7 @@ TEST_CASE_FIXTURE(Gpu, "tiles that are rendered again are those of the full rend
                 CHECK(static_cast<double>(countOf(made.result, "work_patched")) <=
                       budget * static_cast<double>(countOf(made.result, "work_full")));
             }
-            // What is patched is exact, and more budget patches the same tiles and others.
+            // Patched tiles are exact, and a larger budget patches the same tiles and others.
             const double psnr_db = compare(made.pictures[kRight], full).psnrDb();
             CHECK(psnr_db >= before_db);
             if (budget == 1.0) { CHECK(psnr_db >= 50.0); }

@@ -1,4 +1,5 @@
-// Facts about frames whose tiles are coarse where the eye would not see more: against the twin, and against the same frames in full.
+// Facts about frames with coarse tiles where the eye would not see more: compared with the twin, and with the
+// same frames in full.
 #include "engine/twin/coarse.h"
 #include "tests/engine/passes/past_stages.h"
 
@@ -44,7 +45,7 @@ Tiles someHidden(const Eye& eye) {
     return hidden;
 }
 
-// How far a picture is from the twin's, tile by tile: all but `flips` of them alike.
+// Compares a picture with the twin's, tile by tile: all but `flips` tiles must agree.
 void checkAgainstTwin(const Image& made, const reference::Picture& twin, std::ptrdiff_t flips) {
     const auto errors = tileErrors(made, test::toImage(twin));
     CHECK(std::ranges::count_if(errors, [](double error) { return error > 256 * 3 * 1e-8; }) <= flips);
@@ -53,7 +54,8 @@ void checkAgainstTwin(const Image& made, const reference::Picture& twin, std::pt
 
 std::uint64_t differenceOf(std::uint64_t a, std::uint64_t b) { return std::max(a, b) - std::min(a, b); }
 
-// What the tiles are, and depths, are the twin's as well; `flips`: tiles in which a splat is at a threshold.
+// Kinds of tiles and depths must match the twin's, too; `flips` is the number of tiles with a splat at a
+// threshold.
 void checkTiles(StereoFrame& frame, const FrameResult& result, const reference::CoarsePicture& twin, std::ptrdiff_t flips) {
     checkAgainstTwin(frame.readPicture(0), twin.picture, flips);
     const auto coarse = static_cast<std::uint64_t>(std::ranges::count(twin.coarse, 1)),
@@ -75,7 +77,7 @@ reference::CoarsePicture twinOf(const ViewedScene& view, const FrameSettings& se
     return reference::renderCoarse(view.scene, view.eye, {gaze.direction, gaze.clear_rad}, twin_settings, settings.hidden_tiles[0]);
 }
 
-// So few pixels show less than an eye resolves but far from where it looks.
+// A picture this small shows more than the eye resolves only far from the gaze.
 const Gaze kAside{{-3.0, 1.0, -2.0}, 0.0};
 
 TEST_CASE_FIXTURE(
@@ -120,7 +122,7 @@ TEST_CASE_FIXTURE(Gpu, "however many threads blend a cell, and however many tile
     CHECK(in_full > 10);
 }
 
-// Of a frame that others are made from: words and tiles.
+// In a frame from which others are made: words and tiles.
 TEST_CASE_FIXTURE(Gpu, "a coarse tile leaves its samples' depths, a quarter of its pairs, and what it is expected to lack") {
     const ViewedScene view = viewRoom({176, 144}, 20000);
     const std::array<Eye, 2> eyes{view.eye, view.eye};
@@ -154,7 +156,7 @@ TEST_CASE_FIXTURE(Gpu, "a coarse tile leaves its samples' depths, a quarter of i
         }
         CHECK(coarse > 20);
         CHECK(off <= pixels / 100);
-        // The same view in full says how many pairs each tile has.
+        // The same view, rendered in full, gives the number of pairs in each tile.
         FrameSettings full = inFull(settings);
         full.mode = Mode::kTemporal;
         KeptFrame other(context(), view.scene);
@@ -162,7 +164,8 @@ TEST_CASE_FIXTURE(Gpu, "a coarse tile leaves its samples' depths, a quarter of i
         const test::EyeOnDevice in_full = test::readEye(*this, other, 0, view.eye);
         for (std::size_t t = 0; t < twin.coarse.size(); ++t) {
             const std::uint64_t pairs = in_full.past.tiles[t].cost;
-            const bool is_coarse = eye.past.tiles[t].lost > 0.0 || twin.coarse[t] != 0;  // a flat one loses nothing
+            // A flat tile loses nothing.
+            const bool is_coarse = eye.past.tiles[t].lost > 0.0 || twin.coarse[t] != 0;
             CHECK(eye.past.tiles[t].cost == (is_coarse ? pairs / 4 : pairs));
         }
     }
@@ -170,7 +173,8 @@ TEST_CASE_FIXTURE(Gpu, "a coarse tile leaves its samples' depths, a quarter of i
 
 TEST_CASE_FIXTURE(Gpu,
                   "what a coarse tile lacks counts as soon as it would be seen, and so an eye that turns to such tiles sees them in full") {
-    const reference::PastTile lacks{100, 1, {}, {0.1, 0.2, 0.3, 0.4}, {}, 0.02};  // of a squared error of 0.3072
+    // With a squared error of 0.3072.
+    const reference::PastTile lacks{100, 1, {}, {0.1, 0.2, 0.3, 0.4}, {}, 0.02};
     CHECK(reference::withLoss(lacks, 0.08).errors == lacks.errors);
     CHECK(reference::withLoss(lacks, 0.09).errors[3] == doctest::Approx(0.42));
     const ViewedScene view = viewRoom({176, 144}, 20000);
@@ -189,7 +193,7 @@ TEST_CASE_FIXTURE(Gpu,
     const auto other = StereoFrame::beside(frame);
     other->render(eyes, inFull(settings));
     CHECK(compare(other->readPicture(0), aside).psnrDb() < 55.0);
-    // A tile of which nothing was expected to be lost may stay.
+    // A tile that was expected to lose nothing may stay.
     CHECK(compare(other->readPicture(0), made).psnrDb() > 65.0);
 }
 
@@ -238,7 +242,7 @@ TEST_CASE_FIXTURE(Gpu, "an eye that may look everywhere, or of which nothing is 
     const FrameResult plain = frame.render({&view.eye, 1}, unknown);
     CHECK(frame.readPicture(0).values == whole.values);
     CHECK_FALSE(plain.counters.named().contains("tiles_coarse"));
-    // Whoever wants moments has them.
+    // Moments are there on request.
     FrameSettings moments = settingsFor({{0.0, 0.0, 1.0}, 0.1});
     moments.keep_moments = true;
     const FrameResult with_moments = frame.render({&view.eye, 1}, moments);

@@ -1,4 +1,5 @@
-// Facts about frames that are not waited for: the same pictures as of those that are, told a frame or two late, and lists with room ahead.
+// Facts about frames that are not waited for: they give the same pictures as frames that are, report a frame
+// or two later, and have lists with spare capacity.
 #include "tests/engine/frame/frame_runs.h"
 
 SUITE(frame_ahead) {
@@ -19,7 +20,7 @@ Eye turned(Eye eye, double radians) {
 // Looks at nothing.
 Eye awayFrom(const Eye& eye) { return turned(eye, 3.1); }
 
-// A head that goes on a little, and turns a little.
+// A head that moves on and turns, a little each frame.
 std::array<Eye, 2> eyesAt(const Eye& middle, int step) {
     Eye eye = turned(middle, 0.02 * step);
     eye.world_from_camera.position.x += 0.01 * step;
@@ -37,7 +38,7 @@ struct Atelier : Gpu {
     const GpuScene scene{context(), view.scene};
 };
 
-// Lists that begin without room, and eyes that see all of the room or nothing of it without moving.
+// Lists that begin without capacity, and eyes that, without moving, see the whole room or nothing of it.
 constexpr FrameOptions kNoRoom{.first_capacity = {1, 1}, .threads_per_cell = 0};
 FrameSettings seeing() { return makeSettings(Mode::kShared); }
 FrameSettings blind() {
@@ -45,7 +46,7 @@ FrameSettings blind() {
     settings.near = 1e4;
     return settings;
 }
-// The last that was told of so many frames that are not waited for.
+// Renders this many frames without waiting; returns the last report.
 FrameResult goAhead(StereoFrame& frame, const std::array<Eye, 2>& eyes, const FrameSettings& settings, int frames) {
     FrameResult last{};
     for (int i = 0; i < frames; ++i) {
@@ -65,7 +66,8 @@ TEST_CASE_FIXTURE(Atelier, "a frame that is not waited for is the one that is, t
         for (int step = 0; step < (settings.keep_past ? 12 : 4); ++step) {
             const auto eyes = eyesAt(ofSize(view.eye, step / 4 == 1 ? glm::uvec2(64, 80) : glm::uvec2(96, 96)), step);
             ahead.renderAhead(eyes, settings);
-            if (settings.keep_past || step >= 2) { waited->render(eyes, settings); }  // `predicted` looks at the frame before
+            // `predicted` uses the frame before
+            if (settings.keep_past || step >= 2) { waited->render(eyes, settings); }
             if (step % 4 == 3) { CHECK(shownBy(ahead) == shownBy(*waited)); }
         }
     }
@@ -87,7 +89,7 @@ TEST_CASE_FIXTURE(Atelier, "what a frame says of itself comes two frames later, 
         take(frame.renderAhead(eyesAt(view.eye, step), makeSettings(Mode::kShared, static_cast<std::uint64_t>(step))));
     }
     take(frame.finish());
-    // The first is waited for, since nothing is known of its lists.
+    // The first frame is waited for, since nothing is known about its lists.
     CHECK(told == std::vector{0, -1, -1, 1, 2, 3, 5});
     CHECK_FALSE(frame.finish().has_value());
 }
@@ -112,7 +114,7 @@ TEST_CASE_FIXTURE(Atelier, "lists have room ahead however many pairs a pixel has
         CAPTURE(side);
         const auto narrow = stereoPair(ofSize(view.eye, {side, side}), 0.063);
         const auto pairs = static_cast<double>(pairsOf(narrow));
-        // A wider view, with a tenth more.
+        // A wider view, with a tenth more pairs.
         std::array<Eye, 2> wide = narrow;
         double more = 1.0;
         while (more < 1.06) {
@@ -125,14 +127,14 @@ TEST_CASE_FIXTURE(Atelier, "lists have room ahead however many pairs a pixel has
         frame.renderAhead(narrow, seeing());
         auto last = frame.renderAhead(wide, seeing());
         if (!last) { last = frame.finish(); }
-        CHECK(countOf(*last, "frames_done_again") == 1);  // the first
+        CHECK(countOf(*last, "frames_done_again") == 1);  // the first one
         CHECK(countOf(*last, "frames_cut_short") == 0);
     }
     CHECK(tried > 15);
 }
 
 TEST_CASE_FIXTURE(Atelier, "walking is no jump, whatever the near plane and the scene's size; a wearer's step and snap turn are") {
-    // Whether a frame is waited for: then what it says comes at once.
+    // Whether a frame is waited for, in which case it reports at once.
     const auto waits = [&](double units_per_metre, double metres, double degrees) {
         KeptFrame frame(context(), scene);
         FrameSettings settings = seeing();
@@ -168,7 +170,7 @@ TEST_CASE_FIXTURE(Atelier, "after a jump a frame is waited for, and done again o
             CHECK(first->mark == mark);
             CHECK(countOf(*first, "frames_done_again") <= before + 1);
             if (mark == 1) { CHECK(countOf(*first, "frames_done_again") == 1); }
-            // Nor is one of those after it cut short.
+            // Nor is any later frame cut short.
             const FrameResult last = goAhead(frame, eyes, makeSettings(mode, mark), 3);
             CHECK(countOf(last, "frames_done_again") <= before + 2);
             CHECK(countOf(last, "frames_cut_short") == countOf(*first, "frames_cut_short"));
@@ -225,7 +227,8 @@ TEST_CASE_FIXTURE(Atelier, "kernels that were made before change nothing in a pi
 
 TEST_CASE_FIXTURE(Atelier, "a frame that finds no room is whole after a jump; otherwise it is counted, and the next one is whole") {
     const auto eyes = eyesAt(view.eye, 0);
-    for (const bool jumps : {true, false}) {  // or nothing moves but a wall of splats that comes out from behind the near plane
+    // Or nothing moves but a wall of splats that comes through the near plane.
+    for (const bool jumps : {true, false}) {
         CAPTURE(jumps);
         KeptFrame frame(context(), scene, kNoRoom);
         const auto waited = StereoFrame::beside(frame);
@@ -255,9 +258,10 @@ TEST_CASE_FIXTURE(Atelier, "lists that the device has no memory for cost the pic
     const std::uint64_t cut_short = countOf(last, "frames_cut_short");
     CHECK(cut_short > 0);
     CHECK(countOf(last, "tile_pairs_left") == 0);
-    // What fits is shown again.
-    CHECK(countOf(goAhead(frame, eyes, blind(), 4), "frames_cut_short") <= cut_short + 2);  // two were under way
-    // Another scene, which fits, begins anew in the same frame.
+    // Once everything fits, it is shown again.
+    // Two were in flight.
+    CHECK(countOf(goAhead(frame, eyes, blind(), 4), "frames_cut_short") <= cut_short + 2);
+    // Another scene, which fits, starts afresh in the same frame object.
     const ViewedScene splat = test::viewBuiltin("builtin:one-splat", {96, 96});
     const GpuScene splat_scene(tight, splat.scene), roomy_splat(context(), splat.scene);
     frame.show(splat_scene);
@@ -325,7 +329,7 @@ TEST_CASE_FIXTURE(Gpu, "a frame that goes on with another's kernels draws its ow
     auto before = std::make_unique<StereoFrame>(context(), other_scene);
     for (int step = 0; step < 2; ++step) { before->renderAhead(eyesAt(other_view.eye, step), makeSettings(Mode::kPredicted)); }
     KeptFrame frame(context(), scene);
-    frame.takeKernels(*before);  // while frames are under way
+    frame.takeKernels(*before);  // while frames are in flight
     CHECK(pictureOf(frame, view.eye) == expected);
     CHECK(pictureOf(*before, other_view.eye) == other_expected);
     before.reset();

@@ -1,5 +1,6 @@
-// Facts about frames of any kind after frames of any other: modes, sizes, angles and whatever is kept change from frame to frame, as no
-// program does it, and each picture is what a frame that knows nothing of the ones before comes to, or near the full render.
+// Facts about any kind of frame after any other kind. Modes, sizes, angles and kept data change from frame to
+// frame, as in no real program. Each picture must equal the one of a frame that knows nothing of earlier
+// ones, or be close to the full render.
 #include "tests/engine/frame/frame_runs.h"
 
 SUITE(frame_mix) {
@@ -7,8 +8,8 @@ SUITE(frame_mix) {
 constexpr std::array kModes{Mode::kMono,  Mode::kTwoPass,   Mode::kShared,    Mode::kReproject,
                             Mode::kPaper, Mode::kPredicted, Mode::kAlternate, Mode::kTemporal};
 constexpr int kFrames = 12;
-// Of a picture that is made from one of another size, with other angles, from up to 5 cm away: what was written over or never made has
-// less.
+// For a picture that is reprojected from one of another size, with other angles, from up to 5 cm away.
+// Overwritten or missing pixels score lower.
 constexpr double kLeastDb = 17.0;
 
 class Dice {
@@ -24,7 +25,7 @@ private:
     std::mt19937 random_;
 };
 
-// What a frame is asked for; the tiles that it hides are held here.
+// The settings of a frame; holds its hidden tiles.
 class Walk {
 public:
     Walk(unsigned seed, const Eye& start) : dice_(seed), middle_(start) {
@@ -36,7 +37,7 @@ public:
     void go() {
         if (dice_.falls(0.5)) { change(); }
         if (dice_.falls(0.3)) { changeEyes(); }
-        const double reach = dice_.falls(0.2) ? dice_.between(0.02, 0.4) : 0.004;  // a jump, now and then
+        const double reach = dice_.falls(0.2) ? dice_.between(0.02, 0.4) : 0.004;  // now and then a jump
         middle_.world_from_camera.position += dice_.vector(reach);
         middle_.world_from_camera.orientation =
             glm::normalize(middle_.world_from_camera.orientation * glm::angleAxis(0.005, glm::normalize(dice_.vector(1) + 1e-3)));
@@ -56,13 +57,14 @@ public:
 
     [[nodiscard]] FrameSettings settings() {
         FrameSettings settings = settings_;
-        // Moments are for files: there is no kernel for them in pictures that are only shown, nor in histories.
+        // Moments are for files: pictures that are only shown have no kernel for them, and neither have
+        // histories.
         settings.keep_moments = settings.keep_moments && !settings.half_floats && !(settings.keep_past && hasPast(settings.mode));
         const std::vector<Eye> all = eyes();
         for (std::size_t e = 0; e < all.size() && hides_; ++e) {
             const glm::uvec2 tiles = (all[e].size_px + 15u) / 16u;
             hidden_[e].assign(std::size_t{tiles.x} * tiles.y, 0);
-            for (std::size_t t = 0; t < tiles.x; ++t) { hidden_[e][t] = 1; }  // the topmost row
+            for (std::size_t t = 0; t < tiles.x; ++t) { hidden_[e][t] = 1; }  // the top row
             settings.hidden_tiles[e] = hidden_[e];
         }
         return settings;
@@ -71,7 +73,7 @@ public:
     [[nodiscard]] bool goesAhead() { return dice_.falls(0.5); }
 
 private:
-    // All of it at first, then a few things at a time, so that histories live on.
+    // Everything at first, then a few settings at a time, so that histories survive.
     void change() {
         FrameSettings& s = settings_;
         const bool is_new = std::exchange(is_new_, false);
@@ -129,10 +131,10 @@ private:
     std::array<std::vector<std::uint8_t>, 2> hidden_;
 };
 
-// Whether the frames before leave it nothing but whether moving pays.
+// Whether all that it learns from earlier frames is whether moving pays.
 bool standsAlone(const FrameSettings& settings) { return !hasPast(settings.mode) || !settings.keep_past; }
 
-// Of frames that know of none before.
+// By frames that know of none before them.
 std::vector<Image> picturesAlone(StereoFrame& other, const std::vector<Eye>& eyes, const FrameSettings& settings) {
     const auto frame = StereoFrame::beside(other);
     frame->render(eyes, settings);
@@ -164,7 +166,7 @@ TEST_CASE_FIXTURE(Gpu, "any frame may follow any other") {
                 CAPTURE(e);
                 const Image picture = mixed.readPicture(static_cast<int>(e));
                 REQUIRE(picture.size_px == eyes[e].size_px);
-                // `predicted` renders in full where moving did not pay the last time.
+                // `predicted` renders in full where moving did not pay last time.
                 const bool same = picture.values == alone[e].values ||
                                   (choiceOf(settings.mode) == TileChoice::kPredicted && picture.values == in_full[e].values);
                 if (standsAlone(settings)) {

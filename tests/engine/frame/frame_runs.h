@@ -1,4 +1,4 @@
-// Runs whole frames in tests: one call, and everything that they leave.
+// Runs whole frames in tests: one call, with everything that a frame leaves.
 #pragma once
 
 #include "app/scores/metrics.h"
@@ -8,9 +8,9 @@
 
 namespace binosplat::test {
 
-// While it exists, a frame on the tests' own device has the kernels made before it in this program. They are
-// those of frames whose options leave the threads of a cell to the device: a frame that chose them makes its
-// own.
+// While this exists, frames on the tests' own device reuse kernels that were made earlier in this program.
+// This holds for frames whose options leave the threads per cell to the device; those that choose the number
+// make kernels of their own.
 class KeptKernels {
 public:
     KeptKernels(const Context& context, StereoFrame& frame, const FrameOptions& options = {})
@@ -40,8 +40,8 @@ private:
 struct OwnScene {
     std::optional<GpuScene> own_scene;
 };
-// A frame with such kernels, of a scene on the device or of one that it uploads itself. While one of them
-// exists, others make their kernels again, unless they are StereoFrame::beside it.
+// A frame with such kernels, of a scene on the device or of one that it uploads itself. While one exists,
+// other frames make their kernels again, unless they come from StereoFrame::beside it.
 class KeptFrame : private OwnScene, public StereoFrame {
 public:
     KeptFrame(const Context& context, const GpuScene& scene, const FrameOptions& options = {})
@@ -66,7 +66,7 @@ inline std::array<Image, 2> picturesOf(StereoFrame& frame) { return {frame.readP
 using PairOfValues = std::array<std::vector<float>, 2>;
 inline PairOfValues shownBy(StereoFrame& frame) { return {frame.readPicture(kLeft).values, frame.readPicture(kRight).values}; }
 
-// Of the worse eye.
+// The lower value of the two eyes.
 inline double psnrDb(const std::array<Image, 2>& a, const std::array<Image, 2>& b) {
     return std::min(compare(a[kLeft], b[kLeft]).psnrDb(), compare(a[kRight], b[kRight]).psnrDb());
 }

@@ -1,4 +1,5 @@
-// Facts about whole frames against the twin: pictures, depth and moments of real, built-in and analytic scenes.
+// Facts about whole frames compared with the twin: pictures, depths and moments of real, built-in and
+// analytic scenes.
 #include "engine/files/load_scene.h"
 #include "engine/picture/image_io.h"
 #include "engine/srgb.h"
@@ -29,11 +30,12 @@ reference::Picture renderTwin(const ViewedScene& view, const FrameSettings& sett
     return reference::render(view.scene, view.eye, twinSettings(settings));
 }
 
-// How near a pixel of the twin comes to a threshold of blending. Rounding moves a value across a threshold now and then, whatever
-// the precision, and then a hit counts in full or not at all: alpha at 1/255 (a weight of up to 4e-3), transmittance at 1e-4 (a
-// weight of up to 1e-2, since alpha is at most 0.99), a hit at the near plane, or the disc's own depth instead of its centre's. A 3D
-// Gaussian has one depth, and no second one of a low-pass. Two hits also change places where their centres' depths, which they are
-// sorted by, are one within rounding: ten units in the last place stand for the 1e-5 of the others.
+// How close a pixel of the twin comes to a threshold of blending. Whatever the precision, rounding sometimes
+// moves a value across a threshold, and then a hit counts in full or not at all: alpha at 1/255 (a weight of
+// up to 4e-3), transmittance at 1e-4 (a weight of up to 1e-2, since alpha is at most 0.99), a hit at the near
+// plane, or the disc's own depth instead of its centre's. A 3D Gaussian has only one depth, without a second
+// one from the low-pass. Two hits also change places if the depths of their centres, by which they are
+// sorted, agree within rounding; ten units in the last place take the part of the others' 1e-5 here.
 struct Threshold {
     const char* name = "none";
     double distance = 1.0;  // relative
@@ -42,7 +44,7 @@ struct Threshold {
     }
 };
 
-// The threshold that pixel `i` of the twin comes nearest to.
+// The threshold to which pixel `i` of the twin comes closest.
 Threshold nearestThreshold(const test::TwinStages& twin, const Eye& eye, const reference::Settings& settings, std::size_t i) {
     const glm::uvec2 pixel(i % eye.size_px.x, i / eye.size_px.x);
     const glm::dvec2 pixel_px = glm::dvec2(pixel) + 0.5;
@@ -53,7 +55,7 @@ Threshold nearestThreshold(const test::TwinStages& twin, const Eye& eye, const r
     for (std::uint32_t at = range.begin; at < range.end; ++at) {
         const reference::ProjectedSplat& splat = twin.splats[twin.sorted_pairs[at].splat];
         reference::RayPlane plane = reference::rayPlane(splat, eye.size_px, settings.near);
-        plane.cut += 0.1;  // hits a little below 1/255 as well
+        plane.cut += 0.1;  // includes hits slightly below 1/255
         reference::RayPlane disc = plane, low_pass = plane;
         disc.low_pass = low_pass.disc = false;
         reference::Hit hit, hit_disc, hit_low_pass;
@@ -75,8 +77,8 @@ Threshold nearestThreshold(const test::TwinStages& twin, const Eye& eye, const r
     return nearest;
 }
 
-// How far the depths of opaque pixels are from the twin's: which are off by more than 1e-3 of themselves, and of these the farthest
-// from any threshold.
+// How far the depths of opaque pixels are from the twin's: how many are off by more than 1e-3 of their value,
+// and which of these is farthest from any threshold.
 struct DepthErrors {
     std::uint64_t opaque = 0, off = 0;
     double greatest = 0.0, farthest_from_threshold = 0.0;
@@ -105,9 +107,10 @@ double farthestDepth(const ViewedScene& view) {
     return farthest;
 }
 
-// A frame must be the twin's but for rounding, and depths within 1e-3 wherever no threshold lies within 1e-5 of a value of the
-// twin: which is so for all but 1e-4 of the pixels. Measured: 1 of the atelier's 589,824 pixels is off, none of the others'; with Mesa 25
-// also 11 of 133,045, where two of playbot's 3D Gaussians change places. Returns the picture.
+// A frame must equal the twin's up to rounding, and its depths must agree within 1e-3 wherever no value of
+// the twin lies within 1e-5 of a threshold, which holds for all but 1e-4 of the pixels. Measured: 1 of the
+// atelier's 589,824 pixels is off, and none of the others'; with Mesa 25 also 11 of 133,045, where two of
+// playbot's 3D Gaussians change places. Returns the picture.
 Image checkAgainstTwin(Gpu& gpu, const ViewedScene& view, const FrameSettings& settings, double least_db, double most_off = 1e-5) {
     CAPTURE(view.name);
     const auto frame = renderMono(gpu.context(), view.scene, view.eye, settings);
@@ -126,7 +129,7 @@ Image checkAgainstTwin(Gpu& gpu, const ViewedScene& view, const FrameSettings& s
     return frame.picture;
 }
 
-// Of playbot, from all of it to its face.
+// Views of playbot, from the whole figure to its face.
 const View kWhole{{0.0, -0.6, -1.6}, {0.0, -0.4, 0.0}, {0.0, -1.0, 0.0}, 60.0};
 const View kNear{{0.3, -0.7, -0.8}, {0.0, -0.6, 0.0}, {0.0, -1.0, 0.0}, 90.0};
 
@@ -153,7 +156,8 @@ TEST_CASE_FIXTURE(Gpu, "the atelier and clouds of discs and of 3D Gaussians, dim
     checkAgainstTwin(*this, test::viewBuiltin("builtin:atelier", {256, 256}, 20000), makeSettings(background), 80.0);
     checkAgainstTwin(*this, test::viewCloud({320, 240}), makeSettings(), 80.0);  // measured: 84.0
     for (const bool antialiased : {false, true}) {
-        checkAgainstTwin(*this, test::viewGaussians({320, 240}, antialiased), makeSettings(background), 78.0);  // measured: 81.7
+        // measured: 81.7
+        checkAgainstTwin(*this, test::viewGaussians({320, 240}, antialiased), makeSettings(background), 78.0);
     }
 }
 
@@ -175,8 +179,8 @@ TEST_CASE_FIXTURE(Gpu, "colours of light are blended as light, over the light of
                  to_twin_db = compare(picture, test::toImage(renderTwin(view, settings)), 4).psnrDb();
     CHECK(to_sum_db >= 75.0);
     CHECK(to_twin_db >= 75.0);
-    CHECK(compare(picture, as_stored, 4).psnrDb() < 30.0);  // so that it matters
-    // Nothing but background is the background, and both eyes are encoded, moved or not.
+    CHECK(compare(picture, as_stored, 4).psnrDb() < 30.0);  // the difference matters
+    // Without splats the picture is the background, and both eyes are encoded, reprojected or not.
     Scene nothing;
     nothing.is_linear = true;
     const Image bare = renderMono(context(), nothing, view.eye, settings).picture;
@@ -262,8 +266,8 @@ TEST_CASE_FIXTURE(Gpu, "moments of inverse depth are the twin's, on a background
 }
 
 TEST_CASE_FIXTURE(Gpu, "one splat is the Gaussian that its parameters say, at every pixel") {
-    // Disc at z = 2 facing the eye, scales 0.2 and 0.1, opacity 0.8: with f in pixels u = 2 dx / (0.2 f), v = 2 dy / (0.1 f). It is far
-    // wider than the low-pass.
+    // A disc at z = 2 facing the eye, with scales 0.2 and 0.1 and opacity 0.8: with f in pixels, u = 2 dx /
+    // (0.2 f) and v = 2 dy / (0.1 f). It is far wider than the low-pass.
     const ViewedScene view = test::viewBuiltin("builtin:one-splat", {255, 255});
     const glm::dvec3 background(0.25, 0.5, 0.75), colour(0.9, 0.6, 0.3);
     const auto frame = renderMono(context(), view.scene, view.eye, makeSettings(background));
@@ -272,7 +276,7 @@ TEST_CASE_FIXTURE(Gpu, "one splat is the Gaussian that its parameters say, at ev
         const glm::dvec2 d(i % 255 - 127, i / 255 - 127);
         const glm::dvec2 uv = 2.0 * d / (glm::dvec2(0.2, 0.1) * view.eye.intrinsics.fx);
         double alpha = 0.8 * std::exp(-0.5 * glm::dot(uv, uv));
-        if (std::abs(alpha * 255.0 - 1.0) < 1e-3) { continue; }  // too near the cut to call
+        if (std::abs(alpha * 255.0 - 1.0) < 1e-3) { continue; }  // too close to the cut to call
         if (alpha < 1.0 / 255.0) { alpha = 0.0; }
         const float* rgba = &frame.picture.values[static_cast<std::size_t>(4 * i)];
         for (int channel = 0; channel < 3; ++channel) {
@@ -287,7 +291,7 @@ TEST_CASE_FIXTURE(Gpu, "one splat is the Gaussian that its parameters say, at ev
 }
 
 TEST_CASE_FIXTURE(Gpu, "two layers blend front to back, in colour, depth and its inverse moments") {
-    // Opacities 0.5 at z = 2 and 0.9 at z = 4, with the same u and v at every pixel.
+    // Opacities of 0.5 at z = 2 and 0.9 at z = 4, with the same u and v at every pixel.
     const ViewedScene view = test::viewBuiltin("builtin:two-layers", {255, 255});
     const auto frame = renderMono(context(), view.scene, view.eye, makeSettings(glm::dvec3(0.0), true));
     for (const glm::ivec2 d : {glm::ivec2(0, 0), glm::ivec2(20, 0), glm::ivec2(-30, 41), glm::ivec2(7, -60)}) {
@@ -306,7 +310,8 @@ TEST_CASE_FIXTURE(Gpu, "two layers blend front to back, in colour, depth and its
 }
 
 TEST_CASE_FIXTURE(Gpu, "D/A is the depth of a plane that all splats lie in, slanted too") {
-    // z = 4 + x meets the ray (x, y, 1) z at z = 4 / (1 - x). Each splat is hit there and not at its centre's depth.
+    // The plane z = 4 + x meets the ray (x, y, 1) z at z = 4 / (1 - x). Each splat is hit there, not at its
+    // centre's depth.
     const ViewedScene view = test::viewBuiltin("builtin:slanted-wall", {256, 256});
     const auto frame = renderMono(context(), view.scene, view.eye, makeSettings());
     double worst = 0.0;
@@ -328,7 +333,8 @@ TEST_CASE_FIXTURE(Gpu, "walls stand at their depths behind bars and edges") {
         CAPTURE(name);
         const ViewedScene view = test::viewBuiltin(name, {256, 256});
         const auto frame = renderMono(context(), view.scene, view.eye, makeSettings());
-        // A column between two bars, and one right of the edge, by x on the plane z = 1, and the wall that it meets.
+        // A column between two bars, and one to the right of the edge, by x on the plane z = 1, and the wall
+        // that it meets.
         const auto column = static_cast<std::size_t>(view.eye.intrinsics.cx + view.eye.intrinsics.fx * place.first);
         for (std::size_t row = 32; row < 224; ++row) {
             const std::size_t pixel = row * 256 + column;

@@ -1,4 +1,5 @@
-// Pictures that must not change, in golden/: the twin's of a few scenes, and the last pair of a walk.
+// Pictures that must not change, in golden/: the twin's pictures of a few scenes, and the last pair of a
+// walk.
 #include "engine/picture/image_io.h"
 #include "engine/stream/moving_scene.h"
 #include "engine/twin/coarse.h"
@@ -11,12 +12,12 @@ SUITE(golden) {
 #ifdef BINOSPLAT_HAS_PNG
 
 constexpr double kLeastDb = 50.0;  // 8 bits alone leave 59
-// Of a walk: a tile that float32 prices just otherwise is rendered a frame earlier or later.
+// For a walk: a tile whose price differs slightly in float32 is rendered a frame earlier or later.
 constexpr double kLeastWalkDb = 45.0;
 
 std::filesystem::path stemOf(const std::string& name) { return std::filesystem::path(BINOSPLAT_SOURCE_DIR) / "tests/golden" / name; }
 
-// The file, which is written first where that is wanted: BINOSPLAT_WRITE_GOLDENS=1.
+// The file; with BINOSPLAT_WRITE_GOLDENS=1 it is written first.
 Image readGolden(const std::string& name, const Image& made) {
     const char* write = std::getenv("BINOSPLAT_WRITE_GOLDENS");
     if (write != nullptr && std::string(write) == "1") { writePicture(stemOf(name), PictureKind::kDisplay, made); }
@@ -28,11 +29,11 @@ void checkGolden(const std::string& name, const Image& expected, const Image& ac
     CHECK(compare(expected, actual).psnrDb() >= least_db);
 }
 
-// Longer walks come apart: one tile in the 70 that float32 prices otherwise is another picture from then on.
+// Longer walks diverge: if float32 prices one of the 70 tiles differently, the pictures differ from then on.
 constexpr int kFrames = 6;
 constexpr double kBudget = 0.2;
 
-// A head that walks by 3 mm a frame, sways and looks around.
+// A head that walks 3 mm a frame, sways and looks around.
 std::array<Eye, 2> eyesAt(const Eye& start, int frame) {
     Eye eye = start;
     const glm::dvec3 step(0.003 * frame, 0.004 * std::sin(0.5 * frame), 0.001 * frame);
@@ -42,7 +43,7 @@ std::array<Eye, 2> eyesAt(const Eye& start, int frame) {
     return stereoPair(eye, 0.063);
 }
 
-// Left and right beside each other.
+// Left and right side by side.
 Image besideEachOther(const std::array<Image, 2>& pair) {
     const glm::uvec2 size_px = pair[0].size_px;
     Image both{{2 * size_px.x, size_px.y}, pair[0].channels, {}};
@@ -56,7 +57,7 @@ Image besideEachOther(const std::array<Image, 2>& pair) {
     return both;
 }
 
-// What slides goes on by 8 cm with every second frame.
+// The sliding objects move on by 8 cm every second frame.
 Scene sceneAt(int frame) { return test::shakenAtelier(4 * (frame / 2), 1000); }
 constexpr double kSceneRate = 45.0, kDisplayRate = 90.0;
 
@@ -85,7 +86,8 @@ TEST_CASE_FIXTURE(Gpu, "the golden pictures are what twin and device render, in 
     }
 }
 
-// What each pass makes is held against its twin in past_passes_test.cpp and others; the file is as all of their twins together came to it.
+// past_passes_test.cpp and others compare each pass with its twin; the file holds what all of their twins
+// made together.
 TEST_CASE_FIXTURE(Gpu, "the last pair of a walk past a scene that moves is what it was") {
     const test::Folder folder;
     test::writeFilm(folder.file("film"), kFrames / 2 + 1, [](int frame) { return sceneAt(2 * frame); });
@@ -96,7 +98,7 @@ TEST_CASE_FIXTURE(Gpu, "the last pair of a walk past a scene that moves is what 
     settings.keep_past = true;
     settings.stereo.budget = kBudget;
     View view = *builtinView("atelier");
-    view.fov_x_deg = 50.0;  // what slides changes a third of the tiles
+    view.fov_x_deg = 50.0;  // the sliding objects change a third of the tiles
     const Eye start = test::eyeOf(view, {112, 80});
     for (int i = 0; i <= kFrames; ++i) {
         moving.setTime(i / kDisplayRate);
@@ -105,7 +107,7 @@ TEST_CASE_FIXTURE(Gpu, "the last pair of a walk past a scene that moves is what 
     }
     const Image device = besideEachOther(test::picturesOf(frame));
     checkGolden("walk", readGolden("walk", device), device, "device", kLeastWalkDb);
-    // What moved is where it is now, not where it was.
+    // What moved is shown where it is now, not where it was.
     const auto eyes = eyesAt(start, kFrames);
     const auto fullOf = [&](const Scene& scene) {
         return besideEachOther(

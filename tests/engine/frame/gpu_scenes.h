@@ -1,4 +1,4 @@
-// Scenes and eyes that GPU tests render, and the twin's pictures as images.
+// Scenes and eyes for GPU tests, and the twin's pictures as images.
 #pragma once
 
 #include "engine/builtin/procedural.h"
@@ -18,7 +18,7 @@ inline Eye eyeOf(const View& view, glm::uvec2 size_px) {
     return {lookAt(view.eye, view.look, view.up), intrinsicsFromFovX(glm::radians(view.fov_x_deg), size_px), size_px};
 }
 
-// Each is made once: baking the atelier's light takes longer than many tests.
+// Each is made only once: baking the atelier's light takes longer than many tests.
 inline ViewedScene viewBuiltin(const std::string& name, glm::uvec2 size_px, std::uint64_t splats = 0) {
     static std::map<std::pair<std::string, std::uint64_t>, Scene> made;
     auto found = made.find({name, splats});
@@ -34,7 +34,7 @@ inline ViewedScene viewCloud(glm::uvec2 size_px) {
     std::mt19937 random(4);
     const auto draw = [&] { return drawUnit(random); };
     for (std::size_t i = 0; i < 300; ++i) {
-        // t_u along the line of sight except for a small angle: the plane almost holds the eye.
+        // t_u is along the line of sight except for a small angle, so the plane almost contains the eye.
         const glm::dvec3 sight = glm::normalize(glm::dvec3(scene.positions[i]) - eye.world_from_camera.position);
         const glm::dvec3 across = glm::normalize(glm::cross(sight, glm::dvec3(draw(), draw(), -draw())));
         const glm::dvec3 normal = glm::normalize(across + std::pow(10.0, -1.0 - 6.0 * draw()) * sight);
@@ -46,11 +46,12 @@ inline ViewedScene viewCloud(glm::uvec2 size_px) {
     return {"cloud", std::move(scene), eye};
 }
 
-// For the constant kSplatKind of passes in which dimming makes no difference.
+// For the constant kSplatKind of passes for which dimming makes no difference.
 inline std::uint32_t shapeOf(const Scene& scene) { return scene.isGaussian3d() ? gpu::kGaussians : gpu::kDiscs; }
 
-// The same as 3D Gaussians from as thick as their second axis to flat; needles of 1e6; some within the near plane's reach and beside the
-// eye, where the linear projection breaks down; opacities that dimming takes under 1/255.
+// The same as 3D Gaussians, from as thick as their second axis to flat, with needles of 1e6. Some are within
+// reach of the near plane or beside the eye, where the linear projection breaks down; some have opacities
+// that dimming takes below 1/255.
 inline ViewedScene viewGaussians(glm::uvec2 size_px, bool antialiased) {
     ViewedScene view = viewCloud(size_px);
     view.name = antialiased ? "antialiased Gaussians" : "Gaussians";
@@ -73,7 +74,7 @@ inline Image toImage(glm::uvec2 size_px, const std::vector<glm::dvec4>& colours)
 }
 inline Image toImage(const reference::Picture& picture) { return toImage(picture.size_px, picture.rgba); }
 
-// One channel each of the given values.
+// An image with one channel for each of the given values.
 template <typename... Values>
 Image toImage(glm::uvec2 size_px, const Values&... channels) {
     Image image{size_px, static_cast<int>(sizeof...(channels)), {}};

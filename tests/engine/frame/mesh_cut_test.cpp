@@ -1,11 +1,12 @@
-// Facts about meshes that cut through splats: at every pixel a splat shows where it is nearer, and the rest of the picture with it.
+// Facts about meshes that cut through splats: in every pixel, a splat shows where it is nearer; the rest of
+// the picture follows suit.
 #include "tests/engine/frame/frame_runs.h"
 
 SUITE(mesh_cut) {
 
 constexpr float kScale = 0.1f, kOffset = 0.25f;
 
-// Where a slanted plane lies at each pixel, along z.
+// The depth of a slanted plane in each pixel, along z.
 std::vector<double> planeAt(const Eye& eye, const glm::dvec3& normal, double distance) {
     std::vector<double> depths;
     for (std::uint32_t y = 0; y < eye.size_px.y; ++y) {
@@ -17,7 +18,7 @@ std::vector<double> planeAt(const Eye& eye, const glm::dvec3& normal, double dis
     return depths;
 }
 
-// A cloud before the eye.
+// A cloud in front of the eye.
 Scene makeMist(std::size_t splats, bool gaussians) {
     Scene scene;
     scene.name = "mist";
@@ -34,7 +35,7 @@ Scene makeMist(std::size_t splats, bool gaussians) {
     return scene;
 }
 
-// The pixels of a picture that are off by more than `most` in a channel, against the twin's.
+// The number of pixels that differ from the twin's by more than `most` in a channel.
 int countOff(const Image& seen, const reference::Picture& twin, double most) {
     int off = 0;
     for (std::size_t i = 0; i < twin.rgba.size(); ++i) {
@@ -80,7 +81,8 @@ TEST_CASE_FIXTURE(
                 const reference::Picture cut = reference::render(mist, eyes[e], twin);
                 const Image seen = frame.readPicture(static_cast<int>(e));
                 INFO("mode ", static_cast<int>(mode), ", gaussians ", gaussians, ", eye ", e);
-                // A splat that crosses the plane in the middle of a pixel may be on either side of it, by rounding.
+                // A splat that crosses the plane in the middle of a pixel may fall on either side of it by
+                // rounding.
                 CHECK(countOff(seen, cut, 2e-3) <= 2);
                 CHECK(countOff(seen, whole, 2e-2) > 3000);
             }
@@ -97,7 +99,7 @@ TEST_CASE_FIXTURE(Gpu, "a mesh behind everything hides nothing, to the last bit,
     settings.mode = Mode::kMono;
     frame.render(eyes, settings);
     const std::vector<float> whole = frame.readPicture(0).values;
-    for (const float stored : {kOffset, kOffset + 4.0f * kScale}) {  // infinitely far; at 0.25
+    for (const float stored : {kOffset, kOffset + 4.0f * kScale}) {  // infinitely far away; at 0.25
         const Buffer mesh = upload("mesh depths", std::vector<float>(1200, stored));
         settings.mesh_depths[0] = MeshDepths{mesh.address<float>(), kScale, kOffset};
         frame.render(eyes, settings);

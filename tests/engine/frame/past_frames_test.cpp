@@ -1,5 +1,5 @@
-// Facts about frames that are made from the ones before, in full and with coarse tiles: what they equal where nothing moves, and what
-// they cost. Pass by pass: past_passes_test.cpp.
+// Facts about frames that are reprojected from the history, in full and with coarse tiles: what they equal if
+// nothing moves, and what they cost. For single passes see past_passes_test.cpp.
 #include "tests/engine/frame/frame_runs.h"
 
 SUITE(past_frames) {
@@ -14,7 +14,8 @@ FrameSettings makeSettings(Mode mode, double budget = 0.2) {
 
 ViewedScene viewAtelier() { return test::viewBuiltin("builtin:atelier", {208, 176}, 20000); }
 
-// With coarse tiles where the eyes do not look: so few pixels show less than an eye resolves but far from there.
+// With coarse tiles where the eyes do not look: a picture this small shows more than the eye resolves only
+// far from the gaze.
 FrameSettings withCoarse(Mode mode) {
     FrameSettings settings = makeSettings(mode);
     settings.keep_past = mode != Mode::kMono;
@@ -28,7 +29,7 @@ ViewedScene viewRoom() {
     return view;
 }
 
-// A head that walks by 3 mm a frame, and turns a little.
+// A head that walks 3 mm a frame and turns a little.
 std::array<Eye, 2> eyesAt(const Eye& middle, double step) {
     Eye eye = middle;
     eye.world_from_camera.position += step * glm::dvec3(0.003, 0.001, 0.001);
@@ -37,7 +38,7 @@ std::array<Eye, 2> eyesAt(const Eye& middle, double step) {
     return stereoPair(eye, 0.063);
 }
 
-// Frames one after another, and beside each the full renders.
+// Frames one after another, each with its full renders beside it.
 class Walk {
 public:
     Walk(const Context& context, const FrameSettings& settings, ViewedScene view = viewAtelier())
@@ -53,7 +54,7 @@ public:
         full_->render(eyes_, makeSettings(Mode::kShared));
         return test::picturesOf(*full_);
     }
-    // Of each eye by itself, without a history.
+    // Each eye by itself, without a history.
     std::array<Image, 2> alone() {
         std::array<Image, 2> pictures;
         for (std::size_t e = 0; e < 2; ++e) {
@@ -105,7 +106,8 @@ TEST_CASE_FIXTURE(Gpu, "a head that stands still sees the full render within 30 
 TEST_CASE_FIXTURE(Gpu, "with work for nearly all both eyes are nearly the full render, parallel or canted, whatever room lists had") {
     const ViewedScene view = viewAtelier();
     const GpuScene scene(context(), view.scene);
-    for (const double cant : {0.0, 0.05}) {  // parallel eyes are rendered beside each other, canted ones one after the other
+    // Parallel eyes are rendered side by side, canted ones one after the other.
+    for (const double cant : {0.0, 0.05}) {
         CAPTURE(cant);
         KeptFrame frame(context(), scene, {.first_capacity = {1, 1}, .threads_per_cell = 0});
         const auto full = StereoFrame::beside(frame);
@@ -123,12 +125,12 @@ TEST_CASE_FIXTURE(Gpu, "with work for nearly all both eyes are nearly the full r
 TEST_CASE_FIXTURE(Gpu, "a walk keeps its quality within the budget, in both eyes and without a frame that costs more") {
     Walk walk(context(), makeSettings(Mode::kTemporal));
     walk.go(0.0);
-    CHECK(walk.shown()[0].values == walk.full()[0].values);  // nothing was there to be made from
+    CHECK(walk.shown()[0].values == walk.full()[0].values);  // there was no history yet
     for (int frame = 1; frame <= 12; ++frame) {
         const FrameResult result = walk.go(frame);
         REQUIRE(result.counters.warped);
         CHECK(result.work_rendered > 0.15);
-        CHECK(result.work_rendered < 0.22);  // a tile more than the budget at most
+        CHECK(result.work_rendered < 0.22);  // at most one tile more than the budget
         CHECK(result.counters.warped->tiles_patched > 0);
         CHECK(result.counters.commands <= 23);
         if (frame % 6 == 0) { CHECK(walk.psnr() > 36.0); }
@@ -136,7 +138,7 @@ TEST_CASE_FIXTURE(Gpu, "a walk keeps its quality within the budget, in both eyes
 }
 
 TEST_CASE_FIXTURE(Gpu, "where it is known where the eyes look, the budget is spent there") {
-    // Of the left third of both pictures of some frames.
+    // The error in the left third of both pictures, over some frames.
     const auto errorOf = [&](const FrameSettings& settings) {
         Walk walk(context(), settings);
         double error = 0.0;
@@ -168,9 +170,9 @@ TEST_CASE_FIXTURE(Gpu, "after a jump of the head both eyes are rendered in full"
     CHECK(walk.psnr() > 36.0);
 }
 
-// As where a governor looks for the resolution that keeps the rate.
+// The resolution changes as when a governor looks for the one that holds the rate.
 TEST_CASE_FIXTURE(Gpu, "a past comes from less than the way to the other eye; without one a frame is waited for") {
-    constexpr double kStepMetres = 0.0033166;  // of eyesAt
+    constexpr double kStepMetres = 0.0033166;  // the step of eyesAt
     const auto countFull = [](Walk& walk) {
         const auto shown = walk.shown(), full = walk.full();
         return (shown[0].values == full[0].values ? 1 : 0) + (shown[1].values == full[1].values ? 1 : 0);
@@ -181,7 +183,7 @@ TEST_CASE_FIXTURE(Gpu, "a past comes from less than the way to the other eye; wi
         walk.go(metres / kStepMetres);
         CHECK(countFull(walk) == full);
     }
-    // One eye is rendered in any case, so that only the other's past counts, which is one frame old.
+    // One eye is always rendered, so only the other's history counts, which is one frame old.
     Walk alternate(context(), makeSettings(Mode::kAlternate));
     for (int frame = 0; frame < 4; ++frame) { alternate.go(frame * 0.04 / kStepMetres); }
     CHECK(countFull(alternate) == 1);
@@ -195,8 +197,8 @@ TEST_CASE_FIXTURE(Gpu, "a past comes from less than the way to the other eye; wi
         told.push_back(result ? static_cast<int>(result->mark) : -1);
         ++settings.mark;
     }
-    CHECK(told[3] < 3);   // told later
-    CHECK(told[4] == 4);  // at once
+    CHECK(told[3] < 3);   // reported later
+    CHECK(told[4] == 4);  // reported at once
 }
 
 TEST_CASE_FIXTURE(Gpu, "a past of another size or of other angles is a past like any other, also when both change in each frame") {
@@ -220,7 +222,7 @@ TEST_CASE_FIXTURE(Gpu, "alternate renders one eye in full, in turn, and the othe
     std::array<int, 2> turns{};
     for (int frame = 1; frame <= 6; ++frame) {
         walk.go(frame);
-        // The order of splats is the eye's own, so that a few bits may differ.
+        // The splats are in the eye's own order, so a few bits may differ.
         const auto shown = walk.shown(), full = walk.full();
         const std::array psnr_db{compare(shown[0], full[0]).psnrDb(), compare(shown[1], full[1]).psnrDb()};
         const bool left = psnr_db[0] > 70.0, right = psnr_db[1] > 70.0;
@@ -239,7 +241,8 @@ TEST_CASE_FIXTURE(Gpu, "with coarse tiles, both eyes are as alone without a past
         CHECK(countOf(result, "tiles_coarse") > 50);
         const auto shown = walk.shown(), alone = walk.alone();
         CHECK(shown[kLeft].values == alone[kLeft].values);
-        CHECK(compare(shown[kRight], alone[kRight]).psnrDb() > 80.0);  // in the left eye's order, which rounding may make another one
+        // in the left eye's order, which may differ by rounding
+        CHECK(compare(shown[kRight], alone[kRight]).psnrDb() > 80.0);
         CHECK(walk.psnr() > 40.0);
         CHECK(std::ranges::any_of(result.left_out, [](const std::string& sentence) { return sentence.starts_with("reprojection: "); }));
     }
@@ -249,7 +252,7 @@ TEST_CASE_FIXTURE(Gpu, "with coarse tiles, a head that stands still comes to see
     Walk walk(context(), withCoarse(Mode::kTemporal), viewRoom());
     for (int frame = 0; frame < 4; ++frame) { walk.go(frame); }
     for (int frame = 0; frame < 30; ++frame) { walk.go(4.0); }
-    CHECK(walk.go(4.0).work_rendered < 0.005);  // what nobody notices has its turn now and then
+    CHECK(walk.go(4.0).work_rendered < 0.005);  // errors that nobody notices get their turn now and then
     CHECK(test::psnrDb(walk.shown(), walk.alone()) > 50.0);
 }
 

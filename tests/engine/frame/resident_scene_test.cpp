@@ -1,4 +1,4 @@
-// Facts about scenes whose parts come and go: they look like the same splats as a scene that stays, and no frame waits for them.
+// Facts about scenes whose parts come and go: they look like a scene that stays, and no frame waits for them.
 #include "tests/engine/frame/frame_runs.h"
 #include "tests/engine/passes/scene_pages.h"
 
@@ -36,7 +36,7 @@ std::vector<std::vector<float>> render(StereoFrame& frame, const std::vector<Eye
     return pictures;
 }
 
-// A scene in `parts` parts of about as many splats, each along Morton's curve.
+// A scene in `parts` parts of about equal size, each along Morton's curve.
 std::vector<Scene> inParts(const Scene& scene, std::size_t parts) {
     std::vector<Scene> some;
     for (std::size_t p = 0; p < parts; ++p) {
@@ -116,7 +116,7 @@ TEST_CASE_FIXTURE(Gpu, "what is there is seen, and nothing else, whatever came a
         const auto other = StereoFrame::beside(frame);
         other->show(whole);
         other->render(eyes, makeSettings(Mode::kShared));
-        // Splats of equal depth go by their places, which differ.
+        // Splats of equal depth are ordered by their places in memory, which differ.
         CHECK(test::psnrDb(pictures, test::picturesOf(*other)) >= 100.0);
     }
     frame.finish();
@@ -158,7 +158,7 @@ TEST_CASE_FIXTURE(Atelier, "a part that is longer than what a frame may bring is
     }
     CHECK(resident.splatsShown() == view.scene.size());
     CHECK_FALSE(resident.hasChanges());
-    // One that goes before that was never there.
+    // A part that is removed before that was never there.
     resident.remove(part);
     const ResidentScene::Part other = resident.add(PackedPages(view.scene, resident.traits())).value();
     frame.render(eyes, makeSettings(Mode::kMono));
@@ -174,7 +174,7 @@ TEST_CASE_FIXTURE(Atelier, "what has no room, or is of another kind, is refused,
     const ResidentScene::Part part = resident.add(PackedPages(view.scene, resident.traits())).value();
     PackedPages more(view.scene, 0, gpu::kPageSplats + 1, resident.traits());
     CHECK_FALSE(resident.add(std::move(more)).has_value());
-    CHECK(more.pageCount() == 2);  // as it was
+    CHECK(more.pageCount() == 2);  // unchanged
     CHECK(resident.freePages() == 1);
     CHECK(resident.add(PackedPages(view.scene, 0, gpu::kPageSplats, resident.traits())).has_value());
     resident.remove(part);
@@ -207,7 +207,7 @@ TEST_CASE_FIXTURE(Atelier, "kernels that are made ahead leave what has come to t
     const FrameResult first = frame.render(eyes, makeSettings(Mode::kShared));
     CHECK(countOf(first, "splats_visible_left") > 0);
     CHECK_FALSE(pages.resident.hasChanges());
-    // And where nothing comes, nothing is recorded.
+    // Where nothing arrives, nothing is recorded.
     CHECK(countOf(frame.render(eyes, makeSettings(Mode::kShared)), "commands") < countOf(first, "commands"));
 }
 
@@ -222,7 +222,8 @@ TEST_CASE("frames go on while parts come and go, though the device has not begun
     StereoFrame frame(context, resident.scene());
     const std::vector<Eye> eyes = eyesFor(Mode::kShared, view.eye);
     frame.renderAhead(eyes, makeSettings(Mode::kShared));
-    // All that is submitted from now on waits for the host, which would wait for ever were a frame waited for, with changes or without.
+    // Everything submitted from now on waits for the host. If a frame were waited for, with changes or
+    // without, it would wait for ever.
     const vk::SemaphoreTypeCreateInfo timeline(vk::SemaphoreType::eTimeline, 0);
     const vk::raii::Semaphore gate = context.device().createSemaphore(vk::SemaphoreCreateInfo({}, &timeline));
     constexpr std::uint64_t kOpen = 1;
@@ -237,7 +238,7 @@ TEST_CASE("frames go on while parts come and go, though the device has not begun
     resident.remove(there[0]);
     resident.setFade(there[1], 0.5f);
     CHECK_FALSE(frame.renderAhead(eyes, makeSettings(Mode::kShared)).has_value());
-    // Where the first one lay, which the frame under way still reads.
+    // Into the place of the first part, which the frame in flight still reads.
     REQUIRE(resident.add(PackedPages(parts[0], resident.traits())).has_value());
     resident.remove(there[2]);
     CHECK_FALSE(frame.renderAhead(eyes, makeSettings(Mode::kShared)).has_value());
@@ -264,7 +265,7 @@ TEST_CASE_FIXTURE(Atelier, "lists have room for what comes, so that no frame is 
 
 TEST_CASE_FIXTURE(Gpu, "where a part is exchanged, pictures that are made from their pasts are right again within some frames") {
     const ViewedScene view = viewAtelier({160, 144});
-    // What stands before the walls is exchanged for the same in other colours.
+    // What stands in front of the walls is replaced by the same in other colours.
     const std::vector<Scene> parts = inParts(view.scene, 12);
     Scene other = parts[5];
     for (float& value : other.sh) { value = -value; }
@@ -273,7 +274,7 @@ TEST_CASE_FIXTURE(Gpu, "where a part is exchanged, pictures that are made from t
         ResidentScene resident(context(), traitsOf(view.scene), {.capacity_pages = test::pagesOf(view.scene.size()) + 24});
         std::vector<ResidentScene::Part> there;
         for (const Scene& part : parts) { there.push_back(resident.add(PackedPages(part, resident.traits())).value()); }
-        // The others are recorded after the first, which brings the changes.
+        // The other frames are recorded after the first, which brings the changes.
         KeptFrame first(context(), resident.scene());
         const auto second = StereoFrame::beside(first), full = StereoFrame::beside(first);
         Eye eye = view.eye;
@@ -300,7 +301,8 @@ TEST_CASE_FIXTURE(Gpu, "where a part is exchanged, pictures that are made from t
             resident.remove(there[5]);
         }
         for (int frame = 0; frame < 8; ++frame) { after = psnrs(); }
-        CHECK(after[0] >= before[0] - 3.0);  // without a word of changes: 17.5 dB below that, and 2.9 where it fades
+        // If changes were not announced: 17.5 dB lower, and 2.9 lower while it fades.
+        CHECK(after[0] >= before[0] - 3.0);
         CHECK(after[1] == doctest::Approx(after[0]).epsilon(1e-6));
     }
 }
@@ -327,7 +329,7 @@ TEST_CASE_FIXTURE(Gpu, "of a scene that is seen in part, a frame looks at the pa
         CHECK(countOf(result, "pages_resident") == pages);
         CHECK(std::abs(static_cast<double>(countOf(result, "pages_seen")) - seen) <= 2.0);
         CHECK(countOf(result, "splats_visible") > 0);
-        // Boxes see about twice the pages that hold a visible splat, not more.
+        // Boxes find about twice as many pages as hold a visible splat, and not more.
         const auto visible = reference::cull(view.scene, {&eye, 1}, {});
         std::set<std::size_t> needed;
         for (std::size_t i = 0; i < visible.size(); ++i) {

@@ -1,4 +1,5 @@
-// Facts about whole frames: what must not change a picture does not change a byte of it; and limits, counters, memory.
+// Facts about whole frames: settings that must not affect a picture do not change a byte of it; and limits,
+// counters and memory.
 #include "tests/engine/frame/affiliated_frames.h"
 #include "tests/engine/frame/frame_runs.h"
 
@@ -15,7 +16,7 @@ ViewedScene viewAtelier(glm::uvec2 size_px = {128, 128}) { return test::viewBuil
 
 bool allFinite(const Image& image) { return compare(image, image, image.channels).not_finite == 0; }
 
-// What a picture must pass to count as the same.
+// When two pictures count as the same.
 bool isAlike(const Image& a, const Image& b) {
     const Difference difference = compare(a, b, 4);
     return difference.not_finite == 0 && difference.psnrDb() >= 80.0 && difference.shareOff() <= 0.0002;
@@ -40,7 +41,7 @@ TEST_CASE_FIXTURE(Gpu, "sharing what eyes can share changes no byte, parallel or
                     frame.render({&eyes[e], 1}, makeSettings(Mode::kMono));
                     CHECK(frame.readPicture(0).values == apart[e]);
                 }
-                // By distance both eyes have one order.
+                // Ordered by distance, both eyes have the same order.
                 FrameSettings settings = makeSettings(Mode::kTwoPass, dominant);
                 settings.order = Order::kDistance;
                 frame.render(eyes, settings);
@@ -68,7 +69,7 @@ TEST_CASE_FIXTURE(Gpu, "a pass that does not run has no time") {
             const auto ran = [&](const char* pass) {
                 return std::ranges::any_of(made.result.gpu_ms, [&](const auto& one) { return one.label.text() == pass; });
             };
-            // Along rows resample moves the pixels itself.
+            // Along rows, resample moves the pixels itself.
             CHECK(ran("affiliated reproject") == (canting_rad > 0.0));
             CHECK(ran("affiliated resample"));
         }
@@ -76,7 +77,8 @@ TEST_CASE_FIXTURE(Gpu, "a pass that does not run has no time") {
 }
 
 TEST_CASE_FIXTURE(Gpu, "while an eye turns, what it sees along a ray stays by distance and pops by depth") {
-    // Both discs cover the ray x = y = 0. Red is nearer by 1 %; turned by more than tan a = 0.02 towards it, its centre is the deeper one.
+    // Both discs cover the ray x = y = 0. Red is nearer by 1 %; when the eye turns towards it by more than
+    // tan a = 0.02, its centre is the deeper one.
     const Scene scene = test::makeScene({{.position = {0.5f, 0.0f, 2.0f}, .scale = glm::vec2(1.0f), .colour = {1.0f, 0.0f, 0.0f}},
                                          {.position = {-0.5f, 0.0f, 2.02f}, .scale = glm::vec2(1.0f), .colour = {0.0f, 1.0f, 0.0f}}});
     for (const Order order : {Order::kDepth, Order::kDistance}) {
@@ -84,7 +86,8 @@ TEST_CASE_FIXTURE(Gpu, "while an eye turns, what it sees along a ray stays by di
         settings.order = order;
         for (const int tenths : {-1, 0, 1}) {
             CAPTURE(tenths);
-            Eye eye = test::makeEye({101, 101});  // of 100 px, so that the ray goes through a pixel's centre again
+            // With a focal length of 100 px, so the ray passes through a pixel's centre again.
+            Eye eye = test::makeEye({101, 101});
             eye.world_from_camera.orientation = glm::angleAxis(std::atan(0.1 * tenths), glm::dvec3(0.0, 1.0, 0.0));
             const Image picture = renderMono(context(), scene, eye, settings).picture;
             const float* pixel = &picture.values[4 * (50 * 101 + 50 - 10 * static_cast<std::size_t>(tenths))];
@@ -95,7 +98,7 @@ TEST_CASE_FIXTURE(Gpu, "while an eye turns, what it sees along a ray stays by di
 }
 
 TEST_CASE_FIXTURE(Gpu, "a scene split over several allocations gives the same picture") {
-    // 100,000 splats of 140 bytes; an upload takes 65,536 at a time.
+    // 100,000 splats of 140 bytes; each upload takes 65,536.
     const ViewedScene view = test::viewBuiltin("builtin:atelier", {96, 96}, 100000);
     const Context split({.device = {}, .validation = test::kValidation, .max_allocation_bytes = 10'000'000});
     CHECK(GpuScene(context(), view.scene).chunkCount() == 1);
@@ -129,7 +132,7 @@ TEST_CASE_FIXTURE(Gpu, "where no splat is seen there is the background, without 
     settings.background = {0.25, 0.5, 0.75};
     Scene empty;
     Scene transparent = makeBuiltin("builtin:fence");
-    std::fill(transparent.opacities.begin(), transparent.opacities.end(), 0.0039f);  // under 1/255
+    std::fill(transparent.opacities.begin(), transparent.opacities.end(), 0.0039f);  // below 1/255
     Scene behind = makeBuiltin("builtin:one-splat");
     behind.positions[0].z = -2.0f;
     for (const Scene* scene : {&empty, &transparent, &behind}) {
@@ -170,7 +173,8 @@ TEST_CASE_FIXTURE(Gpu, "images of odd sizes are rendered as the twin renders the
 }
 
 TEST_CASE_FIXTURE(Gpu, "walls beside the eye are finite along their horizon, where their depth has no bound") {
-    // Discs with t_u = y, t_v = z, t_w = x, whose centres lie beside and behind the eye: in the middle column 1/z is exactly 0.
+    // Discs with t_u = y, t_v = z, t_w = x, whose centres lie beside and behind the eye: in the middle
+    // column, 1/z is exactly 0.
     std::vector<test::Splat> splats;
     for (int i = 0; i < 20; ++i) {
         test::Splat splat;
@@ -210,7 +214,8 @@ TEST_CASE_FIXTURE(Gpu, "counters of pairs are the twin's within one percent") {
         const auto splats = reference::project(view.scene, reference::sortDepth(visible), view.eye, settings);
         const auto pairs = static_cast<double>(reference::bin(splats, view.eye.size_px, settings).size());
         const auto counters = renderMono(context(), view.scene, view.eye, makeSettings(Mode::kMono)).result.counters.named();
-        // Outlines are widened by 1/64 px (measured: 1.06 % more pairs here, where tiles are many times as large as splats).
+        // Outlines are widened by 1/64 px (measured: 1.06 % more pairs here, where tiles are many times
+        // larger than splats).
         CHECK(static_cast<double>(counters.at("tile_pairs")) == doctest::Approx(pairs).epsilon(0.015));
         CHECK(counters.at("splats_read") == view.scene.size());
     }
@@ -219,7 +224,7 @@ TEST_CASE_FIXTURE(Gpu, "counters of pairs are the twin's within one percent") {
 TEST_CASE_FIXTURE(Gpu, "memory keeps to its bounds a splat, a visible splat, a pair and a pixel") {
     CHECK(deviceBytesPerSplat(0, false) <= 64);
     CHECK(deviceBytesPerSplat(3, false) <= 160);
-    const FrameCapacity capacity{1024, 1024};  // and so both lists grow to what is needed
+    const FrameCapacity capacity{1024, 1024};  // so both lists grow to what is needed
     for (const auto& [view, most_bytes] :
          {std::pair(viewAtelier({256, 256}), 160.0), std::pair(test::viewBuiltin("builtin:fence", {256, 256}), 64.0)}) {
         CAPTURE(view.name);
@@ -230,8 +235,10 @@ TEST_CASE_FIXTURE(Gpu, "memory keeps to its bounds a splat, a visible splat, a p
         CHECK(static_cast<double>(counters.at("scene_bytes")) <= most_bytes * splats);
         // Lists grow in steps of 1024.
         CHECK(counters.at("visible_bytes") <= 64 * (counters.at("splats_visible") + 1024));
-        CHECK(counters.at("pair_bytes") <= 4 * counters.at("tile_pairs") + 16 * 1024);  // three words of a pair lie in the picture
-        // Sorting's histograms, half a byte a pair, fit into what a visible splat leaves of its 64 bytes.
+        // Three words of a pair are stored in the picture.
+        CHECK(counters.at("pair_bytes") <= 4 * counters.at("tile_pairs") + 16 * 1024);
+        // The sort's histograms, half a byte per pair, fit into what a visible splat leaves free of its 64
+        // bytes.
         CHECK(counters.at("visible_bytes") + counters.at("pair_bytes") + counters.at("scratch_bytes") <=
               64 * counters.at("splats_visible") + 4 * counters.at("tile_pairs") + 64 * 1024 + 16 * 1024);
         CHECK(counters.at("pixel_bytes") <= 32 * counters.at("pixels"));

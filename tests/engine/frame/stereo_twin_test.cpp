@@ -1,4 +1,4 @@
-// The device's stereo frames are like those of the twin.
+// The device's stereo frames match the twin's.
 #include "tests/engine/frame/frame_runs.h"
 #include "tests/engine/passes/stereo_cases.h"
 
@@ -32,7 +32,8 @@ struct Making {
     std::uint32_t move_cost;
     bool letter;
 };
-// A move that costs nothing, as much as many tiles' pairs, and more than any. And the paper to the letter, each eye by itself.
+// Costs of moving: nothing, as much as the pairs of many tiles, and more than any; also exactly the paper,
+// with each eye by itself.
 constexpr Making kMakings[] = {{TileChoice::kNone, 0, false},          {TileChoice::kNone, 0, true},
                                {TileChoice::kPaper, 0, false},         {TileChoice::kPaper, 0, true},
                                {TileChoice::kPredicted, 0, false},     {TileChoice::kPredicted, 150, false},
@@ -57,8 +58,8 @@ void checkIsTwins(KeptFrame& frame, const View& seen, Side dominant, const Makin
     settings.per_eye = making.letter;
     const AffiliatedFrame made = test::makeAffiliated(frame, seen.eyes, settings);
     const Image &picture = made.pictures[1 - dominant], twin_picture = test::toImage(full.size_px, twin.affiliated);
-    // Errors are rounded down pixel by pixel on the device, so that of tiles that are nearly alike, as those of the fence's like bars,
-    // others may be chosen; they are then worth as much.
+    // The device rounds errors down pixel by pixel, so among tiles that are nearly alike, such as those of
+    // the fence's equal bars, it may choose others; they are then worth as much.
     std::vector<std::uint32_t> same_kind;
     double chosen_error = 0.0, exchanged_error = 0.0;
     for (std::size_t t = 0; t < twin.tile_kinds.size(); ++t) {
@@ -78,26 +79,28 @@ void checkIsTwins(KeptFrame& frame, const View& seen, Side dominant, const Makin
     CHECK(difference.not_finite == 0);
     CHECK(difference.psnrDb() >= 80.0);      // measured: 84.5 and more; of 3D Gaussians 81.3
     CHECK(difference.shareOff() <= 0.0001);  // measured: none
-    // And of tiles that only one of them renders: both are as near to the full render.
+    // Tiles that only one of them renders: both pictures are equally near to the full render.
     const double device_db = compare(picture, full).psnrDb(), twin_db = compare(twin_picture, full).psnrDb();
-    if (std::min(device_db, twin_db) < 70.0) { CHECK(std::abs(device_db - twin_db) <= 0.25); }  // measured: 0.19 in one, 0.12 in one
+    // measured: 0.19 in one, 0.12 in one
+    if (std::min(device_db, twin_db) < 70.0) { CHECK(std::abs(device_db - twin_db) <= 0.25); }
     if (seen.view.scene.isGaussian3d()) {
-        // Splats that fall between pixels are newcomers for the device alone, and this cloud is full of them.
+        // Splats that fall between pixels are newcomers only for the device, and this cloud is full of them.
         CHECK(other_kinds <= 2);  // measured: two, in two of these frames
         CHECK(std::abs(exchanged_error) <= 0.03 * chosen_error);
         CHECK(other_classes <= 4);  // measured: three, canted
         return;
     }
-    // Canted, one disc that comes through the near plane is a newcomer for the twin alone: the device's bounds of such discs are wider, and
-    // let the dominant eye see it. What its tile costs buys the device another one in place of a third.
+    // With canted eyes, one disc that comes through the near plane is a newcomer only for the twin: the
+    // device's bounds of such discs are wider, so the dominant eye sees it. For the cost of its tile the
+    // device renders another one, in place of a third.
     const bool canted = seen.name == "room, canted";
-    CHECK(other_kinds <= (canted ? 3 : 1));  // measured: three and one, in one of all these frames each
-    // Measured: 0.0063, of the tile that the twin's budget just reached.
+    CHECK(other_kinds <= (canted ? 3 : 1));  // measured: three and one, each in one of all these frames
+    // Measured: 0.0063, from the tile that the twin's budget just reached.
     if (!canted) { CHECK(std::abs(exchanged_error) <= 0.01 * chosen_error); }
     CHECK(other_classes <= 2);  // measured: none
 }
 
-// Of all these frames every second one, beginning with the first or the second.
+// Checks every second frame, starting with the first or the second.
 void checkEverySecond(const Context& context, std::size_t first) {
     std::size_t number = first;
     for (const View& seen : makeViews()) {

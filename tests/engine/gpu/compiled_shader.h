@@ -1,5 +1,5 @@
-// What compiled shaders say about their structs, and what they do with specialization constants and with
-// structs of addresses: their SPIR-V.
+// What the SPIR-V of compiled shaders says about their structs, and how it uses specialization constants and
+// structs of addresses.
 #pragma once
 
 #include "tests/suite.h"
@@ -25,14 +25,15 @@ public:
         for (std::size_t at = 5; at < words.size(); at += words[at] >> 16) {
             read(words[at] & 0xffff, words.subspan(at + 1, (words[at] >> 16) - 1));
         }
-        // A value made only of constants counts as read if something made of it is; later ones are made of
-        // earlier ones.
+        // A value computed only from constants counts as read if something computed from it is read; each is
+        // computed from earlier ones.
         for (auto made = made_of_.rbegin(); made != made_of_.rend(); ++made) {
             if (used_.contains(made->first)) { used_.insert(made->second.begin(), made->second.end()); }
         }
     }
 
-    // The structs that are laid out in memory; `bytes` is the distance of an array's elements, or 0 if there is no array of it.
+    // The structs that are laid out in memory; `bytes` is the stride of arrays of them, or 0 if there is no
+    // such array.
     [[nodiscard]] std::vector<Layout> layouts() const {
         std::vector<Layout> layouts;
         for (const auto& [id, offsets] : offsets_) {
@@ -51,13 +52,14 @@ public:
         return push != structs_.end() ? nameOf(push->second[0]) : "";
     }
 
-    // The names of what the shader declares, by constant_id, and the constant_id of what it reads.
+    // The names of the constants that the shader declares, by constant_id, and the constant_ids of those that
+    // it reads.
     [[nodiscard]] std::map<std::uint32_t, std::string> declaredConstants() const {
         std::map<std::uint32_t, std::string> names;
         for (const auto& [id, constant] : constants_) {
             if (names_.contains(id)) { names[constant] = names_.at(id); }
         }
-        // Where it is nothing else, it has no name.
+        // A constant that is only used as the group size has no name.
         for (const auto& [id, constant] : constants_) { names.emplace(constant, "local_size_x"); }
         return names;
     }
@@ -68,7 +70,8 @@ public:
         }
         return ids;
     }
-    // Structs that hold addresses and are copied out of memory, kept in a variable, or given to a function, by name.
+    // Names of structs that hold addresses and are copied out of memory, kept in a variable, or passed to a
+    // function.
     [[nodiscard]] std::string copiedAddresses() const {
         std::string names;
         for (const std::uint32_t type : result_types_) {
@@ -79,7 +82,7 @@ public:
         return names;
     }
 
-    // Addresses that are loaded out of memory as if they might lie elsewhere than at a multiple of eight bytes.
+    // Addresses that are loaded as if they might not be aligned to eight bytes.
     [[nodiscard]] std::size_t looseAddresses() const {
         return static_cast<std::size_t>(
             std::ranges::count_if(loosely_loaded_, [&](std::uint32_t type) { return addresses_.contains(type); }));
@@ -132,7 +135,7 @@ private:
             case kTypeArray:
                 used_.insert(operands[2]);
                 elements_[operands[0]] = operands[1];
-                // Of a struct's field; its stride says that it is laid out.
+                // An array within a struct; its stride shows that it is laid out.
                 if (array_strides_.contains(operands[0])) { bytes_[operands[0]] = array_strides_[operands[0]] * numbers_[operands[2]]; }
                 break;
             case kTypeRuntimeArray:
@@ -161,11 +164,12 @@ private:
         return text;
     }
 
-    // Of an instruction in a function: its type, if it has a result, and the ids among its operands; some of them are plain numbers.
+    // For an instruction in a function: its type, if it has a result, and the ids among its operands; some
+    // operands are plain numbers.
     void use(std::uint32_t opcode, Words operands) {
         if (operands.empty()) { return; }
         result_types_.insert(operands[0]);
-        // A load's mask says Aligned, and to how many bytes.
+        // The mask of a load says Aligned, and the number of bytes.
         if (opcode == kLoad && operands.size() > 4 && (operands[3] & 2) != 0 && operands[4] < 8) { loosely_loaded_.push_back(operands[0]); }
         static const std::map<std::uint32_t, std::pair<std::size_t, std::size_t>> kIds{
             {kLoad, {0, 3}},   {kCompositeExtract, {0, 3}}, {kVectorShuffle, {0, 4}},  {kCompositeInsert, {0, 4}}, {kStore, {0, 2}},

@@ -1,11 +1,11 @@
-// An image on the device, as pictures are shown in, and the way back from it.
+// An image on the device, of the kind in which pictures are shown, and the way back from it.
 #pragma once
 
 #include "tests/engine/gpu/gpu_fixture.h"
 
 namespace binosplat::test {
 
-// Of four bytes a pixel.
+// Four bytes per pixel.
 struct DeviceImage {
     DeviceImage(const Context& context, glm::uvec2 size_px, vk::Format format = kFormat, std::uint32_t levels = 1)
         : image(nullptr), memory(nullptr) {
@@ -18,7 +18,7 @@ struct DeviceImage {
             vk::raii::DeviceMemory(context.device(), vk::MemoryAllocateInfo(needs.size, context.memoryType(needs.memoryTypeBits, {}, {})));
         image.bindMemory(*memory, 0);
     }
-    // Once it is an attachment.
+    // In the layout of an attachment.
     void copyLevel(const Commands& commands, std::uint32_t level, glm::uvec2 size_px, const Buffer& to, std::uint64_t bytes) const {
         const vk::ImageMemoryBarrier barrier(vk::AccessFlagBits::eMemoryWrite, vk::AccessFlagBits::eTransferRead,
                                              vk::ImageLayout::eColorAttachmentOptimal, vk::ImageLayout::eTransferSrcOptimal,

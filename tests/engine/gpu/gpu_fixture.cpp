@@ -26,7 +26,8 @@ Gpu::~Gpu() {
 }
 
 const Kernel& Gpu::kernel(const std::string& shader, std::uint32_t push_bytes, const std::vector<std::uint32_t>& constants) {
-    static std::map<std::pair<std::string, std::vector<std::uint32_t>>, Kernel> made;  // after the device, and gone before it
+    // Made after the device, and destroyed before it.
+    static std::map<std::pair<std::string, std::vector<std::uint32_t>>, Kernel> made;
     const auto found = made.find({shader, constants});
     if (found != made.end()) { return found->second; }
     return made.emplace(std::pair(shader, constants), Kernel(context_, shader, push_bytes, constants)).first->second;

@@ -1,4 +1,4 @@
-// The start of GPU tests: a device under the validation layers, arrays to it and back, and lists as the
+// The basis of GPU tests: a device under the validation layers, arrays to it and back, and lists as the
 // shaders make them.
 #pragma once
 
@@ -7,10 +7,11 @@
 
 namespace binosplat::test {
 
-inline constexpr bool kValidation = BINOSPLAT_TEST_VALIDATION;  // whether programs can have the validation layers at all
+// Whether programs can have the validation layers at all.
+inline constexpr bool kValidation = BINOSPLAT_TEST_VALIDATION;
 
-// A test case's fixture. All tests of a program share one device. If there is none, every test fails; any
-// message of the validation layers during a test fails it, too.
+// Fixture for test cases. All tests of a program share one device. If there is none, every test fails. Any
+// message of the validation layers during a test makes it fail, too.
 class Gpu {
 public:
     Gpu();
@@ -19,10 +20,10 @@ public:
     ~Gpu();
 
     [[nodiscard]] const Context& context() const { return context_; }
-    // Made by the first test that wants it; throws in every test if there is no device.
+    // Created by the first test that uses it; throws in every test if there is no device.
     [[nodiscard]] static const Context& shared();
 
-    // A device buffer with these values; of at least one value, so that it has an address.
+    // A device buffer with these values; at least one value, so that it has an address.
     template <typename T>
     [[nodiscard]] Buffer upload(const std::string& name, const std::vector<T>& values) {
         Buffer buffer(context_, name, std::max<std::size_t>(values.size(), 1) * sizeof(T));

@@ -1,5 +1,6 @@
-// The structs that C++ and GLSL share have the same fields at the same offsets in both: what the compiled shaders say of them is
-// held against offsetof and sizeof. Also what shaders do with their constants, and with structs of addresses.
+// The structs that C++ and GLSL share have the same fields at the same offsets in both: compares what the
+// compiled shaders say with offsetof and sizeof. Also checks how shaders use their constants, and structs of
+// addresses.
 #include "engine/levels/contribute.h"
 #include "engine/passes/passes.h"
 #include "engine/passes/past_passes.h"
@@ -10,7 +11,7 @@
 
 SUITE(layout) {
 
-// A struct of shaders/shared by its fields; one that is left out here is missed by the comparison.
+// A struct of shaders/shared with its fields; a struct that is missing here is noticed by the comparison.
 #define AGAIN(...) AGAIN_27(AGAIN_27(AGAIN_27(__VA_ARGS__)))
 #define AGAIN_27(...) AGAIN_9(AGAIN_9(AGAIN_9(__VA_ARGS__)))
 #define AGAIN_9(...) AGAIN_3(AGAIN_3(AGAIN_3(__VA_ARGS__)))
@@ -91,7 +92,7 @@ std::vector<Layout> hostLayouts() {
     };
 }
 
-// What is wrong with a shader's struct; empty if nothing is. Blocks of the language itself have no twin in C++: the push
+// What is wrong with a shader's struct, or "". The language's own blocks have no twin in C++: the push
 // constants, the arrays behind an address, and sixteen bytes of anything (lib/past.glsl).
 std::string findMismatch(const Layout& shader, const std::vector<Layout>& host) {
     if (shader.name == "Push" || shader.name == "Sixteen" || (shader.fields.size() == 1 && shader.fields[0].name == "at")) { return {}; }
@@ -105,7 +106,7 @@ std::string findMismatch(const Layout& shader, const std::vector<Layout>& host) 
     return {};
 }
 
-// What shaders/passes.def says of each.
+// What shaders/passes.def says about each pass.
 struct ListedPass {
     std::string push_struct;
     std::map<std::uint32_t, std::string> constants;
@@ -143,14 +144,15 @@ TEST_CASE("every shader's structs have the fields, offsets and sizes that C++ gi
     for (const Layout& layout : host) {
         CAPTURE(layout.name);
         CHECK(seen.contains(layout.name));
-        if (layout.name.ends_with("Pass")) { CHECK(layout.bytes <= 128); }  // as push constants, of which every device has so many
+        // Every device has this many bytes of push constants.
+        if (layout.name.ends_with("Pass")) { CHECK(layout.bytes <= 128); }
     }
 }
 
 TEST_CASE_FIXTURE(Gpu, "every kernel reads each constant that it is compiled for, calls it what C++ does, and has no other") {
     KernelTable table = PassKernels(context()).table();
     append(table, presentKernels());
-    CHECK(table.size() <= 198);  // each takes a driver's compiler seconds; their number only falls
+    CHECK(table.size() <= 198);  // each takes seconds in a driver's compiler, so the number may only fall
     std::set<std::string> made;
     for (const KernelVariant& variant : table) { made.insert(variant.shader); }
     const std::map<std::string, ListedPass> listed = listedPasses();
@@ -170,7 +172,7 @@ TEST_CASE_FIXTURE(Gpu, "every kernel has full subgroups where its width and the 
     const bool is_offered = context().fullSubgroups(lanes) != vk::PipelineShaderStageCreateFlags();
     CHECK(is_offered == context().hasDeviceExtension(VK_EXT_SUBGROUP_SIZE_CONTROL_EXTENSION_NAME));
     CHECK(context().fullSubgroups(lanes + 1) == vk::PipelineShaderStageCreateFlags());
-    // Its width is a literal, a constant, or another constant than the first.
+    // The group's width is a literal, a constant, or a constant other than the first.
     CHECK(Kernel(context(), variantOf(BinKernel{})).subgroups() == context().fullSubgroups(gpu::kGroupSize));
     CHECK(Kernel(context(), variantOf(SortCountKernel{.threads = 4 * lanes})).subgroups() == context().fullSubgroups(lanes));
     CHECK(Kernel(context(), variantOf(SortCountKernel{.threads = 3 * lanes / 2})).subgroups() == context().fullSubgroups(lanes + 1));
@@ -192,7 +194,7 @@ TEST_CASE_FIXTURE(Gpu, "a shader that breaks off is refused, whatever the driver
         CHECK_THROWS_AS(Kernel(context(), variantOf(BinKernel{})), Error);
     }
     context().replacedShaders()["bin"] = whole;
-    context().replacedShaders()["bin"][5] = 0;  // an instruction of no words
+    context().replacedShaders()["bin"][5] = 0;  // an instruction with zero words
     CHECK_THROWS_AS(Kernel(context(), variantOf(BinKernel{})), Error);
     context().replacedShaders().erase("bin");
 }

@@ -1,4 +1,4 @@
-// Facts about what a driver has compiled and the file that keeps it.
+// Facts about what a driver has compiled, and the file in which it is kept.
 #include "engine/passes/passes.h"
 #include "tests/engine/gpu/gpu_fixture.h"
 #include "tests/run_program.h"
@@ -17,7 +17,7 @@ vk::PhysicalDeviceProperties someDevice() {
     return device;
 }
 
-// As a driver of that device would give it.
+// As a driver of that device would return it.
 Bytes someData(const vk::PhysicalDeviceProperties& device) {
     VkPipelineCacheHeaderVersionOne header{};
     header.headerSize = sizeof(header);
@@ -30,7 +30,7 @@ Bytes someData(const vk::PhysicalDeviceProperties& device) {
     return data;
 }
 
-// A variable, as long as it lives.
+// An environment variable for the lifetime of this object.
 struct Environment {
     Environment(const char* variable, const std::string& value) : name(variable), before(environment(variable)) {
         setEnvironment(name, value);
@@ -81,7 +81,7 @@ TEST_CASE_FIXTURE(AtWork, "a folder that cannot be written, a file of rubbish an
     };
     std::ofstream(fileIn(folder)) << std::string(5000, 'x');
     REQUIRE(::mkfifo(fileIn(pipe_folder).c_str(), 0600) == 0);
-    // The rubbish makes way for a file that the second run finds.
+    // The rubbish is replaced by a file that the second run finds.
     for (const fs::path& place : {fs::path("/proc/nowhere"), pipe_folder, folder, folder}) {
         const Environment chosen("BINOSPLAT_PIPELINE_CACHE", place.string());
         const Context context({.device = {}, .validation = true});

@@ -1,4 +1,4 @@
-// Facts about thinning a scene out.
+// Facts about thinning out a scene.
 #include "engine/levels/thin_out.h"
 #include "engine/files/load_scene.h"
 #include "engine/files/lod_meta.h"
@@ -17,7 +17,7 @@ using test::Gpu;
 
 double decibels(double mean_square) { return -10.0 * std::log10(mean_square); }
 
-// As many splats, chosen blindly, that cover as much.
+// As many splats, chosen blindly, that cover the same area.
 Scene widenSome(const Scene& scene, std::size_t count) {
     std::vector<std::uint32_t> some(scene.size());
     std::iota(some.begin(), some.end(), 0u);
@@ -97,7 +97,7 @@ TEST_CASE_FIXTURE(Gpu, "a scene of several blocks gets as many levels as one of 
     CHECK(entriesOf(folder.path()).size() == 2);
 }
 
-// Takes minutes: a line of the nightly tests.
+// Takes minutes, so only the nightly tests run it.
 TEST_CASE_FIXTURE(Gpu, "half of playbot's splats show it from elsewhere within 33.5 dB, a fifth within 27.5" * test::needsSharedData()) {
     const auto data = test::sharedData();
     if (!data) { return; }

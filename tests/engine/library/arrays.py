@@ -1,4 +1,5 @@
-"""Facts about binosplat.py: FILE.ply as its arrays and as a file, arguments that make no sense, and memory over many frames (FRAMES)."""
+"""Facts about binosplat.py: FILE.ply as arrays and as a file, invalid arguments, and memory over many frames
+(FRAMES)."""
 
 import resource
 import sys
@@ -47,7 +48,8 @@ again, depth_again = of_arrays.render(view, background=(0.5, 0, 0))
 assert np.array_equal(seen, again) and np.array_equal(depth, depth_again)
 assert len(of_arrays) == len(of_file) and np.array_equal(of_arrays.bounds, of_file.bounds)
 
-# A camera by its matrix and intrinsics is the same; a turned one sees as the quaternion behind it does.
+# A camera given by its matrix and intrinsics is the same; a turned one equals the one given by its
+# quaternion.
 f = 32 / np.tan(0.6)
 same = binosplat.View.from_intrinsics(view.world_from_camera, f, f, 32, 24, 64, 48)
 assert np.abs(of_file.render(same, background=(0.5, 0, 0))[0] - seen).max() < 1e-3
@@ -55,7 +57,8 @@ turned = view.world_from_camera @ np.diag([-1, -1, 1, 1])
 upside_down = of_file.render(binosplat.View(turned, view.angles, 64, 48), background=(0.5, 0, 0))[0]
 assert np.abs(upside_down[0, ::-1, ::-1] - seen[0]).max() < 1e-3
 
-# A scene far beside another changes nothing; the same scene in the same place is there twice; a turned one is seen by a camera turned as much.
+# A scene far away from another changes nothing; the same scene in the same place is drawn twice; a camera
+# that turns with a scene sees the same.
 far, here, back = np.eye(4), np.eye(4), np.diag([-2.0, 2.0, -2.0, 1.0])
 far[0, 3] = 1e4
 assert np.array_equal(of_file.render(view, background=(0.5, 0, 0), beside=[(of_arrays, far)])[0], seen)

@@ -1,5 +1,6 @@
-/* For library_test: C that was compiled against an earlier header, whose frames ended with the mode and views with their size, and against
-   a later one, whose frames have a field more. Each draws the splat of builtin:one-splat and says how red its middle is. */
+/* For library_test: C compiled against an earlier header, whose frames ended with the mode and whose views ended
+   with their size, and against a later one, whose frames have one more field. Each draws the splat of
+   builtin:one-splat and prints how red its middle is. */
 #include "tests/engine/library/earlier_program.h"
 
 #include <binosplat.h>

@@ -1,4 +1,4 @@
-// A program in C, compiled against an earlier header.
+// A C program, compiled against an earlier header.
 #pragma once
 
 #ifdef __cplusplus

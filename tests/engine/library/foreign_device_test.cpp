@@ -1,4 +1,5 @@
-// Facts about the library in a program's own device, command buffers and images. The layers watch, and any message fails a fact.
+// Facts about the library in a program's own device, command buffers and images. The validation layers watch,
+// and any message fails a fact.
 #include "tests/engine/library/foreign_program.h"
 
 SUITE(foreign_device) {
@@ -8,7 +9,7 @@ constexpr auto kColourUse = vk::ImageLayout::eColorAttachmentOptimal;
 constexpr auto kDepthUse = vk::ImageLayout::eDepthStencilAttachmentOptimal;
 constexpr float kNear = 0.2f;
 
-// One eye before the splats of a scene, whose picture goes over what the program drew.
+// One eye in front of a scene's splats, whose picture is drawn over what the program drew.
 struct Asked {
     Asked(const ForeignProgram& program, const bsp::Scene& scene)
         : properties(scene.properties()), view(bsp::lookAt(properties.eye, properties.look, properties.up, 0.0, 1.2, kSize.x, kSize.y)[0]) {
@@ -39,7 +40,7 @@ bsp::Scene load(const bsp::Device& device, const std::string& source) {
     return scene;
 }
 
-// The frame between the program's own draws, and what it says once the device is done.
+// Records the frame between the program's own draws; returns its result once the device is done.
 bsp_frame_result drawBetween(const ForeignProgram& program, bsp::Renderer& renderer, const Asked& asked, float wall_depth) {
     const vk::raii::CommandBuffer commands = program.begin();
     program.drawWall(commands, wall_depth);
@@ -62,7 +63,7 @@ TEST_CASE("by pixel, splats lie before and behind a wall that the program drew, 
     Asked asked(program, scene);
     asked.target.flags |= BSP_TARGET_DEPTH_BY_PIXEL;
     bsp::check(bsp_prepare(renderer.get(), &asked.frame));
-    // What is to be seen, by the picture and its depths.
+    // What must be visible, according to the picture and its depths.
     renderer.render(asked.frame);
     const std::vector<float> picture = renderer.colour(asked.view, 0).values, depths = renderer.depth(asked.view, 0).values;
     std::vector<float> middle;
@@ -98,7 +99,7 @@ TEST_CASE("by pixel, splats lie before and behind a wall that the program drew, 
     CHECK(depths_off == 0);
 }
 
-// Translucent discs that face an eye at the origin, in layers from near to far: those nearer than `end`.
+// Translucent discs that face an eye at the origin, in layers from near to far; only those nearer than `end`.
 bsp::Scene loadLayers(const bsp::Device& device, float end) {
     std::vector<std::array<float, 3>> positions, colours;
     std::mt19937 random(5);
@@ -151,7 +152,7 @@ TEST_CASE("a wall through a cloud hides at every pixel the splats behind it and 
     int differ = 0, off = 0, depths_off = 0;
     for (std::size_t i = 0; i < seen.size(); ++i) {
         const std::size_t x = i % kSize.x, y = i / kSize.x;
-        if (x < 4 && y < 4) { continue; }  // the sign
+        if (x < 4 && y < 4) { continue; }  // the white square
         const bool is_wall = x < kSize.x / 2;
         const float *splats = is_wall ? &of_nearer[4 * i] : &of_all[4 * i], z = is_wall ? nearer_depths[i] : all_depths[i];
         const std::array<float, 3> own = is_wall ? std::array{1.0f, 0.0f, 0.0f} : std::array{0.2f, 0.4f, 0.6f};
@@ -165,7 +166,7 @@ TEST_CASE("a wall through a cloud hides at every pixel the splats behind it and 
     }
     CHECK(off == 0);
     CHECK(depths_off == 0);
-    CHECK(differ > 100);  // pixels of the wall with splats before and behind it
+    CHECK(differ > 100);  // pixels of the wall with splats in front of it and behind it
 }
 
 TEST_CASE("an image of floats gets the picture to the last bit, recorded or submitted with semaphores, also where another renderer draws") {
@@ -315,7 +316,7 @@ TEST_CASE("two frames are under way while the head moves, scenes come and go and
     }
     while (!flights.empty()) { land(); }
     CHECK(most_visible > 100);
-    // A frame that nobody submits leaves the next ones as they were.
+    // A frame that is never submitted does not affect the next ones.
     const vk::raii::CommandBuffer unused = program.begin();
     std::uint64_t number = 0;
     bsp::check(bsp_record(renderer.get(), &asked.frame, *unused, &number));

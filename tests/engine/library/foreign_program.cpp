@@ -1,4 +1,4 @@
-// Plain Vulkan, as programs have it.
+// Plain Vulkan, as in any program.
 #include "tests/engine/library/foreign_program.h"
 
 namespace binosplat::test {
@@ -7,7 +7,7 @@ namespace {
 VKAPI_ATTR VkBool32 VKAPI_CALL onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
                                          const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
     auto& program = *static_cast<ForeignProgram*>(user);
-    // What a layer that is told by a file says of that file.
+    // A layer that is configured by a file reports that file.
     const std::string_view name = data->pMessageIdName != nullptr ? data->pMessageIdName : "";
     if (name.starts_with("WARNING-Setting") || name == "VALIDATION-SETTINGS") { return VK_FALSE; }
     const std::lock_guard lock(program.messages_mutex);
@@ -42,7 +42,7 @@ ForeignProgram::ForeignProgram(bool has_features) {
     const vk::ValidationFeaturesEXT checks(synchronization);
     const char* const layer = "VK_LAYER_KHRONOS_validation";
     std::vector<const char*> extensions{VK_EXT_DEBUG_UTILS_EXTENSION_NAME};
-    // A layer that is told by a file what to check has none.
+    // A layer that is configured by a file lacks this extension.
     const bool has_checks = std::ranges::any_of(loader.enumerateInstanceExtensionProperties(std::string(layer)), [](const auto& extension) {
         return std::string_view(extension.extensionName.data()) == VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME;
     });
@@ -81,7 +81,7 @@ void ForeignProgram::makePasses() {
     const std::array both{attachment(colour->format, Load::eClear, Layout::eUndefined, colours.layout),
                           attachment(depth->format, Load::eClear, Layout::eUndefined, depths.layout)};
     const std::array one{attachment(colour->format, Load::eLoad, colours.layout, colours.layout)};
-    // The usual dependencies of a pass on the one before it that writes the same images.
+    // The usual dependencies of a pass on an earlier one that writes the same images.
     using Stage = vk::PipelineStageFlagBits;
     using Access = vk::AccessFlagBits;
     const auto stages = Stage::eColorAttachmentOutput | Stage::eEarlyFragmentTests | Stage::eLateFragmentTests;

@@ -29,18 +29,19 @@ public:
     ~ForeignProgram();
 
     [[nodiscard]] bsp::Device open();
-    // Clears colour and depth, and puts a wall over the left half: red, at the stored depth. The image is then read as an attachment.
+    // Clears colour and depth, and draws a wall over the left half: red, at the stored depth. Afterwards the
+    // image is in the layout of an attachment.
     void drawWall(const vk::raii::CommandBuffer& commands, float wall_depth) const;
-    // A white square in the corner, over the existing picture.
+    // Draws a white square in the corner, over the existing picture.
     void drawSign(const vk::raii::CommandBuffer& commands) const;
-    // The bytes of an image in this layout; waits.
+    // The bytes of an image that is in this layout; waits for the device.
     [[nodiscard]] std::vector<float> readFloats(const ForeignImage& image, vk::ImageLayout layout, std::uint32_t floats_per_pixel) const;
     [[nodiscard]] std::vector<std::uint32_t> readWords(const ForeignImage& image, vk::ImageLayout layout) const;
     [[nodiscard]] vk::raii::CommandBuffer begin() const;
     void submit(const vk::raii::CommandBuffer& commands, const vk::raii::Fence& fence) const;
 
     mutable std::mutex queue_mutex, messages_mutex;
-    std::vector<std::string> messages;  // of the layers
+    std::vector<std::string> messages;  // from the layers
 
     vk::raii::Context loader;
     vk::raii::Instance instance{nullptr};

@@ -1,4 +1,5 @@
-// Facts about several scenes in a frame, each where it is placed, and about scenes that stream or move, through the library.
+// Facts about several scenes in a frame, each at its own place, and about streamed and moving scenes, through
+// the library.
 #include "engine/builtin/procedural.h"
 #include "engine/files/ply.h"
 #include "engine/scene/sh_turn.h"
@@ -89,7 +90,7 @@ double rootMeanSquare(const std::vector<float>& a, const std::vector<float>& b) 
     return std::sqrt(sum / static_cast<double>(a.size()));
 }
 
-// The twin of a placement: each splat turned, moved and scaled in float64, and what it has of harmonics with it.
+// The twin of a placement: each splat is turned, moved and scaled in float64, and its harmonics turn with it.
 Scene placeByHand(Scene scene, const Similarity& at) {
     const ShTurn turn(glm::mat3_cast(at.orientation));
     const auto coefficients = static_cast<std::size_t>(shCoefficientCount(scene.sh_degree));
@@ -173,7 +174,7 @@ TEST_CASE_FIXTURE(Opened, "instances of discs and of Gaussians are what their sp
         for (const bsp_mode mode : {BSP_MODE_SHARED, BSP_MODE_PREDICTED}) {
             const std::vector<float> expected = draw(*renderer, frameOf(mode, all.get()), viewsAt(), {}),
                                      seen = draw(*renderer, frameOf(mode), viewsAt(), instances);
-            // Splats as far away as another may change places, by rounding.
+            // Splats at the same distance may change places by rounding.
             CHECK(rootMeanSquare(expected, seen) < (mode == BSP_MODE_SHARED ? 2e-4 : 4e-3));
             CHECK(rootMeanSquare(expected, std::vector<float>(expected.size())) > 0.1);
         }
@@ -229,7 +230,7 @@ TEST_CASE_FIXTURE(Opened, "scenes that cannot be drawn together, and placements 
     bad = frame;
     bad.error_bound_db = 61.0;
     refused(bad, {instanceOf(discs)}, "error_bound_db is 61");
-    // What was drawn before goes on.
+    // What was drawn before still draws.
     CHECK(rootMeanSquare(draw(*renderer, frame, viewsAt(), {instanceOf(discs)}),
                          draw(*renderer, frameOf(BSP_MODE_SHARED, discs.get()), viewsAt(), {})) == 0.0);
 }

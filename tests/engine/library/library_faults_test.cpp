@@ -1,5 +1,5 @@
-// Facts about calls of Vulkan that fail while the library records a frame: each is a code and a text, nothing is left, and the next frame
-// is drawn. Which call fails says a layer (tests/faults).
+// Facts about Vulkan calls that fail while the library records a frame: each gives a code and a text and
+// leaks nothing, and the next frame is drawn. A layer decides which call fails (tests/faults).
 #include "tests/engine/library/foreign_program.h"
 
 #include <dlfcn.h>
@@ -8,7 +8,7 @@ SUITE(library_faults) {
 
 constexpr auto kSize = ForeignProgram::kSize;
 
-// The layer, in this process.
+// The layer's controls, in this process.
 struct Faults {
     Faults() {
         setenv("VK_ADD_LAYER_PATH", BINOSPLAT_FAULT_LAYER, 1);
@@ -67,7 +67,7 @@ std::vector<float> drawOnce(const ForeignProgram& program, bsp::Renderer& render
     return program.readFloats(*program.floats, vk::ImageLayout::eTransferDstOptimal, 4);
 }
 
-// Every `step`th call of a first frame, and of the one after it; how many there were.
+// Lets every `step`th call of a first frame fail, and of the frame after it; returns how many there were.
 int checkFailures(int step, int first = 1) {
     Faults faults;
     const ForeignProgram& program = *faults.program;
@@ -97,7 +97,7 @@ int checkFailures(int step, int first = 1) {
             return failed;
         }
         ++failed;
-        // Of a kernel the driver's refusal is all that is known, whatever it says.
+        // Of a kernel, only the driver's refusal is known, whatever it returned.
         const bool is_kernel = std::string(call) == "vkCreateComputePipelines";
         CHECK(result == (is_kernel ? BSP_ERROR_NO_DEVICE : BSP_ERROR_OUT_OF_MEMORY));
         CHECK(std::string(bsp_error_text()) != "");
@@ -109,7 +109,7 @@ int checkFailures(int step, int first = 1) {
 }
 
 TEST_CASE("where any call of Vulkan fails as a frame is recorded, it is a code and a text, the next frame is right, and nothing leaks") {
-    CHECK(checkFailures(29, 28) >= 3);  // the first ends the commands that bring placements
+    CHECK(checkFailures(29, 28) >= 3);  // the first call ends the commands that upload placements
 }
 
 TEST_CASE("so is each" * nightly()) { CHECK(checkFailures(1) >= 90); }

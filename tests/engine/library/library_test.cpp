@@ -1,4 +1,4 @@
-// Facts about libbinosplat as other programs meet it: what it exports, its pictures, and what it says where something is wrong.
+// Facts about libbinosplat as other programs see it: what it exports, its pictures, and its errors.
 #include "engine/builtin/procedural.h"
 #include "engine/files/ply.h"
 #include "engine/picture/image_io.h"
@@ -103,7 +103,7 @@ TEST_CASE_FIXTURE(Opened, "depths of what is opaque are the twin's within 1e-4 o
 
 TEST_CASE_FIXTURE(Opened, "twenty threads load, show, cancel and destroy scenes beside each other") {
     struct Shared {
-        std::mutex mutex;  // a renderer belongs to one thread at a time
+        std::mutex mutex;  // a renderer may be used by one thread at a time
         bsp::Renderer renderer;
     };
     std::array<Shared, 2> renderers{Shared{{}, bsp::Renderer(*device)}, Shared{{}, bsp::Renderer(*device)}};
@@ -121,7 +121,7 @@ TEST_CASE_FIXTURE(Opened, "twenty threads load, show, cancel and destroy scenes 
                 frame.mode = BSP_MODE_SHARED;
                 shared.renderer.render(scene, views, frame);
                 shown += shared.renderer.colour(views[0], 0).values.size() == 4 * 32 * 24 ? 1 : 0;
-                const bsp::Scene gone = std::move(scene);  // while it is shown, and nobody uses the renderer
+                const bsp::Scene gone = std::move(scene);  // while it is shown, but the renderer is idle
             } catch (const bsp::Error& error) { ++(error.code() == BSP_ERROR_CANCELLED ? cancelled : wrong); }
         }
     };
@@ -183,7 +183,7 @@ TEST_CASE_FIXTURE(Opened, "three views are a pair and one alone, and arrays with
             seen[is_file].insert(seen[is_file].end(), picture.values.begin(), picture.values.end());
         }
     }
-    // A logarithm and its inverse come between them.
+    // There are a logarithm and its inverse in between.
     double worst = 0.0, most = 0.0;
     for (std::size_t i = 0; i < seen[0].size(); ++i) {
         worst = std::max(worst, std::abs(static_cast<double>(seen[0][i] - seen[1][i])));
@@ -230,7 +230,7 @@ TEST_CASE_FIXTURE(Opened, "what is wrong is a code and a line, each thread has i
         refused([&] { (void)renderer->depth(views[0], 0); }, BSP_ERROR_INPUT, "BSP_FRAME_DEPTH");
         CHECK(renderer->colour(views[0], 0).values.at(3) >= 0.0f);
     }
-    // The scene is gone, and was shown: so is its picture.
+    // The scene that was shown is gone, and its picture with it.
     refused([&] { (void)renderer->colour(views[0], 0); }, BSP_ERROR_INPUT, "nothing is rendered yet");
     bsp_frame_info empty = bsp::frame();
     empty.views = views.data();
@@ -250,7 +250,8 @@ TEST_CASE_FIXTURE(Opened, "what is wrong is a code and a line, each thread has i
     refused([&] { bsp::Scene(*device, none); }, BSP_ERROR_INPUT, "positions of splats are null");
 }
 
-// A script of tests/, with Debian's numpy; none where that is not installed, or cannot load a library under a sanitizer.
+// The output of a script in tests/, run with Debian's numpy; none if that is not installed, or cannot load a
+// library under a sanitizer.
 std::optional<std::string> outputOf(const Workplace& work, const std::string& script, const std::string& arguments) {
     if (BINOSPLAT_TEST_SANITIZED) { return std::nullopt; }
     if (work.runCommand("/usr/bin/python3 -c 'import numpy'").exit_code != 0) {

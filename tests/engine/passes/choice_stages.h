@@ -6,10 +6,11 @@
 namespace binosplat::test {
 
 inline constexpr std::size_t kVisible = 12345;
-// Of a whole picture, so that a budget of any number of pairs is exact in single precision.
+// A picture large enough that a budget of any number of pairs is exact in single precision.
 inline constexpr gpu::uint kPictureCost = 1u << 24;
 
-// What the choice reads of an eye's tiles: errors and costs as resample and weigh leave them, or their history.
+// What the choice reads about an eye's tiles: errors and costs as left by resample and weigh, or the
+// history's.
 struct Tiles {
     glm::uvec2 size{0, 0};
     std::vector<gpu::uint> kinds, errors, costs;
@@ -22,16 +23,16 @@ struct Tiles {
 
 struct How {
     double budget = 0.0;                    // a share of the cost
-    gpu::uint picture_cost = kPictureCost;  // without a history
+    gpu::uint picture_cost = kPictureCost;  // if it has no history
     bool predicted = true, moves = true;
-    Eye seen = {};  // all eyes are like this one, if their gaze is known
+    Eye seen = {};  // every eye, if its gaze is known
     std::optional<Gaze> gaze = {};
     double error_bound = 0.0;
     gpu::uint most_cost = gpu::kMaxItems;
 };
 inline How withCost(std::uint64_t budget_cost) { return {.budget = static_cast<double>(budget_cost) / kPictureCost}; }
 
-// What the device makes of an eye's tiles, with the listed ones sorted.
+// What the device makes of an eye's tiles, with the list sorted.
 struct Chosen {
     std::vector<gpu::uint> kinds, errors, costs, prices, bins, list, mask;
     std::vector<gpu::PastTile> past;
@@ -39,7 +40,7 @@ struct Chosen {
     gpu::ListState masked_tiles, masked_visible;
 };
 
-// price and select, for one eye or for two under one budget.
+// price and select, for one eye, or for two that share a budget.
 inline std::vector<Chosen> chooseOnDevice(Gpu& gpu, const std::vector<Tiles>& eyes, const How& how) {
     struct Buffers {
         Buffer kinds, costs, errors, prices, list, mask, past;

@@ -1,4 +1,4 @@
-// A scene as every stage of the twin leaves it, and what the device needs to continue from any of them.
+// A scene as each stage of the twin leaves it, and what the device needs to continue from any of them.
 #pragma once
 
 #include "engine/gpu/gpu_scene.h"
@@ -62,13 +62,14 @@ struct SceneOnDevice {
 };
 
 inline constexpr double kEpsilon = 0x1p-24;  // of a float32 rounding
-// What the device rounds when it takes a splat to the camera: the eye has 48 bits, so that nothing counts but how far apart they are.
+// Only the distance to the eye is rounded when the device moves a splat to camera space, since the eye has 48
+// bits.
 inline double distanceToRound(const glm::dvec3& position, const Eye& eye) { return glm::length(position - eye.world_from_camera.position); }
 
-// Integers in the order of the floats that they stand for.
+// The float for an integer of the order-preserving encoding.
 inline float floatOfSortable(std::uint32_t bits) { return std::bit_cast<float>((bits >> 31) != 0 ? bits & 0x7fffffffu : ~bits); }
 
-// The depths that a key stands for (shaders/sort/compact.comp), the least and the greatest.
+// The lowest and the highest depth that a key may stand for (shaders/sort/compact.comp).
 inline std::pair<float, float> depthsOfKey(std::uint32_t key, float near) {
     const std::uint32_t first_exact = std::bit_cast<std::uint32_t>(0.5f * near) | 0x80000000u;
     const std::uint32_t first_key = (first_exact >> gpu::kNearKeyShift) + 1, last_key = first_key + gpu::kExactDepthKeys;
@@ -81,7 +82,7 @@ inline std::pair<float, float> depthsOfKey(std::uint32_t key, float near) {
     return {floatOfSortable(first), floatOfSortable(first + (1u << gpu::kFarKeyShift) - 1)};
 }
 
-// ProjectedSplat::opacity (-log2, negative where there is no reference) and ::colour (three half floats).
+// ProjectedSplat::opacity (-log2, negative if there is no reference) and ::colour (three half floats).
 struct OpacityColour {
     double opacity;
     bool has_reference;
@@ -93,7 +94,8 @@ inline OpacityColour unpack(const gpu::ProjectedSplat& splat) {
             glm::dvec3(glm::vec3(red_green, glm::unpackHalf2x16(splat.colour.y).x))};
 }
 
-// ProjectedSplat::reference_px with what its two floats lack: eight bits each, in units of half their last place.
+// ProjectedSplat::reference_px with the bits that its two floats lack: eight each, in units of half their
+// last place.
 inline glm::dvec2 referenceOf(const gpu::ProjectedSplat& splat) {
     const glm::vec4 rest = glm::unpackSnorm4x8(splat.colour.y);
     glm::dvec2 reference(splat.reference_px);
@@ -103,7 +105,7 @@ inline glm::dvec2 referenceOf(const gpu::ProjectedSplat& splat) {
     return reference;
 }
 
-// The twin's splat as the device holds one.
+// The twin's splat in the device's format.
 inline gpu::ProjectedSplat toDevice(const reference::ProjectedSplat& splat) {
     gpu::ProjectedSplat result{};
     result.reference_px = splat.low_pass ? splat.reference_px : splat.plane_offset;
@@ -116,13 +118,13 @@ inline gpu::ProjectedSplat toDevice(const reference::ProjectedSplat& splat) {
     return result;
 }
 
-// What project leaves for a list of splats, on the device.
+// What project leaves on the device for a list of splats.
 struct ProjectedOnDevice {
     std::uint32_t count;
     Buffer list, order, splats, tile_sets, tile_counts, group_sums, pairs, target;
 };
 
-// `tile_mask`, if it is not null, has the bits of the tiles that count (shaders/lib/tile_mask.glsl).
+// `tile_mask`, unless null, has the bits of the tiles that count (shaders/lib/tile_mask.glsl).
 inline ProjectedOnDevice projectOnDevice(Gpu& gpu, const SceneOnDevice& device, const std::vector<std::uint32_t>& order,
                                          std::uint32_t pair_capacity = UINT32_MAX, gpu::DeviceAddress<gpu::uint> tile_mask = {}) {
     const Kernel& kernel = gpu.kernel(ProjectKernel{.sh_degree = static_cast<std::uint32_t>(device.scene.shDegree()),

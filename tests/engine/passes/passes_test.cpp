@@ -1,4 +1,5 @@
-// Facts about the passes over a scene, cull_pages, cull and compact, each started from what the twin's pass before it left.
+// Facts about the passes over a scene, cull_pages, cull and compact, each started from the output of the
+// twin's previous pass.
 #include "engine/passes/passes.h"
 #include "shaders/embedded_shaders.h"
 #include "tests/engine/passes/pass_stages.h"
@@ -10,9 +11,9 @@ constexpr std::size_t kGroupWords = gpu::kCullBlock / 32;
 
 const reference::Settings kSettings{};
 
-// Where the view looks from, and from anywhere else: within the scene and beside it, turned at random, near to what it sees, with a narrow
-// and a wide view, off its axis; also as pictures of half the size have it. Before each one that is parallel to it, behind each a canted
-// one.
+// Eyes at the view's own place and at others: inside the scene and beside it, turned at random, close to what
+// they see, with a narrow and a wide view, off axis, and with pictures of half the size. Each is preceded by
+// a parallel eye and followed by a canted one.
 std::vector<Eye> eyesAbout(const ViewedScene& view, int count) {
     std::mt19937 random(7);
     const auto draw = [&](double low, double high) { return drawBetween(random, low, high); };
@@ -76,7 +77,7 @@ public:
     }
 
 private:
-    // As lib/block.glsl finds them.
+    // In the order in which lib/block.glsl finds them.
     [[nodiscard]] std::vector<std::uint32_t> listed(const std::vector<std::uint32_t>& list, std::uint32_t visible) const {
         const std::uint32_t groups = (count_ + gpu::kGroupSize - 1) / gpu::kGroupSize;
         const bool one_run = groups <= gpu::kMostPageGroupsInOneRun;
@@ -96,8 +97,9 @@ private:
     Buffer table_, eyes_, bits_, offsets_, list_, state_;
 };
 
-// A kernel as a device may make it that does not promise to keep NaN apart: it is less than anything, greater, and equal. Such a device may
-// turn any comparison of floats into the negation of its opposite.
+// A kernel as a device may compile it that does not promise to preserve NaN: there a NaN compares less,
+// greater and equal to anything. Such a device may turn any comparison of floats into the negation of its
+// opposite.
 template <typename K>
 Kernel withoutNan(Gpu& gpu, const K& variant) {
     constexpr std::uint32_t kOrderedEqual = 180, kUnorderedGreaterThanEqual = 191;
@@ -142,7 +144,7 @@ Culled cullOnDevice(Gpu& gpu, const SceneOnDevice& device, std::size_t first_eye
             gpu.readBack<gpu::ListState>(list, 1)[0]};
 }
 
-// The twin's bounds of a scene's pages, which the device's hold, and little more.
+// The twin's bounds of a scene's pages, which those of the device contain with little to spare.
 std::vector<reference::Page> boundPages(const Scene& scene, const PackedPages& packed) {
     std::vector<reference::Page> pages;
     for (std::size_t first = 0; first < scene.size(); first += gpu::kPageSplats) {
@@ -165,7 +167,7 @@ std::vector<reference::Page> boundPages(const Scene& scene, const PackedPages& p
     return pages;
 }
 
-// cull_pages and cull from `count` places about each of the scenes.
+// Runs cull_pages and cull from `count` places around each of the scenes.
 void checkPages(Gpu& gpu, int count) {
     std::size_t kept = 0, left_out = 0, splats_kept = 0, pages_left_out = 0;
     std::vector<ViewedScene> scenes{test::viewBuiltin("builtin:atelier", {256, 192}, 20000), test::viewCloud({200, 150})};
@@ -215,7 +217,8 @@ struct Compacted {
     std::vector<std::uint32_t> keys, splats;
 };
 
-// compact of these splats, ascending, for the device's first eye; by distance from `middle` where there is one.
+// Runs compact on these splats, which ascend, for the device's first eye; by distance from `middle` if there
+// is one.
 Compacted compactOnDevice(Gpu& gpu, const SceneOnDevice& device, const std::vector<std::uint32_t>& visible,
                           const std::optional<glm::dvec3>& middle) {
     const Kernel& kernel = gpu.kernel(CompactKernel{});
@@ -336,7 +339,8 @@ TEST_CASE_FIXTURE(Gpu, "compact lists what is visible in the scene's order, with
         const SceneOnDevice device(*this, view.scene, {view.eye}, settings.near);
         const Compacted compacted = compactOnDevice(*this, device, twin.splats, settings.order_from);
         CHECK(compacted.splats == twin.splats);
-        // Keys order as the floats they stand for; those are the depths or distances, up to a few roundings of the distance.
+        // Keys sort like the floats that they stand for: the depths or distances, up to a few roundings of
+        // the distance.
         double worst = 0.0;
         for (std::size_t i = 0; i < compacted.keys.size(); ++i) {
             const double depth = settings.order_from ? std::sqrt(twin.depths[i]) : twin.depths[i];
@@ -356,7 +360,7 @@ TEST_CASE_FIXTURE(Gpu, "compact lists what is visible in the scene's order, with
             for (glm::vec3& position : view.scene.positions) { position += static_cast<float>(offset); }
             view.eye.world_from_camera.position += offset;
             reference::Settings settings;
-            // No float32, so that the rest beside it counts.
+            // Not representable in float32, so the stored remainder matters.
             settings.order_from = view.eye.world_from_camera.position + glm::dvec3(0.0317, 1e-7, -1e-5);
             check(view, settings);
         }

@@ -1,6 +1,7 @@
-// Facts about the passes that make an eye from its history, each held to its twin, which goes on from what the device had one pass before:
-// warp_past and warp_pixels, what rasterize measures (price and select: selection_test.cpp), and what a scene changes meanwhile. Where a
-// depth or a place lies on a threshold, float32 may come to the other side: such flips have a budget.
+// Facts about the passes that reproject an eye from its history: warp_past and warp_pixels, what rasterize
+// measures (price and select: selection_test.cpp), and what changes of the scene do. Each is compared with
+// its twin, which continues from the device's previous pass. Where a depth or a place lies on a threshold,
+// float32 may fall on the other side: there is a budget for such flips.
 #include "engine/frame/changes.h"
 #include "shaders/embedded_shaders.h"
 #include "tests/engine/passes/pass_stages.h"
@@ -18,24 +19,27 @@ const ViewedScene& fence() {
     static const ViewedScene view = test::viewBuiltin("builtin:fence", {150, 110});
     return view;
 }
-// Rows of a multiple of four pixels are written four at a time, and in half floats all of a block's row.
+// Rows of a multiple of four pixels are written four at a time, and with half floats a block's whole row at
+// once.
 const ViewedScene& evenFence() {
     static const ViewedScene view = test::viewBuiltin("builtin:fence", {160, 112});
     return view;
 }
 
-// D of a pixel is its alpha over its inverse depth, 0 where that is infinitely far.
+// A pixel's D is its alpha over its inverse depth, or 0 if that is infinitely far.
 std::size_t countOtherDepths(const Image& depths, const reference::Past& past) {
     std::size_t other = 0;
     for (std::size_t i = 0; i < past.rgba.size(); ++i) {
         const double inverse_depth = past.pixels[i] ? past.pixels[i]->inverse_depth : 0.0;
         const double expected = inverse_depth > 0.0 ? past.rgba[i].a / inverse_depth : 0.0;
-        other += test::isNear(static_cast<double>(depths.values[i]), expected, 1e-3, 1e-6) ? 0 : 1;  // half floats
+        // Depths are half floats.
+        other += test::isNear(static_cast<double>(depths.values[i]), expected, 1e-3, 1e-6) ? 0 : 1;
     }
     return other;
 }
 
-// Boxes about an eye: before it, around it, beside it and behind it, from a speck to a hall.
+// Boxes around an eye: in front of it, beside it and behind it, from a speck to a hall, and some that contain
+// it.
 std::vector<SceneChange> boxesAbout(const Eye& eye, int count, unsigned seed) {
     std::mt19937 random(seed);
     const auto draw = [&](double low, double high) { return low + (high - low) * drawUnit(random); };
@@ -48,7 +52,7 @@ std::vector<SceneChange> boxesAbout(const Eye& eye, int count, unsigned seed) {
     return boxes;
 }
 
-// How pictures are kept, and of what.
+// A scene, and how its pictures are kept.
 struct Way {
     const ViewedScene& view;
     bool half_floats, hides;
@@ -63,7 +67,7 @@ struct Way {
     }
 };
 
-// Pictures that are made from the last ones alone.
+// Pictures that are reprojected only from the previous ones.
 void checkWarped(Gpu& gpu, const Way& way) {
     INFO(way.view.name, ", hides ", way.hides);
     const test::WalkSettings settings = way.settings();
@@ -73,7 +77,8 @@ void checkWarped(Gpu& gpu, const Way& way) {
     std::array<EyeOnDevice, 2> before{walk.read(kLeft), walk.read(kRight)};
     WarpDifferences all;
     std::size_t one_by_one = 0, blocks = 0;
-    for (const double step : {1.0, 2.0, 10.0}) {  // the last so far that blocks of a cell come from two
+    // The last is so large that the blocks of a cell come from two.
+    for (const double step : {1.0, 2.0, 10.0}) {
         walk.go(step, 0.0);
         for (const std::size_t e : {0, 1}) {
             EyeOnDevice made = walk.read(static_cast<int>(e));
@@ -99,7 +104,7 @@ void checkWarped(Gpu& gpu, const Way& way) {
     CHECK(test::isNear(all.grown, all.twin_grown, 0.001, 0.0));
 }
 
-// Pictures that have no history, and what they leave for later.
+// Pictures without a history, and what they leave for later ones.
 void checkFirst(Gpu& gpu, const Way& way) {
     INFO(way.view.name, ", half floats ", way.half_floats, ", cant ", way.cant, ", hides ", way.hides);
     const test::WalkSettings settings = way.settings();
@@ -133,7 +138,7 @@ void checkFirst(Gpu& gpu, const Way& way) {
             ++pixels;
             const bool same = a.has_value() == b.has_value();
             other_depths += same && (!a || test::isNear(a->inverse_depth, b->inverse_depth, 1e-3, 1e-5)) ? 0 : 1;
-            // Of a single surface it is rounding that spreads.
+            // On a single surface, the spread is only rounding.
             constexpr std::uint32_t kRounding = 12;
             other_spreads += same && (!a || std::max(a->spread, kRounding) == std::max(b->spread, kRounding)) ? 0 : 1;
         }
@@ -163,7 +168,7 @@ TEST_CASE_FIXTURE(Gpu, "pixels are the same whether they are moved as addresses,
             words.assign(embedded.begin(), embedded.end());
             for (std::size_t at = 5; at < words.size(); at += words[at] >> 16) {
                 const bool is_it = (words[at] & 0xffff) == kDecorate && words[at + 2] == kSpecId && words[at + 3] == last_constant;
-                if (is_it) { words[at + 3] = 99; }  // which nobody sets: by_address keeps its default
+                if (is_it) { words[at + 3] = 99; }  // an id that nobody sets, so by_address keeps its default
             }
         }
         PastWalk other(*this, view, {.half_floats = half_floats});
@@ -189,7 +194,7 @@ TEST_CASE_FIXTURE(Gpu, "pictures from pasts and without are so in floats and hal
     }
 }
 
-// What pixels twice as wide lose of a tile, of splats that meet it as pixels of its own size see them.
+// What pixels twice as wide lose in a tile, with splats sampled as the tile's own pixels would see them.
 double widerSquares(const ViewedScene& view, const Eye& eye, const reference::PastTile& tile, std::size_t index) {
     const reference::Settings settings{.background = {0.1, 0.2, 0.3}};
     test::TwinStages stages({view.name, view.scene, eye}, settings);
@@ -202,7 +207,7 @@ double widerSquares(const ViewedScene& view, const Eye& eye, const reference::Pa
 TEST_CASE_FIXTURE(Gpu, "a frame's choice is the twin's, and tiles that were rendered again say what they had been off by") {
     for (const ViewedScene* view : {&atelier(), &fence()}) {
         CAPTURE(view->name);
-        // Of two walks that are alike so far one renders tiles again in the last frame.
+        // Two walks are equal so far; one of them renders tiles again in the last frame.
         PastWalk walk(*this, *view), only_warps(*this, *view);
         constexpr int kFrames = 3;
         PastWalk before(*this, *view);
@@ -240,7 +245,7 @@ TEST_CASE_FIXTURE(Gpu, "a frame's choice is the twin's, and tiles that were rend
         reference::SquaresOfTiles sums;
         for (std::size_t e = 0; e < 2; ++e) {
             CHECK(made[e].kinds == test::kindsOf(kinds[e]));
-            // What is rendered is the device's own, so that what the twin measures is exact.
+            // The full render is the device's own, so the twin's measurement is exact.
             reference::Picture full{walk.eyes()[e].size_px, made[e].past.rgba, {}, {}, {}};
             full.inverse_depth = full.inverse_depth_squared = std::vector<double>(full.rgba.size(), 0.0);
             std::vector<std::uint64_t> pairs;
@@ -273,7 +278,8 @@ TEST_CASE_FIXTURE(Gpu, "a frame's choice is the twin's, and tiles that were rend
 }
 
 TEST_CASE_FIXTURE(Gpu, "every tile of a picture that moves has its turn, also where nothing is expected to go wrong") {
-    // Bars across the view, near and far in turn and of the background's colour: no block is of one depth, and none looks wrong.
+    // Bars across the view, alternately near and far, in the background's colour: no block has a single
+    // depth, and none looks wrong.
     std::vector<test::Splat> splats;
     for (int bar = -7; bar <= 7; ++bar) {
         const float z = bar % 2 == 0 ? 1.0f : 1.5f;
@@ -323,7 +329,7 @@ TEST_CASE("a box before the eye has a rectangle of its own size and the low-pass
         const SceneChange box{low, high, 1.0f};
         return rectsOf({&box, 1}, eye, 0.2);
     };
-    // 100 px of focal length about (50.5, 50.5).
+    // A focal length of 100 px, centred on (50.5, 50.5).
     const auto rects = rectOf({-0.2f, 0.1f, 2.0f}, {0.1f, 0.2f, 2.0f});
     REQUIRE(rects.size() == 1);
     CHECK(rects[0].begin_px == glm::uvec2(37, 52));

@@ -1,4 +1,4 @@
-// Frames that are made from the ones before, and what the device knows about them, from which the twin
+// Frames that are reprojected from earlier ones, and what the device knows about them, from which the twin
 // continues.
 #pragma once
 
@@ -53,15 +53,15 @@ inline EyeOnDevice readEye(Gpu& gpu, StereoFrame& frame, int index, const Eye& e
     return read;
 }
 
-// How a PastWalk's pictures are kept.
+// How a PastWalk keeps its pictures.
 struct WalkSettings {
-    std::array<std::vector<std::uint8_t>, 2> hidden = {};  // tiles of each eye, as of FrameSettings
+    std::array<std::vector<std::uint8_t>, 2> hidden = {};  // each eye's tiles, as in FrameSettings
     glm::dvec3 background{0.1, 0.2, 0.3};
     bool half_floats = false;
-    double cant = 0.0;  // of the right eye, about its upward axis
+    double cant = 0.0;  // of the right eye, about its up axis
 };
 
-// Frames of a head that walks and turns a little, as `temporal` makes them.
+// Frames of a head that walks and turns a little, made as `temporal` makes them.
 class PastWalk {
 public:
     PastWalk(Gpu& gpu, const ViewedScene& view, WalkSettings settings = {})
@@ -79,14 +79,14 @@ public:
         settings.measured_part = measured_part;
         return frame_.render(eyes_, settings);
     }
-    // The last frame's eyes in full.
+    // Full renders of the last frame's eyes.
     std::array<Image, 2> full() {
         KeptFrame frame(gpu_.context(), scene_);
         frame.render(eyes_, settingsOf(Mode::kShared, 0.0));
         return picturesOf(frame);
     }
     EyeOnDevice read(int eye) { return readEye(gpu_, frame_, eye, eyes_[static_cast<std::size_t>(eye)]); }
-    // Of the left eye.
+    // The left eye's.
     Image readDepth() { return frame_.readDominantDepth(); }
     [[nodiscard]] const std::array<Eye, 2>& eyes() const { return eyes_; }
 
@@ -117,13 +117,14 @@ struct WarpDifferences {
     double grown = 0.0, twin_grown = 0.0, squares = 0.0;
 };
 
-// Of what the device made of `before`, with nothing rendered again, and what the twin makes of it.
+// Compares what the device made of the frame before, with nothing rendered again, with what the twin makes of
+// it.
 inline void compareWarped(WarpDifferences& differences, const EyeOnDevice& made, reference::Past twin) {
     for (std::size_t i = 0; i < twin.rgba.size(); ++i) {
         const glm::dvec4 off = made.past.rgba[i] - twin.rgba[i];
         differences.squares += glm::dot(off, off) / 4.0;
         const auto &a = made.past.pixels[i], &b = twin.pixels[i];
-        // A block's depths change by the ratio of its middle's.
+        // All depths of a block change by the ratio of its middle's.
         const bool same = a.has_value() == b.has_value() && (!a || isNear(a->inverse_depth, b->inverse_depth, 1e-3, 1e-6));
         differences.other_depths += same ? 0 : 1;
         differences.other_spreads += a && b && a->spread != b->spread ? 1 : 0;

@@ -1,4 +1,5 @@
-// Facts about which tiles are rendered again, on scenes made so that the cause is known, and where moving pays.
+// Facts about which tiles are rendered again, in scenes made so that the cause is known, and about where
+// moving pays.
 #include "tests/engine/frame/frame_runs.h"
 #include "tests/engine/passes/stereo_cases.h"
 
@@ -15,10 +16,10 @@ FrameSettings makeSettings(Mode mode, Side dominant = kLeft) {
 
 struct Outcome {
     AffiliatedFrame made;
-    double psnr_db;  // of the affiliated eye against its full render
+    double psnr_db;  // the affiliated eye against its full render
 };
 
-// A pair of eyes before a scene, and the affiliated one in full.
+// A pair of eyes in front of a scene, and the affiliated eye's full render.
 class Scenery {
 public:
     Scenery(Gpu& gpu, const Scene& scene, const std::array<Eye, 2>& eyes, Side dominant = kLeft)
@@ -42,7 +43,8 @@ private:
     Image full_;
 };
 
-// A wall of discs at depth z that a 256 px eye of 222 px focal length sees as a chequered pattern.
+// A wall of discs at depth z that looks like a chequerboard to an eye of 256 px with a focal length of 222
+// px.
 void addWall(std::vector<Splat>& splats, float z, float half_width, float pitch) {
     const int reach = static_cast<int>(half_width / pitch);
     for (int j = -reach; j <= reach; ++j) {
@@ -57,7 +59,8 @@ void addWall(std::vector<Splat>& splats, float z, float half_width, float pitch)
     }
 }
 
-// Bright translucent discs of 3 px at depth z whose centres an eye at `eye_x`, axis along z, sees in the columns [first, end).
+// Bright translucent discs of 3 px at depth z. An eye at `eye_x` that looks along z sees their centres in the
+// columns [first, end).
 void addVeil(std::vector<Splat>& splats, float z, float eye_x, int first_px, int end_px) {
     const float px = z / 222.0f;
     for (int y = 40; y < 216; y += 6) {
@@ -74,7 +77,7 @@ std::size_t countKind(const AffiliatedFrame& frame, gpu::uint kind) {
     return static_cast<std::size_t>(std::count(frame.tile_kinds.begin(), frame.tile_kinds.end(), kind));
 }
 
-// Pixels of a class that lie in no tile that is rendered again.
+// Pixels of a class in tiles that are not rendered again.
 std::size_t countLeft(const AffiliatedFrame& frame, gpu::uint pixel_class, glm::uvec2 size_px) {
     std::size_t left = 0;
     for (std::size_t i = 0; i < frame.pixel_classes.size(); ++i) {
@@ -84,7 +87,7 @@ std::size_t countLeft(const AffiliatedFrame& frame, gpu::uint pixel_class, glm::
     return left;
 }
 
-// How much the third source of error gains at one and the same budget.
+// How much the third source of error gains at the same budget.
 void checkNewcomers(Gpu& gpu, const std::vector<Splat>& splats, const std::array<Eye, 2>& eyes, Side dominant, double budget) {
     Scenery scenery(gpu, test::makeScene(splats), eyes, dominant);
     FrameSettings settings = makeSettings(Mode::kPredicted);
@@ -96,7 +99,7 @@ void checkNewcomers(Gpu& gpu, const std::vector<Splat>& splats, const std::array
     CHECK(with.psnr_db >= without.psnr_db + 3.0);
 }
 
-// From where an eye looks to the middle of a tile.
+// The direction from an eye to the middle of a tile.
 double angleOf(const Eye& eye, std::size_t tile, const Gaze& gaze) {
     const Intrinsics& lens = eye.intrinsics;
     const std::size_t columns = (eye.size_px.x + 15) / 16;
@@ -105,7 +108,7 @@ double angleOf(const Eye& eye, std::size_t tile, const Gaze& gaze) {
     return std::acos(std::clamp(glm::dot(glm::normalize(ray), glm::normalize(gaze.direction)), -1.0, 1.0));
 }
 
-// Of the right eye's tiles that lie where it looks.
+// Over the right eye's tiles near its gaze.
 double psnrNear(const Image& made, const Image& full, const Eye& eye, const Gaze& gaze) {
     std::vector<std::uint32_t> near;
     for (std::size_t t = 0; t < test::tileCount(eye.size_px); ++t) { near.push_back(angleOf(eye, t, gaze) <= gaze.clear_rad ? 1 : 0); }
@@ -115,7 +118,8 @@ double psnrNear(const Image& made, const Image& full, const Eye& eye, const Gaze
 bool isChosen(const AffiliatedFrame& made, std::size_t tile) { return made.tile_kinds[tile] == gpu::kTilePredicted; }
 
 TEST_CASE_FIXTURE(Gpu, "splats beyond the dominant eye's border and behind its near plane are found without a hole to show them") {
-    // 0.25 before eyes 0.064 apart, 57 px of disparity: what one eye sees in its columns 210 to 238, the other has beyond 256.
+    // A veil at 0.25 in front of eyes 0.064 apart has a disparity of 57 px: what one eye sees in columns 210
+    // to 238, the other has beyond 256.
     for (const Side dominant : {kLeft, kRight}) {
         CAPTURE(static_cast<int>(dominant));
         std::vector<Splat> splats;
@@ -123,8 +127,8 @@ TEST_CASE_FIXTURE(Gpu, "splats beyond the dominant eye's border and behind its n
         addVeil(splats, 0.25f, dominant == kLeft ? 0.032f : -0.032f, dominant == kLeft ? 214 : 18, dominant == kLeft ? 239 : 43);
         checkNewcomers(*this, splats, parallelEyes(0.064), dominant, 0.15);
     }
-    // The axes are turned outwards, so that what is to the right of the middle is nearer for the left eye. A sixth of the right
-    // eye's picture is beyond the left one's border, too, and is rendered again first.
+    // The axes are turned outwards, so what is right of the middle is nearer for the left eye. A sixth of the
+    // right eye's picture lies beyond the left one's border as well, and is rendered again first.
     std::array<Eye, 2> eyes = parallelEyes(0.064);
     for (int e = 0; e < 2; ++e) {
         eyes[e].world_from_camera.orientation = glm::angleAxis(glm::radians(e == kLeft ? -4.0 : 4.0), glm::dvec3(0, 1, 0));
@@ -138,7 +142,7 @@ TEST_CASE_FIXTURE(Gpu, "splats beyond the dominant eye's border and behind its n
     REQUIRE(splats.size() > 50);
     addWall(splats, 8.0f, 8.4f, 0.07f);
     checkNewcomers(*this, splats, eyes, kLeft, 0.4);
-    // What both eyes see is no newcomer.
+    // What both eyes see is not a newcomer.
     splats.clear();
     addWall(splats, 8.0f, 3.5f, 0.07f);
     addVeil(splats, 0.4f, 0.032f, 60, 200);
@@ -148,7 +152,8 @@ TEST_CASE_FIXTURE(Gpu, "splats beyond the dominant eye's border and behind its n
 
 TEST_CASE_FIXTURE(
     Gpu, "a near edge uncovers holes beside it; centre ROIs leave none, and every patch brings the picture nearer to the full render") {
-    // A screen 1 from eyes 0.12 apart ends at x = -0.05, 4 before a wall: 26.6 px of disparity against 6.7.
+    // A screen at depth 1 ends at x = -0.05, in front of a wall at depth 4; for eyes 0.12 apart the
+    // disparities are 26.6 px and 6.7 px.
     std::vector<Splat> splats;
     addWall(splats, 4.0f, 3.5f, 0.05f);
     for (float y = -0.8f; y < 0.8f; y += 0.012f) {
@@ -178,8 +183,8 @@ TEST_CASE_FIXTURE(
                 CHECK(centers.psnr_db > edges.psnr_db);
                 continue;
             }
-            // Where the affiliated eye sees the edge that the far wall comes out from: the right one to the right eye, the left to the
-            // left.
+            // Where the affiliated eye sees the edge from behind which the far wall appears: the right edge
+            // for the right eye, the left edge for the left one.
             const double edge_px = dominant == kLeft ? 128.0 + 222.0 * (-0.05 - 0.06) : 128.0 + 222.0 * (-0.45 + 0.06);
             std::size_t beside = 0, elsewhere = 0;
             for (std::size_t i = 0; i < filled.made.pixel_classes.size(); ++i) {
@@ -204,11 +209,11 @@ TEST_CASE_FIXTURE(Gpu, "pixels that blend two depths are rendered again first") 
     const auto view = test::viewBuiltin("builtin:two-layers", kSizePx);
     Scenery scenery(*this, view.scene, stereoPair(view.eye, 0.12));
     FrameSettings sparse = makeSettings(Mode::kPredicted);
-    sparse.stereo.budget = 0.1;  // with more, moving would not pay in so thin a scene
+    sparse.stereo.budget = 0.1;  // with more, moving would not pay in a scene this thin
     const Outcome moved = scenery.render(Mode::kReproject), predicted = scenery.render(sparse);
     CHECK(countKind(predicted.made, gpu::kTilePredicted) > 0);
     CHECK(predicted.psnr_db >= moved.psnr_db + 1.0);
-    // Whether the pixel's depth is the mean disparity decides how far off the picture is.
+    // The error depends on whether a pixel's depth is its mean disparity.
     FrameSettings settings = makeSettings(Mode::kReproject);
     for (const gpu::uint choice : {gpu::kDepthSum, gpu::kDepthMean}) {
         settings.stereo.depth_choice = choice;
@@ -240,7 +245,7 @@ TEST_CASE_FIXTURE(Gpu, "where moving did not pay the next frame leaves it out an
         return made.pictures[kLeft].values == shared.pictures[kLeft].values &&
                made.pictures[kRight].values == shared.pictures[kRight].values;
     };
-    // Before the eyes there is nothing: what moves is asked once.
+    // With nothing in front of the eyes, reprojection is asked for once.
     CHECK(reprojects(render(outside)));
     const AffiliatedFrame left_out = render(outside);
     CHECK_FALSE(reprojects(left_out));
@@ -251,7 +256,7 @@ TEST_CASE_FIXTURE(Gpu, "where moving did not pay the next frame leaves it out an
     CHECK(reprojects(second));
     CHECK(countOf(second.result, "tiles_weighed_as_moved") > 0);
     CHECK(second.result.work_rendered < 0.5);
-    // Whoever asks for something else is answered at once.
+    // A different request is answered at once.
     CHECK_FALSE((render(outside), reprojects(render(outside))));
     CHECK(reprojects(render(eyes, 0.1)));
 }
@@ -279,7 +284,7 @@ TEST_CASE_FIXTURE(
             CHECK(psnrNear(there.pictures[kRight], room.full(), eyes[kRight], gaze) >=
                   psnrNear(everywhere.pictures[kRight], room.full(), eyes[kRight], gaze));
         }
-        // One that may look everywhere gets the picture of one of which nothing is known.
+        // An eye that may look everywhere gets the same picture as one whose gaze is unknown.
         settings.gazes[kRight] = Gaze{{0.0, 0.0, 1.0}, 1.6};
         const AffiliatedFrame clear = room.render(settings).made;
         CHECK(clear.tile_kinds == everywhere.tile_kinds);

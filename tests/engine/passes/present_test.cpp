@@ -1,4 +1,5 @@
-// Facts about pictures on their way to a headset: the pass against its float64 twin, on the device, and the images that they become.
+// Facts about pictures on their way to a headset: the pass compared with its float64 twin, on the device, and
+// the images they become.
 #include "engine/passes/present.h"
 #include "engine/twin/present.h"
 #include "tests/engine/gpu/device_image.h"
@@ -9,15 +10,16 @@ SUITE(present) {
 using Colours = std::vector<glm::vec4>;
 using Bytes = std::vector<std::uint32_t>;
 
-// A picture; where it has any: sums of depth, or words that later pictures are made by, and what made its tiles and pixels.
+// A picture; optionally with sums of depth or with the words from which later pictures are made, and with the
+// kinds of its tiles and pixels.
 struct Shown {
     glm::uvec2 size_px;
     Colours colours;
     std::vector<float> depth_sums = {};
     std::vector<gpu::uint> words = {}, tile_kinds = {}, pixel_classes = {};
     bool halves = false;
-    Bytes behind = {};            // and what is before and behind it
-    std::uint32_t kept_bits = 0;  // of `behind`, which is then not blended with: these stay
+    Bytes behind = {};            // what lies in front of it and behind it
+    std::uint32_t kept_bits = 0;  // bits of `behind` that stay as they are; then there is no blending
     std::vector<float> mesh_depths = {};
 };
 
@@ -58,7 +60,7 @@ Presented runPresent(Gpu& gpu, const Shown& shown, const reference::Presentation
     return {gpu.readBack<std::uint32_t>(pixels, count), gpu.readBack<float>(depths, with_depth ? count : 0)};
 }
 
-// Every pixel another colour, from well below 0 to well above 1, that half floats hold.
+// Every pixel has a different colour that half floats can represent, from well below 0 to well above 1.
 Colours makeColours(glm::uvec2 size_px) {
     Colours colours;
     for (std::uint32_t i = 0; i < size_px.x * size_px.y; ++i) {
@@ -69,7 +71,7 @@ Colours makeColours(glm::uvec2 size_px) {
     return unpackHalves(packHalves(colours));
 }
 
-// Bytes may differ by one where the value lies between two, within float32's rounding.
+// Bytes may differ by one if the value lies between two bytes, within the rounding of float32.
 std::size_t countOff(std::span<const std::uint32_t> actual, const Bytes& expected, int tolerance) {
     std::size_t off = 0;
     for (std::size_t i = 0; i < actual.size(); ++i) {
@@ -116,7 +118,8 @@ TEST_CASE_FIXTURE(Gpu, "tints say what made a pixel, and nothing of tiles that n
     const Bytes shown = runPresent(*this, {.size_px = size_px,
                                            .colours = Colours(size_px.x * size_px.y, glm::vec4(0.0f, 0.0f, 0.0f, 1.0f)),
                                            .tile_kinds = {gpu::kTileHidden, gpu::kTileEdge, 0},
-                                           .pixel_classes = std::vector<gpu::uint>(3 * gpu::kTileSize, 0xaaaaaaaa)})  // all are holes
+                                           // All are holes.
+                                           .pixel_classes = std::vector<gpu::uint>(3 * gpu::kTileSize, 0xaaaaaaaa)})
                             .pixels;
     CHECK(shown[0] == 0xff000000);
     CHECK(shown[gpu::kTileSize] == 0xff662400);      // 0.4 of 0, 0.35, 1
@@ -133,13 +136,14 @@ TEST_CASE_FIXTURE(Gpu, "red comes first, or with blue first third; what is seen 
     CHECK(present(plain, {false, false, 0.2}) == Bytes{0xff0080ffu});
     CHECK(present(plain, {true, false, 0.2}) == Bytes{0xffff8000u});
     CHECK(present(plain, {false, true, 0.2}) == Bytes{0xff0037ffu});  // 0.5 is 21.4 % of the light
-    // Half of white, encoded: half of its light is the byte 188. A quarter of red; nothing; more than all.
+    // White at half alpha, encoded: half of its light is byte 188. Then a quarter of red; nothing; more than
+    // full.
     const reference::Presentation through{false, false, 0.2, true};
     Bytes seen = present({{0.5f, 0.5f, 0.5f, 0.5f}, {0.25f, 0, 0, 0.25f}, {0.3f, 0.3f, 0.3f, 0}, {1, 0.5f, 0, 2}}, through);
     CHECK((seen.back() >> 24) == 255u);
     seen.pop_back();
     CHECK(seen == Bytes{0x80bcbcbcu, 0x40000089u, 0});
-    // Opaque colours are the same bytes as ever.
+    // Opaque colours have the same bytes as without.
     CHECK(present({{1.0f, 0.5f, 0.2f, 1.0f}}, through) == present({{1.0f, 0.5f, 0.2f, 1.0f}}, {}));
     const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
     CHECK(present({{nan, nan, nan, nan}, {infinity, -infinity, nan, 1}, {-1, 2, -0.0f, 1}, {1e38f, -1e38f, 1, 0}}, {false, false, 0.2}) ==
@@ -147,11 +151,13 @@ TEST_CASE_FIXTURE(Gpu, "red comes first, or with blue first third; what is seen 
 }
 
 TEST_CASE_FIXTURE(Gpu, "depth is near over depth, and nothing is infinitely far, whether it is a sum or in the words of a past") {
-    // Alpha 0.5 at depth 4, alpha 1 at the near plane, before it, nothing, hardly anything, alpha without depth.
+    // Alpha 0.5 at depth 4, alpha 1 at the near plane and in front of it, nothing, almost nothing, alpha
+    // without depth.
     const Shown summed{.size_px = {6, 1},
                        .colours = {{0, 0, 0, 0.5f}, {0, 0, 0, 1}, {0, 0, 0, 1}, {0, 0, 0, 0}, {0, 0, 0, 0.001f}, {0, 0, 0, 0.5f}},
                        .depth_sums = {2.0f, 0.25f, 0.1f, 0.0f, 0.001f, std::numeric_limits<float>::quiet_NaN()}};
-    // Depths 4 and, to 19 bits, 3; before the near plane; infinitely far; of a pixel that goes nowhere; of hardly anything.
+    // Depth 4 and, to 19 bits, 3; in front of the near plane; infinitely far; a pixel that moves nowhere;
+    // almost nothing.
     const Shown moving{.size_px = {6, 1},
                        .colours = {{0, 0, 0, 0.5f}, {0, 0, 0, 1}, {0, 0, 0, 1}, {0, 0, 0, 0.5f}, {0, 0, 0, 1}, {0, 0, 0, 0.001f}},
                        .words = {packMoving(0.25, true, 3), packMoving(1.0 / 3.0, true, 31), packMoving(9.0, true, 0),

@@ -1,4 +1,4 @@
-// Facts about project and bin, each started from what the twin's pass before it left.
+// Facts about project and bin, each started from the output of the twin's previous pass.
 #include "engine/twin/splat.h"
 #include "tests/engine/passes/pass_stages.h"
 #include "tests/engine/passes/stereo_cases.h"
@@ -9,7 +9,7 @@ using reference::TilePair;
 
 const reference::Settings kSettings{};
 
-// How far projected splats are from the twin's, in units of what rounding can do.
+// How far projected splats are from the twin's, relative to what rounding can cause.
 struct FieldErrors {
     std::map<std::string, double> worst;
     std::size_t other_kind = 0, edge_on = 0;
@@ -27,12 +27,14 @@ struct FieldErrors {
         noteColour(packed, truth, view.scene, i);
         const glm::dvec2 focal(view.eye.intrinsics.fx, view.eye.intrinsics.fy), principal(view.eye.intrinsics.cx, view.eye.intrinsics.cy);
         const glm::dvec3 position(view.scene.positions[i]), from_eye = position - view.eye.world_from_camera.position;
-        const double rounding = test::kEpsilon * test::distanceToRound(position, view.eye);  // of the centre in camera space
+        // Rounding of the centre in camera space.
+        const double rounding = test::kEpsilon * test::distanceToRound(position, view.eye);
         const double z = truth.depth;
         if (truth.low_pass) {
             const glm::dvec2 c = (truth.reference_px - principal) / focal * z;
             for (int axis = 0; axis < 2; ++axis) {
-                // A position's own rounding, where it lies far from the scene's origin, and 2^-7 of the two floats'.
+                // A position's own rounding, if it lies far from the scene's origin, and 2^-7 of the two
+                // floats' rounding.
                 const double coarse = focal[axis] * (1.0 + std::abs(c[axis]) / z) * rounding / z + test::kEpsilon * principal[axis];
                 note("reference_px", test::referenceOf(splat)[axis] - truth.reference_px[axis], coarse / 128.0);
             }
@@ -46,8 +48,8 @@ struct FieldErrors {
             ++edge_on;
             return;
         }
-        // Everything else is divided by delta = t_w . c, whose relative error is rounding / delta. u/z and v/z are cross products of
-        // the length of c, over s delta and the focal length.
+        // Everything else is divided by delta = t_w . c, whose relative error is rounding / delta. u/z and
+        // v/z are cross products as long as c, divided by s delta and the focal length.
         const glm::quat& q = view.scene.rotations[i];
         const double delta = std::abs(glm::dot(glm::mat3_cast(glm::dquat(q.w, q.x, q.y, q.z))[2], from_eye));
         const double scale = static_cast<double>(std::min(view.scene.scales[i].x, view.scene.scales[i].y));
@@ -70,8 +72,8 @@ struct FieldErrors {
     }
 
 private:
-    // Of the axes on the screen, in pixels, what rounding makes of the line of sight is a part of the longest; the low-pass is half a
-    // pixel.
+    // For the axes on the screen, in pixels, the rounding of the line of sight is relative to the longest
+    // one; the low-pass is half a pixel.
     void noteGaussian(const gpu::ProjectedSplat& splat, const reference::ProjectedSplat& truth, const ViewedScene& view, std::uint32_t i,
                       double rounding) {
         const glm::dvec2 focal(view.eye.intrinsics.fx, view.eye.intrinsics.fy), sigma_px = truth.reach_px / std::sqrt(truth.cut);
@@ -81,7 +83,8 @@ private:
         note("Gaussian A", plane_error.x, unit * truth.plane_from_pixel.x);
         note("Gaussian B", plane_error.y, unit * truth.plane_from_pixel.x * (1.0 + sigma_px.x / sigma_px.y));
         note("Gaussian D", plane_error.z, unit * truth.plane_from_pixel.z);
-        // Of 1/z, over a standard deviation on the screen. Sigma2^-1 divides by the shortest axis what the longest one brings.
+        // For 1/z, per standard deviation on the screen. Sigma2^-1 divides the longest axis's share by the
+        // shortest axis.
         const double climb = std::max(view.scene.scales[i].x, view.scene.scales[i].y) / truth.depth;
         for (int axis = 0; axis < 2; ++axis) {
             const double error = static_cast<double>(splat.perspective[axis]) - truth.perspective[axis];
@@ -91,9 +94,10 @@ private:
     }
 
     void noteColour(const test::OpacityColour& packed, const reference::ProjectedSplat& truth, const Scene& scene, std::uint32_t i) {
-        // Half a step of 2^-15 of -log2(opacity) is 1.06e-5 of the opacity.
+        // Half a step of 2^-15 in -log2(opacity) is 1.06e-5 of the opacity.
         if (!truth.gaussian) { note("opacity", packed.opacity / truth.opacity - 1.0, 1.1e-5); }
-        // Half floats lose up to 2^-11 of themselves, in each coefficient and in the colour. No harmonic is above 1.1.
+        // Half floats are off by up to 2^-11 of their value, in each coefficient and in the colour. No
+        // harmonic exceeds 1.1.
         const auto stride = 3 * static_cast<std::size_t>(shCoefficientCount(scene.sh_degree));
         for (int channel = 0; channel < 3; ++channel) {
             double size = truth.colour[channel];
@@ -107,7 +111,8 @@ private:
 
 bool inOrder(const TilePair& a, const TilePair& b) { return a.splat != b.splat ? a.splat < b.splat : a.tile < b.tile; }
 
-// project and bin from the twin's order: the pairs as bin writes them; those in the tiles of a mask alone, if there is one.
+// project and bin from the twin's order: the pairs as bin writes them, or only those in the tiles of a mask,
+// if there is one.
 std::vector<TilePair> binOnDevice(Gpu& gpu, const ViewedScene& view, const TwinStages& twin, const std::vector<gpu::uint>& mask = {}) {
     const SceneOnDevice device(gpu, view.scene, {view.eye}, kSettings.near);
     const Buffer mask_buffer = gpu.upload("tile mask", mask);
@@ -143,7 +148,7 @@ std::vector<TilePair> binOnDevice(Gpu& gpu, const ViewedScene& view, const TwinS
     return result;
 }
 
-// The greatest alpha that a splat has in a tile.
+// The greatest alpha that a splat reaches in a tile.
 double greatestAlpha(const reference::ProjectedSplat& splat, std::uint32_t tile, glm::uvec2 size_px) {
     const std::uint32_t columns = (size_px.x + 15) / 16;
     const reference::RayPlane plane = reference::rayPlane(splat, size_px, kSettings.near);
@@ -158,7 +163,8 @@ double greatestAlpha(const reference::ProjectedSplat& splat, std::uint32_t tile,
 }
 
 TEST_CASE_FIXTURE(Gpu, "project gives the twin's fields, up to roundings times the condition of each") {
-    // Measured: reference 1.3, A and B 19, D 11 (16.1 on an NVIDIA H100), perspective 5, 1/z 3.1, offset 0.7, of Gaussians 2, in roundings.
+    // Measured, in roundings: reference 1.3, A and B 19, D 11 (16.1 on an NVIDIA H100), perspective 5, 1/z
+    // 3.1, offset 0.7, Gaussians 2.
     const std::map<std::string, double> bounds{
         {"opacity", 1.0},    {"colour", 1.0},     {"reference_px", 4.0},         {"1/z", 8.0},           {"A", 32.0},
         {"B", 32.0},         {"D", 24.0},         {"perspective", 16.0},         {"offset", 2.0},        {"Gaussian A", 4.0},
@@ -172,7 +178,7 @@ TEST_CASE_FIXTURE(Gpu, "project gives the twin's fields, up to roundings times t
         FieldErrors errors;
         std::size_t compared = 0;
         for (std::size_t rank = 0; rank < splats.size(); ++rank) {
-            if (tile_counts[rank] == 0) { continue; }  // nothing is said of what meets no tile
+            if (tile_counts[rank] == 0) { continue; }  // splats that meet no tile are undefined
             errors.note(splats[rank], twin.splats[rank], view, twin.order[rank]);
             ++compared;
         }
@@ -190,7 +196,7 @@ TEST_CASE_FIXTURE(Gpu, "project and bin make every pair of the twin and few more
     for (const auto& [view, twin] : test::stagedScenes()) {
         CAPTURE(view.name);
         const std::vector<TilePair> pairs = binOnDevice(*this, view, twin);
-        // Each once, depth order kept, tiles ascending within a splat; none in no tile.
+        // Each once, in depth order, with ascending tiles within a splat; none in no tile.
         CHECK(std::adjacent_find(pairs.begin(), pairs.end(), [](const TilePair& a, const TilePair& b) { return !inOrder(a, b); }) ==
               pairs.end());
         const bool all_in_tiles =
@@ -198,19 +204,21 @@ TEST_CASE_FIXTURE(Gpu, "project and bin make every pair of the twin and few more
         CHECK(all_in_tiles);
         std::vector<TilePair> missing;
         std::set_difference(twin.pairs.begin(), twin.pairs.end(), pairs.begin(), pairs.end(), std::back_inserter(missing), inOrder);
-        // A pair may be missing only where its every pixel is within rounding of the cut.
+        // A pair may be missing only if all its pixels are within rounding of the cut.
         CHECK(static_cast<double>(missing.size()) <= 1e-5 * static_cast<double>(twin.pairs.size()));
         for (const TilePair& pair : missing) {
             CHECK(greatestAlpha(twin.splats[pair.splat], pair.tile, view.eye.size_px) <= 1.0001 / 255.0);
         }
-        // Discs that reach the eye's plane get every tile of their box, and the cloud is full of them (measured: 1.72).
+        // Discs that reach the eye's plane get every tile of their box, and the cloud is full of them
+        // (measured: 1.72).
         CHECK(static_cast<double>(pairs.size()) <= (view.name == "cloud" ? 2.0 : 1.05) * static_cast<double>(twin.pairs.size()));
     }
 }
 
 TEST_CASE_FIXTURE(Gpu, "under a mask project and bin make the same pairs but for the tiles outside, whatever the mask") {
     std::mt19937 random(1);
-    // More columns of tiles than a word of the mask has bits, a scene of which many splats have large boxes, and boxes of all widths.
+    // More columns of tiles than a word of the mask has bits, a scene in which many splats have large boxes,
+    // and boxes of all widths.
     std::vector<test::Splat> wide_splats;
     for (int i = 0; i < 400; ++i) {
         const auto draw = [&] { return static_cast<float>(random() % 10000) / 10000.0f; };

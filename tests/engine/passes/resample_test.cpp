@@ -1,4 +1,5 @@
-// Facts about resample: what a moved picture looks like, and the error expected of it, from what the twin's reproject left.
+// Facts about resample: what a reprojected picture looks like, and the error expected of it, given what the
+// twin's reproject left.
 #include "tests/engine/passes/stereo_stages.h"
 
 SUITE(resample) {
@@ -10,7 +11,7 @@ using Parts = StereoOnDevice::ResampleParts;
 
 constexpr double kSteps = gpu::kErrorSteps;
 constexpr glm::vec3 kBackground(0.25f, 0.5f, 0.75f);
-constexpr gpu::uint kNewcomers = 12345;  // errors that others have left
+constexpr gpu::uint kNewcomers = 12345;  // errors that earlier passes left
 
 bool isSamePixel(const std::vector<gpu::uint>& before, const std::vector<gpu::uint>& after, std::size_t pixel,
                  const StereoOnDevice& device) {
@@ -22,10 +23,11 @@ struct Way {
     int gap_px;
     Rows rows;
     Parts parts = {};
-    bool apart = false, coarse = false;  // odd rows later; and an eye does not tell rows apart in every other tile
+    // Odd rows later; the eye does not tell rows apart in every other tile.
+    bool apart = false, coarse = false;
 };
 
-// What the twin makes of what arrived.
+// What the twin makes of the arrivals.
 struct Expected {
     Expected(const StereoCase& c, const Arrived& arrived, const Kinds& kinds, const Way& way, bool rectified)
         : resolved(reference::resolve(arrived.arrivals, c.eyes, c.settings)) {
@@ -49,13 +51,14 @@ struct Expected {
     std::size_t means = 0;
 };
 
-// How far the device is from the twin: colours beyond the rounding of half floats, depths relatively, errors beyond a step for each pixel.
+// How far the device is from the twin: colours beyond the rounding of half floats, relative depths, errors
+// beyond a step per pixel.
 struct Differences {
     double colour = 0.0, depth = 0.0, error = 0.0;
     std::size_t tiles = 0, means = 0;
-    std::vector<std::size_t> other_tiles = {};  // in error
+    std::vector<std::size_t> other_tiles = {};  // with other errors
 
-    // `relative` to what is expected, and 256 pixels are rounded down to a step each.
+    // `relative` to the expected error; each of 256 pixels is rounded down to a step.
     void count(double got, double expected, std::size_t tile, double relative, double pixels = 256.0) {
         error = std::max(error, (std::abs(got - expected) - pixels / kSteps) / std::max(expected, 1e-3));
         if (!test::isNear(got, expected, relative, pixels / kSteps)) { other_tiles.push_back(tile); }
@@ -74,13 +77,13 @@ void resampleApart(StereoOnDevice& device, Parts parts, bool coarse) {
     CHECK(device.readTileErrors() == errors);
 }
 
-// The pass on one case, in tiles that are moved; the others are left alone.
+// Runs the pass on one case, in tiles that are reprojected; the others must not change.
 void check(Gpu& gpu, StereoCase c, const Kinds& kinds, const Way& way, Differences& differences) {
     INFO(c.name, ", gap px ", way.gap_px, ", rows ", static_cast<int>(way.rows), ", forward ", way.parts.forward, ", moves row ",
          way.parts.moves_row);
     if (areHalves(way.rows)) { test::roundToHalves(c.dominant); }
     c.settings.forward = way.parts.forward;
-    // Gaps that reproject has not closed are left for this pass.
+    // Gaps that reproject has not closed are left to this pass.
     c.settings.gap_px = way.gap_px == 5 ? 0 : way.gap_px;
     const Arrived arrived(c);
     c.settings.gap_px = way.gap_px;
@@ -108,7 +111,7 @@ void check(Gpu& gpu, StereoCase c, const Kinds& kinds, const Way& way, Differenc
         if (kind == TileKind::kNone) {
             ++counts[pixel_class];
             other_class += !parts.classes || classes[i] == pixel_class ? 0 : 1;
-            if (parts.components && pixel_class == gpu::kHole) {  // they are going to be grouped
+            if (parts.components && pixel_class == gpu::kHole) {  // they are about to be grouped
                 other_parent += after[device.wordsPerPixel() * i] == i ? 0 : 1;
                 continue;
             }
@@ -119,7 +122,7 @@ void check(Gpu& gpu, StereoCase c, const Kinds& kinds, const Way& way, Differenc
             }
             for (int channel = 0; channel < 4; ++channel) {
                 const double its = expected.colours[i][channel];
-                // Of means two rows were rounded, and their mean once more.
+                // Means were rounded in both rows, and once more themselves.
                 const double rounding = !areHalves(way.rows) ? 0.0
                                         : way.coarse         ? 2.0 * std::max(its * 0x1.1p-11, 0x1p-24)
                                                              : std::max(its * 0x1.01p-11, 0x1p-25);
@@ -146,7 +149,7 @@ void check(Gpu& gpu, StereoCase c, const Kinds& kinds, const Way& way, Differenc
     const glm::uvec2 tiles = tilesOf(c.sizePx());
     if (parts.components) { CHECK(groups.x * groups.y * groups.z == (counts[gpu::kHole] > 0 ? tiles.x * 2 * tiles.y : 0)); }
     if (way.rows == Rows::kOwn) { CHECK(device.readArrivals() == arrived.words); }
-    // On top of what is there.
+    // Added to what is there.
     const auto errors = device.readTileErrors();
     for (std::size_t t = 0; t < errors.size(); ++t) {
         if (!parts.errors || kinds[t] != TileKind::kNone) {
@@ -166,13 +169,14 @@ Differences checkAll(Gpu& gpu, std::span<const Way> ways) {
     }
     MESSAGE("largest difference " << all.colour << ", of depths " << all.depth << "; " << all.other_tiles.size() << " of " << all.tiles
                                   << " tiles differ in error, by up to " << all.error);
-    // A place is off by float32's rounding of a column, up to 1e-5 px, and the picture's slope is up to about 1 a pixel; measured: 3.5e-6
-    // and 3.5e-7.
+    // A place is off by float32's rounding of a column, up to 1e-5 px, and the picture's slope is up to about
+    // 1 per pixel; measured: 3.5e-6 and 3.5e-7.
     CHECK(all.colour <= 1e-5);
     return all;
 }
 
-// What resample leaves where it moves rows itself, or where reproject has; with odd rows later if they are taken `apart`.
+// The result of resample, whether it moves rows itself or reproject did; with odd rows later if they are
+// taken `apart`.
 auto moveRows(Gpu& gpu, const StereoCase& c, const Kinds& kinds, const Way& way, bool moves_row) {
     StereoOnDevice device = toDevice(gpu, c, way.rows);
     Parts parts = way.parts;
@@ -191,7 +195,7 @@ auto moveRows(Gpu& gpu, const StereoCase& c, const Kinds& kinds, const Way& way,
     parts.odd = true;
     parts.errors = false;
     if (way.apart) { device.resample(parts); }
-    // What is left of the two planes lies in tiles that are rendered.
+    // What remains of the two planes lies in tiles that are rendered.
     auto colours = device.readAffiliated();
     auto depths = device.readDepths();
     for (std::size_t i = 0; i < colours.size(); ++i) {
@@ -216,7 +220,8 @@ TEST_CASE_FIXTURE(Gpu,
                           Way{2, Rows::kSharedHalves, {.classes = true, .components = true, .forward = true}}};
     const Differences all = checkAll(*this, ways);
     CHECK(all.depth <= 1e-6);
-    // One whose place rounds to the next source pixel has another gradient. Measured: 3 of 1140, by up to 7e-4.
+    // A tile whose place rounds to the next source pixel has another gradient. Measured: 3 of 1140, by up to
+    // 7e-4.
     CHECK(all.other_tiles.size() <= 6);
     CHECK(all.error <= 0.002);
 }
@@ -243,7 +248,7 @@ TEST_CASE_FIXTURE(Gpu, "resample makes odd rows the means of even ones where an 
     ways.push_back(way);
     const Differences all = checkAll(*this, ways);
     CHECK(all.means > 10000);
-    CHECK(all.depth <= 1e-5);  // where this pass moves rows, inverse depths are its own, to 2^-18
+    CHECK(all.depth <= 1e-5);  // where this pass moves rows, inverse depths are its own, with 18 bits
 }
 
 TEST_CASE_FIXTURE(Gpu, "resample moves a row itself as reproject would, all rows at once or the odd ones later, to the bit") {
@@ -268,8 +273,8 @@ TEST_CASE_FIXTURE(Gpu, "resample moves a row itself as reproject would, all rows
 }
 
 TEST_CASE_FIXTURE(Gpu, "resample copies colours as they are, and mixes those of a gap's two ends, however far each is") {
-    // Nothing moves but by whole pixels: one at inverse depth 0.1 by 1 px to the left, one at 0.4 by 4 px. Colours are the columns'
-    // squares.
+    // Everything moves by whole pixels: what is at inverse depth 0.1 by 1 px to the left, what is at 0.4 by 4
+    // px. Colours are the squares of the columns.
     const glm::uvec2 size_px(16, 1);
     const auto eyes = stereoPair({Pose{}, {100.0, 100.0, 8.0, 0.5}, size_px}, 0.1);
     StereoCase c{"steps", {}, {eyes[kLeft], eyes[kRight]}, {size_px, {}, {}, {}, {}}, {}};
@@ -290,8 +295,8 @@ TEST_CASE_FIXTURE(Gpu, "resample copies colours as they are, and mixes those of 
         const auto classes = device.readClasses();
         for (int x = 0; x < 16; ++x) {
             CAPTURE(x);
-            // Column 8 lies in front of column 5 in pixel 4, and pixel 7, which it leaves, is between columns 7 and 9; beyond the last
-            // column, in pixel 15, that one repeats.
+            // Column 8 covers column 5 in pixel 4. Pixel 7, which it leaves, lies between columns 7 and 9.
+            // Beyond the last column, in pixel 15, that column repeats.
             const int source = x == 4 ? 8 : std::min(x + 1, 15);
             const float expected = x == 7 ? (49.0f + 81.0f) / 512.0f : static_cast<float>(source * source) / 256.0f;
             CHECK(colours[static_cast<std::size_t>(x)] == gpu::vec4(expected, 0.5f, 0.25f, 1.0f));
@@ -301,7 +306,7 @@ TEST_CASE_FIXTURE(Gpu, "resample copies colours as they are, and mixes those of 
 }
 
 TEST_CASE_FIXTURE(Gpu, "resample takes rows of any length, also longer ones than it keeps at a time") {
-    // A ramp with steps in depth: 20 px apart for a unit of inverse depth.
+    // A ramp with steps in depth: 20 px of disparity per unit of inverse depth.
     const std::uint32_t longest_shared = test::longestSharedRow(context());
     for (const std::uint32_t width : {1u, 31u, 33u, 128u, 257u, gpu::kArrivalsStep - 1, gpu::kArrivalsStep, gpu::kArrivalsStep + 1,
                                       longest_shared - 1, longest_shared, longest_shared + 1, 5000u, 16384u}) {
@@ -311,8 +316,8 @@ TEST_CASE_FIXTURE(Gpu, "resample takes rows of any length, also longer ones than
         StereoCase c{"ramp", {}, {eyes[kLeft], eyes[kRight]}, {size_px, {}, {}, {}, {}}, {}};
         for (std::uint32_t i = 0; i < 2 * width; ++i) {
             const std::uint32_t x = i % width;
-            // The last one of the longest row moves by 10.5 px: it arrives at a pixel's left end, and from the middle it came from the
-            // border.
+            // The last pixel of the longest row moves by 10.5 px: it arrives at a pixel's left end, and seen
+            // from that pixel's middle it came from the border.
             const double w = x == 16383 ? 0.525 : (x / 50) % 3 == 1 ? 1.7 : 0.1 + 0.001 * (x % 50);
             c.dominant.rgba.emplace_back(0.5 + 0.5 * std::sin(0.1 * x), x % 7 / 7.0, i / width, 1.0);
             c.dominant.depth.push_back(1.0 / w);
@@ -327,9 +332,10 @@ TEST_CASE_FIXTURE(Gpu, "resample takes rows of any length, also longer ones than
             Differences differences;
             check(*this, c, kinds, {c.settings.gap_px, rows, parts}, differences);
             check(*this, c, kinds, {c.settings.gap_px, rows, {.classes = true}, /*apart=*/true}, differences);
-            // Of a column in the thousands, 2e-4 px: so much are colours off, and what lies between pixels. Beyond ten thousand, 1e-3.
+            // In a column in the thousands, colours and what lies between pixels are off by up to 2e-4 px;
+            // beyond ten thousand, by 1e-3.
             CHECK(differences.colour <= (width <= 5000 ? 1e-3 : 4e-3));
-            // How a hole's pixel at the border is sampled is a matter of rounding.
+            // How a hole's pixel at the border is sampled depends on rounding.
             std::erase(differences.other_tiles, std::size_t{16383 / 16});
             CHECK(differences.other_tiles.empty());
             for (const bool apart : {false, true}) {

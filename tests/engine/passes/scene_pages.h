@@ -1,4 +1,4 @@
-// Scenes whose chunks come and go, for tests: splats that lie together are loaded together.
+// Scenes whose chunks come and go, for tests: neighbouring splats are loaded together.
 #pragma once
 
 #include "engine/stream/resident_scene.h"
@@ -33,7 +33,7 @@ inline Scene splatsOf(const Scene& scene, std::size_t first, std::size_t count) 
     return splatsOf(scene, splats);
 }
 
-// All of it along Morton's curve through its bounds, ten bits an axis.
+// All of it along Morton's curve through its bounds, with ten bits per axis.
 inline Scene inMortonOrder(const Scene& scene) {
     glm::vec3 low(scene.positions.at(0)), high = low;
     for (const glm::vec3& position : scene.positions) {

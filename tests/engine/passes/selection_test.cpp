@@ -1,11 +1,12 @@
-// Facts about price and select: the dearest errors up to a budget, as the twin has them, and the lists patching goes by.
+// Facts about price and select: the most worthwhile errors up to a budget, as the twin has them, and the
+// lists that patching uses.
 #include "tests/engine/passes/choice_stages.h"
 
 SUITE(selection) {
 
 using reference::TileKind;
 
-// Division may be off by a few roundings, so that prices are not as good as on the border of two bins.
+// Division may be off by a few roundings, so a price may lie practically on the border of two bins.
 bool isOnBorder(double steps, double cost) {
     if (steps < 1.0) { return false; }
     const double sixteenths = std::ldexp(steps / cost, 4 - std::ilogb(steps / cost));
@@ -32,21 +33,22 @@ Tiles drawPast(glm::uvec2 size, std::mt19937& random) {
         gpu::PastTile tile{};
         tile.cost = static_cast<gpu::uint>(random() % 3 == 0 ? random() % 5000 : random() % 40);
         tile.age = static_cast<gpu::uint>(random() % (random() % 4 == 0 ? 500 : 6));
-        const bool is_still = random() % 8 == 0;  // as it is before a still head
+        const bool is_still = random() % 8 == 0;  // as in front of a head that keeps still
         for (int q = 0; q < 4; ++q) {
             tile.growth[q] = is_still || random() % 3 == 0 ? 0.0f : 0.02f * draw();
             tile.errors[q] = is_still || random() % 4 == 0 ? 0.0f : 0.2f * std::pow(draw(), 6.0f);
             tile.grown[q] = is_still || random() % 4 == 0 ? 0 : static_cast<gpu::uint>(random()) >> (4 + random() % 28);
             tile.unseen |= random() % 4 == 0 ? static_cast<gpu::uint>(random() % 65) << (8 * q) : 0;
         }
-        tile.squared_gradient = static_cast<gpu::uint>(random() % 4'000'000);  // up to 1.4 times what masks errors
+        // Up to 1.4 times what masks errors.
+        tile.squared_gradient = static_cast<gpu::uint>(random() % 4'000'000);
         drawn.past.push_back(tile);
         kind = random() % 12 == 0 ? gpu::kTileHidden : 0;
     }
     return drawn;
 }
 
-// That the lists and the mask say what the kinds say, and the counters, if `counts`.
+// The lists and the mask must agree with the kinds, and with the counters if `counts`.
 void checkLists(const Chosen& chosen, glm::uvec2 size, bool counts = true) {
     std::vector<gpu::uint> list;
     std::vector<std::uint8_t> marked;
@@ -63,7 +65,7 @@ void checkLists(const Chosen& chosen, glm::uvec2 size, bool counts = true) {
     CHECK(chosen.masked_tiles.count == list.size());
     CHECK(chosen.masked_tiles.groups_done == 0);
     CHECK(chosen.masked_tiles.per_item.x * chosen.masked_tiles.per_item.y * gpu::kGroupSize >= list.size());
-    // Where no tile is rendered, no splat is looked at.
+    // If no tile is rendered, no splat is visited.
     CHECK(chosen.masked_visible.count == (list.empty() ? 0 : kVisible));
     CHECK(chosen.masked_visible.per_item.x == (list.empty() ? 0 : (kVisible + gpu::kGroupSize - 1) / gpu::kGroupSize));
     if (!counts) { return; }
@@ -73,7 +75,8 @@ void checkLists(const Chosen& chosen, glm::uvec2 size, bool counts = true) {
     CHECK(chosen.counters.cheap_tiles == std::ranges::count(chosen.kinds, gpu::kTileCheap));
 }
 
-// What the twin expects of an eye's tiles; errors are the device's, if they are the twin's but for rounding.
+// What the twin expects of an eye's tiles. The errors are the device's, provided that they equal the twin's
+// up to rounding.
 struct Expected {
     std::vector<TileKind> kinds;
     std::vector<double> errors;
@@ -102,7 +105,7 @@ Expected expectOf(const Tiles& eye, const Chosen& got) {
     return expected;
 }
 
-// The choice among tiles against the twin's.
+// Compares the choice among tiles with the twin's.
 void checkChoice(Gpu& gpu, const std::vector<Tiles>& eyes, const How& how) {
     INFO("budget ", how.budget, ", eyes.size ", eyes.size(), ", eyes[0].count ", eyes[0].count());
     const std::vector<Chosen> got = chooseOnDevice(gpu, eyes, how);
@@ -122,8 +125,8 @@ void checkChoice(Gpu& gpu, const std::vector<Tiles>& eyes, const How& how) {
         std::vector<gpu::uint> words;
         for (std::size_t t = 0; t < costs.size(); ++t) {
             picture_cost += costs[t];
-            // Of a tile that is as good as on a border of prices either is right, and what is seen of an error is not known to the last
-            // digit.
+            // For a tile that is practically on a border of prices either bin is right, and the visible part
+            // of an error is not known to the last digit.
             const gpu::uint bin = got[e].prices[t] >> 22, its = prices[e][t].value_or(bin);
             const bool is_rough =
                 how.error_bound == 0.0 && (how.gaze || isOnBorder(std::floor(errors[t] * kErrorSteps), static_cast<double>(costs[t])));
@@ -189,7 +192,7 @@ TEST_CASE_FIXTURE(Gpu, "select takes the first of tiles of one price, to the las
     for (const glm::uvec2 size : {glm::uvec2(20, 1), glm::uvec2(30, 20)}) {
         for (const unsigned values : {1u, 5u}) {
             Tiles tiles(size);
-            // A hundred and one steps a pair, however many pairs: all in one bin.
+            // A hundred and one steps per pair, however many pairs: all in one bin.
             for (std::size_t t = 0; t < tiles.count(); ++t) {
                 tiles.costs[t] = 16 + static_cast<gpu::uint>(random() % 40);
                 tiles.errors[t] = static_cast<gpu::uint>(random() % (values + 1)) * 101 * tiles.costs[t];
@@ -199,7 +202,7 @@ TEST_CASE_FIXTURE(Gpu, "select takes the first of tiles of one price, to the las
             for (std::size_t t = 0, n = 0; n < 3; ++t) {
                 if (tiles.errors[t] > 0) { first_three += tiles.costs[t], ++n; }
             }
-            // To each side of where one more fits, too.
+            // Also just below and just above where one more fits.
             std::vector<std::uint64_t> budgets{first_three - 1, first_three, first_three + 1, all - 1, all};
             for (std::uint64_t budget = 0; budget <= all; budget += 1 + all / 7) { budgets.push_back(budget); }
             for (const std::uint64_t budget : budgets) { checkChoice(*this, {tiles}, withCost(budget)); }
@@ -229,7 +232,7 @@ TEST_CASE_FIXTURE(Gpu, "price tells prices apart from the least to the greatest,
 TEST_CASE_FIXTURE(Gpu, "select pays from a share of the picture's cost, rounded down") {
     Tiles tiles({10, 1});
     tiles.errors.assign(10, 1000);
-    // 0.15 in single precision is a little more than that.
+    // 0.15 in single precision is slightly more than that.
     for (const auto& [share, picture_cost, chosen] :
          {std::tuple(0.15, 2000u, 3), std::tuple(0.15, 1999u, 2), std::tuple(0.5, 2000u, 10), std::tuple(1.0, 1000u, 10),
           std::tuple(1.0, 999u, 9), std::tuple(0.0, 2000u, 0), std::tuple(1.0, 4000000000u, 10)}) {
@@ -316,7 +319,7 @@ TEST_CASE_FIXTURE(Gpu, "of tiles with a past price and select take the twin's of
 
 TEST_CASE_FIXTURE(Gpu, "of equal tiles with a past the first eye's are first, and a tile dearer than the budget has its turn") {
     gpu::PastTile plain{};
-    plain.cost = 84;  // 100 with what a tile costs
+    plain.cost = 84;  // 100 including the cost of the tile itself
     plain.age = 1;
     plain.errors = gpu::vec4(0.1f);
     plain.squared_gradient = 3 * 256 << 14;  // an eighth in each channel of each pixel, which masks errors
@@ -333,8 +336,8 @@ TEST_CASE_FIXTURE(Gpu, "of equal tiles with a past the first eye's are first, an
     const auto turn = chooseOnDevice(*this, dear, {.budget = 0.001});
     CHECK(turn[0].list.empty());
     CHECK(turn[1].list == std::vector<gpu::uint>{150});
-    // Under a bound what is good enough stays but for a twentieth of the work, however much the budget would allow; what nobody saw before
-    // is rendered without any, as far as lists have room.
+    // Under a bound, tiles that are good enough stay, except for a twentieth of the work, however large the
+    // budget. What nobody saw before is rendered without a budget, as far as lists have capacity.
     std::vector<Tiles> bounded = equal;
     bounded[0].past[20].errors = gpu::vec4(0.01f, 0.11f, 0.01f, 0.01f);
     bounded[1].past[30].errors = bounded[1].past[40].errors = gpu::vec4(0.2f);
@@ -345,7 +348,7 @@ TEST_CASE_FIXTURE(Gpu, "of equal tiles with a past the first eye's are first, an
     const auto has = [](const Chosen& chosen, gpu::uint tile) { return std::ranges::count(chosen.list, tile) == 1; };
     CHECK((has(over[0], 20) && has(over[1], 30) && has(over[1], 40)));
     CHECK(over[0].list.size() + over[1].list.size() == 3 + 20);
-    // An error that contrast masks shows where there is none.
+    // An error that contrast masks is visible where there is no contrast.
     std::vector<Tiles> smooth = bounded;
     smooth[0].past[50].squared_gradient = 0;
     checkChoice(*this, smooth, how);

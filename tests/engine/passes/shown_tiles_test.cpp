@@ -1,4 +1,5 @@
-// Facts about frames of which lenses hide a part, which costs nothing and changes nothing else, and about gazes in them.
+// Facts about frames of which lenses hide a part, which costs nothing and changes nothing else, and about
+// gazes in such frames.
 #include "tests/engine/frame/frame_runs.h"
 #include "tests/engine/passes/stereo_cases.h"
 
@@ -12,7 +13,7 @@ constexpr glm::dvec3 kBackground(0.125, 0.25, 0.5);
 
 using Tiles = std::vector<std::uint8_t>;
 
-// What a round lens leaves of a picture; the middle of what is shown lies a little towards the nose.
+// What a round lens leaves of a picture; the middle of the visible part lies slightly towards the nose.
 Tiles roundLens(Side side) {
     Tiles hidden;
     for (std::uint32_t y = 0; y < kTiles.y; ++y) {
@@ -26,7 +27,7 @@ Tiles roundLens(Side side) {
     return hidden;
 }
 
-// Both lenses; stays as long as the settings that refer to it.
+// Both lenses; must live as long as the settings that refer to it.
 const std::array<Tiles, 2>& lenses() {
     static const std::array<Tiles, 2> both{roundLens(kLeft), roundLens(kRight)};
     return both;
@@ -51,7 +52,7 @@ bool samePixel(const Image& a, const Image& b, std::size_t i) {
     return std::equal(&a.values[channels * i], &a.values[channels * i] + channels, &b.values[channels * i]);
 }
 
-// That hidden tiles are background and the others `whole`, byte for byte.
+// Hidden tiles must be background and the others `whole`, byte for byte.
 void checkPicture(const Image& picture, const Image& whole, const Image& depth, Side side) {
     std::size_t not_background = 0, other = 0;
     for (std::size_t i = 0; i < picture.pixelCount(); ++i) {
@@ -69,12 +70,12 @@ void checkPicture(const Image& picture, const Image& whole, const Image& depth, 
 
 ViewedScene room() { return test::viewBuiltin("builtin:atelier", kSizePx, 20000); }
 
-// A frame of which one eye is made from the other, and the twin's of it.
+// A frame in which one eye is reprojected from the other, and the twin's.
 struct Made {
     AffiliatedFrame made;
     Image depth;  // of the affiliated eye
     reference::StereoPictures twin;
-    std::vector<std::uint32_t> same_kind;  // tiles that both make alike: these look alike, too
+    std::vector<std::uint32_t> same_kind;  // tiles of which both make the same kind; these look alike, too
 };
 Made makeWithTwin(StereoFrame& frame, const Scene& scene, const std::array<Eye, 2>& eyes, const reference::StereoSettings& twin_settings,
                   const FrameSettings& settings) {
@@ -143,14 +144,15 @@ TEST_CASE_FIXTURE(Gpu, "an eye made from the other under masks is the twin's, in
             again += made.tile_kinds[t] != 0 && made.tile_kinds[t] != gpu::kTileHidden ? 1 : 0;
             predicted_cost += made.tile_kinds[t] == gpu::kTilePredicted ? twin.tile_costs[t] : 0;
         }
-        // Measured: five in one frame, where a splat that is large for its tiles is seen by the dominant eye within a hair, or is not.
+        // Measured: five in one frame, where a splat that is large for its tiles is only just visible to the
+        // dominant eye, or just not.
         CHECK(std::ranges::count(same_kind, 0u) <= (method == TileChoice::kPredicted ? 6 : 0));
         CHECK(countOf(made.result, "tiles_patched") == again);
-        // The budget is a share of what is shown. The device's pairs are the twin's and few more.
+        // The budget is a share of what is shown. The device has the twin's pairs and few more.
         if (method == TileChoice::kPredicted) {
             CHECK(static_cast<double>(predicted_cost) <= twin_settings.budget * static_cast<double>(countOf(made.result, "work_full")));
         }
-        // Only pixels that were moved are counted, before any tile is rendered for what is wrong with them.
+        // Only reprojected pixels are counted, before any tile is rendered for its errors.
         std::uint64_t moved_px = 0, other_depth = 0;
         for (std::size_t i = 0; i < depth.pixelCount(); ++i) {
             const std::size_t tile = test::tileOf(i, kSizePx);
@@ -177,7 +179,7 @@ TEST_CASE_FIXTURE(Gpu, "the device's choice for a gaze is the twin's, and so are
     std::size_t chosen = 0, chosen_everywhere = 0, means = 0;
     for (const Side dominant : {kLeft, kRight}) {
         CAPTURE(static_cast<int>(dominant));
-        // So few pixels show less than an eye resolves but far from where it looks.
+        // A picture this small shows more than the eye resolves only far from the gaze.
         const Gaze gaze{{dominant == kLeft ? -3.0 : 3.0, 0.5, 1.0}, 0.0};
         reference::StereoSettings twin_settings{.budget = 0.2};
         twin_settings.target_gaze = reference::Gaze{gaze.direction, gaze.clear_rad};
@@ -190,7 +192,7 @@ TEST_CASE_FIXTURE(Gpu, "the device's choice for a gaze is the twin's, and so are
         settings.gazes[other] = gaze;
         const auto [made, depth, twin, same_kind] = makeWithTwin(frame, view.scene, eyes, twin_settings, settings);
         CHECK(std::ranges::count(same_kind, 0u) <= 1);
-        // Where the eye does not resolve them, rows are means of their neighbours, in both.
+        // Where the eye does not resolve single rows, rows are means of their neighbours, in both.
         const auto valueAt = [&](std::size_t x, std::size_t y) {
             return static_cast<double>(made.pictures[other].values[4 * (y * view.eye.size_px.x + x)]);
         };
@@ -205,7 +207,7 @@ TEST_CASE_FIXTURE(Gpu, "the device's choice for a gaze is the twin's, and so are
         }
         chosen += countOf(made.result, "tiles_predicted");
         chosen_everywhere += countOf(everywhere.result, "tiles_predicted");
-        // The dominant eye's gaze says nothing of the affiliated eye's tiles.
+        // The dominant eye's gaze tells nothing about the affiliated eye's tiles.
         settings.gazes = {};
         settings.gazes[static_cast<std::size_t>(dominant)] = gaze;
         CHECK(test::makeAffiliated(frame, eyes, settings).tile_kinds == everywhere.tile_kinds);
@@ -216,12 +218,12 @@ TEST_CASE_FIXTURE(Gpu, "the device's choice for a gaze is the twin's, and so are
 
 TEST_CASE_FIXTURE(Gpu, "what one lens hides and the other shows is rendered for that other") {
     const ViewedScene view = room();
-    // Canted, where patches follow their own order and so are the full picture bit for bit.
+    // Canted, since patches then follow their own order and so equal the full picture bit for bit.
     const auto eyes = test::headsetEyes(view.eye, glm::radians(4.0));
     test::KeptFrame frame(context(), view.scene);
     frame.render(eyes, makeSettings(Mode::kShared, kLeft, false));
     const Image whole = frame.readPicture(kRight);
-    // The left lens hides all of the right half: what is made of the other half reaches nowhere near.
+    // The left lens hides the whole right half; nothing reprojected from the other half reaches there.
     Tiles right_half;
     for (std::uint32_t t = 0; t < kTiles.x * kTiles.y; ++t) { right_half.push_back(t % kTiles.x >= 6 ? 1 : 0); }
     for (const Mode mode : {Mode::kPaper, Mode::kPredicted}) {
@@ -231,7 +233,8 @@ TEST_CASE_FIXTURE(Gpu, "what one lens hides and the other shows is rendered for 
         const auto made = test::makeAffiliated(frame, eyes, settings);
         std::size_t wrong = 0, beyond = 0;
         for (std::size_t i = 0; i < whole.pixelCount(); ++i) {
-            // The right eye looks further out, so that even its middle looks at what the left one hides.
+            // The right eye looks further outwards, so that even its middle sees what is hidden from the left
+            // one.
             if (i % kSizePx.x < 8 * 16) { continue; }
             ++beyond;
             wrong += samePixel(made.pictures[kRight], whole, i) ? 0 : 1;

@@ -1,4 +1,5 @@
-// Facts about the radix sort at every size that crosses a boundary, and about sums by the last workgroup and their lists.
+// Facts about the radix sort at every size that crosses a boundary, and about sums by the last workgroup and
+// their lists.
 #include "engine/passes/sort.h"
 #include "tests/engine/gpu/gpu_fixture.h"
 
@@ -6,12 +7,12 @@ SUITE(sort) {
 
 using Values = std::vector<std::uint32_t>;
 
-// What lies in memory that a pass must leave alone.
+// Memory that a pass must not touch is filled with this.
 constexpr std::uint32_t kUntouched = 0xdeadbeefu;
 
 std::uint32_t maskOf(unsigned key_bits) { return key_bits == 32 ? UINT32_MAX : (1u << key_bits) - 1; }
 
-// The indices of `keys` by their lowest `key_bits` bits, equal keys in the order they came.
+// The indices of `keys` sorted by their lowest `key_bits` bits, with equal keys in their original order.
 Values stableOrder(const Values& keys, unsigned key_bits) {
     Values order(keys.size());
     std::iota(order.begin(), order.end(), 0u);
@@ -27,7 +28,8 @@ Values makeKeys(int pattern, std::size_t size, unsigned key_bits) {
     for (std::size_t i = 0; i < size; ++i) {
         const double share = (static_cast<double>(i) + 0.5) / static_cast<double>(size), top = maskOf(key_bits);
         const auto drawn = static_cast<std::uint32_t>(random());
-        const std::array<std::uint32_t, kPatternCount> of_patterns{drawn,  // the bits above the key's are there to be ignored
+        // Bits above the key's must be ignored.
+        const std::array<std::uint32_t, kPatternCount> of_patterns{drawn,
                                                                    0x5a5a5a5au,
                                                                    0x01010101u * (drawn % 5),
                                                                    static_cast<std::uint32_t>(share * top),
@@ -38,7 +40,8 @@ Values makeKeys(int pattern, std::size_t size, unsigned key_bits) {
     return keys;
 }
 
-// How many lists come out wrong, the first of them told. They lie in one buffer, each with room for one key more.
+// How many lists come out wrong; the first of them is reported. All lie in one buffer, each with space for
+// one more key.
 int countWrong(Gpu& gpu, const Sort& sort, const std::vector<Values>& lists, unsigned key_bits) {
     KernelCache kernels(gpu.context(), sort.kernels());
     Values keys, values;
@@ -84,7 +87,8 @@ int countWrong(Gpu& gpu, const Sort& sort, const std::vector<Values>& lists, uns
     return wrong;
 }
 
-// With every way of matching digits that the device can take: real GPUs have wide subgroups and take ballots, software devices compare.
+// With every way to match digits that the device offers: real GPUs have wide subgroups and use ballots,
+// software devices compare.
 void checkSorted(Gpu& gpu, unsigned key_bits, const std::vector<std::size_t>& sizes, const std::vector<int>& patterns) {
     std::vector<DigitMatch> ways{DigitMatch::kBallots};
     if (Sort::hasNarrowSubgroups(gpu.context())) { ways.push_back(DigitMatch::kComparisons); }
@@ -98,7 +102,7 @@ void checkSorted(Gpu& gpu, unsigned key_bits, const std::vector<std::size_t>& si
     }
 }
 
-// As tests/engine/passes/sum_up.comp takes it.
+// As tests/engine/passes/sum_up.comp reads it.
 struct SumUpPass {
     gpu::DeviceAddress<gpu::uint> values, sums;
     gpu::DeviceAddress<gpu::ListState> result;
@@ -110,7 +114,7 @@ constexpr std::uint32_t kSumUpWords[] = {
 };
 
 struct Summed {
-    Values sums;  // then those before each run, and what comes after
+    Values sums;  // then the sums before each run, and what comes after
     gpu::ListState result;
 };
 
@@ -123,7 +127,7 @@ Summed sumUp(Gpu& gpu, const Values& values, std::uint32_t capacity = UINT32_MAX
     const SumUpPass pass{buffer.address<gpu::uint>(), sums.address<gpu::uint>(), result.address<gpu::ListState>(),
                          static_cast<gpu::uint>(count), capacity};
     gpu.run([&](Commands& commands) {
-        // Twice, since the last workgroup must leave the count of workgroups as it was.
+        // Twice, since the last workgroup must restore the count of workgroups.
         commands.dispatchOver(kernel, pass, count, 1);
         commands.dispatchOver(kernel, pass, count, 1);
     });
@@ -153,7 +157,7 @@ void checkSums(Gpu& gpu, std::size_t count) {
     CHECK(wordsOf(summed.result) == wordsOf(test::makeList(total)));
 }
 
-// The list of a sum of values, each at most 2^20.
+// The list for a sum of values, each at most 2^20.
 gpu::ListState listOfSum(Gpu& gpu, std::uint64_t sum, std::uint32_t capacity) {
     Values values(sum >> 20, 1u << 20);
     values.push_back(static_cast<std::uint32_t>(sum & ((1u << 20) - 1)));
@@ -216,7 +220,8 @@ TEST_CASE_FIXTURE(Gpu, "a list of sums that does not fit is empty and says what 
         CHECK(wordsOf(list) == wordsOf(test::makeList(60, capacity)));
         CHECK(these(list.needed, list.count, (list.per_item.x == 0)) == these(60, (capacity == 60 ? 60 : 0), (capacity < 60)));
     }
-    // Just beyond what an index may be, and beyond 2^32, where the sum modulo 2^32 is small, and several times that.
+    // Just beyond the greatest index; beyond 2^32, where the sum modulo 2^32 is small; and several times
+    // that.
     for (const std::uint64_t total : {std::uint64_t{gpu::kMaxItems} + 1, std::uint64_t{UINT32_MAX} - 3, std::uint64_t{1} << 32,
                                       (std::uint64_t{1} << 32) + 5, std::uint64_t{5} << 32, (std::uint64_t{9} << 32) + 77}) {
         CAPTURE(total);

@@ -1,5 +1,5 @@
-// Dominant pictures and pairs of eyes on which the stereo passes are tested, and the twin's arrays as the
-// device holds them.
+// Dominant pictures and pairs of eyes with which the stereo passes are tested, and the twin's arrays in the
+// device's format.
 #pragma once
 
 #include "engine/twin/stereo.h"
@@ -42,7 +42,7 @@ inline StereoSettings settingsOf(const reference::StereoSettings& twin) {
     return settings;
 }
 
-// A moving pixel and an arrival as the device holds them, in a word (shaders/lib/moving_pixel.glsl).
+// A moving pixel and an arrival in the device's format: one word (shaders/lib/moving_pixel.glsl).
 inline gpu::uint packMoving(double inverse_depth, bool landed, gpu::uint spread) {
     return ((((std::bit_cast<gpu::uint>(static_cast<float>(inverse_depth)) + 16) >> 5) + 1) << 6) | (landed ? 32u : 0u) | spread;
 }
@@ -59,7 +59,7 @@ inline reference::Arrival unpackArrival(gpu::uint word) {
             static_cast<double>(std::bit_cast<float>(((word >> 6) - 1) << 5)), word & 31, 0};
 }
 
-// Both sides start from what the device can hold.
+// Both start from what the device can store.
 inline void roundToFloat(reference::Picture& picture) {
     for (glm::dvec4& value : picture.rgba) { value = glm::dvec4(glm::vec4(value)); }
     for (auto* plane : {&picture.depth, &picture.inverse_depth, &picture.inverse_depth_squared}) {
@@ -67,7 +67,7 @@ inline void roundToFloat(reference::Picture& picture) {
     }
 }
 
-// Likewise where the device is left a word a pixel: of that depth and that spread.
+// The same where the device stores one word per pixel, with this depth and this spread.
 inline void roundToWords(reference::Picture& picture, const reference::StereoSettings& settings) {
     roundToFloat(picture);
     for (std::size_t i = 0; i < picture.rgba.size(); ++i) {
@@ -79,7 +79,7 @@ inline void roundToWords(reference::Picture& picture, const reference::StereoSet
     }
 }
 
-// Colours as the device keeps them in half floats, and back.
+// Colours as the device's half floats store them, and back.
 inline std::vector<gpu::uvec2> packHalves(const std::vector<gpu::vec4>& colours) {
     std::vector<gpu::uvec2> halves;
     for (const gpu::vec4& c : colours) { halves.emplace_back(glm::packHalf2x16({c.x, c.y}), glm::packHalf2x16({c.z, c.w})); }
@@ -91,7 +91,7 @@ inline std::vector<gpu::vec4> unpackHalves(const std::vector<gpu::uvec2>& halves
     return colours;
 }
 
-// Likewise where colours are half floats. Depths stay as they are.
+// The same where colours are half floats. Depths stay as they are.
 inline void roundToHalves(reference::Picture& picture) {
     for (std::size_t i = 0; i < picture.rgba.size(); ++i) {
         const double before = picture.rgba[i].w;
@@ -111,7 +111,8 @@ inline StereoCase makeCase(const std::string& name, const Scene& scene, const st
     return c;
 }
 
-// Rectified, asymmetric and canted eyes, either dominant; far and near content, small and odd pictures. Made once.
+// Rectified, asymmetric and canted eyes, either of them dominant; far and near content, small and odd
+// pictures. Made once.
 inline const std::vector<StereoCase>& makeStereoCases() {
     static const std::vector<StereoCase> cases = [] {
         std::vector<StereoCase> made;
@@ -152,7 +153,7 @@ inline std::vector<reference::TileKind> kindsOf(const std::vector<gpu::uint>& va
     return kinds;
 }
 
-// A byte a tile, 1 for those that are in it, as a mask of bits (shaders/lib/tile_mask.glsl).
+// From one byte per tile, which is 1 if the tile counts, to a mask of bits (shaders/lib/tile_mask.glsl).
 inline std::vector<gpu::uint> maskOf(const std::vector<std::uint8_t>& tiles, glm::uvec2 size_tiles) {
     const std::size_t row_words = (size_tiles.x + 31) / 32;
     std::vector<gpu::uint> mask(row_words * size_tiles.y, 0);
@@ -167,7 +168,7 @@ inline bool isNear(double a, double b, double relative, double absolute) {
     return std::abs(a - b) <= relative * std::max(std::abs(a), std::abs(b)) + absolute;
 }
 
-// What the twin's reproject leaves, as the device holds it, and the same for the twin again.
+// What the twin's reproject leaves, in the device's format, and the same for the twin again.
 struct Arrived {
     explicit Arrived(const StereoCase& c) {
         for (const reference::Arrival& arrival : reference::reproject(c.dominant, c.eyes, c.settings)) {
@@ -192,7 +193,7 @@ inline std::vector<gpu::uint> depthsOfTiles(const StereoCase& c) {
     return depths;
 }
 
-// Kinds of which every third tile has one.
+// Every third tile has one of these kinds.
 inline std::vector<reference::TileKind> markSome(std::size_t tiles) {
     std::vector<reference::TileKind> kinds(tiles, reference::TileKind::kNone);
     for (std::size_t t = 0; t < tiles; t += 3) { kinds[t] = static_cast<reference::TileKind>(1 + t % 5); }

@@ -1,6 +1,6 @@
-// Facts about the passes that make one eye's picture from the other's, reproject and newcomers (resample: resample_test.cpp), each started
-// from what the twin's pass before it left. Where a place lies on the border of a pixel, float32 may round to either side: such flips have
-// a budget.
+// Facts about the passes that reproject one eye's picture from the other's, reproject and newcomers
+// (resample: resample_test.cpp), each started from the output of the twin's previous pass. Where a place lies
+// on the border of a pixel, float32 may round to either side: there is a budget for such flips.
 #include "app/scores/metrics.h"
 #include "engine/picture/image_io.h"
 #include "tests/engine/passes/pass_stages.h"
@@ -19,7 +19,7 @@ gpu::uint stepsApart(gpu::uint a, gpu::uint b) { return std::max(a >> 6, b >> 6)
 struct Differences {
     std::size_t pixels = 0, other = 0, off_by_step = 0;
 
-    // Words that say the same but for a step of the depth, which float32's interpolation may round to the next.
+    // Words that agree up to a step of the depth, which float32's interpolation may round to the next one.
     void count(const std::vector<gpu::uint>& got, const std::vector<Arrival>& expected) {
         for (std::size_t i = 0; i < expected.size(); ++i) {
             const gpu::uint word = test::packArrival(expected[i]);
@@ -35,10 +35,11 @@ struct Way {
     int gap_px;
     bool forward;
     Rows rows;
-    bool hides = false;  // a lens, some tiles, and nothing moves from beside these
+    bool hides = false;  // a lens hides some tiles, and nothing is moved from next to these
 };
 
-// All cases in each of these ways. Eyes side by side move along rows, whatever their angles; canted ones do not.
+// All cases in each of these ways. Eyes side by side move pixels along rows, whatever their angles; canted
+// ones do not.
 void checkReproject(Gpu& gpu, const std::vector<Way>& ways) {
     Differences all;
     std::size_t held_back = 0;
@@ -57,9 +58,9 @@ void checkReproject(Gpu& gpu, const std::vector<Way>& ways) {
             Differences differences;
             differences.count(device.readArrivals(), expected);
             CHECK(differences.other <= 3 + (hides ? 0 : differences.pixels / 2000));
-            // Along rows depths are copied, so that only what lies between can be rounded.
+            // Along rows depths are copied, so only interpolated ones can be rounded.
             if (along_rows && (gap_px == 0 || forward)) { CHECK(differences.off_by_step == 0); }
-            // What moves is as it was.
+            // What moved is unchanged.
             CHECK(device.readMoving() == test::movingOf(c.dominant, c.settings));
             all.pixels += differences.pixels;
             all.other += differences.other;
@@ -81,7 +82,7 @@ struct Newcomers {
     std::size_t found, expected;
     double error, expected_error, difference;  // sums over the tiles; the last of absolute differences
     std::size_t in_marked;                     // marked tiles that got an error
-    std::size_t tiles, other_tiles;            // that the twin gives one, and that only one of both gives one
+    std::size_t tiles, other_tiles;            // given one by the twin, and by only one of the two
     gpu::uint most;                            // steps of a tile
 };
 
@@ -116,7 +117,8 @@ Newcomers findNewcomers(Gpu& gpu, const StereoCase& c, const std::vector<TileKin
     return newcomers;
 }
 
-// How many newcomers there are among these splats, for an eye and one in its place, and the tiles' errors with what they add.
+// The number of newcomers among these splats, for an eye and one in its place, and the tiles' errors
+// including what they add.
 std::pair<gpu::uint, std::vector<gpu::uint>> addTo(Gpu& gpu, glm::uvec2 size_px, const std::vector<test::Splat>& splats,
                                                    const std::vector<gpu::uint>& depths, const std::vector<gpu::uint>& kinds,
                                                    const std::vector<gpu::uint>& errors) {
@@ -151,7 +153,8 @@ TEST_CASE_FIXTURE(Gpu, "reproject does so with any gap, forward or not, in rows 
 }
 
 TEST_CASE_FIXTURE(Gpu, "reproject fills a stretch that begins beyond the border") {
-    // 10 px of disparity for a unit of inverse depth: pixel 5 goes to -12, pixel 6 to 6.2, all others out of sight to the left.
+    // 10 px of disparity per unit of inverse depth: pixel 5 goes to -12, pixel 6 to 6.2, and all others out
+    // of view to the left.
     const glm::uvec2 size_px(40, 1);
     const auto eyes = stereoPair({Pose{}, {100.0, 100.0, 20.0, 0.5}, size_px}, 0.1);
     StereoCase c{"stretch",
@@ -198,9 +201,10 @@ TEST_CASE_FIXTURE(Gpu, "newcomers finds the twin's splats and adds the twin's er
                 const Newcomers newcomers = findNewcomers(*this, c, kinds);
                 CHECK(newcomers.expected > 2);
                 CHECK(newcomers.in_marked == 0);
-                // None is lost. The device's outlines are wider by a hair and it does not ask pixel by pixel: splats that just miss
-                // the picture or fall between its pixels count, and boxes of discs that meet the near plane are rough (measured: 5 %;
-                // with such discs 1.3 times the twin's error in the room, 30 times in the cloud).
+                // No newcomer is lost. The device's outlines are slightly wider and it does not test pixel by
+                // pixel, so splats that just miss the picture or fall between its pixels count, and boxes of
+                // discs that meet the near plane are coarse (measured: 5 %; with such discs 1.3 times the
+                // twin's error in the room, and 30 times in the cloud).
                 CHECK(newcomers.found >= newcomers.expected);
                 CHECK(newcomers.error >= 0.95 * newcomers.expected_error);
                 if (!whole) {
@@ -213,7 +217,7 @@ TEST_CASE_FIXTURE(Gpu, "newcomers finds the twin's splats and adds the twin's er
 }
 
 TEST_CASE_FIXTURE(Gpu, "newcomers adds what a large splat near a canted eye brings to every tile it meets, up to what a sum holds") {
-    // Eyes that look past each other, and before one of them discs over nearly all of its 40x35 tiles.
+    // Eyes that look past each other, and in front of one of them discs over nearly all of its 40x35 tiles.
     const glm::uvec2 size_px(640, 560);
     const auto turnBy = [](double degrees) { return glm::angleAxis(glm::radians(degrees), glm::dvec3(0.0, 1.0, 0.0)); };
     const auto eyeAt = [&](double x, double degrees) {
@@ -226,7 +230,7 @@ TEST_CASE_FIXTURE(Gpu, "newcomers adds what a large splat near a canted eye brin
         double newcomer_error;
         std::size_t least_tiles, most_tiles;
     };
-    // About as many tiles as one thread still looks after, and nearly all.
+    // About as many tiles as one thread still handles, and nearly all.
     for (const Large& large : {Large{0.004f, 1, 0.3, 30, 64}, Large{0.006f, 2, 0.3, 65, 150}, Large{0.03f, 1, 0.3, 1025, 1400},
                                Large{0.03f, 1, 8.0, 1025, 1400}, Large{0.03f, 3, 8.0, 1025, 1400}}) {
         INFO("large.scale ", large.scale, ", large.newcomer error ", large.newcomer_error);
@@ -240,14 +244,15 @@ TEST_CASE_FIXTURE(Gpu, "newcomers adds what a large splat near a canted eye brin
         CHECK(newcomers.tiles >= large.least_tiles);
         CHECK(newcomers.tiles <= large.most_tiles);
         CHECK(newcomers.other_tiles == 0);
-        // Steps are cut off.
+        // Fractions of steps are cut off.
         CHECK(newcomers.difference <= 1e-4 * newcomers.expected_error);
         if (large.splats == 3) { CHECK(newcomers.most == 0x7fffffffu); }
     }
 }
 
 TEST_CASE_FIXTURE(Gpu, "newcomers holds a splat against the middle of its tile, and against nothing where nothing is moved") {
-    // Small discs of inverse depth 1/3 along the middle row. The first two share a tile, and the second reaches beyond it.
+    // Small discs of inverse depth 1/3 along the middle row. The first two share a tile, and the second
+    // reaches beyond it.
     const glm::uvec2 size_px(64, 16);
     std::vector<test::Splat> splats;
     for (const double column : {6.5, 14.5, 24.5, 33.5, 56.5}) {
@@ -267,7 +272,7 @@ TEST_CASE_FIXTURE(Gpu, "newcomers holds a splat against the middle of its tile, 
 }
 
 TEST_CASE_FIXTURE(Gpu, "newcomers stops a tile's error at what half a word holds, however many splats add to it") {
-    // A thousand discs before one tile, of which each alone adds more than is left.
+    // A thousand discs in front of one tile, each of which alone adds more than remains.
     const std::vector<test::Splat> splats(1000, {{0.0f, 0.0f, 3.0f}, {1, 0, 0, 0}, glm::vec2(0.2f), 0.9f, glm::vec3(0.5f)});
     for (const gpu::uint before : {0x7ffffff0u, 0x7fffffffu, 0x7fff0000u}) {
         const auto [count, errors] = addTo(*this, {16, 16}, splats, {0}, {0}, {before});
@@ -280,9 +285,9 @@ TEST_CASE_FIXTURE(Gpu, "newcomers stops a tile's error at what half a word holds
 struct Likeness {
     double coverage, covered_db, db;
 };
-// Of a picture that is moved by a disparity a pixel, 0 where it is not known, to what another eye saw.
+// From a picture that is moved by a disparity per pixel, 0 where that is unknown, to what another eye saw.
 Likeness likenessOf(Gpu& gpu, const Image& from, const std::vector<double>& disparity_px, const Image& truth, gpu::uint gap_px) {
-    // Eyes side by side with fx b = 1 px, so that the inverse depth is the disparity in pixels.
+    // Eyes side by side with fx b = 1 px, so the inverse depth is the disparity in pixels.
     gpu::WarpView view{};
     view.rows_apart = 1;
     view.target_from_source.shift = {-1.0f, 0.0f, 0.0f};
@@ -317,7 +322,7 @@ TEST_CASE_FIXTURE(Gpu,
                       test::needsSharedData() * test::nightly()) {
     const auto data = test::sharedData();
     if (!data) { return; }
-    // By whole pixels: 27.8 and 26.7 dB on 77 % (Scharstein and Szeliski 2003).
+    // With whole pixels: 27.8 and 26.7 dB on 77 % (Scharstein and Szeliski 2003).
     for (const auto& [name, least_db] : {std::pair("teddy", 28.3), std::pair("cones", 27.2)}) {
         CAPTURE(name);
         const auto folder = *data / "middlebury" / name;
@@ -334,7 +339,7 @@ TEST_CASE_FIXTURE(Gpu,
         CHECK(filled.db >= landed.db);
         CHECK(likenessOf(*this, left, disparity_px, left, 0).covered_db < 15.0);
         CHECK(likenessOf(*this, right, disparity_px, left, 0).covered_db < 15.0);
-        // Below half of a float32's last place in the column.
+        // Less than half of a float32's last place in the column.
         const Likeness still = likenessOf(*this, right, std::vector(disparity_px.size(), 1e-30), right, 2);
         CHECK(still.coverage == 1.0);
         CHECK(still.db == std::numeric_limits<double>::infinity());

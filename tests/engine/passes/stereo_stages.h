@@ -6,8 +6,8 @@
 
 namespace binosplat::test {
 
-// Where moving pixels and arrivals lie: by themselves, or row by row where the affiliated eye's colours come to lie; these are floats or
-// half floats.
+// Where moving pixels and arrivals lie: in buffers of their own, or row by row in the space of the affiliated
+// eye's colours, which are floats or half floats.
 enum class Rows { kOwn, kShared, kOwnHalves, kSharedHalves };
 inline bool isShared(Rows rows) { return rows == Rows::kShared || rows == Rows::kSharedHalves; }
 inline bool areHalves(Rows rows) { return rows == Rows::kOwnHalves || rows == Rows::kSharedHalves; }
@@ -15,8 +15,8 @@ inline bool areHalves(Rows rows) { return rows == Rows::kOwnHalves || rows == Ro
 // The longest row that resample keeps in shared memory.
 inline std::uint32_t longestSharedRow(const Context& context) { return mostRowSteps(context) * gpu::kArrivalsStep; }
 
-// The arrays of the passes of warp and choose. Each call runs one pass; between calls every array may be read
-// or replaced. Arrays that a pass is to write start as kUnwritten.
+// The arrays of the passes of warp and choose. Each call runs one pass; between calls, every array can be
+// read or replaced. Arrays that a pass must write start as kUnwritten.
 class StereoOnDevice {
 public:
     static constexpr gpu::uint kUnwritten = 0xcdcdcdcdu;
@@ -53,7 +53,7 @@ public:
         }
     }
 
-    // `ranges`: of the dominant eye's pairs. Arrays that the pass is to clear are not clear before.
+    // `ranges`: of the dominant eye's pairs. Arrays that the pass must clear are not clear before.
     // `may_move`: the dominant eye left what moving needs.
     void weigh(const std::vector<reference::TileRange>& ranges, bool hidden_tiles, std::size_t visible_count = 0, bool may_move = true) {
         const Buffer range_buffer = gpu_.upload("ranges", ranges),
@@ -100,7 +100,8 @@ public:
                  gpu::ReprojectPass{.warp = view(), .moving = moving(), .arrivals = arrivals(), .shown_mask = shownMask(hidden_tiles)},
                  pixelGroups());
     }
-    // Splats in `order` as `scene` holds them, with what the dominant eye's project counted of each; eye 1 is the affiliated one.
+    // Splats in `order` as `scene` holds them, with what the dominant eye's project counted for each; eye 1
+    // is the affiliated one.
     void addNewcomers(const SceneOnDevice& scene, const std::vector<std::uint32_t>& order, const std::vector<gpu::uint>& dominant_tiles) {
         const Buffer order_buffer = gpu_.upload("order", order), count_buffer = gpu_.upload("dominant counts", dominant_tiles);
         const Buffer lists = gpu_.upload("lists", std::vector{makeList(order.size())});
@@ -122,11 +123,11 @@ public:
     }
     struct ResampleParts {
         bool errors = false, depths = false, classes = false, components = false, forward = false;
-        bool moves_row = false, hidden_tiles = false;  // of the dominant eye; its pixels are moved, instead of what reproject left
+        bool moves_row = false, hidden_tiles = false;  // of the dominant eye: moves its pixels itself
         glm::vec3 background{0.0f};
-        bool odd = false;  // rows alone, of two dispatches: see takeRowsApart
+        bool odd = false;  // only rows, in two dispatches: see takeRowsApart
     };
-    // From here on resample takes half of the rows at a time.
+    // From here on, resample takes half of the rows at a time.
     void takeRowsApart() {
         view_.rows_apart = 2;
         gpu_.upload(view_buffer_, std::vector{view_});
@@ -164,7 +165,7 @@ public:
                                    .groups_holes = parts.components ? 1u : 0u},
                  {(view_.size_px.y + view_.rows_apart - 1) / view_.rows_apart, 1});
     }
-    // All steps of the pass, whatever the counters say of holes.
+    // All steps of the pass, whatever the counters say about holes.
     void findComponents() {
         const gpu::ComponentsPass pass{.warp = view(),
                                        .pixels = affiliated_.address<gpu::ComponentPixel>(),
@@ -191,7 +192,7 @@ public:
     [[nodiscard]] std::vector<gpu::uint> readAffiliatedWords() {
         return gpu_.readBack<gpu::uint>(affiliated_, wordsPerPixel() * pixelCount());
     }
-    // Of a pixel's colour.
+    // Bytes of a pixel's colour.
     [[nodiscard]] std::size_t wordsPerPixel() const { return areHalves(rows_) ? 2 : 4; }
     [[nodiscard]] std::vector<float> readDepths() { return gpu_.readBack<float>(depths_, pixelCount()); }
     [[nodiscard]] gpu::WarpCounters readCounters() { return gpu_.readBack<gpu::WarpCounters>(counters_, 1)[0]; }
@@ -200,7 +201,7 @@ public:
     [[nodiscard]] std::vector<gpu::uint> readTileKinds() { return gpu_.readBack<gpu::uint>(tile_kinds_, tileCount()); }
     [[nodiscard]] std::vector<gpu::uint> readTileCosts() { return gpu_.readBack<gpu::uint>(tile_costs_, tileCount()); }
     [[nodiscard]] std::vector<gpu::uint> readTileMask() { return gpu_.readBack<gpu::uint>(tile_mask_, maskWords()); }
-    // Of depths or of prices.
+    // Depths, or prices.
     [[nodiscard]] std::vector<gpu::uint> readBins() { return gpu_.readBack<gpu::uint>(bins_, gpu::kDepthBins); }
     [[nodiscard]] std::vector<std::uint8_t> readClasses() {
         const std::size_t row_words = view_.size_tiles.x;
@@ -232,14 +233,14 @@ public:
     void writeTileErrors(const std::vector<gpu::uint>& errors) { gpu_.upload(tile_errors_, errors); }
     void writeTileDepths(const std::vector<gpu::uint>& depths) { gpu_.upload(tile_depths_, depths); }
     void writeBins(const std::vector<gpu::uint>& bins) { gpu_.upload(bins_, bins); }
-    // A byte a tile, 1 for those that the dominant eye's lens hides.
+    // One byte per tile, which is 1 if the dominant eye's lens hides it.
     void writeHidden(const std::vector<std::uint8_t>& hidden) {
         std::vector<std::uint8_t> shown;
         for (const std::uint8_t h : hidden) { shown.push_back(h != 0 ? 0 : 1); }
         gpu_.upload(shown_mask_, maskOf(shown, view_.size_tiles));
     }
 
-    // Whether pixels move along their row.
+    // Whether pixels move along their rows.
     [[nodiscard]] std::uint32_t rectified() const {
         const glm::vec3 zero(0.0f);
         const auto alongRows = [&](const gpu::PixelMap& map) {
@@ -285,7 +286,7 @@ private:
             for (const Buffer* buffer : buffers) { commands.buffer().fillBuffer(buffer->handle(), 0, VK_WHOLE_SIZE, value); }
         });
     }
-    // The first or the second part of each row of colours, a word a pixel.
+    // The first or the second part of each row of colours, with a word per pixel.
     [[nodiscard]] std::vector<gpu::uint> readRows(std::size_t part) {
         const std::size_t width = view_.size_px.x;
         const auto all = readAffiliatedWords();
@@ -312,13 +313,13 @@ private:
     Rows rows_;
     gpu::WarpView view_;
     Buffer view_buffer_, counters_, colours_, affiliated_, depths_, classes_;
-    // Where the dominant eye's lens hides parts; null: nowhere.
+    // Where the dominant eye's lens hides parts; null if nowhere.
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> shownMask(bool hidden_tiles) const {
         return hidden_tiles ? words(shown_mask_) : gpu::DeviceAddress<gpu::uint>{};
     }
 
     Buffer tile_kinds_, tile_costs_, tile_errors_, tile_depths_, tile_mask_, shown_mask_, bins_, boxes_;
-    Buffer moving_, arrivals_;  // where rows are their own
+    Buffer moving_, arrivals_;  // if rows have buffers of their own
     std::uint32_t box_capacity_;
 };
 

@@ -1,4 +1,4 @@
-// For sort_test: each workgroup brings a value to where they are summed up.
+// For sort_test: each workgroup adds a value to the sum.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require

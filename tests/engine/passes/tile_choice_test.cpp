@@ -1,4 +1,5 @@
-// Facts about the paper's choice of tiles, depth_bounds, edge_rois and components: against the twin, and by hand.
+// Facts about the paper's choice of tiles, depth_bounds, edge_rois and components: against the twin, and by
+// hand.
 #include "tests/engine/passes/stereo_stages.h"
 
 SUITE(tile_choice) {
@@ -10,7 +11,7 @@ using reference::PixelClass;
 using reference::Resolved;
 using reference::TileKind;
 
-// Parallel eyes 0.1 apart, of 100 px focal length: 10 px of disparity for a unit of inverse depth.
+// Parallel eyes 0.1 apart with a focal length of 100 px: 10 px of disparity per unit of inverse depth.
 StereoCase makePlainCase(glm::uvec2 size_px, Side dominant = kLeft) {
     const auto eyes = stereoPair({Pose{}, {100.0, 100.0, 0.5 * size_px.x, 0.5 * size_px.y}, size_px}, 0.1);
     StereoCase c{"plain", {}, {eyes[dominant], eyes[1 - dominant]}, {}, {}};
@@ -32,9 +33,10 @@ Mask drawMask(glm::uvec2 size_px, const auto& isHole) {
     return mask;
 }
 
-// components on a mask of holes, none of them in the tiles that are marked before; against the twin's flood fill. How many.
+// Compares components with the twin's flood fill, on a mask of holes, none of them in tiles that were marked
+// before. Returns how many there are.
 std::size_t checkComponents(Gpu& gpu, glm::uvec2 size_px, const Mask& mask, int margin_px, std::uint32_t boxes, bool edges) {
-    // Of half floats and of floats in turn.
+    // Half floats and floats in turn.
     const test::Rows rows = margin_px % 2 == 0 ? test::Rows::kSharedHalves : test::Rows::kShared;
     const std::size_t words_per_pixel = areHalves(rows) ? 2 : 4;
     StereoCase c = makePlainCase(size_px);
@@ -42,7 +44,7 @@ std::size_t checkComponents(Gpu& gpu, glm::uvec2 size_px, const Mask& mask, int 
     std::vector<TileKind> kinds = reference::markEdges(edges ? Borders{17, 0, 1, 20} : Borders{}, size_px);
     std::vector<Resolved> resolved;
     std::vector<std::uint8_t> classes;
-    // As resample leaves them: holes are their own parents, and the rest are colours.
+    // As resample leaves them: holes are their own parents, and everything else is a colour.
     std::vector<gpu::uint> words(words_per_pixel * mask.size(), 0x3f000000u);
     for (std::size_t i = 0; i < mask.size(); ++i) {
         const PixelClass pixel_class = mask[i] != 0 ? PixelClass::kHole : i % 5 == 0 ? PixelClass::kGap : PixelClass::kCovered;
@@ -62,7 +64,7 @@ std::size_t checkComponents(Gpu& gpu, glm::uvec2 size_px, const Mask& mask, int 
     CHECK(device.readTileKinds() == test::kindsOf(kinds));
     CHECK(counters.center_tiles == std::count(kinds.begin(), kinds.end(), TileKind::kCenter));
     CHECK(device.readClasses() == classes);
-    // But for the holes all is as it was.
+    // Except for the holes, nothing has changed.
     auto after = device.readAffiliatedWords();
     for (std::size_t i = 0; i < words.size(); ++i) {
         if (classes[i / words_per_pixel] == static_cast<std::uint8_t>(PixelClass::kHole)) { after[i] = words[i]; }
@@ -81,7 +83,8 @@ TEST_CASE_FIXTURE(Gpu, "depth_bounds counts depths beyond its range as the last,
     StereoOnDevice device = toDevice(*this, c);
     device.boundDepths();
     std::vector<gpu::uint> expected(gpu::kDepthBins, 0);
-    expected[16 * 32] = expected[gpu::kDepthBins - 1] = expected[0] = expected[18 * 32] = 10;  // of five rows
+    // These come from five rows.
+    expected[16 * 32] = expected[gpu::kDepthBins - 1] = expected[0] = expected[18 * 32] = 10;
     CHECK(device.readBins() == expected);
     CHECK(reference::boundDepths(c.dominant, DepthChoice::kInverse) == expected);
 }
@@ -89,7 +92,7 @@ TEST_CASE_FIXTURE(Gpu, "depth_bounds counts depths beyond its range as the last,
 TEST_CASE("depth bounds leave out one pixel in 200 at either end, and widen to whole bins") {
     std::vector<std::uint32_t> bins(gpu::kDepthBins, 0);
     CHECK(reference::findInverseDepthBounds(bins).near == 0.0);
-    // 1000 pixels: five nearest and five farthest count as specks; depths 2^0 to 2^4.
+    // 1000 pixels: the five nearest and the five farthest count as specks; depths 2^0 to 2^4.
     bins[100] = 5;
     bins[512] = 495;
     bins[512 + 4 * 32 - 1] = 495;
@@ -102,8 +105,9 @@ TEST_CASE("depth bounds leave out one pixel in 200 at either end, and widen to w
 }
 
 TEST_CASE("edge ROIs of parallel eyes, by hand") {
-    // Depths 1 and 4: pixels move to the left by 10 and by 2.5 px. The right edge's last pixel, 127 in the paper's count, is at 117 and
-    // 124.5, so u_max = 124.5: right_w = 127 - 124 + 32. Left, top and bottom: u_min = -10, v_min = 0, v_max = H - 1: nothing.
+    // At depths 1 and 4, pixels move to the left by 10 and by 2.5 px. The right edge's last pixel, 127 in the
+    // paper's count, is at 117 and 124.5, so u_max = 124.5 and right_w = 127 - 124 + 32. Left, top and
+    // bottom: u_min = -10, v_min = 0, v_max = H - 1, so nothing.
     StereoCase c = makePlainCase({128, 96});
     const InverseDepthBounds bounds{0.25, 1.0};
     CHECK(reference::findBorders(bounds, c.eyes, c.settings) == Borders{0, 0, 35, 0});
@@ -111,7 +115,8 @@ TEST_CASE("edge ROIs of parallel eyes, by hand") {
     c.settings.tight_edges = true;
     c.settings.margin_px = 0;
     CHECK(reference::findBorders(bounds, c.eyes, c.settings) == Borders{0, 0, 10, 0});
-    // The other way round u_min = 2.5 and at most 10: left_w = 3, or 10, and the margin; never more than half of the width.
+    // In the other direction u_min = 2.5 and at most 10: left_w = 3, or 10, plus the margin; never more than
+    // half of the width.
     c = makePlainCase({128, 96}, kRight);
     CHECK(reference::findBorders(bounds, c.eyes, c.settings) == Borders{35, 0, 0, 0});
     c.settings.margin_px = 62;
@@ -120,7 +125,8 @@ TEST_CASE("edge ROIs of parallel eyes, by hand") {
     CHECK(reference::findBorders(bounds, c.eyes, c.settings) == Borders{3, 0, 0, 0});
     c.settings.tight_edges = true;
     CHECK(reference::findBorders(bounds, c.eyes, c.settings) == Borders{10, 0, 0, 0});
-    // 35 px are three tiles of eight; a border of one pixel is a column of tiles; 100 px wide, the last tile has four columns.
+    // 35 px are three tiles of eight. A border of one pixel is a column of tiles. At a width of 100 px, the
+    // last tile has four columns.
     const auto columns = [](const Borders& borders, glm::uvec2 size_px) {
         std::string row;
         for (const TileKind kind : reference::markEdges(borders, size_px)) { row += kind == TileKind::kEdge ? 'e' : '.'; }
@@ -202,7 +208,7 @@ TEST_CASE_FIXTURE(Gpu, "components groups holes as a flood fill does, whatever t
     std::mt19937 random(1);
     for (const glm::uvec2 size_px : {glm::uvec2(1, 1), glm::uvec2(17, 33), glm::uvec2(128, 96)}) {
         CAPTURE(size_px.x);
-        // A path that winds from row to row, two pixels apart from itself: the longest way a component can take.
+        // A path that winds from row to row, two pixels apart from itself: the longest a component can take.
         const Mask winding = drawMask(size_px, [&](auto x, auto y) { return y % 2 == 0 || x == (y % 4 == 1 ? size_px.x - 1 : 0); });
         std::vector<Mask> masks{drawMask(size_px, [](auto, auto) { return false; }),
                                 drawMask(size_px, [](auto, auto) { return true; }),
@@ -227,7 +233,7 @@ TEST_CASE_FIXTURE(Gpu, "components with more groups than boxes marks the tiles o
     std::mt19937 random(2);
     const glm::uvec2 size_px(128, 96);
     const Mask scattered = drawMask(size_px, [&](auto, auto) { return random() % 1000 < 4; });
-    // An L, whose box holds tiles that its pixels do not meet, and two specks.
+    // An L, whose box contains tiles that its pixels do not meet, and two specks.
     const Mask corner = drawMask(
         size_px, [](auto x, auto y) { return (x == 2 && y < 90) || (y == 90 && x > 1 && x < 120) || (y == 10 && (x == 60 || x == 100)); });
     for (const Mask& mask : {scattered, corner}) {

@@ -1,4 +1,5 @@
-// Facts about the passes over tiles, tile_ranges and rasterize, each started from what the twin's pass before it left.
+// Facts about the passes over tiles, tile_ranges and rasterize, each started from the output of the twin's
+// previous pass.
 #include "engine/twin/contribute.h"
 #include "tests/engine/passes/pass_stages.h"
 #include "tests/engine/passes/stereo_cases.h"
@@ -10,16 +11,16 @@ using reference::TilePair;
 const reference::Settings kSettings{};
 const glm::vec3 kBackground(0.25f, 0.5f, 0.75f);
 
-// What tile_ranges leaves, and rasterize is to do, of pictures that hold 7 everywhere before.
+// What tile_ranges leaves and rasterize must do, in pictures that hold 7 everywhere before.
 struct Ranges {
     std::vector<glm::uvec2> ranges;
     std::vector<std::uint32_t> full;  // ascending
-    glm::uvec3 groups;                // of rasterize
+    glm::uvec3 groups;                // for rasterize
     std::vector<glm::vec4> colours;
     std::vector<float> depths;
     std::uint32_t groups_done;  // of the list of pairs, afterwards
 };
-// Under a mask only of the listed tiles.
+// Under a mask, only for the listed tiles.
 Ranges rangesOnDevice(Gpu& gpu, const std::vector<std::uint32_t>& sorted_tiles, glm::uvec2 size_px, bool is_masked = false,
                       const std::vector<std::uint32_t>& listed = {}, bool half_floats = false) {
     const Kernel& kernel = gpu.kernel(TileRangesKernel{.masked = is_masked, .half_colours = half_floats});
@@ -97,7 +98,7 @@ struct Raster {
         settings.inverse_depth_moments = true;
         return reference::rasterize(staged.twin.splats, staged.twin.sorted_pairs, staged.twin.ranges, staged.view.eye, settings);
     }
-    // `kernel` for the scene's splats, and 32 threads a cell.
+    // Runs `kernel` for the scene's splats, with 32 threads per cell.
     void run(RasterizeKernel variant) {
         variant.threads_per_cell = 32;
         variant.local_size_x = gpu::kCellsPerTile * variant.threads_per_cell;
@@ -120,7 +121,8 @@ private:
     Buffer eyes_, splats_, ranks_, ranges_;
 };
 
-// Words of rows that take turns with what has arrived, as where they share memory with a picture; what is no word of either stays.
+// Words of rows that alternate with arrivals, as if they shared memory with a picture; words that belong to
+// neither must stay.
 constexpr gpu::uint kUnwritten = 0xcdcdcdcdu;
 std::vector<gpu::uint> wordsOnDevice(Gpu& gpu, Raster& raster, const RasterizeKernel& variant) {
     const std::size_t width = raster.staged.view.eye.size_px.x;
@@ -190,7 +192,7 @@ TEST_CASE_FIXTURE(Gpu, "rasterize rounds colours to half floats where these are 
         const auto rounded = test::packHalves(readBack<glm::vec4>(raster.colours, raster.pixels));
         raster.run({.half_colours = 1});
         const auto halves = readBack<gpu::uvec2>(raster.colours, raster.pixels);
-        // Which of the two nearest is up to the device.
+        // The device is free to choose between the two nearest.
         std::size_t other = 0;
         for (std::size_t i = 0; i < halves.size(); ++i) {
             for (const glm::uvec2 shift : {glm::uvec2(0), glm::uvec2(16)}) {
@@ -219,7 +221,7 @@ TEST_CASE_FIXTURE(Gpu, "rasterize leaves the word that each pixel moves by, and 
             for (std::size_t i = 0; i < of_even.size(); ++i) { of_even[i] = i / (4 * width) % 2 == 0 ? words[i] : kUnwritten; }
             kernel.even_rows = 1;
             CHECK(wordsOnDevice(*this, raster, kernel) == of_even);
-            // Where D does not choose, its sum changes nothing.
+            // Where D does not affect the choice, its sum changes nothing.
             if (choice == DepthChoice::kInverse) { CHECK(wordsOnDevice(*this, raster, {.depth = 1, .moments = 1}) == words); }
             std::size_t touched = 0;
             for (std::size_t i = 0; i < raster.pixels; ++i) {
@@ -232,7 +234,8 @@ TEST_CASE_FIXTURE(Gpu, "rasterize leaves the word that each pixel moves by, and 
                     ++other;
                 } else if (expected) {
                     other += test::isNear(got.inverse_depth, expected->inverse_depth, 1e-5, 1e-12) ? 0 : 1;
-                    // Spreads of less than 2^-10 are the rounding of single precision's sums; rounding also decides between two codes.
+                    // Spreads of less than 2^-10 are rounding errors of sums in single precision; rounding
+                    // also decides between two codes.
                     other_spread += got.spread == expected->spread || std::max(got.spread, expected->spread) <= 7 ? 0 : 1;
                 }
             }
@@ -241,12 +244,12 @@ TEST_CASE_FIXTURE(Gpu, "rasterize leaves the word that each pixel moves by, and 
         }
     }
     MESSAGE(other << " depths and " << other_spread << " spreads of " << pixels << " pixels differ");
-    // A hit that rounding takes away or adds moves a pixel of the cloud farthest.
+    // In the cloud, a hit that rounding removes or adds moves a pixel farthest.
     CHECK(test::share(other, pixels) <= 0.001);
     CHECK(test::share(other_spread, pixels) <= 0.0005);
 }
 
-// Of each splat by rank, from one run of contribute.
+// For each splat by rank, from one run of contribute.
 std::vector<std::array<double, gpu::kContributionSums>> contributionsOnDevice(Gpu& gpu, const Raster& raster, const Buffer& wanted,
                                                                               std::uint32_t threads, bool by_lanes) {
     const std::size_t splats = raster.staged.twin.splats.size();
@@ -303,7 +306,7 @@ TEST_CASE_FIXTURE(Gpu, "contribute finds what each splat makes up of a picture a
             }
             for (std::size_t s = 0; s < off.size(); ++s) {
                 CAPTURE(s);
-                // Colours are half floats, of which sums of either sign keep what does not cancel.
+                // Colours are half floats, whose errors do not cancel in sums with both signs.
                 CHECK(off[s] <= 1e-3 * all[s] + (s == gpu::kSumWeight ? 0.0 : 2e-4 * all[gpu::kSumWeight]));
             }
         }

@@ -1,4 +1,4 @@
-// Facts about weigh: what a tile costs, which tiles are not worth moving, and whether anything is.
+// Facts about weigh: what a tile costs, which tiles are not worth moving, and whether moving pays at all.
 #include "tests/engine/passes/stereo_stages.h"
 
 SUITE(weigh) {
@@ -19,12 +19,13 @@ std::vector<TileRange> drawRanges(std::size_t tiles, unsigned most_pairs, std::m
     return ranges;
 }
 
-// The tiles of a case that differ in cost: their middle comes from beside the border of a tile, on whose either side rounding may put it.
+// The tiles of a case whose costs differ: their middle comes from next to the border of a tile, and rounding
+// may put it on either side.
 std::size_t checkWeighing(Gpu& gpu, const StereoCase& c, const std::vector<TileRange>& ranges, test::Rows rows) {
     StereoOnDevice device = toDevice(gpu, c, rows);
     std::vector<TileKind> before(device.tileCount(), TileKind::kNone);
     reference::markHidden(before, c.settings);
-    // What the frame before has left, where it is not hidden, is of no account.
+    // What the frame before left does not matter, unless it is hidden.
     std::vector<gpu::uint> stale = test::kindsOf(before);
     for (std::size_t t = 0; t < stale.size(); t += 7) { stale[t] = stale[t] == gpu::kTileHidden ? stale[t] : gpu::kTilePredicted; }
     device.writeTileKinds(stale);
@@ -56,7 +57,7 @@ std::size_t checkWeighing(Gpu& gpu, const StereoCase& c, const std::vector<TileR
         CHECK(counters.saved_cost == expected.saved_cost);
         CHECK((counters.moves == 1) == expected.moves);
     }
-    // The passes that move are as large as the picture, or empty.
+    // The passes that move pixels are as large as the picture, or empty.
     const bool moves = counters.moves != 0;
     const glm::uvec2 size_px = c.sizePx(), tiles = tilesOf(size_px);
     const auto sizeOf = [](const gpu::DispatchSize& size) { return glm::uvec3(size.x, size.y, size.z); };
@@ -66,7 +67,7 @@ std::size_t checkWeighing(Gpu& gpu, const StereoCase& c, const std::vector<TileR
     CHECK(sizeOf(counters.per_row) == (rows_wanted ? glm::uvec3(size_px.y, 1, 1) : glm::uvec3(0)));
     const gpu::DispatchSize& visible = counters.per_visible;
     CHECK(visible.x * visible.y * visible.z == (moves ? (kVisible + gpu::kNewcomersBlock - 1) / gpu::kNewcomersBlock : 0));
-    // What others add to begins at nothing.
+    // Values to which others add start at zero.
     const auto isZero = [](gpu::uint value) { return value == 0; };
     CHECK(std::ranges::all_of(device.readTileErrors(), isZero));
     CHECK(std::ranges::all_of(device.readTileMask(), isZero));
@@ -74,7 +75,7 @@ std::size_t checkWeighing(Gpu& gpu, const StereoCase& c, const std::vector<TileR
     return other;
 }
 
-// Eyes that are one, and a picture that is infinitely far: every tile weighs its own pairs.
+// Identical eyes, and a picture that is infinitely far: every tile weighs its own pairs.
 StereoCase makeStill(glm::uvec2 size_px) {
     const Eye eye = test::makeEye(size_px);
     StereoCase c{"still", {}, {eye, eye}, {}, {}};
@@ -145,7 +146,7 @@ TEST_CASE_FIXTURE(Gpu,
         CHECK(device.readCounters().moves == (moves ? 1u : 0u));
         CHECK(device.readTileCosts() == std::vector<gpu::uint>{pairs + 16, 56, 16, 19});
     }
-    // Where nothing was moved before, an eighth of what it saves is not counted on; and nothing is moved yet.
+    // Where nothing was moved before, an eighth of the saving is held back, and nothing is moved yet.
     const auto counted = [](gpu::uint saved) { return saved - saved / gpu::kResumePart; };
     gpu::uint more = least;
     while (counted(more - 40) <= least - 40) { ++more; }

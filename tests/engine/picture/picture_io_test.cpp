@@ -1,11 +1,11 @@
-// Facts about image files: what is written comes back, and a failed write leaves nothing.
+// Facts about image files: what is written can be read back, and a failed write leaves nothing.
 #include "engine/picture/image_io.h"
 #include "engine/picture/netpbm.h"
 #include "tests/run_program.h"
 
 SUITE(picture_io) {
 
-// Every value differs from its neighbours, some lie outside 0 to 1.
+// Every value differs from its neighbours; some lie outside 0 to 1.
 Image makeRamp(glm::uvec2 size_px, int channels) {
     Image image{size_px, channels, {}};
     image.values.resize(image.pixelCount() * static_cast<std::size_t>(channels));
@@ -13,7 +13,7 @@ Image makeRamp(glm::uvec2 size_px, int channels) {
     return image;
 }
 
-// Eighths are exact in float32, and 255 of them per unit are not: rounding shows.
+// Eighths are exact in float32; in steps of 1/255 they are not, so rounding shows.
 Image makeDisplay(glm::uvec2 size_px) {
     Image image{size_px, 4, {}};
     for (std::size_t i = 0; i < image.pixelCount() * 4; ++i) { image.values.push_back(static_cast<float>(i % 9) / 8.0f); }
@@ -95,8 +95,9 @@ TEST_CASE("colours of a picture with alpha are read as they are stored") {
 
 #ifdef BINOSPLAT_OPENIMAGEIO
 TEST_CASE("a volume is no picture") {
-    // DDS of 2x2x2 pixels of four bytes: size of the header, what it holds, height, width, bytes a row, depth, mips, 11 words that nobody
-    // uses, the kind of pixels (their header's size, RGB with alpha, no code, bits, masks), and that it is a volume.
+    // DDS of 2x2x2 pixels of four bytes: size of the header, what it holds, height, width, bytes per row,
+    // depth, mips, 11 unused words, the pixel format (size of its header, RGB with alpha, no code, bits,
+    // masks), and the flag of a volume.
     constexpr std::array<std::uint32_t, 31> kHeader{124,  0x801007, 2,        2,          8,      2,        1, 0,  0,    0, 0,
                                                     0,    0,        0,        0,          0,      0,        0, 32, 0x41, 0, 32,
                                                     0xff, 0xff00,   0xff0000, 0xff000000, 0x1008, 0x200000, 0, 0,  0};
@@ -122,7 +123,7 @@ TEST_CASE_FIXTURE(AtWork, "files that end early or are something else are errors
     CHECK_THROWS_AS(readPicture(work.path / "b.pfm"), Error);
     std::ofstream(work.path / "huge.ppm") << "P6\n4000000000 4000000000\n255\nx";
     CHECK_THROWS_AS(readPicture(work.path / "huge.ppm"), Error);
-    // What a header promises is not reserved before the file is known to hold it.
+    // Memory for what a header promises is not reserved before the file is known to contain it.
     for (const char* header : {"PF\n30000 30000\n-1\n", "P6\n30000 30000\n255\n"}) {
         const fs::path path = work.path / (header[1] == 'F' ? "promise.pfm" : "promise.ppm");
         std::ofstream(path, std::ios::binary) << header << "xyz";

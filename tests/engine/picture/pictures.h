@@ -35,7 +35,7 @@ inline Image makeFlat(glm::uvec2 size_px, const glm::vec3& rgb, int channels = 3
         size_px, [&](double, double) { return rgb; }, channels);
 }
 
-// Waves in three colours, as a left or right eye would see them if moved by `shift_px` to the right.
+// Waves in three colours, as a left or right eye would see them if they moved `shift_px` to the right.
 inline Image makeWaves(glm::uvec2 size_px, double shift_px) {
     return makePicture(size_px, [&](double x, double y) {
         const double at = x - shift_px;

@@ -1,4 +1,4 @@
-// Facts about the picture of what made each tile.
+// Facts about the picture that shows how each tile was made.
 #include "engine/picture/roi_picture.h"
 #include "shaders/shared/constants.h"
 #include "tests/engine/picture/pictures.h"

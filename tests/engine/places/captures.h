@@ -1,5 +1,5 @@
-// Captures as people make them, each made here, small, with the difficulties of its kind; and where one
-// stands in them.
+// Captures like people's own, each made here at a small size with the difficulties of its kind, and where the
+// viewer starts in them.
 #pragma once
 
 #include "engine/builtin/procedural.h"
@@ -21,7 +21,7 @@ inline void turnScene(Scene& scene, const glm::dquat& turn, double scale = 1.0) 
 // Scenes in metres, y down: the floor is y = 0.
 class Maker {
 public:
-    // A rectangle of splats: its corner and two sides, splats evenly at random, facing its normal.
+    // A rectangle of splats, given by a corner and two sides: spread evenly at random, and facing its normal.
     Maker& wall(const glm::dvec3& corner, const glm::dvec3& a, const glm::dvec3& b, double per_square_metre = 250.0, double bumps = 0.0) {
         const glm::dvec3 normal = glm::normalize(glm::cross(a, b));
         const auto count = static_cast<int>(per_square_metre * glm::length(glm::cross(a, b)));
@@ -31,7 +31,7 @@ public:
         }
         return *this;
     }
-    // The sides, the top and, as the last one, the bottom of a box.
+    // The sides, the top and, last, the bottom of a box.
     Maker& box(const glm::dvec3& low, const glm::dvec3& high, double per_square_metre = 250.0, bool has_bottom = true) {
         const glm::dvec3 s = high - low, x(s.x, 0, 0), y(0, s.y, 0), z(0, 0, s.z);
         wall(low, x, y, per_square_metre).wall(low, y, z, per_square_metre).wall(low, x, z, per_square_metre);
@@ -47,7 +47,7 @@ public:
         }
         return *this;
     }
-    // Splats from here on have this size.
+    // Splats from now on have this size.
     Maker& sized(double size) {
         size_ = size;
         return *this;
@@ -72,7 +72,8 @@ public:
     [[nodiscard]] const Scene& scene() const { return scene_; }
 
 private:
-    // Numbers are drawn one by one: arguments are evaluated in an order that differs between processors.
+    // Numbers are drawn one by one, since the order in which arguments are evaluated differs between
+    // processors.
     glm::dvec3 inUnitBox() {
         const double z = next(), y = next(), x = next();
         return {x, y, z};
@@ -92,7 +93,7 @@ private:
     std::mt19937 random_{7};
 };
 
-// 6 by 5 metres, 2.8 high, with a table full of things in one corner and a cupboard.
+// 6 by 5 metres and 2.8 high, with a table full of things in one corner and a cupboard.
 inline Maker room() {
     Maker made;
     made.box({-3, -2.8, 0}, {3, 0, 5});
@@ -122,7 +123,7 @@ inline Maker statueOnGround() {
 // A crate of half a metre is not a room, although it has a floor, walls and a ceiling.
 inline Maker crate() { return Maker().box({-0.3, -0.5, -0.25}, {0.3, 0, 0.25}, 8000.0); }
 
-// A table with a vase on a lawn, a hedge around it, and a sky far away that has a fifth of the splats.
+// A table with a vase on a lawn, a hedge around it, and a distant sky that has a fifth of the splats.
 inline Maker garden() {
     Maker made;
     made.wall({-9, 0, -9}, {18, 0, 0}, {0, 0, 18}, 60.0, 0.05).box({-0.7, -0.75, -0.7}, {0.7, -0.7, 0.7}, 2000.0);
@@ -133,7 +134,8 @@ inline Maker garden() {
     return made.sized(2.0).ball({0, -5, 0}, 80.0, 12000);
 }
 
-// A scan on a desk, all around: the object, a piece of the desk, and the room around it as a far, thin shell.
+// A scan on a desk, from all sides: the object, a piece of the desk, and the room around it as a distant,
+// thin shell.
 inline Maker scannedToy() {
     Maker made;
     made.sized(0.003).ball({0, -0.12, 0}, 0.06, 20000).box({-0.04, -0.06, -0.04}, {0.04, 0, 0.04}, 400000.0);
@@ -141,15 +143,15 @@ inline Maker scannedToy() {
     return made.sized(0.1).ball({0, -1, 0}, 4.0, 6000);
 }
 
-// Seen only from the front, as in a few photographs side by side: things on a table, and the wall behind,
-// wide.
+// Seen only from the front, as from a few photographs side by side: things on a table, and the wide wall
+// behind them.
 inline Maker facingForward() {
     Maker made;
     for (const double x : {-0.8, 0.0, 0.7}) { made.ball({x, -0.3, 3.0 + 0.3 * x}, 0.25, 5000); }
     return made.wall({-1.6, 0, 2.4}, {3.2, 0, 0}, {0, 0, 1.6}, 800.0).sized(0.08).wall({-5, -3, 7}, {10, 0, 0}, {0, 4, 0}, 400.0, 0.2);
 }
 
-// Three walls and a floor: the camera never went into the fourth part of the room.
+// Three walls and a floor: the camera never entered the fourth part of the room.
 inline Maker openRoom() {
     Maker made;
     made.wall({-3, 0, 0}, {6, 0, 0}, {0, 0, 5}).wall({-3, -2.8, 5}, {6, 0, 0}, {0, 2.8, 0}).wall({-3, -2.8, 0}, {0, 2.8, 0}, {0, 0, 5});
@@ -175,7 +177,7 @@ inline Maker town() {
     return made;
 }
 
-// A car, only the outside of which is seen, in a yard that shows nothing but its ground.
+// A car of which only the outside is seen, in a yard of which only the ground is seen.
 inline Maker car() {
     Maker made;
     made.box({-0.9, -0.9, -2.2}, {0.9, -0.2, 2.2}, 900.0, false).box({-0.7, -1.5, -1.2}, {0.7, -0.9, 1.0}, 900.0, false);
@@ -190,7 +192,7 @@ inline Maker relief() {
     return made;
 }
 
-// A wall with something in front of it, in which most of the splats lie.
+// A wall with something in front of it that has most of the splats.
 inline Maker fence() {
     Maker made;
     made.wall({-3, -3, 0}, {6, 0, 0}, {0, 6, 0});

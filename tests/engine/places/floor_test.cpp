@@ -1,4 +1,4 @@
-// Which way is up: what a scene stands on, whichever axis of the file is up, and what the file says of it.
+// Which way is up: what a scene stands on, whichever axis of the file is up, and what the file says about it.
 #include "engine/files/load_scene.h"
 #include "engine/places/floor_choice.h"
 #include "tests/engine/places/captures.h"
@@ -12,7 +12,7 @@ glm::dquat aboutAxis(int axis, double degrees) {
     return glm::angleAxis(glm::radians(degrees), direction);
 }
 
-// The axis of each, and degrees: none, up along z, along x, along y and neither.
+// The axis of each turn, and degrees: none, up along z, along x, along y, and neither.
 constexpr std::pair<int, double> kTurns[] = {{0, 0.0}, {0, 90.0}, {0, -90.0}, {2, 90.0}, {0, 180.0}, {0, 30.0}};
 
 // The same scene, whichever of the file's axes is up.
@@ -40,7 +40,7 @@ TEST_CASE("up, the height of the eye and the place within a room are the same wh
     });
     checkTurned(statueOnGround().scene(), false, [](const glm::dvec3& eye) { CHECK(std::abs(-eye.y - 1.9) < 0.2); });
     checkTurned(scannedToy().scene(), false, [](const glm::dvec3& eye) { CHECK(std::abs(-eye.y - 0.15) < 0.02); });
-    // From above, whose z is up.
+    // Seen from above; z is up.
     Maker drone = town();
     CHECK(degreesBetween(judgeStandpoint(drone.turn(aboutAxis(0, -90.0)).scene()).view.up, {0, 0, 1}) < 2.0);
 }
@@ -95,15 +95,15 @@ TEST_CASE("cameras that all look one way look down where no floor bears out thei
         const std::optional<glm::dvec3> up = upBeneath(scene, cameras, their_up);
         return up ? degreesBetween(*up, kUp) : 180.0;
     };
-    // From above, whichever way the pictures' upper edge leads.
+    // Seen from above, wherever the top of the pictures points.
     for (const glm::dvec3 their_up : {glm::dvec3(1, 0, 0), glm::dvec3(0, 0, -1), glm::normalize(glm::dvec3(-1, 0, 1))}) {
         CHECK(beneath(town().scene(), {0, -80, 0}, their_up) < 2.0);
         CHECK(beneath(car().scene(), {0, -8, 0}, their_up) < 2.0);
     }
-    // Before a facade, with a street at its foot.
+    // In front of a facade with a street at its foot.
     Maker facade = relief();
     CHECK(beneath(facade.wall({-5, 0, -3}, {10, 0, 0}, {0, 0, 3}, 300.0).scene(), {0, -3, -8}, kUp) < 2.0);
-    // What the file says is kept to.
+    // What the file says is believed.
     Scene scene = town().scene();
     scene.vertical_axis = 2;
     CHECK(beneath(scene, {0, -80, 0}, {0, 0, 1}) == 180.0);

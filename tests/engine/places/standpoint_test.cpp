@@ -1,4 +1,4 @@
-// Where one stands in captures as people make them, without cameras.
+// Where the viewer starts in captures like people's own, without cameras.
 #include "tests/engine/places/captures.h"
 
 SUITE(standpoint) {
@@ -7,7 +7,8 @@ double degreesOff(const Standpoint& point, const glm::dvec3& place) {
     return degreesBetween(point.view.look - point.view.eye, place - point.view.eye);
 }
 
-// The share of the splats within `reach` of a place that lies in the middle of the picture, 60 degrees wide.
+// The share of the splats within `reach` of a place that appear in the middle of the picture, which is 60
+// degrees wide.
 double shareSeen(const Standpoint& point, const Scene& scene, const glm::dvec3& place, double reach) {
     int seen = 0, all = 0;
     for (const glm::vec3& position : scene.positions) {
@@ -18,14 +19,15 @@ double shareSeen(const Standpoint& point, const Scene& scene, const glm::dvec3& 
     return static_cast<double>(seen) / std::max(all, 1);
 }
 
-// Whole, from outside.
+// The whole scene, from outside.
 void checkWhole(const Standpoint& point, const glm::dvec3& middle, double radius) {
     const double distance = glm::distance(point.view.eye, middle);
     CHECK(distance == between(1.3 * radius, 4.0 * radius));
     CHECK(degreesOff(point, middle) < 12.0);
 }
 
-// A scene; whether one stands inside; how many degrees up may be off; and what else holds, in the scene's own axes.
+// A scene, whether the view starts inside, by how many degrees up may be off, and what else must hold, in the
+// scene's own axes.
 struct Kind {
     const char* name;
     Maker (*make)();

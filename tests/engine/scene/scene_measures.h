@@ -1,4 +1,4 @@
-// Random scenes, and what two of them have in common.
+// Random scenes, and measures of how two scenes agree.
 #pragma once
 
 #include "engine/files/ply.h"
@@ -23,7 +23,7 @@ inline Scene randomScene(int sh_degree, std::size_t splats, bool are_gaussians =
     return scene;
 }
 
-// What an ellipsoid or a disc is, however its axes are named.
+// What defines an ellipsoid or a disc, whatever the order of its axes.
 inline glm::dmat3 covarianceOf(const Scene& scene, std::size_t splat) {
     glm::dmat3 axes(glm::mat3_cast(glm::dquat(scene.rotations[splat])));
     const glm::dvec3 lengths(scene.scales[splat], scene.isGaussian3d() ? scene.thicknesses[splat] : 0.0f);
@@ -37,8 +37,8 @@ inline double largest(const glm::dmat3& matrix) {
     return most;
 }
 
-// The largest difference between the constant harmonics of two scenes of the same degree, and between the others. Splat i of `b` is
-// order[i] of `a`; without an order, i.
+// The largest differences between two scenes of the same degree, in the constant harmonics and in the others.
+// Splat i of `b` is order[i] of `a`, or i without an order.
 inline std::pair<float, float> shDifferences(const Scene& a, const Scene& b, const std::vector<std::uint32_t>& order = {}) {
     const auto width = static_cast<std::size_t>(3 * shCoefficientCount(a.sh_degree));
     std::pair<float, float> most;

@@ -1,4 +1,5 @@
-// Facts about headsets: their files, those of configs/headsets among them, and the eyes that look through them.
+// Facts about headsets: their files, including those of configs/headsets, and the eyes that look through
+// them.
 #include "engine/setup/headset.h"
 #include "engine/setup/output_files.h"
 #include "shaders/shared/constants.h"
@@ -20,7 +21,8 @@ TEST_CASE("every headset of the repository is one that a person could wear, and 
         CHECK(headset.canting_rad >= 0.0);
         CHECK(headset.canting_rad < 0.2);
         canted += headset.canting_rad > 0.0 ? 1 : 0;
-        // Displays are mounted to within two degrees (the HTC Vive Focus 3 measured here is the worst, 0.6).
+        // Displays are mounted to within two degrees (the worst measured here is the HTC Vive Focus 3 with
+        // 0.6).
         const ViewAngles &left = headset.angles[kLeft], &right = headset.angles[kRight];
         CHECK(std::abs(glm::degrees(left.left_rad + right.right_rad)) < 2.0);
         CHECK(std::abs(glm::degrees(left.right_rad + right.left_rad)) < 2.0);
@@ -32,7 +34,7 @@ TEST_CASE("every headset of the repository is one that a person could wear, and 
             const double outwards = side == kLeft ? -angles.left_rad : angles.right_rad;
             const double inwards = side == kLeft ? angles.right_rad : -angles.left_rad;
             CHECK(outwards > inwards);
-            // From straight ahead of the wearer: canting turns them outwards.
+            // Starts straight ahead of the wearer: canting turns the eyes outwards.
             CHECK(glm::degrees(inwards - headset.canting_rad) > 30.0);
             CHECK(glm::degrees(outwards + headset.canting_rad) < 75.0);
             CHECK(glm::degrees(angles.up_rad) == between(35.0, 60.0));
@@ -41,7 +43,8 @@ TEST_CASE("every headset of the repository is one that a person could wear, and 
             const Eye& eye = eyes[side];
             CHECK(eye.intrinsics.fx / eye.intrinsics.fy == doctest::Approx(1.0).epsilon(0.25));
             CHECK(eye.intrinsics.cx == between(0.3 * eye.size_px.x, 0.7 * eye.size_px.x));
-            // A point 2 m ahead of the wearer lies towards the nose, right in the left picture: were the eyes swapped, it would not.
+            // A point 2 m ahead of the wearer lies towards the nose, so on the right in the left picture;
+            // with swapped eyes it would not.
             const glm::dvec3 point = transform(inverse(eye.world_from_camera), {0.0, 0.0, 2.0});
             const double share = (eye.intrinsics.fx * point.x / point.z + eye.intrinsics.cx) / eye.size_px.x;
             CHECK(share == between((side == kLeft ? 0.5 : 0.0), (side == kLeft ? 1.0 : 0.5)));
@@ -62,7 +65,7 @@ TEST_CASE("canted eyes turn outwards") {
         CHECK(these(ahead.x, ahead.y) == these(doctest::Approx(outwards * std::sin(0.1)), doctest::Approx(0.0)));
         CHECK(eyes[side].world_from_camera.position.x == doctest::Approx(outwards * 0.032));
     }
-    // The mid-eye sees from the left eye's outer edge to the right eye's.
+    // The middle eye sees from the left eye's outer edge to the right eye's.
     const Intrinsics middle = headsetMiddle(headset, Pose{}, {100, 100}).intrinsics;
     CHECK(std::atan(-middle.cx / middle.fx) == doctest::Approx(-0.9));
     CHECK(std::atan((100.0 - middle.cx) / middle.fx) == doctest::Approx(0.9));

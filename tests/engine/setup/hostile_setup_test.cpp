@@ -1,4 +1,4 @@
-// Broken settings, headsets, cameras and head motion: each is read or refused in one line.
+// Broken settings, headsets, cameras and head motion: each is read, or refused in one line.
 #include "engine/setup/camera_file.h"
 #include "engine/setup/head_motion.h"
 #include "engine/setup/headset.h"
@@ -27,11 +27,12 @@ struct TextAttempts {
 
     void attempt(const std::string& what, const std::string& bytes) {
         const std::string path = (work.path / "broken.toml").string();
-        std::filesystem::remove(path);  // some file systems wait for the disk where a file is cut to nothing and written again
+        // Some file systems wait for the disk when a file is truncated and rewritten.
+        std::filesystem::remove(path);
         std::ofstream(path, std::ios::binary) << bytes;
         tally.attempt(name + ", " + what, [&] { read(path); });
     }
-    // All kinds of harm.
+    // All kinds of damage.
     void run(const std::string& good, int changes) {
         const Attempt one = [this](const std::string& what, const std::string& bytes) { attempt(what, bytes); };
         truncate(good, one);
@@ -69,10 +70,10 @@ void readCameras(const std::string& path) {
     for (const FileCamera& camera : readCameraFile(path, glm::dvec3(0.0))) { CHECK(camera.eye.size_px.x >= 1); }
 }
 
-// `changes` times each kind of harm.
+// `changes` times each kind of damage.
 void breakAll(int changes) {
     TextAttempts settings("settings", readEverything);
-    // Every key of the file has a value: where it is commented, harm is none.
+    // Every key of the file gets a value: what is commented out cannot be damaged.
     std::string every_key = textOf("configs/default.toml").substr(0, 1500);
     for (std::size_t at = every_key.find("[camera]"); (at = every_key.find("\n# ", at)) != std::string::npos;) {
         every_key.erase(at + 1, 2);
@@ -139,7 +140,7 @@ TEST_CASE_FIXTURE(AtWork, "letters outside of ASCII are read in quotes and comme
         (void)readSettingsFile(work.path / "letters.toml");
     };
     CHECK_NOTHROW(read("\xef\xbb\xbfname = \"\u00c4 \\\" \u03e2\" # \u03e2\nother = '\u03e2'\n"));
-    // Wherever TOML takes quotes for a text or a key.
+    // Wherever TOML allows quotes around a text or a key.
     CHECK_FALSE(
         files::findUnreadableToml("a = [\"\u00e9\", [\n'\u00e9', 1 , \"\u00e9\"]]\nb = {c = \"\u00e9\", d.e=[\"\u00e9\"], f = '\u00e9'}\n"
                                   "[\"\u00e9\"]\n[[g]]\n\"\u00e9\" = 1\n"));

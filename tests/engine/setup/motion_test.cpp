@@ -22,12 +22,12 @@ TEST_CASE("the axes of OpenXR and of Unity become the camera's") {
     struct {
         MotionAxes axes;
         glm::dvec3 about;                    // a positive quarter turn about this axis of the recording
-        glm::dvec3 forward, up_of_the_head;  // looks there, in the camera's axes
-    } const turns[]{// In a right-handed system a turn about y (up) looks left, one about x looks up, and one about z tilts to the left.
+        glm::dvec3 forward, up_of_the_head;  // the directions that result, in the camera's axes
+    } const turns[]{                         // Right-handed: a turn about y (up) looks left, about x up, about z tilts to the left.
                     {MotionAxes::kOpenXr, up, {-1.0, 0.0, 0.0}, {0.0, -1.0, 0.0}},
                     {MotionAxes::kOpenXr, right, {0.0, -1.0, 0.0}, {0.0, 0.0, -1.0}},
                     {MotionAxes::kOpenXr, back, {0.0, 0.0, 1.0}, {-1.0, 0.0, 0.0}},
-                    // In a left-handed one they look right and down, and tilt to the left.
+                    // Left-handed: they look right, look down, and tilt to the left.
                     {MotionAxes::kUnity, up, {1.0, 0.0, 0.0}, {0.0, -1.0, 0.0}},
                     {MotionAxes::kUnity, right, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}},
                     {MotionAxes::kUnity, back, {0.0, 0.0, 1.0}, {-1.0, 0.0, 0.0}}};
@@ -36,7 +36,7 @@ TEST_CASE("the axes of OpenXR and of Unity become the camera's") {
         CHECK(near(forwardOf(pose), turn.forward));
         CHECK(near(-downOf(pose), turn.up_of_the_head));
     }
-    // One metre to the right, two up, three ahead.
+    // One metre to the right, two up and three ahead.
     for (const auto& [axes, ahead] : {std::pair(MotionAxes::kOpenXr, -3.0), {MotionAxes::kUnity, 3.0}}) {
         const Pose still = poseFromRecording({1.0, 2.0, ahead}, glm::dquat(1.0, 0.0, 0.0, 0.0), axes);
         CHECK(near(still.position, {1.0, -2.0, 3.0}));
@@ -56,13 +56,14 @@ TEST_CASE("headers, blanks and comments are optional, and orientations are norma
     }
     const double half = std::sqrt(0.5);
     const std::string values = fmt::format("0,0,0,0,{},{},0,0\n", half, half);
-    CHECK(near(forwardOf(parse("time_s,x,y,z,qw,qx,qy,qz\n" + values).poseAt(0.0)), {0.0, -1.0, 0.0}));  // w first
+    // Here w comes first.
+    CHECK(near(forwardOf(parse("time_s,x,y,z,qw,qx,qy,qz\n" + values).poseAt(0.0)), {0.0, -1.0, 0.0}));
     CHECK_FALSE(near(forwardOf(parse(kHeader + values).poseAt(0.0)), {0.0, -1.0, 0.0}));
 }
 
 TEST_CASE("times are seconds or ticks, by their size or by the header") {
     const std::string pose = ",0,0,0,0,0,0,1\n";
-    // Two ticks of 100 ns apart, in numbers whose neighbours a double cannot tell apart.
+    // Two ticks of 100 ns apart, in numbers so large that a double cannot represent single ticks.
     CHECK(parse("637139354998275741" + pose + "637139354998275743" + pose).duration_s() == doctest::Approx(2e-7).epsilon(1e-12));
     CHECK(parse("1700000000.25" + pose + "1700000000.5" + pose).duration_s() == 0.25);
     CHECK(parse("-1" + pose + "1" + pose).duration_s() == 2.0);
@@ -94,7 +95,8 @@ TEST_CASE("what is no file is no recording") {
 }
 
 TEST_CASE("poses between samples lie on the way") {
-    // A quarter turn to the left in two seconds; the second orientation is written with the opposite sign, which is the same turn.
+    // A quarter turn to the left in two seconds. The second orientation is written with the opposite sign,
+    // which is the same turn.
     const double half = std::sqrt(0.5);
     const HeadMotion motion = parse(fmt::format("10,0,0,0,0,0,0,1\n12,4,0,0,0,{},0,{}\n", -half, -half));
     CHECK(near(motion.poseAt(1.0).position, {2.0, 0.0, 0.0}));
@@ -102,7 +104,7 @@ TEST_CASE("poses between samples lie on the way") {
         const double angle = share * kQuarter;
         CHECK(near(forwardOf(motion.poseAt(2.0 * share)), {-std::sin(angle), 0.0, std::cos(angle)}));
     }
-    // The head rests outside of the recording.
+    // The head keeps still outside of the recording.
     CHECK(near(motion.poseAt(-5.0).position, {0.0, 0.0, 0.0}));
     CHECK(near(motion.poseAt(99.0).position, {4.0, 0.0, 0.0}));
     CHECK(near(forwardOf(motion.poseAt(99.0)), {-1.0, 0.0, 0.0}));
@@ -110,8 +112,8 @@ TEST_CASE("poses between samples lie on the way") {
 }
 
 TEST_CASE("a camera starts where it is put and moves in its own frame") {
-    // The recorded wearer first looks left (a quarter turn about y), so that ahead is recorded -x; then steps half a metre ahead and
-    // looks another quarter turn to the left.
+    // The recorded wearer first looks left (a quarter turn about y), so ahead is the recording's -x; then
+    // steps half a metre ahead and looks another quarter turn to the left.
     const double half = std::sqrt(0.5);
     const HeadMotion motion = parse(fmt::format("0,7,8,9,0,{},0,{}\n1,6.5,8,9,0,1,0,0\n", half, half));
     const Pose start = lookAt({1.0, 2.0, 3.0}, {1.0, 2.0, 13.0}, {1.0, 0.0, 0.0});
@@ -123,7 +125,7 @@ TEST_CASE("a camera starts where it is put and moves in its own frame") {
     CHECK(near(last.position, {1.0, 2.0, 5.0}));
     CHECK(near(forwardOf(last), {0.0, -1.0, 0.0}));
     CHECK(near(downOf(last), {-1.0, 0.0, 0.0}));
-    // The way there is as long as recorded, times the scale.
+    // The path is as long as recorded, times the scale.
     CHECK(glm::length(motion.cameraAt(0.5, start, 4.0).position - start.position) == doctest::Approx(1.0));
     CHECK(glm::length(motion.cameraAt(1.0, start).position - start.position) == doctest::Approx(0.5));
 }
@@ -135,7 +137,7 @@ TEST_CASE("a segment's frames are its samples, or at a rate, and its end is not 
     CHECK(these(frameTimes(motion, {}, "m"), frameTimes(motion, {0.0, 1.0, {}}, "m"), frameTimes(motion, {0.0, {}, 2.0}, "m")) ==
           these(Times{0.0, 0.5, 1.0, 2.0}, Times{0.0, 0.5}, Times{0.0, 0.5, 1.0, 1.5, 2.0}));
     CHECK(these(frameTimes(motion, {0.0, 1.0, 2.0}, "m"), frameTimes(motion, {0.0, 2.0, 90.0}, "m").size()) == these(Times{0.0, 0.5}, 180));
-    CHECK(frameTimes(motion, {0.0, 100.0, 2.0}, "m").size() == 5);  // no longer than it is
+    CHECK(frameTimes(motion, {0.0, 100.0, 2.0}, "m").size() == 5);  // not beyond the end of the recording
     // From between two samples on, relative to the pose there.
     const HeadMotion rest = motion.startingAt(0.75);
     CHECK(frameTimes(rest, {}, "m") == Times{0.0, 0.25, 1.25});
@@ -149,8 +151,9 @@ TEST_CASE("the shared recording reads, and its wearer walks forward" * test::nee
     if (!data) { return; }
     const HeadMotion motion = readHeadMotion(*data / "headmotion" / "User3.csv", MotionAxes::kUnity);
     CHECK(these(motion.samples().size(), motion.duration_s()) == these(4597, doctest::Approx(76.5515291).epsilon(1e-9)));
-    // While the head moves at 0.4 m/s or more, it moves along its line of sight rather than against it. Read as OpenXR's axes, the same
-    // recording is of somebody who walks backwards: it was made in Unity's.
+    // Whenever the head moves at 0.4 m/s or more, it moves along its line of sight rather than against it. If
+    // read in OpenXR's axes, the same recording would show somebody who walks backwards: it was made in
+    // Unity's.
     double cosines = 0.0;
     int count = 0;
     for (double time_s = 0.0; time_s + 0.5 < motion.duration_s(); time_s += 0.05) {

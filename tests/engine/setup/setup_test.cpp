@@ -18,7 +18,8 @@ fs::path writeFile(const fs::path& path, const std::string& text) {
 }
 
 TEST_CASE_FIXTURE(AtWork, "a camera file is world-from-camera, its rows as they are written, and resizing an eye keeps what it sees") {
-    // The camera stands at (1, 2, 3) and looks along world x: its z axis is the third column, (1, 0, 0); its x axis is (0, 0, -1).
+    // The camera stands at (1, 2, 3) and looks along world x: its z axis is the third column, (1, 0, 0); its
+    // x axis is (0, 0, -1).
     const auto cameras = readCameraFile(writeFile(work.path / "c.json", R"([
         {"id": 0, "img_name": "a", "width": 640, "height": 480, "fx": 500, "fy": 510,
          "position": [1, 2, 3], "rotation": [[0, 0, 1], [0, 1, 0], [-1, 0, 0]]},
@@ -70,7 +71,7 @@ TEST_CASE_FIXTURE(AtWork, "output files appear together or not at all, and a run
 
 TEST_CASE_FIXTURE(AtWork, "an output folder whose path leaves no room for files is refused, and nothing of it stays") {
     fs::path folder = work.path;
-    constexpr std::size_t kLength = PATH_MAX - 50;  // its hidden folder fits, and then 40 letters do not
+    constexpr std::size_t kLength = PATH_MAX - 50;  // its hidden folder fits, but 40 more letters do not
     while (folder.string().size() + 102 < kLength) { folder /= std::string(100, 'x'); }
     folder /= std::string(kLength - folder.string().size() - 1, 'y');
     CHECK_THROWS_WITH_AS(OutputFiles{folder}, doctest::Contains("its path may be too long, with 4046 letters; must be a shorter one"),
@@ -90,7 +91,7 @@ TEST_CASE_FIXTURE(AtWork, "a folder is removed with all in it, and what its link
     CHECK_FALSE(fs::exists(gone));
     CHECK(fs::exists(kept / "1"));
     CHECK(entriesOf(gone).empty());
-    removeFolder(gone);  // as nothing is there
+    removeFolder(gone);  // since there is nothing
 }
 
 }  // SUITE(setup)

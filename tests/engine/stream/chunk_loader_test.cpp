@@ -1,4 +1,5 @@
-// Parts of streamed scenes beside whoever wants them: what is wished for and nothing else, in that order, whatever files and servers do.
+// Parts of streamed scenes, loaded beside the frames: exactly what is requested, in that order, whatever
+// files and servers do.
 #include "engine/stream/chunk_loader.h"
 
 #include "engine/builtin/procedural.h"
@@ -13,7 +14,7 @@ SUITE(chunk_loader) {
 
 constexpr std::chrono::milliseconds kPatience(60'000);
 
-// 20,000 splats in 32 leaves of four levels, several leaves to a file, in a folder for all of the tests.
+// 20,000 splats in 32 leaves of four levels, several leaves to a file, in a folder that all tests share.
 std::string writtenSplit() {
     static const Workplace place;
     const std::string folder = (place.path / "split").string();
@@ -102,14 +103,14 @@ TEST_CASE("wishes that are given up are not loaded, and what waits is bounded") 
     REQUIRE(loader.waitForNews(kPatience));
     loader.want({}, {{31, 2}});
     const std::vector<LoadedPart> parts = takeAll(loader);
-    CHECK(parts.size() <= 9);  // the batch that was there already
+    CHECK(parts.size() <= 9);  // the batch that was already there
     CHECK(placesOf(parts).back() == LeafLevel{31, 2});
-    // What waits to be taken is not loaded once more.
+    // What waits to be taken is not loaded again.
     loader.want({}, {{30, 2}});
     REQUIRE(loader.waitForNews(kPatience));
     loader.want({}, {{30, 2}, {29, 2}});
     CHECK(placesOf(takeAll(loader)) == std::vector<LeafLevel>{{30, 2}, {29, 2}});
-    // Nor is anybody kept waiting who leaves with wishes open.
+    // Nor does leaving with open requests take time.
     loader.want({}, everyLeaf(source, 0));
 }
 
@@ -125,7 +126,7 @@ TEST_CASE_FIXTURE(InFolder, "of a file that is broken or missing one line says s
         CHECK(these(loader.takeLines().empty(), loader.brokenFiles().value(), loader.isDone()) ==
               these(true, std::vector<bool>{false, true, false, false}, true));
     };
-    // Ranges beyond a chunk break that chunk alone.
+    // Ranges beyond the end of a chunk break only that chunk.
     const std::string longer = replaced(makeLodMeta(), R"("file":1,"offset":0,"count":8)", R"("file":1,"offset":0,"count":9)");
     check(writeStreamed(folder, "scene", longer), {{2, 0}, {0, 1}}, {}, {{0, 1}},
           "a leaf names splat 8 of filenames[1] (b/meta.json), which has 8");
@@ -166,7 +167,7 @@ TEST_CASE_FIXTURE(InFolder, "a server that goes away in the middle is waited for
     }
     CHECK(lines.size() == 1);
     CHECK(loader.isDone());
-    // Each file once, apart from what failed.
+    // Each file once, except those that failed.
     CHECK(std::ranges::count(server.asked(), "/3_0.sog") == 1);
 }
 #endif

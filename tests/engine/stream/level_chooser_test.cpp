@@ -1,4 +1,5 @@
-// What leaves of a streamed scene are to show: by size and place, within a budget, and steadily.
+// Which levels the leaves of a streamed scene should show: by size and place, within a budget, and without
+// flicker.
 #include "engine/stream/level_chooser.h"
 #include "tests/suite.h"
 
@@ -6,7 +7,8 @@ SUITE(level_chooser) {
 
 constexpr std::uint32_t kNone = LevelChoices::kNone;
 
-// Cubes of a metre side by side on the plane y = 0, x from -n/2 to n/2 and z from 0 to n: level k has `splats` / 4^k splats, in file k.
+// Cubes of a metre side by side on the plane y = 0, with x from -n/2 to n/2 and z from 0 to n: level k has
+// `splats` / 4^k splats, in file k.
 std::vector<LodLeaf> makeField(int n, std::uint32_t levels = 4, std::uint64_t splats = 16384) {
     std::vector<LodLeaf> leaves;
     for (int z = 0; z < n; ++z) {
@@ -23,13 +25,13 @@ std::vector<LodLeaf> makeField(int n, std::uint32_t levels = 4, std::uint64_t sp
     return leaves;
 }
 
-// 90 degrees wide and high, a thousand pixels.
+// 90 degrees wide and high, with a thousand pixels.
 Eye eyeAt(const glm::dvec3& position, double yaw_rad = 0.0) {
     const glm::dquat turn = glm::angleAxis(yaw_rad, glm::dvec3(0.0, 1.0, 0.0));
     return {{turn, position}, {500.0, 500.0, 500.0, 500.0}, {1000, 1000}};
 }
 
-// A chooser for leaves that it keeps.
+// A chooser that owns its leaves.
 struct Chooser {
     std::vector<LodLeaf> leaves;
     LevelChooser chooser{leaves};
@@ -86,7 +88,7 @@ TEST_CASE("the budget is kept and used, whatever it is") {
     CHECK(few.coarsest.size() == 10);
     CHECK(std::ranges::count(few.levels, kNone) == 54);
     CHECK(few.levels[4] == 3);
-    // Pages count likewise: a level of one splat takes a whole one.
+    // Pages count in the same way: a level of one splat takes a whole page.
     ChoiceSettings pages = within(1 << 24);
     pages.pages = 70;
     CHECK(field.choose(eye, pages).pages <= 70);
@@ -101,7 +103,7 @@ TEST_CASE("nearer leaves show more, and splats that would lie closer than half a
         CHECK(level >= before);
         before = level;
         if (z < 2) { continue; }
-        // The step that was not taken would have led to less than half a pixel, the last one that was did not.
+        // The step that was not taken would have led below half a pixel; the last one that was taken did not.
         const double size_px = 500.0 * std::sqrt(3.0) / (static_cast<double>(z) + 1.0 + 0.25 * std::sqrt(3.0));
         const auto apart = [&](std::uint32_t a, std::uint32_t b) {
             const auto& levels = field.leaves[z * 64 + 32].levels;
@@ -143,7 +145,7 @@ TEST_CASE("levels that are off by more than 36 dB are chosen only where their sp
 
 TEST_CASE("what lies behind is the first to go and the last to come") {
     Chooser field(makeField(16));
-    // Splats before and behind somebody in the middle who looks that way.
+    // Splats in front of and behind somebody in the middle who looks that way.
     const auto look = [&](double yaw_rad) {
         const LevelChoices& choices = field.choose(eyeAt({0.5, 0.5, 8.5}, yaw_rad), within(300'000));
         std::array<std::uint64_t, 2> sum{};
@@ -162,7 +164,8 @@ TEST_CASE("where it was measured what levels are off by, splats go to where they
     const Eye eye = eyeAt({0.5, 0.5, 2.0});
     const auto budget = within(8 * 16384);
     std::vector<LodLeaf> leaves = makeField(4);
-    // As if each level were off by twice what the next finer one is; leaves on the right are ten times as wrong.
+    // As if each level's error were twice that of the next finer one; leaves on the right have ten times the
+    // error.
     for (LodLeaf& leaf : leaves) {
         const float wrong = leaf.low.x < 0.0f ? 0.001f : 0.01f;
         leaf.errors = {0.0f, wrong, 2.0f * wrong, 4.0f * wrong};
@@ -175,12 +178,12 @@ TEST_CASE("where it was measured what levels are off by, splats go to where they
     }
     CHECK(choices.splats <= budget.splats);
     CHECK(splats[1] > 2 * splats[0]);
-    // The same everywhere, they change nothing about what is nearer.
+    // If they are the same everywhere, errors do not affect how levels depend on distance.
     for (LodLeaf& leaf : leaves) { leaf.errors = {0.0f, 0.001f, 0.002f, 0.004f}; }
     Chooser even(leaves);
     const LevelChoices& by_place = even.choose(eyeAt({0.5, 0.5, -1.0}), budget);
     for (std::size_t l = 4; l < leaves.size(); ++l) { CHECK(by_place.levels[l] >= by_place.levels[l - 4]); }
-    // A level that mends nothing comes after all that do, and keeps none of them from coming.
+    // A level that improves nothing comes after all that do, and keeps none of them away.
     for (LodLeaf& leaf : leaves) { leaf.errors = {0.0f, 0.001f, 0.001f, 0.001f}; }
     Chooser flat(leaves);
     CHECK(std::ranges::all_of(flat.choose(eye, within(1 << 24)).levels, [](std::uint32_t level) { return level == 0; }));
@@ -236,7 +239,8 @@ TEST_CASE("levels in broken files are passed over, unless they are loaded") {
 TEST_CASE("leaves of odd shape, count and place are no trouble") {
     Chooser odd({{glm::vec3(0), glm::vec3(0), {{0, 0, {0, 1}}}},
                  {glm::vec3(-1e6f), glm::vec3(1e6f), {{0, 1, {0, 100}}}},
-                 {glm::vec3(1), glm::vec3(2), {{0, 0, {1, 5}}, {1, 2, {0, 5}}, {2, 3, {0, 9}}}},  // coarser levels have no fewer
+                 // Coarser levels do not have fewer splats.
+                 {glm::vec3(1), glm::vec3(2), {{0, 0, {1, 5}}, {1, 2, {0, 5}}, {2, 3, {0, 9}}}},
                  {glm::vec3(3e38f), glm::vec3(3e38f), {{0, 0, {6, 1ull << 40}}, {1, 2, {5, 1}}}}});
     const LevelChoices& choices = odd.choose(eyeAt(glm::dvec3(0.0)), within(1000));
     CHECK(these(choices.levels, choices.splats) == these(std::vector<std::uint32_t>{0, 0, 0, 1}, 107));

@@ -24,7 +24,7 @@ inline Scene slidingAtelier(double frame, std::uint64_t splats = 8'000) {
     return scene;
 }
 
-// The atelier, of which a small part slides and, from frame `first` on, everything goes up and down in turn.
+// The atelier with a small part that slides; from frame `first` on, everything moves up and down in turn.
 inline Scene shakenAtelier(int frame, int first) {
     Scene scene = slidingAtelier(0);
     const bool is_up = frame >= first && (frame - first) % 2 == 0;

@@ -1,4 +1,5 @@
-// What differs between two frames of a moving scene, and what lies between them, against the same computed splat by splat.
+// What differs between two frames of a moving scene, and what lies between them, compared with the same
+// computed splat by splat.
 #include "engine/stream/scene_frames.h"
 
 #include "tests/engine/stream/moving_frames.h"
@@ -30,7 +31,7 @@ Scene unpacked(const SceneFrame& frame, const SceneTraits& traits) {
     return scene;
 }
 
-// Whether the box holds all that can be seen of the splat.
+// Whether the box contains everything that can be seen of the splat.
 bool holds(const glm::vec3& low, const glm::vec3& high, const Scene& scene, std::size_t splat) {
     const glm::dvec3 half = halfExtentOf(scene.rotations[splat], {scene.scales[splat], 0.0f}, scene.opacities[splat]),
                      centre(scene.positions[splat]);
@@ -64,7 +65,7 @@ TEST_CASE("what stayed as it was differs nowhere, and a step has the pages that 
     CHECK(these(step.splats, step.pages) == these(scene.size(), std::vector<std::uint32_t>{static_cast<std::uint32_t>(page)}));
     REQUIRE(step.now.size() == 1);
     CHECK(std::ranges::equal(step.now[0].bytes(), second[page].bytes()));
-    // Where both were, and where the one is now.
+    // Where both were, and where the first one is now.
     CHECK(oneHolds(step.changes, scene, 5000));
     CHECK(oneHolds(step.changes, moved, 5000));
     CHECK(oneHolds(step.changes, scene, 5001));
@@ -92,7 +93,7 @@ TEST_CASE("all that moved lies in boxes, no more than there may be, and what cam
     }
     CHECK(moved > 500);
     CHECK(in_none == 0);
-    CHECK(2 * in_boxes < from.size());  // and most of the room lies in none
+    CHECK(2 * in_boxes < from.size());  // and most of the room is in none
     Scene shorter = from;
     keepWithin(shorter, glm::dvec3(from.positions[0]), 2.5);
     REQUIRE(shorter.size() < from.size());
@@ -122,7 +123,7 @@ TEST_CASE("between two frames each value lies on a straight line, and rotations 
         float worst = 0.0f;
         std::size_t changed = 0, not_held = 0;
         for (std::size_t i = 0; i < got.size(); ++i) {
-            // A small turn: normalised lerp and slerp are the same within its cube.
+            // For a small turn, normalised lerp and slerp agree up to its cube.
             const glm::quat turn = glm::slerp(glm::normalize(from.rotations[i]), glm::normalize(to.rotations[i]), share);
             worst = std::max({worst, glm::distance(got.positions[i], glm::mix(from.positions[i], to.positions[i], share)),
                               glm::distance(got.scales[i], glm::mix(from.scales[i], to.scales[i], share)),
@@ -131,12 +132,12 @@ TEST_CASE("between two frames each value lies on a straight line, and rotations 
             for (std::size_t c = 3 * i; c < 3 * i + 3; ++c) {
                 worst = std::max(worst, 0.1f * std::abs(got.sh[c] - glm::mix(from.sh[c], to.sh[c], share)));
             }
-            // What stays is equal to the bit, beside what moves.
+            // What does not move is equal to the bit, also next to what moves.
             if (from.positions[i] == to.positions[i] && i % 3 != 0 && i != 7) {
                 changed += got.positions[i] != from.positions[i] || got.scales[i] != from.scales[i] ||
                            got.opacities[i] != from.opacities[i] || got.rotations[i] != first.rotations[i];
             }
-            // What the device culls by holds all of it.
+            // The bounds by which the device culls contain all of it.
             const std::size_t p = i / gpu::kPageSplats;
             if (got.opacities[i] >= gpu::kMinAlpha) { not_held += !holds(mixed[p].pages()[0].low, mixed[p].pages()[0].high, got, i); }
         }

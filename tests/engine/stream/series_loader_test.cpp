@@ -1,4 +1,4 @@
-// Frames of a moving scene read ahead: in the order in which they will be needed, within a limit of memory.
+// Frames of a moving scene, read ahead in the order in which they will be needed, within a limit of memory.
 #include "engine/stream/series_loader.h"
 
 #include "tests/engine/stream/moving_frames.h"
@@ -90,7 +90,7 @@ TEST_CASE("within a limit the next ones are there, and what is needed last makes
         CHECK(loader.bytesKept() <= 5 * bytes);
     }
     CHECK(reads < 24);
-    // A limit that nothing fits into: the next ones all the same.
+    // A limit too small for anything: the next ones are read all the same.
     SeriesLoader small([](std::size_t scene) { return shifted(scene); }, kScenes, traits, {.most_bytes = 1, .threads = 1});
     want(small, from(0));
     for (std::size_t scene = 0; scene < kScenes; ++scene) {

@@ -36,7 +36,7 @@ struct Leaf {
 
 std::size_t shWidth(const Scene& scene) { return static_cast<std::size_t>(3 * shCoefficientCount(scene.sh_degree)); }
 
-// The splat of a group that stands for all of it, appended to `to`.
+// Appends to `to` the splat that stands for a whole group.
 void appendGroup(const Scene& scene, std::span<const std::uint32_t> group, Scene& to) {
     const std::uint32_t first = group.front();
     const float grown = std::sqrt(static_cast<float>(group.size()));
@@ -77,7 +77,8 @@ public:
     }
 
 private:
-    // The JSON of a node of these splats, a leaf or with two children; the levels of a leaf are still '#'.
+    // The JSON of a node for these splats, either a leaf or with two children; the levels of a leaf are still
+    // '#'.
     std::string cut(std::span<std::uint32_t> splats) {
         Box box, centres;
         for (const std::uint32_t splat : splats) {
@@ -99,7 +100,7 @@ private:
         return fmt::format(R"({{{},"children":[{},{}]}})", box.json(), first, cut(splats.subspan(half)));
     }
 
-    // The same with what was written of each leaf.
+    // The same with the levels that were written for each leaf.
     [[nodiscard]] std::string withLevels(std::string tree) const {
         std::size_t at = 0;
         for (const Leaf& leaf : leaves_) {

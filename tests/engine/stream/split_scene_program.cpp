@@ -1,4 +1,5 @@
-// split_scene SCENE FOLDER [LEAF_SPLATS [LEVELS [CHUNK_SPLATS]]]: a streamed SOG scene out of a whole one, to try streaming with.
+// split_scene SCENE FOLDER [LEAF_SPLATS [LEVELS [CHUNK_SPLATS]]]: makes a streamed SOG scene from a whole
+// one, for trying streaming.
 #include "engine/error.h"
 #include "engine/files/load_scene.h"
 #include "tests/engine/stream/split_scene.h"

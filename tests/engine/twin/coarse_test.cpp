@@ -1,12 +1,13 @@
-// Facts about how the twin fills a coarse tile, and what it expects to be lost: coarse_frames_test.cpp holds the device against it.
+// Facts about how the twin fills a coarse tile, and what loss it expects; coarse_frames_test.cpp compares the
+// device with it.
 #include "engine/twin/coarse.h"
 #include "tests/suite.h"
 
 SUITE(coarse) {
 
-constexpr double kApart = 15.0 / 7.0;  // samples, in pixels
+constexpr double kApart = 15.0 / 7.0;  // distance of samples, in pixels
 
-// What a tile's samples see of a picture.
+// What a tile's samples see in a picture.
 template <typename At>
 std::vector<glm::dvec4> samplesOf(const At& at) {
     std::vector<glm::dvec4> samples;
@@ -37,7 +38,7 @@ TEST_CASE("a ramp loses nothing, and what changes from sample to sample loses th
             return glm::dvec4(glm::dvec3(height * std::cos(glm::radians(180.0) * place.x / kApart)), 1.0);
         }));
     };
-    // Second differences are four times the height, at 48 of 64 samples, of which 8/6 are counted; in three channels.
+    // Second differences are four times the height, at 48 of 64 samples, which count 8/6; in three channels.
     CHECK(lossOf(0.1) == doctest::Approx(0.3 * 64 * 3 * 0.16));
     CHECK(lossOf(0.2) == doctest::Approx(4 * lossOf(0.1)));
     CHECK(lossOf(10.0) == doctest::Approx(0.3 * 4 * 48));  // no sample counts for more than 4

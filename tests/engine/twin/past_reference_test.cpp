@@ -1,4 +1,4 @@
-// Facts about the twins of reuse over time: pictures for which the answer is worked out by hand.
+// Facts about the twins of reuse over time: pictures whose result is worked out by hand.
 #include "engine/twin/past.h"
 #include "tests/engine/twin/reference_scenes.h"
 
@@ -8,14 +8,15 @@ SUITE(past_reference) {
 
 using namespace binosplat::reference;
 
-constexpr double kLeastGrowth = 1.9e-7;  // of a pixel that moved, squared
+constexpr double kLeastGrowth = 1.9e-7;  // squared, for a pixel that moved
 
 Picture makePicture(glm::uvec2 size_px) {
     const std::size_t pixels = std::size_t{size_px.x} * size_px.y;
     return {size_px, std::vector<glm::dvec4>(pixels), {}, std::vector<double>(pixels), std::vector<double>(pixels)};
 }
 
-// Opaque, of `colour(x, y)` at the inverse depth `depth(x, y)`, each pixel of one depth; tiles cost 100 pairs.
+// An opaque picture with `colour(x, y)` at the inverse depth `depth(x, y)`; each pixel has a single depth,
+// and tiles cost 100 pairs.
 template <typename Colour, typename Depth>
 Past makePast(const Eye& eye, const Colour& colour, const Depth& depth) {
     Picture picture = makePicture(eye.size_px);
@@ -90,9 +91,9 @@ TEST_CASE("a wave on a wall comes out as it would have been seen, for the least 
     }
     CHECK(std::ranges::count(warped.unseen, 1) == 0);
     CHECK(std::ranges::count(warped.one_by_one, 1) == 0);
-    // The fifth differences of these waves come to 2e-5 at most.
+    // The fifth differences of these waves are at most 2e-5.
     for (const double grown : warped.picture.tiles[1].grown) { CHECK(grown == doctest::Approx(64.0 * kLeastGrowth)); }
-    // A whole pixel on, the last column has no history; these pixels count with an amplitude of 1.
+    // After a whole pixel, the last column has no history; its pixels count with an amplitude of 1.
     const WarpedPast on = warpPast(past, moved(eye, {0.02, 0.0, 0.0}));
     CHECK(std::ranges::count(on.unseen, 1) == 64);
     CHECK(on.picture.tiles[5].grown[1] >= 8.0);
@@ -106,15 +107,17 @@ TEST_CASE("what is lost between pixels is what alternates there, in whole blocks
         return warpPast(makePast(eye, stripes, depth), to).picture.tiles[7].grown[0];
     };
     const auto wall = [](double, double) { return 0.5; };
-    // An amplitude of 0.2 in 64 pixels of three channels, all of it halfway; of t from pixel to pixel the part 4 t (1 - t).
+    // An amplitude of 0.2 in 64 pixels of three channels, all moved by half a pixel; a move by t from pixel
+    // to pixel counts 4 t (1 - t).
     CHECK(grownOf(half, wall) == doctest::Approx(64 * 3 * 0.2 * 0.2));
     CHECK(grownOf(quarter, wall) == doctest::Approx(64 * 3 * 0.15 * 0.15));
-    // Rows in pairs at two depths, so that no block is whole: half of the pixels move by 1/2, half by 1/20. Beside each is its like.
+    // Pairs of rows at two depths, so that no block is uniform: half of the pixels move by 1/2, half by 1/20.
+    // Each has an equal row beside it.
     const auto bands = [](double, double y) { return std::fmod(y, 4.0) < 2.0 ? 0.5 : 0.05; };
     const WarpedPast apart = warpPast(makePast(eye, stripes, bands), half);
     CHECK(std::ranges::count(apart.one_by_one, 0) == 0);
     CHECK(apart.picture.tiles[7].grown[0] == doctest::Approx(32 * 3 * 0.2 * 0.2 + 32 * 3 * std::pow(0.19 * 0.2, 2)).epsilon(1e-4));
-    // Not even where all is of one colour: every tile is to have its turn.
+    // Not even where everything has one colour: every tile must get its turn.
     const auto grey = [](double, double) { return glm::dvec3(0.5); };
     CHECK(warpPast(makePast(eye, grey, bands), half).picture.tiles[7].grown[0] == doctest::Approx(64 * kLeastGrowth));
 }
@@ -135,7 +138,7 @@ TEST_CASE("a tile's gradient is its picture's, in whole blocks and pixel by pixe
         tile.squared_gradient = 3 * 256 * gradient * gradient;
         return priceUnderBound(100, tile, 0.04) >= kOverPrice;
     };
-    CHECK((isOver(0.0) && isOver(0.037)));  // 3/4 of 0.05 would be the same
+    CHECK((isOver(0.0) && isOver(0.037)));  // 3/4 of 0.05 would be equal
     CHECK_FALSE((isOver(0.038) || isOver(0.2)));
     tile.errors[2] = 0.0239;  // less than 0.6 of the bound
     CHECK_FALSE(isOver(0.0));
@@ -143,7 +146,8 @@ TEST_CASE("a tile's gradient is its picture's, in whole blocks and pixel by pixe
 
 TEST_CASE("what was hidden behind a nearer wall is not taken for seen, and the nearer of two is it") {
     const Eye eye = test::makeEye({160, 48});
-    // The left half near, at inverse depth 1; a step of 0.02 to the right moves it 2 px to the left, and what is behind, at 0.1, by 0.2.
+    // The left half is near, at inverse depth 1: a step of 0.02 to the right moves it 2 px to the left, and
+    // what is behind, at 0.1, by 0.2 px.
     const Past past = makePast(eye, waves, [](double x, double) { return x < 80 ? 1.0 : 0.1; });
     const WarpedPast warped = warpPast(past, moved(eye, {0.02, 0.0, 0.0}));
     for (std::size_t y = 0; y < 48; ++y) {
@@ -153,10 +157,11 @@ TEST_CASE("what was hidden behind a nearer wall is not taken for seen, and the n
         for (std::size_t x = 80; x < 160; ++x) { CHECK(depthAt(warped, row + x) == doctest::Approx(0.1)); }
         CHECK(std::count(warped.unseen.begin() + static_cast<int>(row), warped.unseen.begin() + static_cast<int>(row) + 160, 1) == 2);
     }
-    // What a silhouette uncovers is expected to resemble what lies beside it; of a tile's quarter, 16 such pixels.
+    // What a silhouette uncovers is expected to resemble what lies beside it; in a quarter of the tile, 16
+    // such pixels.
     CHECK(warped.picture.tiles[14].unseen == std::array<unsigned, 4>{0, 16, 0, 16});
     CHECK(warped.picture.tiles[14].grown[1] < 1.0);
-    // And to the left: the near wall covers two pixels that both would claim.
+    // And to the left: the near wall covers two pixels that both walls would claim.
     const WarpedPast covered = warpPast(past, moved(eye, {-0.02, 0.0, 0.0}));
     for (std::size_t x = 78; x < 160; ++x) { CHECK(depthAt(covered, 160 * 24 + x) == doctest::Approx(x < 82 ? 1.0 : 0.1)); }
 }
@@ -173,7 +178,7 @@ TEST_CASE("nothing comes from where the past was hidden, and what is hidden now 
     CHECK(warped.unseen[40 * 96 + 46] == 0);  // that tile was seen
     CHECK(warped.picture.rgba[20 * 96 + 40] == glm::dvec4(0.1, 0.2, 0.3, 0.0));
     CHECK_FALSE(warped.picture.pixels[20 * 96 + 40]);
-    CHECK(warped.unseen[20 * 96 + 31] == 1);  // the pixel beside it comes from there
+    CHECK(warped.unseen[20 * 96 + 31] == 1);  // its source is the neighbouring pixel
     CHECK(warped.unseen[20 * 96 + 30] == 0);
 }
 
@@ -186,7 +191,8 @@ TEST_CASE("the colour of what was hidden does not leak into the pixels beside it
     for (std::size_t y = 16; y < 32; ++y) {
         for (std::size_t x = 32; x < 48; ++x) { past.rgba[y * 96 + x] = glm::dvec4(0.0); }
     }
-    const WarpedPast warped = warpPast(past, moved(eye, {0.01, 0.01, 0.0}));  // by half a pixel each way
+    // By half a pixel in each direction.
+    const WarpedPast warped = warpPast(past, moved(eye, {0.01, 0.01, 0.0}));
     for (std::size_t i = 0; i < warped.unseen.size(); ++i) {
         if (warped.unseen[i] == 0) { CHECK(warped.picture.rgba[i].r == doctest::Approx(0.5)); }
     }

@@ -28,11 +28,12 @@ inline Scene makeScene(const std::vector<Splat>& splats) {
     return scene;
 }
 
-// At the origin along z, focal length 100 px, the axis through the centre of the middle pixel of an odd size.
+// At the origin, along z, with a focal length of 100 px and the axis through the centre of the middle pixel
+// of an odd size.
 inline Eye makeEye(glm::uvec2 size_px) { return {Pose{}, {100.0, 100.0, 0.5 * size_px.x, 0.5 * size_px.y}, size_px}; }
 
-// Random splats around an eye at the origin: near and far, large and thin, behind, through the near plane,
-// off the image.
+// Random splats around an eye at the origin: near and far, large and thin, behind it, through the near plane,
+// outside the picture.
 inline Scene makeCloud(int count, unsigned seed) {
     std::mt19937 random(seed);
     const auto draw = [&](float low, float high) { return low + (high - low) * static_cast<float>(drawUnit(random)); };

@@ -1,6 +1,7 @@
-// Facts about the float64 twin's pictures that are derived by hand, and what its passes leave out; what frame_test.cpp derives for
-// those of the device, which are held against the twin's, is not derived again. The eye sits at the origin and looks along z with a focal
-// length of 100 px; its axis passes through the centre of the middle pixel.
+// Facts about the float64 twin's pictures that are derived by hand, and about what its passes leave out. What
+// frame_test.cpp derives for the device's pictures, which are compared with the twin's, is not repeated. The
+// eye is at the origin and looks along z with a focal length of 100 px; its axis passes through the centre of
+// the middle pixel.
 #include "engine/twin/reach.h"
 #include "tests/engine/twin/reference_scenes.h"
 
@@ -11,7 +12,8 @@ using reference::Settings;
 
 constexpr glm::uvec2 kSize{101, 101};
 constexpr float kRootHalf = 0.70710678f;
-// t_u = (1, 0, 1)/sqrt(2), t_v = y: a wall that recedes to the right; and t_u = z, t_v = y: a wall seen edge-on.
+// t_u = (1, 0, 1)/sqrt(2), t_v = y: a wall that recedes to the right; and t_u = z, t_v = y: a wall seen
+// edge-on.
 const glm::quat kReceding = glm::angleAxis(-0.785398163f, glm::vec3(0.0f, 1.0f, 0.0f));
 const glm::quat kEdgeOn(kRootHalf, 0.0f, -kRootHalf, 0.0f);
 // t_u = x, t_v = z: a floor.
@@ -21,7 +23,7 @@ Picture render(const std::vector<Splat>& splats, const Settings& settings = {}, 
     return reference::render(makeScene(splats), makeEye(size_px), settings);
 }
 
-// With hits in each pixel's own order, or that of a window.
+// With hits in each pixel's own order, or in that of a window.
 Picture renderByPixel(const Scene& scene, std::size_t window) {
     const Eye eye = makeEye(kSize);
     const auto order = reference::sortDepth(reference::compact(scene, reference::cull(scene, {&eye, 1}, {}), eye));
@@ -38,7 +40,7 @@ doctest::Approx near(double value) { return doctest::Approx(value).epsilon(1e-6)
 
 TEST_CASE("no pixel at which a splat is met is left out by cull, by its box, by the runs of its rows or by bin, and bin adds no tile") {
     Scene scene = makeCloud(500, 6);
-    for (std::size_t i = 0; i < 100; ++i) {  // large ones about the eye
+    for (std::size_t i = 0; i < 100; ++i) {  // large ones around the eye
         scene.positions[i] *= 0.3f;
         scene.scales[i] = glm::max(scene.scales[i], glm::vec2(0.05f)) * 3.0f;
     }
@@ -78,7 +80,8 @@ TEST_CASE("no pixel at which a splat is met is left out by cull, by its box, by 
 }
 
 TEST_CASE("the customary box of a disc that faces the eye is a square of 3 sigma") {
-    // Sigma 10.2 px: radius ceil(30.6) = 31 about (50.5, 50.5), i.e. pixels 19.5 to 81.5: tiles 1 to 5 both ways.
+    // Sigma is 10.2 px, so the radius is ceil(30.6) = 31 about (50.5, 50.5): pixels 19.5 to 81.5, tiles 1 to
+    // 5 in both directions.
     const std::vector<std::uint32_t> both{0, 1};
     const Scene scene = makeScene({{.scale = {0.204f, 0.1f}}, {.position = {0, 0, -2}}});
     const auto splats = reference::project(scene, both, makeEye(kSize), {});
@@ -87,8 +90,8 @@ TEST_CASE("the customary box of a disc that faces the eye is a square of 3 sigma
 }
 
 TEST_CASE("a disc through the near plane keeps its front part and shows no mirror image") {
-    // A floor at y = 1 under the eye: the ray with slope Y = (row - 50) / 100 meets it at z = 1 / Y, and the middle column at
-    // v = z / 3. Its centre lies beside the near plane, so there is no low-pass.
+    // A floor at y = 1 below the eye: the ray with slope Y = (row - 50) / 100 meets it at z = 1 / Y, and the
+    // middle column at v = z / 3. Its centre is nearer than the near plane, so there is no low-pass.
     const std::vector<Splat> floor{{.position = {0.0f, 1.0f, 0.0f}, .rotation = kFloor, .scale = glm::vec2(3.0f)}};
     const Picture picture = render(floor);
     for (const std::uint32_t row : {65u, 80u, 100u}) {
@@ -97,10 +100,10 @@ TEST_CASE("a disc through the near plane keeps its front part and shows no mirro
         CHECK(rgbaAt(picture, 50, row).w == near(alpha));
         CHECK(depthAt(picture, 50, row) == near(alpha * z));
     }
-    // Behind the eye the same plane would show above the horizon.
+    // Behind the eye, the same plane would appear above the horizon.
     for (std::uint32_t row = 0; row <= 50; ++row) { CHECK(rgbaAt(picture, 50, row).w == 0.0); }
 
-    // With the near plane at z = 2 only slopes up to 1/2 are left: rows up to 100. At 2.1, rows up to 97.
+    // With the near plane at z = 2, only slopes up to 1/2 remain: rows up to 100. At 2.1, rows up to 97.
     Settings settings;
     settings.near = 2.1;
     const Picture cut = render(floor, settings);
@@ -110,7 +113,7 @@ TEST_CASE("a disc through the near plane keeps its front part and shows no mirro
 }
 
 TEST_CASE("of a disc seen edge-on, smaller than a pixel or without a scale only the low-pass is left") {
-    // rho2 = 2 r^2, so alpha = o exp(-r^2), to r = sqrt(10.636 / 2) = 2.3 px; depth is the centre's.
+    // rho2 = 2 r^2, so alpha = o exp(-r^2), up to r = sqrt(10.636 / 2) = 2.3 px; the depth is the centre's.
     for (const Splat& splat : {Splat{.rotation = kEdgeOn}, Splat{.rotation = glm::angleAxis(1e-7f, glm::vec3(1.0f, 0.0f, 0.0f)) * kEdgeOn},
                                Splat{.scale = glm::vec2(1e-6f)}, Splat{.scale = glm::vec2(0.0f)}}) {
         const Picture picture = render({splat});
@@ -137,9 +140,9 @@ TEST_CASE("opacity below 1/255 shows nothing, and opacity 1 blends as 0.99; nega
 }
 
 TEST_CASE("two discs that cross are blended in the order of each pixel's own hits") {
-    // Planes z = 2 + x and z = 2.1 - x meet at x = 0.05, z = 2.05: by whole discs the red one goes first everywhere, but to the right of
-    // the crossing the green one is nearer. On the ray x = X z they are at 2 / (1 - X) and 2.1 / (1 + X), each at x from its centre: a
-    // distance of sqrt(2) x along the disc.
+    // Planes z = 2 + x and z = 2.1 - x meet at x = 0.05, z = 2.05. Sorted as whole discs, the red one comes
+    // first everywhere, but to the right of the crossing the green one is nearer. On the ray x = X z they are
+    // at 2 / (1 - X) and 2.1 / (1 + X), each at x from its centre: a distance of sqrt(2) x along the disc.
     const Splat red{.position = {0.0f, 0.0f, 2.0f}, .rotation = kReceding, .scale = glm::vec2(1.0f), .colour = {1.0f, 0.0f, 0.0f}};
     const Splat green{
         .position = {0.0f, 0.0f, 2.1f}, .rotation = glm::conjugate(kReceding), .scale = glm::vec2(1.0f), .colour = {0.0f, 1.0f, 0.0f}};
@@ -158,8 +161,8 @@ TEST_CASE("two discs that cross are blended in the order of each pixel's own hit
 }
 
 TEST_CASE("two 3D Gaussians go by where each is densest along a pixel's ray") {
-    // Long along (1, 0, 1) and (1, 0, -1), through (0, 0, 2) and (0, 0, 2.1): needles in the planes of the discs above, that cross as these
-    // do.
+    // Long along (1, 0, 1) and (1, 0, -1), through (0, 0, 2) and (0, 0, 2.1): needles in the planes of the
+    // discs above, which cross in the same way.
     const auto alongX = [](float z, const glm::quat& rotation, const glm::vec3& colour) {
         return Splat{.position = {0.0f, 0.0f, z}, .rotation = rotation, .scale = {1.0f, 0.02f}, .colour = colour};
     };
@@ -175,14 +178,16 @@ TEST_CASE("two 3D Gaussians go by where each is densest along a pixel's ray") {
 }
 
 TEST_CASE("blending stops before transmittance falls under 1e-4") {
-    // T: 1, 0.01, then 2e-4; the third layer would leave 2e-6 and closes the pixel, so the fourth, which would fit, is not blended.
+    // T: 1, 0.01, then 2e-4. The third layer would leave 2e-6 and closes the pixel, so the fourth is not
+    // blended, although it would fit.
     const auto layer = [](float z, float opacity) { return Splat{.position = {0.0f, 0.0f, z}, .opacity = opacity}; };
     const Picture picture = render({layer(2.0f, 1.0f), layer(3.0f, 0.98f), layer(4.0f, 1.0f), layer(5.0f, 0.1f)});
     CHECK(rgbaAt(picture, 50, 50).w == near(1.0 - 0.01 * (1.0 - static_cast<double>(0.98f))));
 }
 
 TEST_CASE("spherical harmonics have the signs scenes are trained with") {
-    // In direction d = (0, 0, 1): degree 1 gives +0.48860 sh[2], degree 2 2 * 0.31539 sh[6], degree 3 2 * 0.37318 sh[12].
+    // In direction d = (0, 0, 1), degree 1 gives +0.48860 sh[2], degree 2 gives 2 * 0.31539 sh[6], and degree
+    // 3 gives 2 * 0.37318 sh[12].
     const glm::vec3 ahead(0, 0, 2), right(2, 0, 2), down(0, 2, 2);
     const double root = std::sqrt(0.5);
     const std::tuple<std::size_t, glm::vec3, double> known[] = {{0, ahead, 0.2820947918},

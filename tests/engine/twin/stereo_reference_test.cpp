@@ -1,4 +1,4 @@
-// Facts about the twins of the stereo passes by themselves: small pictures for which the answer is worked out by hand.
+// Facts about the twins of the stereo passes on their own: small pictures whose result is worked out by hand.
 #include "engine/twin/stereo.h"
 #include "tests/engine/twin/reference_scenes.h"
 
@@ -6,7 +6,8 @@ SUITE(stereo_reference) {
 
 using namespace binosplat::reference;
 
-// Parallel eyes 0.1 apart, of 100 px focal length: pixels go 10 px to the left for a unit of inverse depth.
+// Parallel eyes 0.1 apart with a focal length of 100 px: pixels move 10 px to the left per unit of inverse
+// depth.
 EyePair parallelEyes(glm::uvec2 size_px) {
     const auto eyes = stereoPair(test::makeEye(size_px), 0.1);
     return {eyes[kLeft], eyes[kRight]};
@@ -18,7 +19,7 @@ Picture makePicture(glm::uvec2 size_px, double inverse_depth) {
     return {size_px, std::vector(pixels, glm::dvec4(0.0, 0.0, 0.0, 1.0)), std::vector(pixels, 1.0 / inverse_depth),
             std::vector(pixels, inverse_depth), std::vector(pixels, inverse_depth * inverse_depth)};
 }
-// A ramp of 1/100 a pixel in green.
+// A ramp in green, of 1/100 per pixel.
 Picture makeRamp(glm::uvec2 size_px) {
     Picture picture = makePicture(size_px, 0.2);
     for (std::size_t i = 0; i < picture.rgba.size(); ++i) { picture.rgba[i].y = 0.01 * static_cast<double>(i % size_px.x); }
@@ -46,7 +47,7 @@ std::vector<TileRange> rangesOf(const std::vector<std::uint32_t>& pairs) {
     return ranges;
 }
 
-// A tile of the strip that `weigh` sees the pairs of: nothing moves if all is infinitely far.
+// A tile of the strip whose pairs `weigh` sees: nothing moves if everything is infinitely far.
 Weighed weighStrip(const std::vector<std::uint32_t>& pairs, std::uint32_t move_cost, std::vector<std::uint8_t> hidden = {},
                    double budget = 0.0) {
     const glm::uvec2 size_px(16 * pairs.size(), 16);
@@ -75,15 +76,15 @@ TEST_CASE("nothing is moved where that saves no more than half of moving all til
     CHECK(letters(weighStrip({200, 1, 1, 1, 1, 1, 1, 1}, 40).kinds) == "CCCCCCCC");
     CHECK_FALSE(weighStrip({200, 1, 1, 1, 1, 1, 1, 1}, 40).moves);
     CHECK(letters(weighStrip({201, 1, 1, 1, 1, 1, 1, 1}, 40).kinds) == ".CCCCCCC");
-    // Of seven 140.
+    // With seven, 140.
     CHECK(letters(weighStrip({181, 1, 1, 1, 1, 1, 1, 1}, 40, {0, 0, 0, 1, 0, 0, 0, 0}).kinds) == ".CChCCCC");
-    // 477 in all, of which 309 are saved: more than 160 and 143 for mending, not more than 160 and 190.
+    // 477 in all, of which 309 are saved: more than 160 and 143 for mending, but not more than 160 and 190.
     std::vector<std::uint32_t> pairs(8, 0);
     pairs[0] = 349;
     CHECK(weighStrip(pairs, 40, {}, 0.25).picture_cost == 349 + 8 * 16);
     CHECK_FALSE(weighStrip(pairs, 40, {}, 0.4).moves);
     CHECK(weighStrip(pairs, 40, {}, 0.3).moves);
-    // What is hidden counts for nothing.
+    // Hidden tiles count for nothing.
     const Weighed hidden = weighStrip({181, 1, 1, 9999, 1, 1, 1, 1}, 40, {0, 0, 0, 1, 0, 0, 0, 0});
     CHECK(hidden.picture_cost == 197 + 6 * 17);
     CHECK(hidden.saved_cost == 141);
@@ -91,7 +92,7 @@ TEST_CASE("nothing is moved where that saves no more than half of moving all til
 }
 
 TEST_CASE("expected errors of blended depths: half the spread in pixels times the gradient, squared, on every other row for two") {
-    // 2 px of disparity at inverse depth 0.2, a spread of 1/4 of it.
+    // 2 px of disparity at inverse depth 0.2, with a spread of 1/4 of it.
     const glm::uvec2 size_px(48, 16);
     Picture picture = makeRamp(size_px);
     for (std::size_t i = 0; i < picture.rgba.size(); ++i) { spread(picture, i, spreadCode(0.25)); }
@@ -103,22 +104,23 @@ TEST_CASE("expected errors of blended depths: half the spread in pixels times th
     const auto errors = expectErrors(resolved, arrivals, picture, kinds, eyes, settings);
     const double pixel = 0.25 * 0.25 * 0.01 * 0.01 / 3.0;
     CHECK(errors[1] == doctest::Approx(256.0 * pixel));
-    // Two columns of holes at the right; beside them the source's last two pixels, where the gradient ends in itself.
+    // Two columns of holes on the right; beside them are the source's last two pixels, where the gradient
+    // ends.
     CHECK(errors[2] == doctest::Approx(16.0 * (13.0 + 0.25) * pixel + 32.0 * 1e-4));
-    // The spread is the one that arrived, whatever the source says; and a mark takes the tile out.
+    // The spread is the one that arrived, whatever the source's is; and a mark excludes the tile.
     auto spreadless = resolved;
     for (Resolved& r : spreadless) { r.spread = 0; }
     kinds[2] = TileKind::kCheap;
     const auto without = expectErrors(spreadless, arrivals, picture, kinds, eyes, settings);
     CHECK(without[0] + without[1] < 1e-24);
     CHECK(without[2] == 0.0);
-    // Four pixels are the most.
+    // Four pixels are the maximum.
     for (Resolved& r : spreadless) { r.spread = 31; }
     CHECK(expectErrors(spreadless, arrivals, picture, kinds, eyes, settings)[1] == doctest::Approx(256.0 * 16.0 * 1e-4 / 3.0));
 }
 
 TEST_CASE("expected errors of steps in depth: the greater of both, in pixels, times the gradient, on both sides of it") {
-    // 10 px of disparity at inverse depth 1, so that a step of 0.1 is one pixel.
+    // 10 px of disparity at inverse depth 1, so a step of 0.1 is one pixel.
     const glm::uvec2 size_px(48, 16);
     const Picture picture = makeRamp(size_px);
     const EyePair eyes = parallelEyes(size_px);
@@ -127,14 +129,14 @@ TEST_CASE("expected errors of steps in depth: the greater of both, in pixels, ti
     const std::vector<TileKind> kinds(3, TileKind::kNone);
     const auto errorsOf = [&](const std::vector<Arrival>& beside) { return expectErrors(resolved, beside, picture, kinds, eyes, {}); };
     CHECK(errorsOf(arrivals)[1] < 1e-24);
-    // One column of another depth beside each pixel of two: what a pixel itself is taken for stays.
+    // One column of another depth next to each pair of columns: the class of a pixel itself stays.
     auto stepped = arrivals;
     for (std::size_t y = 0; y < 16; ++y) { stepped[y * 48 + 24].inverse_depth = 0.3; }
     CHECK(errorsOf(stepped)[1] == doctest::Approx(16.0 * 2.0 * 0.01 * 0.01 / 3.0));
-    // The greater step decides, whichever side it is on.
+    // The larger step decides, on whichever side it is.
     for (std::size_t y = 0; y < 16; ++y) { stepped[y * 48 + 22].inverse_depth = 0.0; }
     CHECK(errorsOf(stepped)[1] == doctest::Approx(16.0 * (1.0 + 4.0 + 4.0) * 0.01 * 0.01 / 3.0));
-    // Where nothing arrived there is no step.
+    // Where nothing arrived, there is no step.
     for (std::size_t y = 0; y < 16; ++y) { stepped[y * 48 + 22] = stepped[y * 48 + 24] = {}; }
     CHECK(errorsOf(stepped)[1] < 1e-24);
 }
@@ -157,7 +159,8 @@ TEST_CASE("expected errors of sampling: what alternates from pixel to pixel is l
 }
 
 TEST_CASE("an eye that resolves as much as the picture shows sees all of an error, farther from where it looks less and less") {
-    // Pixels of 1/1000: cycles of 2/1000 rad, 0.1146 degrees, which the eye resolves up to (0.1146 - 1/48) / 0.022 = 4.26 degrees.
+    // Pixels of 1/1000: cycles of 2/1000 rad, or 0.1146 degrees, which the eye resolves up to (0.1146 - 1/48)
+    // / 0.022 = 4.26 degrees.
     const Eye eye{Pose{}, {1000.0, 1000.0, 8.0, 8.0}, {1024, 16}};
     const auto shareAt = [&](double tangent, const reference::Gaze& gaze) {
         return reference::findSeenShares(eye, gaze).at(static_cast<std::size_t>(tangent * 1000.0 / 16.0 + 0.5));
@@ -169,9 +172,9 @@ TEST_CASE("an eye that resolves as much as the picture shows sees all of an erro
     const auto law = [](double degrees) { return std::pow(glm::degrees(0.002) / (1.0 / 48.0 + 0.022 * degrees), 2.0); };
     CHECK(shareAt(0.352, ahead) == doctest::Approx(law(glm::degrees(std::atan(0.352)))));
     CHECK(law(19.4) == doctest::Approx(0.0654).epsilon(0.01));
-    // It may look up to ten degrees beside it as well.
+    // It may also look up to ten degrees to the side.
     CHECK(shareAt(0.352, {{0.0, 0.0, 1.0}, glm::radians(10.0)}) == doctest::Approx(law(glm::degrees(std::atan(0.352)) - 10.0)));
-    // It looks there; straight ahead is then as far away.
+    // It looks there; straight ahead is then just as far away.
     CHECK(shareAt(0.352, {{0.352, 0.0, 1.0}, 0.0}) == 1.0);
     CHECK(shareAt(0.0, {{0.352, 0.0, 1.0}, 0.0}) == doctest::Approx(shareAt(0.352, ahead)));
     // Behind the eye.

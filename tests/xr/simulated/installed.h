@@ -1,5 +1,5 @@
 // Other programs that tests run. If one is missing, its tests are visibly skipped; if the environment
-// variable CI is set, as .ci/run does after installing them all, that is a failure.
+// variable CI is set, as in .ci/run after installing them all, that is a failure.
 #pragma once
 
 #include "tests/suite.h"

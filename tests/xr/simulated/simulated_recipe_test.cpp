@@ -1,5 +1,6 @@
-// docs/test_your_openxr_program.md as a stranger follows it: the folder of the simulated runtime built alone and installed, a program that
-// was not written for it run by the page's script, its frame log read and compared.
+// docs/test_your_openxr_program.md as a newcomer follows it: the folder of the simulated runtime is built
+// alone and installed, the page's script runs a program that was not written for it, and its frame log is
+// read and compared.
 #include <sys/wait.h>
 
 #include "tests/xr/simulated/installed.h"
@@ -7,7 +8,7 @@
 
 SUITE(simulated_recipe) {
 
-// The same place each time, so that a compiler cache knows it.
+// The same place each time, so that a compiler cache recognizes it.
 const fs::path kWork = fs::path(BINOSPLAT_OUTPUT_DIR) / "simulated_alone";
 
 struct Run {
@@ -27,7 +28,7 @@ bool haveTools() {
 
 std::string pageText() { return textIn(BINOSPLAT_SOURCE_DIR "/docs/test_your_openxr_program.md"); }
 
-// The block in which a line of the page stands.
+// The block of the page that contains a line.
 std::string blockWith(const std::string& line) {
     const std::string page = pageText();
     const std::size_t place = page.find(line);
@@ -36,14 +37,15 @@ std::string blockWith(const std::string& line) {
     return page.substr(begin, page.find("```", place) - begin);
 }
 
-// A copy of the folder, built and installed once for all cases. The manifest's path, or nothing if something failed.
+// A copy of the folder, built and installed once for all cases: the manifest's path, or nothing if something
+// failed.
 const fs::path& installedManifest() {
     static const fs::path manifest = [] {
         fs::create_directories(kWork);
         fs::remove_all(kWork / "source");
         fs::remove_all(kWork / "installed");
         fs::copy(std::string(BINOSPLAT_SOURCE_DIR) + "/xr/simulated", kWork / "source", fs::copy_options::recursive);
-        // Each target from one file, that reads the headers once: half the work of a build.
+        // Builds each target from one file that reads the headers once: half the work.
         const std::string cache = std::system("command -v ccache > /dev/null") == 0 ? " -DCMAKE_CXX_COMPILER_LAUNCHER=ccache" : "";
         const std::string work = kWork.string();
         const Run run = shell(
@@ -56,7 +58,7 @@ const fs::path& installedManifest() {
     return manifest;
 }
 
-// hello_xr ends at the first key: its input stays open and silent.
+// hello_xr ends at the first key, so its input stays open and silent.
 Run runHello(const std::string& name, const std::string& script) {
     std::ofstream(kWork / (name + ".script")) << script;
     fs::remove_all(kWork / name);
@@ -86,7 +88,7 @@ TEST_CASE("the folder builds alone and installs a library that its manifest find
     const fs::path library = installedManifest().parent_path() / manifest["runtime"]["library_path"].get<std::string>();
     CHECK(fs::exists(library));
     CHECK(fs::exists(kWork / "installed/share/doc/simulated_openxr_runtime/LICENSE"));
-    // Of what is not in every Debian it needs libpng alone.
+    // Apart from what every Debian has, it needs only libpng.
     const Run needs = shell("ldd " + library.string());
     CHECK(contains(needs, "libpng"));
     for (const char* other : {"OpenImageIO", "fmt", "vulkan", "openxr", "not found"}) {
@@ -184,7 +186,7 @@ TEST_CASE("the tool that compares logs says what differs, within what it was tol
     fs::remove(kWork / "b/frame_000000.png");
     CHECK(contains(compareRuns("a", "b", "--pictures 1"), "frame_000000.png is missing"));
     CHECK(compareRuns("a", "nowhere").exit_code == 2);
-    // A picture that ends in its signature, in its header, before and within its pixels.
+    // A picture that ends within its signature, within its header, before its pixels and within them.
     write("d", expected, 100);
     CHECK(compareRuns("a", "d", "--pictures 0").exit_code == 0);
     const fs::path picture = kWork / "d/frame_000000.png";

@@ -1,4 +1,5 @@
-// Making action sets and actions, checks of their names and subaction paths, and the bindings that an application suggests.
+// Making action sets and actions, checks of their names and subaction paths, and the bindings that an
+// application suggests.
 #include "xr/simulated/api/actions.h"
 
 #include <algorithm>

@@ -69,8 +69,9 @@ void append(std::string& reason, XrStructureType type) {
 }
 
 void explain(const char* function, const Refusal& refusal) {
-    // A failure of the runtime itself is always reported: no application can know what to do about it. The loader asks for every function
-    // that it has heard of, even without an instance after one was refused; that is not the application's mistake.
+    // A failure of the runtime itself is always reported: no application can know what to do about it. The
+    // loader asks for every function that it has heard of, even without an instance after one was refused;
+    // that is not the application's mistake.
     const bool is_loaders = std::strcmp(function, "xrGetInstanceProcAddr") == 0 && refusal.result != XR_ERROR_VALIDATION_FAILURE;
     if (!is_loaders) { queueMessage(XR_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT, nameOf(refusal.result), function, refusal.reason); }
     const bool is_wanted = settingOf("EXPLAIN").is_there && !is_loaders;

@@ -1,4 +1,5 @@
-// How API functions answer: an error in a call is thrown as a Refusal and becomes the result code in one place.
+// How API functions answer: an error in a call is thrown as a Refusal and becomes the result code in one
+// place.
 #pragma once
 
 #include <charconv>
@@ -47,7 +48,8 @@ void require(bool holds, XrResult otherwise, const Parts&... parts) {
 // One lock for the whole runtime: calls are short, and only xrWaitFrame waits (and releases it meanwhile).
 std::mutex& getRuntimeLock();
 
-// With SIMULATED_OPENXR_EXPLAIN set, says on standard error which call was refused and why; failures of the runtime are always reported.
+// With SIMULATED_OPENXR_EXPLAIN set, says on standard error which call was refused and why; failures of the
+// runtime are always reported.
 void explain(const char* function, const Refusal& refusal);
 void explainFailure(const char* function, const char* what);
 // Repeated lines are counted: a line is printed at ten times, at a hundred and so on, and here, at the end.

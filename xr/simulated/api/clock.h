@@ -1,5 +1,6 @@
-// Where OpenXR's time comes from. In lock-step, the default, a frame takes exactly one period however long it took to render, nothing
-// sleeps, and every run is the same. With the real clock, frames are paced as by a display.
+// Where OpenXR's time comes from. In lock-step, the default, a frame takes exactly one period however long it
+// took to render, nothing sleeps, and every run is the same. With the real clock, frames are paced as by a
+// display.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +14,8 @@ namespace simulated {
 
 class Clock {
 public:
-    // True for real pacing. The period must not be zero. In lock-step frames come up to half this share of a period early or late.
+    // True for real pacing. The period must not be zero. In lock-step frames come up to half this share of a
+    // period early or late.
     Clock(bool is_real, XrDuration period, double irregularity = 0);
 
     struct Frame {
@@ -28,13 +30,15 @@ public:
     XrTime now() const;
     XrDuration period() const { return period_; }
     bool isReal() const { return is_real_; }
-    // Seconds since the first frame: the time that scripts know. It does not count how long a program takes to start.
+    // Seconds since the first frame: the time that scripts know. It does not count how long a program takes
+    // to start.
     double secondsAt(XrTime time) const { return static_cast<double>(time - kStart) * 1e-9; }
     XrTime timeAt(double seconds) const { return kStart + static_cast<XrTime>(seconds * 1e9); }
     // Another display rate, from the next frame on.
     void setPeriod(XrDuration period);
-    // CLOCK_MONOTONIC minus OpenXR's time, the same for the clock's life. In lock-step it is fixed when this is first asked for; with the
-    // real clock both run at the same rate, and time begins with this call if there was no frame yet.
+    // CLOCK_MONOTONIC minus OpenXR's time, the same for the clock's life. In lock-step it is fixed when this
+    // is first asked for; with the real clock both run at the same rate, and time begins with this call if
+    // there was no frame yet.
     std::int64_t monotonicOffset();
 
 private:

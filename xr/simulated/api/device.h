@@ -1,5 +1,5 @@
-// The application's Vulkan device, as this runtime uses it: images made on it, and their texels read back on the application's queue in
-// the calls where OpenXR allows that (XR_KHR_vulkan_enable2, "Concurrency").
+// The application's Vulkan device, as this runtime uses it: images made on it, and their texels read back on
+// the application's queue in the calls where OpenXR allows that (XR_KHR_vulkan_enable2, "Concurrency").
 #pragma once
 
 #include <memory>
@@ -44,7 +44,8 @@ public:
     [[nodiscard]] std::unique_ptr<DeviceImage> createImage(const ImageInfo& info);
     // Brings a new image into the layout in which the application gets it.
     void prepare(const DeviceImage& image);
-    // The colour (or depth) of all array layers at the first mip level, tightly packed. The image is in the same layout before and after.
+    // The colour (or depth) of all array layers at the first mip level, tightly packed. The image is in the
+    // same layout before and after.
     [[nodiscard]] std::vector<std::byte> read(const DeviceImage& image);
 
     struct Implementation;

@@ -1,4 +1,5 @@
-// The queue that xrPollEvent empties. It is bounded: what does not fit is counted, and the application is told how many it lost.
+// The queue that xrPollEvent empties. It is bounded: what does not fit is counted, and the application is
+// told how many it lost.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,5 @@
-// Sections 10.4 and 10.5: the frame loop. In lock-step xrWaitFrame moves time on by one period and does not sleep.
+// Sections 10.4 and 10.5: the frame loop. In lock-step xrWaitFrame moves time on by one period and does not
+// sleep.
 #include <algorithm>
 #include <cmath>
 #include <condition_variable>

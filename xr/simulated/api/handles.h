@@ -1,5 +1,5 @@
-// Every object behind a handle, in a tree: children end with their parent. Numbers are never reused, so that a handle that was destroyed,
-// or is of another type, is known to be invalid.
+// Every object behind a handle, in a tree: children end with their parent. Numbers are never reused, so that
+// a handle that was destroyed, or is of another type, is known to be invalid.
 #pragma once
 
 #include <cstdint>

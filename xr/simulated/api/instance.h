@@ -30,7 +30,8 @@ struct Instance : Object, Enabled {
     std::vector<SuggestedProfile> suggestions;
     bool has_asked_requirements = false;
     ObjectNames object_names;
-    // The device of xrGetVulkanGraphicsDevice(2)KHR and its VkInstance, and the source of each VkInstance's functions.
+    // The device of xrGetVulkanGraphicsDevice(2)KHR and its VkInstance, and the source of each VkInstance's
+    // functions.
     VkPhysicalDevice graphics_device = VK_NULL_HANDLE;
     VkInstance graphics_instance = VK_NULL_HANDLE;
     std::map<VkInstance, PFN_vkGetInstanceProcAddr> vulkan_loaders;
@@ -48,7 +49,8 @@ struct Instance : Object, Enabled {
     }
     // Features in the core since 1.1, and in 1.0 with an extension.
     [[nodiscard]] bool has1_1Or(const char* extension) const { return is_1_1 || extensions.contains(extension); }
-    // The system's for an instance that the application made without this runtime. XR_ERROR_RUNTIME_FAILURE if there is none.
+    // The system's for an instance that the application made without this runtime. XR_ERROR_RUNTIME_FAILURE
+    // if there is none.
     [[nodiscard]] PFN_vkGetInstanceProcAddr vulkanLoaderOf(VkInstance vulkan_instance) const;
 };
 

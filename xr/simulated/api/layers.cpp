@@ -1,4 +1,5 @@
-// Projections and quads: checked, composed and logged. Layers that surround the wearer are in surrounding_layers.cpp.
+// Projections and quads: checked, composed and logged. Layers that surround the wearer are in
+// surrounding_layers.cpp.
 #include "xr/simulated/api/layers.h"
 
 #include <array>

@@ -9,10 +9,12 @@
 
 namespace simulated {
 
-// XR_ERROR_LAYER_LIMIT_EXCEEDED, XR_ERROR_LAYER_INVALID, XR_ERROR_SWAPCHAIN_RECT_INVALID, XR_ERROR_POSE_INVALID ...
+// XR_ERROR_LAYER_LIMIT_EXCEEDED, XR_ERROR_LAYER_INVALID, XR_ERROR_SWAPCHAIN_RECT_INVALID,
+// XR_ERROR_POSE_INVALID ...
 void checkLayers(const Session& session, const XrFrameEndInfo& info);
 
-// For layers that passed the check. A layer whose space cannot be located in that state is logged but not shown.
+// For layers that passed the check. A layer whose space cannot be located in that state is logged but not
+// shown.
 std::vector<Layer> makeLayers(const Session& session, const XrFrameEndInfo& info, const State& state);
 std::vector<LoggedLayer> loggedLayers(const Session& session, const XrFrameEndInfo& info, const State& state);
 

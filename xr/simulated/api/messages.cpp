@@ -158,7 +158,8 @@ XrResult xrSubmitDebugUtilsMessageEXT(XrInstance instance, XrDebugUtilsMessageSe
         require(data.message != nullptr, XR_ERROR_VALIDATION_FAILURE, "there is no message");
         require(data.objects != nullptr || data.objectCount == 0, XR_ERROR_VALIDATION_FAILURE, "an array of objects is missing");
         require(data.sessionLabels != nullptr || data.sessionLabelCount == 0, XR_ERROR_VALIDATION_FAILURE, "an array of labels is missing");
-        // The application's message is unchanged, except for the names of objects; missing parts are filled in.
+        // The application's message is unchanged, except for the names of objects; missing parts are filled
+        // in.
         Pending message{nullptr, nullptr, messageSeverity, messageTypes, copyOf(data.messageId), copyOf(data.functionName), data.message,
                         {},      {}};
         for (std::uint32_t i = 0; i < data.sessionLabelCount; ++i) { message.labels.push_back(checkLabel(&data.sessionLabels[i])); }

@@ -1,5 +1,5 @@
-// XR_EXT_debug_utils: tells the application's callback why a call was refused. Messages wait until the runtime's lock is free, so that the
-// callback may call whatever it likes.
+// XR_EXT_debug_utils: tells the application's callback why a call was refused. Messages wait until the
+// runtime's lock is free, so that the callback may call whatever it likes.
 #pragma once
 
 #include <map>

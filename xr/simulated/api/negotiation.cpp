@@ -8,7 +8,8 @@
 
 namespace {
 
-// The loader's interface, version 1. Debian's headers lack it; the fields follow "OpenXR loader - design and operation".
+// The loader's interface, version 1. Debian's headers lack it; the fields follow "OpenXR loader - design and
+// operation".
 enum class InterfaceStructure : int { LoaderInfo = 1, RuntimeRequest = 3 };
 constexpr std::uint32_t kInterfaceVersion = 1;
 constexpr std::uint32_t kStructureVersion = 1;

@@ -11,7 +11,8 @@ namespace simulated {
 [[nodiscard]] Fov fromXr(const XrFovf& fov);
 [[nodiscard]] XrFovf toXr(const Fov& fov);
 
-// Velocities are differences of poses a millisecond to either side: short against any motion, long against rounding.
+// Velocities are differences of poses a millisecond to either side: short against any motion, long against
+// rounding.
 constexpr XrDuration kMotionStep = 1'000'000;
 struct Motion {
     XrVector3f linear_m_s, angular_rad_s;

@@ -1,5 +1,6 @@
 // Which paths each interaction profile has, as the registry of OpenXR 1.1.61 (xr.xml) lists them. Made by
-// make_profile_tables.py, which says how; not to be edited. Vectors such as /input/thumbstick stand here as their parts.
+// make_profile_tables.py, which says how; not to be edited. Vectors such as /input/thumbstick stand here as
+// their parts.
 #pragma once
 
 #include "xr/simulated/api/profiles.h"

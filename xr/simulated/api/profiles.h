@@ -13,7 +13,8 @@ namespace simulated {
 // A component's type in the registry.
 enum class ComponentKind { kBoolean, kFloat, kPose, kVibration };
 
-// `depends` is in the registry's words: names of versions and extensions, + is and, a comma is or; empty: always.
+// `depends` is in the registry's words: names of versions and extensions, + is and, a comma is or; empty:
+// always.
 struct Component {
     ComponentKind kind;
     std::string_view path;            // "/input/trigger/value"
@@ -46,7 +47,8 @@ const Profile* findProfile(std::string_view path);
 const Profile* findHandProfile(std::string_view name);
 // The names of all such profiles, for messages.
 std::string listHandProfiles();
-// True if "/user/hand/left/input/trigger/value", or a parent of components such as ".../input/trigger", may be bound in this profile.
+// True if "/user/hand/left/input/trigger/value", or a parent of components such as ".../input/trigger", may
+// be bound in this profile.
 bool allowsBinding(const Profile& profile, std::string_view binding, const Enabled& enabled);
 // Null if the profile has no such component at this user path, with this version and these extensions.
 const Component* findComponent(const Profile& profile, std::string_view user_path, std::string_view path, const Enabled& enabled);
@@ -54,7 +56,8 @@ const Component* findComponent(const Profile& profile, std::string_view user_pat
 // The extension or version that this path needs in the profile, if only that is missing; else empty.
 std::string_view findNeeded(const Profile& profile, std::string_view binding);
 
-// /user/hand/left, /user/hand/right, /user/head, /user/gamepad, /user/treadmill, and /user/eyes_ext of XR_EXT_eye_gaze_interaction.
+// /user/hand/left, /user/hand/right, /user/head, /user/gamepad, /user/treadmill, and /user/eyes_ext of
+// XR_EXT_eye_gaze_interaction.
 bool isUserPath(std::string_view path);
 // "/user/hand/left" is 0, right 1, head 2, gamepad 3, eyes 4 (script.h's InputDevice); none for others.
 std::optional<std::size_t> deviceOf(std::string_view user_path);

@@ -1,5 +1,5 @@
-// Chapter 9: a session and its life from IDLE to EXITING or LOSS_PENDING. The application's frames drive it: each, even one that xrEndFrame
-// refused, moves it a state towards the one that the script wants.
+// Chapter 9: a session and its life from IDLE to EXITING or LOSS_PENDING. The application's frames drive it:
+// each, even one that xrEndFrame refused, moves it a state towards the one that the script wants.
 #pragma once
 
 #include <array>
@@ -65,8 +65,9 @@ struct Session : Object {
     void step(const State& wanted);
     // A begun frame moves the session once: when it ends, or when the program gives it up.
     void passFrame(XrTime time);
-    // A headless session needs no frames: it enters the script's state at once, and each xrSyncActions takes a frame's time. If the program
-    // waits for frames nevertheless, they drive time and states, as in any other session.
+    // A headless session needs no frames: it enters the script's state at once, and each xrSyncActions takes
+    // a frame's time. If the program waits for frames nevertheless, they drive time and states, as in any
+    // other session.
     [[nodiscard]] bool isHeadless() const { return device == nullptr; }
     void settle();
     void passHeadlessFrame();

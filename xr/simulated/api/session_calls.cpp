@@ -9,7 +9,8 @@
 namespace simulated {
 namespace {
 
-// Graphics bindings of the two extensions are the same structure with the same type. None: the session is headless.
+// Graphics bindings of the two extensions are the same structure with the same type. None: the session is
+// headless.
 const XrGraphicsBindingVulkan2KHR* checkBinding(const Instance& instance, const XrSessionCreateInfo& info) {
     const auto* const found = findInChain<const XrGraphicsBindingVulkan2KHR>(info.next, XR_TYPE_GRAPHICS_BINDING_VULKAN2_KHR);
     if (found == nullptr && instance.extensions.contains(XR_MND_HEADLESS_EXTENSION_NAME)) { return nullptr; }

@@ -46,7 +46,8 @@ std::string findFavouriteProfile(const Script& script) {
 }
 
 std::unique_ptr<Simulation>& getSurvivor() {
-    // The loader closes the library between two instances; it is linked so that it stays loaded, or this would be forgotten.
+    // The loader closes the library between two instances; it is linked so that it stays loaded, or this
+    // would be forgotten.
     static std::unique_ptr<Simulation> simulation;
     return simulation;
 }

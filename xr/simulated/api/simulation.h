@@ -1,4 +1,5 @@
-// The simulation: the script that moves the headset, the clock that moves the script, and where the wearer's view is written.
+// The simulation: the script that moves the headset, the clock that moves the script, and where the wearer's
+// view is written.
 #pragma once
 
 #include <filesystem>

@@ -27,14 +27,15 @@ bool isKnown(const Session& session, XrReferenceSpaceType type) {
 
 bool isGaze(const Space& space) { return !space.reference && isOfGaze(space.session, space.action, space.subaction_path); }
 
-// Spaces of one pose action are fixed to one thing and never move against each other, even if nobody knows where that thing is.
+// Spaces of one pose action are fixed to one thing and never move against each other, even if nobody knows
+// where that thing is.
 bool areOnOneThing(const Space& space, const Space& base) {
     return !space.reference && !base.reference && space.action == base.action && space.subaction_path == base.subaction_path &&
            isLocatable(space.session, space.action, space.subaction_path);
 }
 
-// An untracked head has a pose only relative to itself; if only its orientation is known, its position is not valid. A gaze is on the head,
-// and its orientation and position are tracked together or not at all.
+// An untracked head has a pose only relative to itself; if only its orientation is known, its position is not
+// valid. A gaze is on the head, and its orientation and position are tracked together or not at all.
 XrSpaceLocationFlags locationFlagsOf(const Space& space, const Space& base, const State& state) {
     constexpr XrSpaceLocationFlags kTracked = XR_SPACE_LOCATION_ORIENTATION_TRACKED_BIT | XR_SPACE_LOCATION_POSITION_TRACKED_BIT;
     if (areOnOneThing(space, base)) { return kPoseKnown; }
@@ -181,7 +182,8 @@ XrResult xrGetReferenceSpaceBoundsRect(XrSession session, XrReferenceSpaceType r
     return answerFor<Session>(__func__, session, [&](const Session& owner) {
         const bool is_stage = referenceSpaceType == XR_REFERENCE_SPACE_TYPE_STAGE;
         require(!is_stage || hasStage(owner), XR_ERROR_REFERENCE_SPACE_UNSUPPORTED, "there is no STAGE");
-        // Unlike xrCreateReferenceSpace, whose conformance test wants XR_ERROR_REFERENCE_SPACE_UNSUPPORTED for any unknown type.
+        // Unlike xrCreateReferenceSpace, whose conformance test wants XR_ERROR_REFERENCE_SPACE_UNSUPPORTED
+        // for any unknown type.
         require(isKnown(owner, referenceSpaceType), XR_ERROR_VALIDATION_FAILURE, referenceSpaceType,
                 " is no reference space that this session has");
         checkOutput(bounds) = is_stage ? XrExtent2Df{3, 2} : XrExtent2Df{0, 0};

@@ -6,7 +6,8 @@ namespace {
 
 constexpr int kLongestChain = 64;
 
-// How many bytes follow this leading byte, -1 if it cannot lead. Overlong forms and surrogates are left to the check below.
+// How many bytes follow this leading byte, -1 if it cannot lead. Overlong forms and surrogates are left to
+// the check below.
 int followersOf(unsigned char lead) {
     if (lead < 0x80) { return 0; }
     if (lead >= 0xC2 && lead < 0xE0) { return 1; }

@@ -1,4 +1,5 @@
-// Checks of every structure and array that an application passes: types, next chains, the two-call idiom, fixed strings.
+// Checks of every structure and array that an application passes: types, next chains, the two-call idiom,
+// fixed strings.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +14,8 @@
 
 namespace simulated {
 
-// Unknown structures in a chain are skipped, as the specification demands; a chain that never ends is refused.
+// Unknown structures in a chain are skipped, as the specification demands; a chain that never ends is
+// refused.
 void checkChain(const void* next);
 // Null if there is none.
 const XrBaseInStructure* findInChain(const void* next, XrStructureType type);

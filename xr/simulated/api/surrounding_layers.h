@@ -1,4 +1,5 @@
-// XR_KHR_composition_layer_cylinder, _equirect2 and _cube: layers that surround the wearer. Also what all layers with one picture share.
+// XR_KHR_composition_layer_cylinder, _equirect2 and _cube: layers that surround the wearer. Also what all
+// layers with one picture share.
 #pragma once
 
 #include "xr/simulated/api/layers.h"

@@ -17,7 +17,8 @@ constexpr XrSwapchainUsageFlags kKnownUsage = XR_SWAPCHAIN_USAGE_COLOR_ATTACHMEN
                                               XR_SWAPCHAIN_USAGE_MUTABLE_FORMAT_BIT;
 constexpr XrSwapchainCreateFlags kKnownFlags = XR_SWAPCHAIN_CREATE_PROTECTED_CONTENT_BIT | XR_SWAPCHAIN_CREATE_STATIC_IMAGE_BIT;
 
-// The requested usage, and the runtime's own: the attachment layout in which images are handed over, and the read-back.
+// The requested usage, and the runtime's own: the attachment layout in which images are handed over, and the
+// read-back.
 VkImageUsageFlags usageOf(XrSwapchainUsageFlags asked, const SwapchainFormat& format) {
     VkImageUsageFlags usage = VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
     const bool is_colour = format.aspects == VK_IMAGE_ASPECT_COLOR_BIT;
@@ -28,8 +29,8 @@ VkImageUsageFlags usageOf(XrSwapchainUsageFlags asked, const SwapchainFormat& fo
     return usage;
 }
 
-// A mutable image may be written through a view of another format, which is how sRGB images are written by compute shaders. Vulkan 1.0
-// has no extended usage, so it is requested only then.
+// A mutable image may be written through a view of another format, which is how sRGB images are written by
+// compute shaders. Vulkan 1.0 has no extended usage, so it is requested only then.
 VkImageCreateFlags flagsOf(XrSwapchainUsageFlags asked) {
     if ((asked & XR_SWAPCHAIN_USAGE_MUTABLE_FORMAT_BIT) == 0) { return 0; }
     const bool is_written = (asked & XR_SWAPCHAIN_USAGE_UNORDERED_ACCESS_BIT) != 0;
@@ -179,7 +180,8 @@ XrResult xrWaitSwapchainImage(XrSwapchain swapchain, const XrSwapchainImageWaitI
         const XrSwapchainImageWaitInfo& info = checkStruct(waitInfo, XR_TYPE_SWAPCHAIN_IMAGE_WAIT_INFO);
         require(!owner.acquired.empty(), XR_ERROR_CALL_ORDER_INVALID, "no image is acquired");
         require(!owner.is_oldest_waited, XR_ERROR_CALL_ORDER_INVALID, "the image that was waited for is not released yet");
-        // Slow images exceed every finite timeout. While a loss is pending, no result could say so, and the wait succeeds.
+        // Slow images exceed every finite timeout. While a loss is pending, no result could say so, and the
+        // wait succeeds.
         if (owner.session.slow_images > 0 && info.timeout != XR_INFINITE_DURATION && !owner.session.loss_announced) {
             --owner.session.slow_images;
             return XR_TIMEOUT_EXPIRED;

@@ -1,5 +1,5 @@
-// Section 10.1: swapchains on the application's device, with as many images as the script says. Images are acquired in the script's order,
-// and waited for and released oldest first.
+// Section 10.1: swapchains on the application's device, with as many images as the script says. Images are
+// acquired in the script's order, and waited for and released oldest first.
 #pragma once
 
 #include <array>
@@ -36,7 +36,8 @@ struct Swapchain : SessionChild {
 // XR_ERROR_HANDLE_INVALID also for a swapchain of another session.
 Swapchain& getSwapchain(const Session& session, XrSwapchain swapchain);
 
-// Reads the last released image back, if that was not done yet. Only in calls that may use the application's queue.
+// Reads the last released image back, if that was not done yet. Only in calls that may use the application's
+// queue.
 void fetchTexels(Swapchain& swapchain);
 
 }  // namespace simulated

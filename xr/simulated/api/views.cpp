@@ -17,7 +17,8 @@ constexpr std::uint32_t kMostViewPixels = 4096;
 constexpr XrViewStateFlags kTurnsKnown = XR_VIEW_STATE_ORIENTATION_VALID_BIT | XR_VIEW_STATE_ORIENTATION_TRACKED_BIT,
                            kPlacesKnown = XR_VIEW_STATE_POSITION_VALID_BIT | XR_VIEW_STATE_POSITION_TRACKED_BIT;
 
-// True if the program may name the inset; the script can remove it from the headset even if 1.1 has its name in the core.
+// True if the program may name the inset; the script can remove it from the headset even if 1.1 has its name
+// in the core.
 bool knowsInset(const Instance& instance) { return instance.has1_1Or(XR_VARJO_QUAD_VIEWS_EXTENSION_NAME); }
 bool hasInset(const Instance& instance) {
     return knowsInset(instance) && instance.simulation->script.allowsExtension(XR_VARJO_QUAD_VIEWS_EXTENSION_NAME);

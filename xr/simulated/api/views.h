@@ -8,7 +8,8 @@ namespace simulated {
 // Views 0 and 1 are the eyes; 2 and 3 are their insets.
 constexpr std::size_t kMostViews = 2 * kEyes;
 
-// XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED for those that this headset lacks, XR_ERROR_VALIDATION_FAILURE for unknown values.
+// XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED for those that this headset lacks, XR_ERROR_VALIDATION_FAILURE
+// for unknown values.
 void checkViewConfiguration(const Instance& instance, XrViewConfigurationType type);
 
 constexpr std::size_t countViews(XrViewConfigurationType type) {

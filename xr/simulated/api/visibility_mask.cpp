@@ -1,4 +1,5 @@
-// XR_KHR_visibility_mask: the part of the picture that the lens never shows. Empty unless the script turns it on, as on many runtimes.
+// XR_KHR_visibility_mask: the part of the picture that the lens never shows. Empty unless the script turns it
+// on, as on many runtimes.
 #include <cstdlib>
 
 #include "xr/simulated/api/api.h"

@@ -1,5 +1,5 @@
-// XR_KHR_vulkan_enable2 and its predecessor: the application's Vulkan instance and device are made through the runtime, which needs nothing
-// beyond what the application asks for.
+// XR_KHR_vulkan_enable2 and its predecessor: the application's Vulkan instance and device are made through
+// the runtime, which needs nothing beyond what the application asks for.
 #include <algorithm>
 #include <cstring>
 #include <vector>
@@ -131,8 +131,8 @@ XrResult xrCreateVulkanInstanceKHR(XrInstance instance, const XrVulkanInstanceCr
         const auto create = resolve<PFN_vkCreateInstance>(info.pfnGetInstanceProcAddr, VK_NULL_HANDLE, "vkCreateInstance");
         result = create(info.vulkanCreateInfo, info.vulkanAllocator, &output);
         if (result == VK_SUCCESS) { owner.vulkan_loaders[output] = info.pfnGetInstanceProcAddr; }
-        // Vulkan's result is in vulkanResult; this call itself succeeded. A machine without a driver is reported all the
-        // same.
+        // Vulkan's result is in vulkanResult; this call itself succeeded. A machine without a driver is
+        // reported all the same.
         if (result == VK_ERROR_INCOMPATIBLE_DRIVER) {
             explainFailure("xrCreateVulkanInstanceKHR", "no GPU: Vulkan has no driver, not even a software one (Mesa's lavapipe)");
         }

@@ -54,8 +54,8 @@ public:
     }
 
 private:
-    // If the view has all pixels of the eye: the place of the first. Poses and angles went to the application and came back in single
-    // precision, so that corners may be off by 0.02 pixels.
+    // If the view has all pixels of the eye: the place of the first. Poses and angles went to the application
+    // and came back in single precision, so that corners may be off by 0.02 pixels.
     [[nodiscard]] std::optional<glm::uvec2> findShift(const EyeView& eye, const glm::uvec2& extent) const {
         constexpr double kSameGrid_px = 0.02;
         const Tangents eye_tangents(eye.fov);

@@ -1,4 +1,5 @@
-// The wearer's view: layers blended in linear light, one eye at a time, to 8-bit sRGB. On the CPU, and the same in every run.
+// The wearer's view: layers blended in linear light, one eye at a time, to 8-bit sRGB. On the CPU, and the
+// same in every run.
 #pragma once
 
 #include "xr/simulated/compose/geometry.h"
@@ -32,8 +33,8 @@ struct Picture {
 };
 [[nodiscard]] std::size_t bytesPerTexel(Texels texels);
 
-// A rectangle of a picture in pixels from its top left corner; it must lie inside the picture. An empty one shows
-// nothing.
+// A rectangle of a picture in pixels from its top left corner; it must lie inside the picture. An empty one
+// shows nothing.
 struct Rect {
     glm::uvec2 offset{0, 0};
     glm::uvec2 extent{0, 0};
@@ -54,7 +55,8 @@ struct ProjectionView {
 struct ProjectionLayer {
     std::array<ProjectionView, 2> views;  // by Side
     Blending blending;
-    std::array<std::optional<ProjectionView>, 2> insets{};  // by Side: replaces that part of the view, if a program drew one
+    // By Side; replaces that part of the view, if a program drew one.
+    std::array<std::optional<ProjectionView>, 2> insets{};
 };
 
 enum class Visibility { kBoth, kLeft, kRight };
@@ -67,7 +69,8 @@ struct QuadLayer {
     Blending blending;
 };
 
-// The inside of a cylinder about the y axis of its pose, the middle of its picture at -z. A radius of 0 or infinity: it is infinitely far.
+// The inside of a cylinder about the y axis of its pose, the middle of its picture at -z. A radius of 0 or
+// infinity: it is infinitely far.
 struct CylinderLayer {
     Picture picture;
     Rect rect;
@@ -79,7 +82,8 @@ struct CylinderLayer {
     Blending blending;
 };
 
-// The inside of a sphere, or of a piece of it between two latitudes and of a span of longitudes about -z. Radii as for cylinders.
+// The inside of a sphere, or of a piece of it between two latitudes and of a span of longitudes about -z.
+// Radii as for cylinders.
 struct SphereLayer {
     Picture picture;
     Rect rect;
@@ -121,17 +125,17 @@ struct EyeView {
     Fov fov;
 };
 
-// The room behind all layers, if the headset does not shut it out: light that is added, or that shows as far as the layers' alpha lets
-// it.
+// The room behind all layers, if the headset does not shut it out: light that is added, or that shows as far
+// as the layers' alpha lets it.
 struct Backdrop {
     glm::dvec3 light{0.0};  // linear
     bool adds = false;
 };
 
-// Layers in submission order over the backdrop. A projection layer is reprojected from its own view's orientation to the eye's, by
-// directions; nothing is drawn where the view had no picture. An inset replaces that part of its eye's view, edges
-// included; the two are blended as one picture. Of a view that has the eye's own pixels, and perhaps more around them, an sRGB picture
-// comes through byte for byte.
+// Layers in submission order over the backdrop. A projection layer is reprojected from its own view's
+// orientation to the eye's, by directions; nothing is drawn where the view had no picture. An inset replaces
+// that part of its eye's view, edges included; the two are blended as one picture. Of a view that has the
+// eye's own pixels, and perhaps more around them, an sRGB picture comes through byte for byte.
 [[nodiscard]] RgbPicture composeEye(const EyeView& eye, Side side, std::span<const Layer> layers, const Backdrop& backdrop = {});
 
 // Left and right eye side by side, at the top of a picture as tall as the taller one.

@@ -11,8 +11,8 @@ namespace simulated {
 
 namespace {
 
-// Enough that a polygon differs from the ellipse by less than a pixel of 4096: 1 - cos(pi / 64) is 0.0012 of the radius; a multiple of 4,
-// so that each corner of the view has its own quarter.
+// Enough that a polygon differs from the ellipse by less than a pixel of 4096: 1 - cos(pi / 64) is 0.0012 of
+// the radius; a multiple of 4, so that each corner of the view has its own quarter.
 constexpr std::uint32_t kOutlineCorners = 64;
 
 struct Span {

@@ -1,4 +1,5 @@
-// Poses, view angles and meshes in OpenXR's axes: x right, y up, z backwards (a viewer looks along -z), metres and radians.
+// Poses, view angles and meshes in OpenXR's axes: x right, y up, z backwards (a viewer looks along -z),
+// metres and radians.
 #pragma once
 
 #include <glm/gtc/quaternion.hpp>
@@ -28,8 +29,8 @@ struct Pose {
 // Positions linearly, orientations by the shorter great arc; share is 0 at `from` and 1 at `to`.
 [[nodiscard]] Pose interpolate(const Pose& from, const Pose& to, double share);
 
-// The pose without tilt: same position, turned about the vertical (y) only, so that it faces where `pose` faces. One that looks
-// straight up or down keeps the heading of its right-hand side.
+// The pose without tilt: same position, turned about the vertical (y) only, so that it faces where `pose`
+// faces. One that looks straight up or down keeps the heading of its right-hand side.
 [[nodiscard]] Pose makeLevel(const Pose& pose);
 
 // View angles in radians, XrFovf's signs: left and down are negative for a usual eye.
@@ -41,17 +42,19 @@ struct Fov {
     bool operator==(const Fov&) const = default;
 };
 
-// The part of a view within `half_angle_rad` of a direction, each way; moved as far as needed to lie in the view. The direction is an
-// angle to the right of the view's axis and one above it.
+// The part of a view within `half_angle_rad` of a direction, each way; moved as far as needed to lie in the
+// view. The direction is an angle to the right of the view's axis and one above it.
 [[nodiscard]] Fov makeInset(const Fov& fov, const glm::dvec2& middle_rad, double half_angle_rad);
 
 // Where an eye sits on the head: half the eye distance to its side, its axis turned outwards by `cant_rad`.
 [[nodiscard]] Pose headFromEye(Side side, double eye_distance_m, double cant_rad);
 
-// Triangles in the plane z = -1 of an eye, as xrGetVisibilityMaskKHR gives them: counter-clockwise as the eye sees them.
+// Triangles in the plane z = -1 of an eye, as xrGetVisibilityMaskKHR gives them: counter-clockwise as the eye
+// sees them.
 struct Mesh {
-    std::vector<glm::vec2> vertices;     // tangents: x to the right, y up
-    std::vector<std::uint32_t> indices;  // three per triangle; for an outline, the vertices in order round the loop
+    std::vector<glm::vec2> vertices;  // tangents: x to the right, y up
+    // Three per triangle; for an outline, the vertices in order around the loop.
+    std::vector<std::uint32_t> indices;
 };
 
 // The visible part is the ellipse that touches the four edges of the view in tangent space.

@@ -42,7 +42,8 @@ std::string pictureOf(std::string name) {
     return name.substr(1, name.size() - 1 - kUnfinished.size()) + ".png";
 }
 
-// A run that ended before its first frame leaves an empty log. Others begin with a frame, a refused frame, or a session's states.
+// A run that ended before its first frame leaves an empty log. Others begin with a frame, a refused frame, or
+// a session's states.
 bool isOurLog(const fs::path& path) {
     if (!isPlainFile(path)) { return false; }
     std::error_code error;

@@ -12,8 +12,8 @@ namespace {
 
 bool isFinite(double radius_m) { return radius_m > 0.0 && std::isfinite(radius_m); }
 
-// Where a ray leaves the circle or sphere of this radius about the origin: the nearest point ahead on its inside. `a`, `b`, `c` are those
-// of a t^2 + 2 b t + c = 0.
+// Where a ray leaves the circle or sphere of this radius about the origin: the nearest point ahead on its
+// inside. `a`, `b`, `c` are those of a t^2 + 2 b t + c = 0.
 std::optional<double> findWayOut(double a, double b, double c) {
     const double root = b * b - a * c;
     if (!(a > 0.0) || root < 0.0) { return std::nullopt; }

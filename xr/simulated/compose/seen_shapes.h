@@ -1,4 +1,5 @@
-// Layers that surround the wearer, as one eye sees them: linear light and alpha where a pixel's ray meets them.
+// Layers that surround the wearer, as one eye sees them: linear light and alpha where a pixel's ray meets
+// them.
 #pragma once
 
 #include "xr/simulated/compose/compose.h"

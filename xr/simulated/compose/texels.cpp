@@ -13,8 +13,8 @@ namespace simulated {
 
 namespace {
 
-// Decoding 256 bytes by table, and encoding by a first guess, corrected with the exact thresholds between bytes: `pow` per pixel would
-// take most of the time of composing.
+// Decoding 256 bytes by table, and encoding by a first guess, corrected with the exact thresholds between
+// bytes: `pow` per pixel would take most of the time of composing.
 struct SrgbTables {
     static constexpr std::size_t kGuesses = 4096;
     std::array<double, 256> linear_of_byte{};

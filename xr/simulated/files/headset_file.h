@@ -13,7 +13,8 @@ struct HeadsetAngles {
     double left_rad = 0.0, right_rad = 0.0, up_rad = 0.0, down_rad = 0.0;
 };
 
-// A foveated inset, for programs that draw one: picture sizes, if they are not those that follow from the eyes'.
+// A foveated inset, for programs that draw one: picture sizes, if they are not those that follow from the
+// eyes'.
 struct HeadsetInset {
     double half_angle_rad = 0.0;  // about the gaze, each way
     std::optional<std::array<std::uint32_t, 2>> size_px, context_size_px;
@@ -31,10 +32,11 @@ struct HeadsetFile {
     std::optional<HeadsetInset> inset;
 };
 
-// TOML with the keys name, source, size ("WxH", 1 to 16384 each), canting_deg (0 to 45), eye_distance_m (0 to 1) and the tables [left] and
-// [right] of left, right, up, down in degrees (-85 to 85) and, if it is not on the eye's axis, lens_centre = [right, up], within these.
-// Optional: the table [inset] of half_angle_deg (1 to 85) and, if they are not the usual ones, size and context_size. '-' in a key reads as
-// '_'. Throws Error with file and line.
+// TOML with the keys name, source, size ("WxH", 1 to 16384 each), canting_deg (0 to 45), eye_distance_m (0 to
+// 1) and the tables [left] and [right] of left, right, up, down in degrees (-85 to 85) and, if it is not on
+// the eye's axis, lens_centre = [right, up], within these. Optional: the table [inset] of half_angle_deg (1
+// to 85) and, if they are not the usual ones, size and context_size. '-' in a key reads as '_'. Throws Error
+// with file and line.
 [[nodiscard]] HeadsetFile parseHeadset(const std::string& text, const std::string& file);
 
 }  // namespace files

@@ -14,7 +14,8 @@ namespace {
 
 constexpr std::size_t kColumns = 8;
 constexpr std::array<const char*, kColumns> kNames{"time", "x", "y", "z", "qx", "qy", "qz", "qw"};
-constexpr std::string_view kBlank(" \t\r\n\0", 5);  // a file whose end never reached the disk may end in zeros
+// A file whose end never reached the disk may end in zeros.
+constexpr std::string_view kBlank(" \t\r\n\0", 5);
 constexpr std::string_view kExpected = "time, position x, y, z, orientation x, y, z, w";
 
 // The contents of a header.

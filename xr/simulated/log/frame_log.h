@@ -34,15 +34,19 @@ struct LoggedView {
 };
 
 struct LoggedLayer {
-    std::string type;                                          // "projection", "quad", "cylinder", "equirect2", "cube", "passthrough"
-    std::vector<std::string> flags;                            // "blend_texture_source_alpha" ...
-    std::string space;                                         // "LOCAL", "STAGE", "VIEW", "action"
-    Pose stage_from_space;                                     // at the display time
-    std::vector<LoggedView> views;                             // two or four for a projection layer, otherwise one
-    std::optional<Pose> pose;                                  // quads: in the layer's space
-    std::optional<glm::dvec2> size_m;                          // quads
-    std::string eye_visibility;                                // quads and surrounding layers: "both", "left", "right"
-    std::vector<std::pair<std::string, double>> numbers = {};  // of cylinders and spheres: "radius", "central_angle" ...
+    // "projection", "quad", "cylinder", "equirect2", "cube", "passthrough"
+    std::string type;
+    std::vector<std::string> flags;  // "blend_texture_source_alpha" ...
+    std::string space;               // "LOCAL", "STAGE", "VIEW", "action"
+    Pose stage_from_space;           // at the display time
+    // Two or four for a projection layer, otherwise one.
+    std::vector<LoggedView> views;
+    std::optional<Pose> pose;          // quads: in the layer's space
+    std::optional<glm::dvec2> size_m;  // quads
+    // For quads and surrounding layers: "both", "left", "right".
+    std::string eye_visibility;
+    // For cylinders and spheres: "radius", "central_angle" ...
+    std::vector<std::pair<std::string, double>> numbers = {};
 };
 
 struct LoggedEye {
@@ -76,7 +80,8 @@ struct BetweenRecord {
     std::vector<std::string> events;  // as a frame's
 };
 
-// One line without its end; numbers are written so that reading them gives the same number, quaternions as x, y, z, w, angles in radians.
+// One line without its end; numbers are written so that reading them gives the same number, quaternions as x,
+// y, z, w, angles in radians.
 [[nodiscard]] std::string makeFrameLine(const FrameRecord& record);
 // A line without "frame".
 [[nodiscard]] std::string makeBetweenLine(const BetweenRecord& record);

@@ -14,7 +14,8 @@ struct HandJoint {
 
 inline constexpr std::size_t kHandJoints = 26;
 
-// Curls go from 0, straight, to 1, closed: one for the index finger, one for the other three; the thumb stays.
+// Curls go from 0, straight, to 1, closed: one for the index finger, one for the other three; the thumb
+// stays.
 [[nodiscard]] std::array<HandJoint, kHandJoints> makeHandJoints(Side side, const Pose& stage_from_grip, double index_curl,
                                                                 double others_curl);
 

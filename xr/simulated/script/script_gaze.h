@@ -1,4 +1,5 @@
-// Where the wearer looks, as a script says it, and what the headset's eye tracker makes of that (XR_EXT_eye_gaze_interaction).
+// Where the wearer looks, as a script says it, and what the headset's eye tracker makes of that
+// (XR_EXT_eye_gaze_interaction).
 #pragma once
 
 #include "xr/simulated/script/track.h"
@@ -14,7 +15,8 @@ enum class GazeTracking { kOn, kOff, kDegraded };
 
 struct GazeScript {
     EyeTracking tracker = EyeTracking::kOn;
-    Track<glm::dvec2> turn_rad;  // from the head's own direction: to the left, then upwards; empty: straight ahead
+    // From the head's own direction: to the left, then upwards; empty: straight ahead.
+    Track<glm::dvec2> turn_rad;
     Steps<GazeTracking> tracked{GazeTracking::kOn};
 
     // On the head, between the eyes; OpenXR's axes.

@@ -1,4 +1,5 @@
-// Facts about holding the frame rate, on machines that are made up: what a frame costs is a function of time, budget and resolution.
+// Facts about holding the frame rate on simulated machines: a frame's cost is a function of time, budget and
+// resolution.
 #include "app/view/governor/governor.h"
 #include "app/view/governor/splat_budget.h"
 #include "tests/suite.h"
@@ -8,25 +9,26 @@ SUITE(governor) {
 constexpr double kPeriodMs = 1000.0 / 90.0;
 const GovernedSettings kWish{0.22, 1.0}, kAll{1.0, 1.0};
 
-// What `temporal` has where everything fits.
+// The settings of `temporal` where everything fits.
 GovernedSettings allOf(Quality quality) {
     return {1.0, 1.0, quality == Quality::kSharp ? 34.0 : quality == Quality::kBalanced ? 30.0 : 27.0};
 }
 
-// The share of work that a bound of the errors takes, here.
+// The share of the work that an error bound takes in these tests.
 double workOf(const GovernedSettings& settings) {
     return settings.error_bound_db > 0.0 ? 0.5 * std::exp2((settings.error_bound_db - 30.0) / 4.3) : settings.budget;
 }
 
-// `ms` is what all work takes at full resolution, of which so much is `fixed` whatever the budget. A third is the same whatever the
-// resolution. Small and large frames in turn, the same in every run.
+// `ms` is the time of all the work at full resolution, of which the share `fixed` does not depend on the
+// budget, and a third does not depend on the resolution. Small and large frames alternate, the same way in
+// every run.
 double cost(double ms, double fixed, const GovernedSettings& settings, std::size_t frame) {
     const double pixels = settings.resolution_scale * settings.resolution_scale;
     const double shiver = 1.0 + 0.04 * std::sin(12.9898 * static_cast<double>(frame));
     return ms * (fixed + (1.0 - fixed) * workOf(settings)) * (1.0 / 3.0 + 2.0 / 3.0 * pixels) * shiver;
 }
 
-// Periods lost by a frame that takes so long on a device that others use as well.
+// Periods lost to a frame of this length on a device that other programs use as well.
 double lostBy(double gpu_ms, double others_ms, double period_ms = kPeriodMs) {
     return std::max(std::ceil((gpu_ms + others_ms) / period_ms - 1e-9) - 1.0, 0.0);
 }
@@ -34,11 +36,12 @@ double lostBy(double gpu_ms, double others_ms, double period_ms = kPeriodMs) {
 using Over = std::function<double(double time_s)>;
 struct Machine {
     Quality quality = Quality::kFast;
-    double seconds = 20.0;  // of the run
+    double seconds = 20.0;  // length of the run
     Over ms = [](double) { return 7.0; };
     double fixed = 0.8;
     Over period_ms = [](double) { return kPeriodMs; };
-    std::function<double(double time_s, double gpu_ms)> lost = {};  // what the runtime shows of a frame: periods that were lost
+    // Periods that each frame lost, as the runtime reports it.
+    std::function<double(double time_s, double gpu_ms)> lost = {};
     Mode mode = Mode::kTemporal;
     GovernedSettings wish = kAll;
 };
@@ -68,7 +71,7 @@ struct Run {
         }
     }
 
-    // Frames that changed the settings, after a time.
+    // Frames after this time that changed the settings.
     [[nodiscard]] std::vector<std::size_t> changes(double from_s = 0.0) const {
         std::vector<std::size_t> found;
         for (std::size_t i = 1; i < frames.size(); ++i) {
@@ -76,7 +79,7 @@ struct Run {
         }
         return found;
     }
-    // The longest row of frames from `first` on that `are` so.
+    // The longest run of frames from `first` on for which `are` holds.
     template <typename Condition>
     [[nodiscard]] std::size_t longest(std::size_t first, const Condition& are) const {
         std::size_t row = 0, most = 0;
@@ -95,8 +98,9 @@ struct Run {
     [[nodiscard]] bool saysAtLast(const std::string& part) const { return last().sentence.find(part) != std::string::npos; }
 };
 
-// Times at which a load changes: 60 frames after each it has settled, and from then on changes at most once a second. Steps upwards that
-// were taken back at once count as one change: there are so many at most.
+// `upheavals_s` are the times at which the load changes. 60 frames after each the settings have settled, and
+// then change at most once a second. A step up that is taken back at once counts as one change; at most so
+// many occur.
 void checkCalm(const Run& run, const std::vector<double>& upheavals_s, std::size_t most_taken_back = 0) {
     double last_s = -10.0;
     std::size_t taken_back = 0;
@@ -148,7 +152,7 @@ TEST_CASE("of a load that does not change it finds what fits within 60 frames, s
                 CHECK(run.longestOver(60) <= (run.last().beaten ? run.frames.size() : 3));
                 CHECK(run.changes(30.0).size() <= 2);
                 if (quality != Quality::kFast || fixed != 0.2 || ms < 30.0) { continue; }
-                // A tenth of the period is spared.
+                // A tenth of the period is kept free.
                 std::vector<double> last;
                 for (std::size_t i = run.frames.size() - 300; i < run.frames.size(); ++i) { last.push_back(run.frames[i].gpu_ms); }
                 std::ranges::nth_element(last, last.begin() + 150);
@@ -256,7 +260,7 @@ TEST_CASE("a minute in which the load and the period change, and two in which th
     checkCalm(minute, {0.0, 8.0, 20.0, 28.0, 34.0, 46.0});
     CHECK(minute.longestOver() <= 10);
     for (const Run::Frame& frame : minute.frames) { CHECK_FALSE(frame.beaten); }
-    CHECK(minute.changes().size() <= 30);  // six upheavals, and the way back after them
+    CHECK(minute.changes().size() <= 30);  // six upheavals, and the way back after each
     const Run swing({.seconds = 120.0, .ms = [](double t) { return 10.5 + 1.0 * std::sin(2.0 * t); }});
     CHECK(swing.longestOver() <= 10);
     checkCalm(swing, {0.0});
@@ -290,11 +294,11 @@ TEST_CASE("displays that are missed although the device says that frames fit: ot
             if (!run.last().beaten) { CHECK(run.longestLate() <= 10); }
             CHECK(run.at(6.0).settings != allOf(quality));
             CHECK(run.says(" and missed displays", 6.0));
-            // More is tried rarely, and more rarely each time.
+            // Higher settings are tried rarely, and each time more rarely.
             CHECK(run.changes(8.0).size() <= 16);
         }
     }
-    // What they leave again is used again.
+    // When the other programs stop, the time is used again.
     const Run run({.seconds = 60.0, .lost = [](double t, double gpu_ms) { return lostBy(gpu_ms, t > 5.0 && t < 20.0 ? 6.0 : 0.0); }});
     checkCalm(run, {5.0}, 2);
     CHECK(run.longestLate() <= 10);
@@ -307,7 +311,7 @@ TEST_CASE("where displays are missed whatever is drawn nothing is given up for i
     CHECK(run.frames[10].settings.resolution_scale < 1.0);
     CHECK(run.frames[40].settings == allOf(Quality::kFast));
     CHECK(run.frames[40].sentence.find("displays are missed whatever is drawn") != std::string::npos);
-    // It is looked at again after a minute, and after two.
+    // Lower settings are tried again after a minute, and then after two.
     CHECK(run.last().settings == allOf(Quality::kFast));
     CHECK_FALSE(run.last().beaten);
     const auto lowered =
@@ -315,7 +319,8 @@ TEST_CASE("where displays are missed whatever is drawn nothing is given up for i
     CHECK(lowered > 20);
     CHECK(lowered < 100);
     CHECK(run.changes(1.0).size() <= 8);  // three steps down and all the way back, twice
-    // They count again once they are over, and are no longer spoken of: then comes what the device is too slow for without saying it.
+    // Once these misses are over, the message goes and misses count again: the next ones come from a load
+    // that the device's own times do not show.
     const auto in_turn = [](double t, double gpu_ms) { return t < 5.0 ? lostBy(gpu_ms, 12.0) : t < 7.0 ? 0.0 : lostBy(gpu_ms, 6.0); };
     const Run again({.lost = in_turn});
     CHECK(again.says("whatever is drawn", 4.9));
@@ -323,7 +328,8 @@ TEST_CASE("where displays are missed whatever is drawn nothing is given up for i
     CHECK(again.at(6.9).settings.resolution_scale == 1.0);
     CHECK(again.at(9.0).settings.resolution_scale < 1.0);
     CHECK(again.at(9.0).lost_periods == 0.0);
-    // A spike when the misses begin does not make the least settings look better than the best ones.
+    // A spike just when displays begin to be missed does not make the lowest settings look better than the
+    // best ones.
     std::size_t frame = 0;
     const Run spike({.seconds = 10.0, .lost = [&](double, double) { return ++frame == 50 ? 6.0 : frame > 50 ? 1.0 : 0.0; }});
     CHECK(spike.last().settings.resolution_scale == 1.0);
@@ -354,7 +360,7 @@ TEST_CASE("frames that are slow or come late now and then, or early for each tha
 }
 
 TEST_CASE("a streamed scene has as many splats as frames have time for, between what the memory holds and a least number") {
-    // Two milliseconds, and a microsecond for each thousand splats: 7 ms of 11.1 leave 5 million.
+    // Two milliseconds, plus a microsecond for each thousand splats: 7 ms of 11.1 leave room for 5 million.
     SplatBudget budget(20'000'000);
     std::uint64_t shown = 0;
     for (int frame = 0; frame < 4000; ++frame) {
@@ -368,7 +374,7 @@ TEST_CASE("a streamed scene has as many splats as frames have time for, between 
     CHECK(changes == 0);
     for (int frame = 0; frame < 4000; ++frame) { budget.measure(100.0, kPeriodMs, budget.splats()); }
     CHECK(budget.splats() == SplatBudget::kLeast);
-    // What the view does not ask for is not counted up.
+    // The budget does not grow beyond what the view asks for.
     for (int frame = 0; frame < 4000; ++frame) { budget.measure(1.0, kPeriodMs, 100'000); }
     CHECK(budget.splats() <= 600'000);
     SplatBudget small(1000);

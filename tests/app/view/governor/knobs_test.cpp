@@ -1,5 +1,5 @@
-// Facts about the choice between resolution and bound, on devices and in scenes that are made up: what a frame takes and what it is off by
-// are functions of both knobs, other ones than the model believes in.
+// Facts about the choice between resolution and bound, on simulated devices and in simulated scenes: a
+// frame's time and error are functions of both knobs, and not the functions that the model assumes.
 #include "app/view/governor/governor.h"
 #include "tests/suite.h"
 
@@ -7,12 +7,13 @@ SUITE(knobs) {
 
 constexpr double kPeriodMs = 1000.0 / 90.0;
 
-// Shares of the time of a full pair: 1, pixels, work, pixels that are rendered.
+// Shares of the time of a full pair: constant, by pixels, by work, by rendered pixels.
 struct Device {
     const char* waits_for;
     double ms, one, pixels, work, both;
 };
-// A resolution r loses loss (1 / r^power - 1); a bound of 28 dB leaves an error and takes a share of the work, which change by the dB.
+// A resolution r adds an error of loss (1 / r^power - 1). A bound of 28 dB has an error and a share of the
+// work, and both change with each dB.
 struct Place {
     const char* name;
     double loss, power, error, db_per_db, work, work_per_db;
@@ -21,7 +22,7 @@ using Over = std::function<double(double time_s)>;
 struct Change {
     const char* of;
     Over cost, motion;
-    double stolen = 0.0;  // the share of frames that others take a tenth of a second from
+    double stolen = 0.0;  // the share of frames from which others steal a tenth of a second
 };
 
 double workAt(const Place& place, double bound_db, double motion) {
@@ -38,10 +39,11 @@ double msAt(const Device& device, double scale, double work) {
 
 struct Minute {
     double late = 0.0, error = 0.0;  // shares of frames; mean square
-    int changes_at_last = 0;         // in the last half
+    int changes_at_last = 0;         // in the second half
     bool beaten = false;
 
-    // With the governor, or with a fixed pair of knobs, whose frames are late if they leave less than a tenth of the period.
+    // With the governor, or with fixed knobs; then frames are late if they leave less than a tenth of the
+    // period.
     Minute(const Device& device, const Place& place, const Change& change, const std::optional<Knobs>& fixed = {}) {
         Governor governor;
         std::mt19937 random(1), thief(2);

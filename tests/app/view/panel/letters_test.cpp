@@ -1,4 +1,4 @@
-// Facts about the panel's letters: names in any script can be read.
+// Facts about the panel's letters: it can show names in any script.
 #include "tests/app/view/panel/panel_sketch.h"
 #include "tests/run_program.h"
 
@@ -20,7 +20,7 @@ std::string utf8(unsigned letter) {
             static_cast<char>(0x80 | (letter & 0x3f))};
 }
 
-// The private letters that a word is shown as, once its letters were brought.
+// The private letters that stand for a word, once its glyphs are loaded.
 std::vector<std::string> signsOf(PanelSketch& sketch, const std::string& word) {
     sketch.bringLetters(word);
     const std::string shown = asShown(word);
@@ -50,7 +50,8 @@ TEST_CASE("letters are half a degree high where the panel hangs, and Latin, Gree
     for (const unsigned letter : {0x41, 0xe4, 0x159, 0x3a9, 0x436, 0x451, 0x1ea1, 0x301, 0x2013, 0x20ac}) {
         CHECK_MESSAGE(isThere(letter), letter);
     }
-    // What is not there yet is a box: Chinese, bytes that are no UTF-8, and what lies beyond 16 bits.
+    // What the font does not have yet is shown as a box: Chinese, bytes that are not UTF-8, and letters
+    // beyond 16 bits.
     REQUIRE(isThere(0x25a1));
     const ImFont& font = *ImGui::GetIO().Fonts->Fonts[0];
     CHECK(these(font.FindGlyph(0x4e2d), font.FindGlyph(0xfffd)) == these(glyphOf(0x25a1), glyphOf(0x25a1)));
@@ -61,7 +62,8 @@ TEST_CASE("names bring their letters along, those that no font has stay boxes, a
     PanelSketch sketch;
     const WidgetPlaces before = sketch.draw().places;
     CHECK_FALSE(isThere(0x5d0));
-    sketch.status.message = "\xd7\x90 \xe1\x83\x90 \xef\xb7\xbf\xef\xa3\xbf";  // Hebrew, Georgian, private letters
+    // Hebrew, Georgian, private letters
+    sketch.status.message = "\xd7\x90 \xe1\x83\x90 \xef\xb7\xbf\xef\xa3\xbf";
     CHECK(sketch.draw().places == before);
     CHECK(isThere(0x5d0));
     CHECK(isThere(0x10d0));
@@ -69,7 +71,7 @@ TEST_CASE("names bring their letters along, those that no font has stay boxes, a
     CHECK(isThere('A'));
     CHECK_FALSE(sketch.bringLetters(sketch.status.message));  // once
     CHECK_FALSE(sketch.bringLetters("\xff\xef\xbf\xbd plain"));
-    // They stay, whatever is shown next; Chinese comes from the first font of the system that has it.
+    // They stay, whatever is shown next. Chinese comes from the first font of the system that has it.
     const std::string chinese = "\xe6\xa3\xae\xe6\x9e\x97.ply";
     work.write(chinese, "x");
     sketch.settings.page = PanelPage::kScenes;
@@ -83,7 +85,7 @@ TEST_CASE("names bring their letters along, those that no font has stay boxes, a
     } else {
         MESSAGE("skipped: no font of Chinese, Japanese and Korean is installed");
     }
-    // However many there are, the atlas is one that a device can sample.
+    // However many glyphs there are, a device can sample the atlas.
     for (unsigned page = 0; page < 8; ++page) {
         std::string text;
         for (unsigned letter = 2000 * page; letter < 2000 * (page + 1); ++letter) { text += utf8(0x4e00 + letter); }
@@ -103,37 +105,37 @@ TEST_CASE("the system says which fonts have a letter, and for no letter it says 
 
 TEST_CASE("Hebrew and Arabic are read from right to left, and Arabic letters are joined, before a font has formed them, too") {
     CHECK(asShown("plain \xc3\xa9 \xd0\x96.ply") == "plain \xc3\xa9 \xd0\x96.ply");
-    // Alef, bet, gimel within a path: gimel stands first, the path keeps its order.
+    // Alef, bet and gimel within a path: gimel comes first, and the path keeps its order.
     CHECK(asShown("/a/\xd7\x90\xd7\x91\xd7\x92/b.ply") == "/a/\xd7\x92\xd7\x91\xd7\x90/b.ply");
     // Beh, alef: alef's final form, then beh's initial one.
     CHECK(asShown("\xd8\xa8\xd8\xa7") == "\xef\xba\x8e\xef\xba\x91");
-    // Lam and alef are one sign.
+    // Lam and alef form one glyph.
     CHECK(asShown("\xd9\x84\xd8\xa7") == "\xef\xbb\xbb");
-    // Bytes that are no UTF-8 do no harm.
+    // Bytes that are not UTF-8 do no harm.
     CHECK(asShown("\xd7\xff\xf0\x9f").find("\xef\xbf\xbd") != std::string::npos);
 }
 
 TEST_CASE("letters that change with those beside them are formed and ordered by the font, from right to left where they are read so") {
     PanelSketch sketch;
     const std::string beh = "\xd8\xa8", alef = "\xd8\xa7";
-    // All at once, so that each sign has one number.
+    // All at once, so each glyph has one number.
     const std::string ha = "\xe0\xa4\xb9", hi = ha + "\xe0\xa4\xbf", ksha = "\xe0\xa4\x95\xe0\xa5\x8d\xe0\xa4\xb7";
     sketch.bringLetters(fmt::format("{0} {0}{0} {1} {1}{0} \xd8\xb3\xd9\x84\xd8\xa7\xd9\x85 {2} {3} {4}", beh, alef, ha, hi, ksha));
     const auto of = [&](const std::string& word) { return signsOf(sketch, word); };
     const auto alone = of(beh), twice = of(beh + beh);
     REQUIRE(alone.size() == 1);
     REQUIRE(twice.size() == 2);
-    CHECK(twice[0] != twice[1]);  // the one joins to the right, the other to the left
+    CHECK(twice[0] != twice[1]);  // one joins to the right, the other to the left
     CHECK(std::ranges::find(twice, alone[0]) == twice.end());
-    // Alef joins nothing after it, which stands at its left.
+    // Alef joins to nothing after it; the next letter stands at its left.
     CHECK(of(alef + beh) == std::vector{alone[0], of(alef).at(0)});
-    // Salam, with one sign for lam and alef.
+    // Salam, with one glyph for lam and alef.
     CHECK(of("\xd8\xb3\xd9\x84\xd8\xa7\xd9\x85").size() == 3);
     if (fontsWith({0x939}).empty()) {
         MESSAGE("skipped: no font of Devanagari is installed");
         return;
     }
-    // The sign of i stands before the letter that it is read after, and three letters are one sign.
+    // The vowel sign i stands before the letter after which it is read, and three letters form one glyph.
     REQUIRE(of(hi).size() == 2);
     CHECK(of(hi)[1] == of(ha).at(0));
     CHECK(of(ksha).size() == 1);
@@ -161,7 +163,7 @@ TEST_CASE("a word's signs are drawn, keep their order among other letters, and a
     // Beyond 16 bits: a letter of Old Italic, and bytes that begin like one.
     CHECK(signsOf(sketch, "\xf0\x90\x8c\x80").size() == 1);
     CHECK(wordsToForm("\xf0\x90\x8c/\xf4\xbf\xbf\xbf\xf0").empty());
-    // However many words there are, their signs fit among the private letters.
+    // However many words there are, their glyphs fit among the private letters.
     std::string many;
     for (int word = 0; word < 390; ++word) {
         for (int i = 0; i < 40; ++i) { many += fmt::format("\xd7{}", static_cast<char>(0x90 + (word * 7 + i * i) % 27)); }
@@ -202,7 +204,7 @@ TEST_CASE("a font is taken only if the tables it has lie within it") {
     nameless.replace(nameless.find("cmap"), 4, "xxxx");
     CHECK_FALSE(isFont(nameless));
     CHECK_FALSE(isFont("ttcf" + whole.substr(4)));
-    // A collection: the same tables, each 16 bytes farther from the file's beginning.
+    // A collection: the same tables, each 16 bytes farther from the beginning of the file.
     const auto number = [](std::uint32_t value) {
         std::string bytes;
         for (const int shift : {24, 16, 8, 0}) { bytes += static_cast<char>(value >> shift); }

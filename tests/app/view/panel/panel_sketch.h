@@ -1,4 +1,5 @@
-// The viewer's panel without a device: what it would draw, where its widgets lie, and what a click on them does.
+// The viewer's panel without a device: what it would draw, where its widgets lie, and what a click on them
+// does.
 #pragma once
 
 #include "app/view/panel/panel_content.h"
@@ -29,7 +30,7 @@ public:
     PanelSketch& operator=(const PanelSketch&) = delete;
     ~PanelSketch() { ImGui::DestroyContext(); }
 
-    // One frame, with something that points and presses, or nothing.
+    // Draws one frame, with or without a pointer.
     PanelRequests draw(const glm::dvec2* pointer = nullptr, bool pressed = false) {
         if (const auto wish = chooser.takeWish()) { chooser.show(makeSceneList(*wish), *wish); }
         bringLetters(namesOn(settings, chooser, status), picturesOn(settings, chooser));
@@ -46,7 +47,7 @@ public:
         ImGui::Render();
         return requests;
     }
-    // As the viewer does beside its frames; false: there were no new ones.
+    // As the viewer does beside its frames; false if there were no new letters.
     bool bringLetters(const std::string& text, const std::vector<ScenePicture>& shown = {}) {
         if (!font->want(text, shown)) { return false; }
         font->build();
@@ -54,7 +55,7 @@ public:
         takeLetters();
         return true;
     }
-    // What came of a press that is let go, and of the frame after that.
+    // Presses and releases, then draws one more frame; returns what the release requested.
     PanelRequests click(const std::string& name) {
         const PanelRequests before = draw();
         REQUIRE_MESSAGE(before.places.contains(name), name);
@@ -72,7 +73,7 @@ public:
     PanelStatus status;
 
 private:
-    // What makes a texture of them elsewhere.
+    // Builds the font's atlas, as the viewer does to make a texture of it.
     static void takeLetters() {
         unsigned char* pixels = nullptr;
         int width = 0, height = 0;
@@ -97,19 +98,19 @@ inline FontTexture fontTexture() {
     return {pixels, glm::uvec2(width, height)};
 }
 
-// The font's sign of a letter, if it was brought.
+// The font's glyph of a letter, if it was loaded.
 inline const ImFontGlyph* glyphOf(unsigned letter) {
     return ImGui::GetIO().Fonts->Fonts[0]->FindGlyphNoFallback(static_cast<ImWchar>(letter));
 }
 inline bool isThere(unsigned letter) { return glyphOf(letter) != nullptr; }
 
-// Where to point at a widget, in shares of the panel's width and height.
+// Where to point at a widget, as shares of the panel's width and height.
 inline glm::dvec2 shareOf(const WidgetPlaces& places, const std::string& name) {
     REQUIRE_MESSAGE(places.contains(name), name);
     return places.at(name) / glm::dvec2(kPanelPx);
 }
 
-// That of a page; `with_all`: also at those that not every device or headset has.
+// On a given page; `with_all`: with the widgets that not every device or headset has, too.
 inline glm::dvec2 placeOf(const std::string& name, bool with_all = false, PanelPage page = PanelPage::kView) {
     static const std::array<std::array<WidgetPlaces, 2>, 3> places = [] {
         std::array<std::array<WidgetPlaces, 2>, 3> found;
@@ -126,10 +127,10 @@ inline glm::dvec2 placeOf(const std::string& name, bool with_all = false, PanelP
     return shareOf(places[static_cast<std::size_t>(page)][with_all ? 1 : 0], name);
 }
 
-// Of the page of methods, which the panel opens with where the config says panel-page = "method".
+// On the page of methods, with which the panel opens if the config says panel-page = "method".
 inline glm::dvec2 onMethod(const std::string& name, bool with_all = false) { return placeOf(name, with_all, PanelPage::kMethod); }
 
-// Of a scene that moves, whose panel has one tab more; `plays` as it does then.
+// On a moving scene's panel, which has one more tab; `plays`: while it moves.
 inline glm::dvec2 placeOfTime(const std::string& name, bool plays, PanelPage page = PanelPage::kTime) {
     PanelSketch sketch;
     sketch.settings.page = page;
@@ -137,7 +138,7 @@ inline glm::dvec2 placeOfTime(const std::string& name, bool plays, PanelPage pag
     return shareOf(sketch.draw().places, name);
 }
 
-// Of the page of scenes, with `folder` open.
+// On the page of scenes, with `folder` open.
 inline glm::dvec2 placeOfScene(const std::string& name, const std::string& folder) {
     PanelSketch sketch;
     sketch.settings.page = PanelPage::kScenes;

@@ -1,4 +1,4 @@
-// Facts about the panel's pages: what can be pointed at, whatever stands on them.
+// Facts about the panel's pages: what can be pointed at, whatever they show.
 #include "app/options/option_table.h"
 #include "app/view/panel/first_steps.h"
 #include "app/view/panel/message_picture.h"
@@ -41,7 +41,7 @@ TEST_CASE("on each page every widget lies on the panel, none on another, 1.5 deg
                     if (name < other) { CHECK_MESSAGE(glm::length(place - there) > 20.0, other); }
                 }
                 const ImGuiID id = hoveredAt(place, 0.0);
-                CHECK((id != 0 || name == "Up"));  // there is none above
+                CHECK((id != 0 || name == "Up"));  // the top has nothing above it
                 const std::array large{"Sharp", "Balanced", "Fast", "Recentre", "Level", "Reset", "Step back", "Pause", "Step on"};
                 const double reach_px = 0.97 * half_px * (std::ranges::count(large, name) != 0 ? 2.0 : 1.0);
                 for (const double down_px : {-reach_px, reach_px}) { CHECK(hoveredAt(place, down_px) == id); }
@@ -101,7 +101,7 @@ TEST_CASE_FIXTURE(PanelSketch, "a click reaches what it points at: boxes, button
     click("Help");
     CHECK(settings.page == Page::kHelp);
     CHECK(asks("Leave", &Asked::quit));
-    status.window.emplace();  // there H lists the keys
+    status.window.emplace();  // in the window, H lists the keys
     draw();
     CHECK(settings.page == Page::kView);
 }
@@ -131,7 +131,7 @@ TEST_CASE_FIXTURE(PanelSketch, "what the panel asks for is written with its keys
     entry.open(What::kMetres, "How long?", "3");
     CHECK_FALSE(click("Cancel").entered.has_value());
     CHECK_FALSE(entry.isOpen());
-    // There is an end to it.
+    // The text has a maximum length.
     entry.open(What::kViewpointName, "", "");
     for (int i = 0; i < 100; ++i) { entry.type("ab"); }
     CHECK(entry.text().size() == 60);
@@ -200,7 +200,7 @@ TEST_CASE_FIXTURE(PanelSketch, "the help page draws what the hands hold: no stic
     };
     const int simple = verticesWith("khr/simple_controller"), touch = verticesWith("oculus/touch_controller");
     CHECK(simple < touch);
-    status.held = {};  // as most people have
+    status.held = {};  // the default: what most people have
     draw();
     CHECK(ImGui::GetDrawData()->TotalVtxCount == touch);
 }
@@ -229,7 +229,7 @@ TEST_CASE_FIXTURE(PanelSketch, "a scene that moves has a page of its own, with w
     CHECK(click("Play").play);
     CHECK(click("Step on").frame_step == 1);
     CHECK(click("Step back").frame_step == -1);
-    // The handle's ends are those of the line.
+    // The ends of the handle's way are those of the line.
     glm::dvec2 place = draw().places.at("frame");
     place.x = 0.5 * kPanelPx.x;
     draw(&place);
@@ -239,7 +239,7 @@ TEST_CASE_FIXTURE(PanelSketch, "a scene that moves has a page of its own, with w
     place.x = kPanelPx.x - 1.0;
     CHECK(draw(&place, true).frame == 59);
     draw(&place);
-    // The next scene stays as it is.
+    // The next scene does not move.
     status.time.reset();
     draw();
     CHECK(settings.page == Page::kView);
@@ -284,7 +284,7 @@ TEST_CASE_FIXTURE(PanelSketch, "a picture of a scene lies in the font's texture 
     CHECK(texture.at(glm::uvec2(0.5 * (low + high))) == std::array<unsigned char, 4>{200, 10, 20, 255});
     CHECK(isThere('A'));
     draw();
-    // A later picture of the same scene takes its place; those of others stay.
+    // A later picture of the same scene replaces it; pictures of other scenes stay.
     ScenePicture other = picture, later = picture;
     other.key = "other";
     other.file = "b.png";
@@ -309,7 +309,7 @@ TEST_CASE("size and height are changed while their buttons are held, and what mo
         }
         sketch.draw(&place);
         sketch.draw();
-        CHECK(times > 5);  // of a second
+        CHECK(times > 5);  // times a second
         return std::pair(growth, rise_m);
     };
     CHECK(held("Smaller").first < 0.4);
@@ -324,7 +324,7 @@ TEST_CASE("size and height are changed while their buttons are held, and what mo
     CHECK(sketch.settings.smooth_turn);
     sketch.click("Grey");
     CHECK(sketch.settings.backdrop == Backdrop::kGrey);
-    // A second click on what is chosen leaves the settings as they are made on the page of methods.
+    // A second click on the chosen quality leaves the settings as the page of methods has them.
     for (const auto& [name, quality] :
          {std::pair("Sharp", Quality::kSharp), std::pair("Fast", Quality::kFast), std::pair("Fast", Quality::kOff)}) {
         sketch.click(name);
@@ -381,7 +381,7 @@ TEST_CASE("scenes are looked for by clicks: down, up, to other places, page by p
         CHECK(chosen(name).empty());
         return sketch.chooser.list().title;
     };
-    CHECK(titleAfter("Scenes") == here);  // where the scene that is shown lies
+    CHECK(titleAfter("Scenes") == here);  // the folder of the scene that is shown
     CHECK(chosen("gone.ply").empty());
     CHECK(chosen("a##b.ply") == scene);
     CHECK(titleAfter("inner/") == inner);
@@ -396,7 +396,7 @@ TEST_CASE("scenes are looked for by clicks: down, up, to other places, page by p
     CHECK(titleAfter("Up") == here);
     sketch.click("Built-in");
     CHECK(chosen("step-edge") == "builtin:step-edge");
-    CHECK(titleAfter("Up") == "Built-in scenes");  // there is none above
+    CHECK(titleAfter("Up") == "Built-in scenes");  // the top has nothing above it
     sketch.click("Recent");
     CHECK(sketch.chooser.list().entries.empty());
     rememberScene(scene);
@@ -406,7 +406,7 @@ TEST_CASE("scenes are looked for by clicks: down, up, to other places, page by p
     setenv("HOME", work.base.c_str(), 1);
     CHECK(titleAfter("Home") == work.base.string());
     setenv("HOME", home.c_str(), 1);
-    // A file that came meanwhile is there when the page is opened again.
+    // A file that was added in the meantime appears when the page is opened again.
     sketch.chooser.showFolder(here);
     work.write("new.ply", "x");
     sketch.click("Scenes");
@@ -432,7 +432,7 @@ TEST_CASE("no folder is read while the panel is drawn: it says that it reads unt
     sketch.status.files = std::string("reading ") + first->name();
     CHECK(sketch.draw().places == quiet);
     CHECK(drawnVertices() > without);
-    // Who goes on before the first list is there sees the second one alone.
+    // Whoever moves on before the first list arrives sees only the second.
     chooser.showFolder((work.path / "inner").string());
     const std::optional<SceneListWish> second = chooser.takeWish();
     REQUIRE(second.has_value());
@@ -441,11 +441,11 @@ TEST_CASE("no folder is read while the panel is drawn: it says that it reads unt
     chooser.show(makeSceneList(*second), *second);
     CHECK_FALSE(chooser.isReading());
     CHECK(sketch.draw().places.contains("a.ply"));
-    // Looked at again, what is seen stays until then.
+    // When a folder is read again, its list stays until the new one arrives.
     chooser.refresh("");
     CHECK(chooser.isReading());
     CHECK(chooser.list().entries.size() == 1);
-    // Letters, too, are read and drawn elsewhere: a second wish waits for the first.
+    // Letters are read and drawn elsewhere, too: a second request waits for the first.
     CHECK(sketch.font->want("\xd7\x90"));
     CHECK_FALSE(sketch.font->want("\xe1\x83\x90"));
     CHECK_FALSE(isThere(0x5d0));
@@ -471,7 +471,7 @@ TEST_CASE_FIXTURE(AtWork, "names of any bytes and of any length are shown, and a
     CHECK(asShown("a\nb\x1b[1m\x7f") ==
           "a\xef\xbf\xbd"
           "b\xef\xbf\xbd[1m\xef\xbf\xbd");
-    // What is said moves nothing that can be pointed at.
+    // Messages move nothing that can be pointed at.
     for (const Page page : {Page::kView, Page::kScenes, Page::kMethod}) {
         sketch.settings.page = page;
         sketch.status.message.clear();
@@ -490,7 +490,7 @@ TEST_CASE_FIXTURE(PanelSketch, "the rates that the headset offers can be chosen,
         click(name);
         CHECK(settings.refresh_rate == rate);
     }
-    // What is above stays where it is.
+    // Everything above stays in place.
     const WidgetPlaces with = draw().places;
     status.refresh_rates.clear();
     for (const auto& [name, place] : draw().places) { CHECK(with.at(name) == place); }

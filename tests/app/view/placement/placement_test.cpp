@@ -1,4 +1,4 @@
-// Facts about the wearer's place in the scene, and about keeping it.
+// Facts about the wearer's place in the scene, and about saving it.
 #include "app/view/placement/placement.h"
 #include "app/options/start_view.h"
 #include "app/view/headset/losses.h"
@@ -30,10 +30,10 @@ TEST_CASE("the mouse makes the scene grow, and tilts it, about the wearer") {
     const Similarity grown = grownBy(kSome, 2.0, head);
     CHECK(grown.scale == doctest::Approx(0.5 * kSome.scale));
     checkNear(transform(grown, head), transform(kSome, head));
-    // What lay two metres ahead lies four metres ahead.
+    // What lay two metres ahead now lies four metres ahead.
     checkNear(transform(grown, head + 2.0 * (ahead - head)), transform(kSome, ahead));
     CHECK(grownBy(kSome, 1e300, head).scale > 0.0);
-    // A quarter turn upwards about the right: what lay ahead lies above.
+    // A quarter turn upwards, about the axis to the right: what lay ahead now lies above.
     const Similarity tilted = tiltedBy(kSome, kUpwards, head);
     checkNear(transform(tilted, head), transform(kSome, head));
     checkNear(transform(tilted, head + glm::dvec3(0.0, -2.0, 0.0)), transform(kSome, ahead));
@@ -68,7 +68,7 @@ TEST_CASE_FIXTURE(AtWork, "settings of a scene lie in the user's folder, by the 
     CHECK(fileOf("elsewhere/a.ply", "one") != first);
     CHECK(viewSettingsFile((folder / "elsewhere/../a.ply").string()) == fileOf("a.ply", "longer"));
     CHECK(viewSettingsFile((folder / "elsewhere/").string()) == viewSettingsFile((folder / "elsewhere").string()));
-    // Long names are cut between letters: 248 bytes of which each letter has two, and one more before them.
+    // Long names are cut between letters: here one byte, followed by 124 letters of two bytes each.
     std::string letters = "a";
     for (int i = 0; i < 124; ++i) { letters += "\xc3\xa4"; }
     const std::string cut = fileOf(letters + ".ply", "one").filename().string();
@@ -89,13 +89,13 @@ TEST_CASE_FIXTURE(AtWork, "a wearer starts where the options put the eye or thei
         const CameraOptions camera = parse<ViewOptions>("view box.ply " + options).run.camera;
         return startPlacement(startView(makeBox((work.path / "box.ply").string()), camera, 0.5), 0.5);
     };
-    const Similarity start = startWith("--eye 1,2,3 --look 1,3,5");  // down and ahead, for y points down
+    const Similarity start = startWith("--eye 1,2,3 --look 1,3,5");  // down and ahead, since y points down
     checkNear(transform(start, glm::dvec3(0.0)), {1, 2, 3});
     checkNear(transform(start, {0, 0, 1}), {1, 2, 5});   // ahead is level
     checkNear(transform(start, {0, -1, 0}), {1, 0, 3});  // up is up
-    // Looking straight down there is no level ahead; it is upright still.
+    // Looking straight down, no direction ahead is level, but the wearer still stands upright.
     checkNear(startWith("--eye 1,2,3 --look 1,2.001,8 --up 0,0,-1").orientation * glm::dvec3(0, -1, 0), {0, 0, -1}, 1e-6);
-    // A camera that looks down by some 37 degrees, along (0, 0.6, 0.8): up is its own.
+    // A camera that looks about 37 degrees down, along (0, 0.6, 0.8), keeps its own up.
     work.write("c.json", R"([{"position": [1, 2, 3], "rotation": [[1, 0, 0], [0, 0.8, 0.6], [0, -0.6, 0.8]],
                               "width": 8, "height": 8, "fx": 9, "fy": 9}])");
     const Similarity at_camera = startWith("--cameras " + cameras);
@@ -110,7 +110,7 @@ TEST_CASE("a scene that would be looked at from nearer than half a metre is show
     CHECK(these(growthAt(0.25, 1.0), growthAt(0.25, 0.1)) == these(doctest::Approx(2.0), doctest::Approx(20.0)));
     for (const double distance : {0.5, 2.0, 100.0}) { CHECK(growthAt(distance, 1.0) == 1.0); }
     CHECK(growthAt(0.25, 10.0) == 1.0);
-    CHECK(growthAt(0.0, 1.0) == 1000.0);  // as far as hands can make it grow
+    CHECK(growthAt(0.0, 1.0) == 1000.0);  // the limit to which hands can enlarge it
 }
 
 TEST_CASE("both hands hold what they took: points of the scene stay in them, upright or, where they may tilt it, turned any way") {
@@ -118,7 +118,7 @@ TEST_CASE("both hands hold what they took: points of the scene stay in them, upr
     const auto checkHeld = [&](const std::array<glm::dvec3, 2>& to, bool tilts) {
         const Similarity held = heldBy(kSome, from, to, tilts);
         for (std::size_t h = 0; h < 2; ++h) { checkNear(transform(held, to[h]), transform(kSome, from[h])); }
-        // Twice as far apart: the scene is twice as large, so a metre is half as many units.
+        // Hands twice as far apart make the scene twice as large, so a metre is half as many units.
         const double growth = glm::length(to[1] - to[0]) / glm::length(from[1] - from[0]);
         CHECK(held.scale == doctest::Approx(kSome.scale / growth));
         return held;
@@ -126,12 +126,12 @@ TEST_CASE("both hands hold what they took: points of the scene stay in them, upr
     for (const auto& to : {std::array{glm::dvec3(-0.1, 0.1, 0.5), glm::dvec3(0.4, 0.1, 0.9)},
                            std::array{glm::dvec3(0.3, 0.4, 0.3), glm::dvec3(-0.1, 0.4, 0.1)},
                            std::array{glm::dvec3(-0.4, 0.4, 0.3), glm::dvec3(0.4, 0.4, 0.3)}, from}) {
-        // The vertical stays the vertical.
+        // The vertical stays vertical.
         checkNear(checkHeld(to, false).orientation * glm::dvec3(0, 1, 0), kSome.orientation * glm::dvec3(0, 1, 0));
     }
     checkHeld({glm::dvec3(0.1, 0.1, 0.3), glm::dvec3(0.15, 0.5, 0.4)}, true);
     checkHeld({from[1], from[0]}, true);  // half a turn, too
-    // Hands at one point say nothing about size and direction.
+    // Hands at one point give neither size nor direction.
     CHECK(heldBy(kSome, {from[0], from[0]}, from).scale == doctest::Approx(kSome.scale));
 }
 
@@ -151,7 +151,7 @@ TEST_CASE("rounding between parallel eyes is taken out, canting is not") {
     CHECK(roomFromEyes(views)[1].orientation != eyes[0].orientation);
     views[1].pose = {q, xr::toXr(right + glm::dvec3(0, 0.001, 0))};
     checkNear(roomFromEyes(views)[1].position, right + glm::dvec3(0, 0.001, 0), 1e-6);
-    // The same for their angles.
+    // The same goes for their angles.
     views[0].fov = {-0.9f, 0.8f, 0.85f, -0.95f};
     views[1].fov = {-0.8f, 0.9f, std::nextafter(0.85f, 1.0f), std::nextafter(-0.95f, 0.0f)};
     const std::array<xr::EyeView, 2> alike = withoutNoise(views);
@@ -192,7 +192,7 @@ TEST_CASE("what somebody sets on the panel is kept, key by key, and is there the
     now.panel = !now.panel;
     now.scene_from_room = kSome;
     preferences.note(now, 0.1);
-    CHECK(preferences.takeChanges().empty());  // it may change on
+    CHECK(preferences.takeChanges().empty());  // it may still change
     preferences.note(now, 2.0);
     const PreferenceLines changes = preferences.takeChanges();
     CHECK(changes == PreferenceLines{{{"stereo", "mode"}, "\"shared\""}, {{"view", "quality"}, "\"fast\""}});
@@ -200,13 +200,13 @@ TEST_CASE("what somebody sets on the panel is kept, key by key, and is there the
     keepPreferences({{{"view", "vignette"}, "false"}});
     const ViewSettings next = settingsOf(parse({}));
     CHECK(describeChange(begin, next) == "mode = \"shared\", vignette = false, quality = \"fast\"");
-    // The command line and a config come first, and the simulated headset knows nothing of it.
+    // The command line and a config override preferences, and the simulated headset ignores them.
     CHECK(settingsOf(parse({"--mode", "mono"})).stereo.mode == Mode::kMono);
     work.write("own.toml", "[view]\nquality = \"sharp\"\n");
     const std::string own = (work.path / "own.toml").string();
     CHECK(settingsOf(parse({"--config", own.c_str()})).quality == Quality::kSharp);
     CHECK(describeChange(begin, settingsOf(parse({"--simulate"}))) == "");
-    // One that is broken keeps nobody out, and is put aside.
+    // A broken file does not prevent the start, and is put aside.
     std::ofstream(preferencesFile()) << "[view]\nnonsense = 1\n";
     CHECK(describeChange(begin, settingsOf(parse({}))) == "");
     keepPreferences({{{"view", "vignette"}, "false"}});
@@ -220,7 +220,7 @@ TEST_CASE("a ruler has two ends, and is put away with the second") {
     CHECK_FALSE(ruler.isOpen());
     ruler.open();
     CHECK_FALSE(ruler.add({1.0, 2.0, 3.0}).has_value());
-    ruler.open();  // from the beginning
+    ruler.open();  // starts over
     CHECK_FALSE(ruler.hasFirst());
     CHECK_FALSE(ruler.add({1.0, 2.0, 3.0}).has_value());
     CHECK(ruler.add({1.0, 5.0, 7.0}) == 5.0);
@@ -242,7 +242,7 @@ TEST_CASE("of a scene only its place and its measure are kept") {
     ViewSettings loaded;
     CHECK(takeSavedSettings(readSavedSettings("builtin:fence"), loaded).starts_with("loaded "));
     CHECK(describeChange({}, loaded) == "");
-    // What programs before have saved is taken as a whole.
+    // A file that an older program saved is taken as a whole.
     std::ofstream(viewSettingsFile("builtin:fence")) << viewSettingsToml(settings);
     CHECK(takeSavedSettings(readSavedSettings("builtin:fence"), loaded).starts_with("loaded "));
     CHECK(loaded.stereo.mode == Mode::kPaper);
@@ -274,7 +274,7 @@ TEST_CASE("what the panel is set to survives its file") {
     ViewSettings read = readViewSettings(view, {});
     read.stereo = runOptions(stereo).stereo;
     CHECK(describeChange(settings, read) == "");
-    // In nearly every frame nothing has changed, which is seen without writing any of it down.
+    // In nearly every frame nothing has changed; to find that out, no text is written.
     CHECK(settings == ViewSettings(settings));
     REQUIRE(read.scene_from_room.has_value());
     checkNear(read.scene_from_room->position, kSome.position);

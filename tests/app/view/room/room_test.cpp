@@ -32,7 +32,7 @@ TEST_CASE("a hand is drawn where its joints are, and nowhere else") {
     const Strip place = handPicturePlace(joints, eye);
     const TexelPicture picture = drawHand(joints, place, eye, {false, false});
     REQUIRE(picture.texels.size() == std::size_t{kHandPicturePx.x} * kHandPicturePx.y);
-    // The palm is in the middle; each joint shows where its line of sight meets the picture.
+    // The palm is in the middle; each joint appears where its line of sight meets the picture.
     CHECK(alphaAt(picture, kHandPicturePx.x / 2, kHandPicturePx.y / 2) == 1.0);
     for (const xr::HandJoint& joint : joints) {
         const glm::dvec3 from = transform(inverse(place.room_from_strip), eye), to = transform(inverse(place.room_from_strip), joint.place);
@@ -74,7 +74,7 @@ TEST_CASE("an arc is opaque along its bends and nowhere else, has no gap between
             CHECK(these(alphaBeside(step, 0.02), alphaBeside(step, -0.02)) == these(0.0, 0.0));
         }
     }
-    CHECK(bends_m > 0.008);  // what a straight strip would leave out
+    CHECK(bends_m > 0.008);  // a straight strip would be off by this much
     const auto isRed = [](std::uint32_t texel) { return (texel & 0xffu) > 128u && (texel >> 8 & 0xffu) < 64u; };
     CHECK(std::ranges::none_of(drawn.picture.texels, isRed));
     arc.is_blocked = true;
@@ -103,7 +103,7 @@ TEST_CASE("pictures are multiplied by alpha, in the order and the encoding of th
     CHECK(texelOf({1.0, 0.0, 0.0}, 1.0, {false, true}) == 0xff0000ffu);
     CHECK(texelOf({1.0, 0.0, 0.0}, 1.0, {true, true}) == 0xffff0000u);
     CHECK(texelOf({1.0, 1.0, 1.0}, 0.5, {false, true}) == 0x80808080u);
-    // Half the light is the byte 188 of sRGB.
+    // Half the light is byte 188 in sRGB.
     CHECK(texelOf({1.0, 1.0, 1.0}, 0.5, {false, false}) == 0x80bcbcbcu);
     const TexelPicture sheet = drawSprites({false, false});
     const auto alpha = [&](Sprite sprite, const glm::dvec2& share) {

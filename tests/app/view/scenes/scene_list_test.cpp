@@ -1,4 +1,5 @@
-// Facts about looking for a scene: folders, scenes that were shown last, what is said and kept of one, and places in it.
+// Facts about finding a scene: folders, recent scenes, what is shown and saved about a scene, and places in
+// it.
 #include "app/view/scenes/scene_list.h"
 #include "app/view/files/file_worker.h"
 #include "app/view/files/picture_writer.h"
@@ -21,7 +22,7 @@
 
 SUITE(scene_list) {
 
-// A user of one's own, with scenes.
+// A user of our own, with scenes.
 struct Home : Workplace {
     Home() { setenv("XDG_CONFIG_HOME", (base / "config").c_str(), 1); }
     ~Home() { unsetenv("XDG_CONFIG_HOME"); }
@@ -50,7 +51,7 @@ TEST_CASE("numbers in names count as numbers, capitals do not count, and every t
             CHECK(comesBefore(ordered[i], ordered[j]) == (i < j));
         }
     }
-    // Longer than any number a machine has.
+    // More digits than fit into any integer.
     CHECK(comesBefore("a99999999999999999999999998", "a99999999999999999999999999"));
     CHECK(comesBefore("A", "a") != comesBefore("a", "A"));
     CHECK(comesBefore("a1", "a01") != comesBefore("a01", "a1"));
@@ -71,7 +72,7 @@ TEST_CASE_FIXTURE(Home, "a folder is listed with its folders and scenes, and wit
                                                     "statue", "trained", "\xd0\x91\xd1\x8e\xd1\x81\xd1\x82.splat"});
     for (const SceneEntry& entry : list.entries) { CHECK(entry.trouble.empty()); }
     CHECK(entryOf(list, "zoo").place == at("zoo"));
-    // The viewer's next scene goes the same way.
+    // The viewer's *next scene* uses the same order.
     CHECK(these(sceneBeside(at("room2.PLY"), 1), sceneBeside(at("room10.ply"), 1)) == these(at("room10.ply"), at("statue")));
 }
 
@@ -90,7 +91,7 @@ TEST_CASE_FIXTURE(Home, "what cannot be opened is listed with the reason, and no
 
 TEST_CASE("the way up ends at the top, and built-in scenes have a place of their own") {
     CHECK(listFolder("/").above.empty());
-    // Where there are drives, they lie above their roots.
+    // Where drives exist, they stand above their roots.
     const Home work;
     const std::vector<fs::path> drives{"/", work.path};
     CHECK(these(listFolder("/", drives).above, listFolder(work.path.string(), drives).above) == these(kDrives, work.base.string()));
@@ -119,7 +120,7 @@ TEST_CASE("recent scenes are kept in the user's folder, the latest first, each o
     CHECK(namesOf(list) == std::vector<std::string>{"builtin:fence", "gone.ply", "a.ply"});
     CHECK(these(list.entries[0].trouble.empty(), list.entries[1].trouble, list.entries[2].trouble.empty(), list.entries[2].place) ==
           these(true, "is not there", true, kept[2]));
-    // A name of two lines would be two scenes.
+    // A name with a line break would read as two scenes.
     rememberScene(work.at("two\nlines.ply"));
     CHECK(recentScenes() == kept);
     for (int i = 0; i < 12; ++i) { rememberScene(work.at(fmt::format("{}.ply", i))); }
@@ -129,7 +130,7 @@ TEST_CASE("recent scenes are kept in the user's folder, the latest first, each o
     const std::vector<std::string> latest = recentScenes();
     CHECK(these(latest.size(), latest.front()) == these(kMostRecentScenes, work.at("5.ply")));
     CHECK(std::ranges::count(latest, work.at("5.ply")) == 1);
-    // Nothing but the list lies there, and one that cannot be written stays as it was.
+    // The folder holds only the list, and a list that cannot be written stays as it was.
     const fs::path folder = work.base / "config" / "binosplat";
     CHECK(std::distance(fs::directory_iterator(folder), fs::directory_iterator()) == 1);
     fs::remove(folder / "recent-scenes.txt");
@@ -151,7 +152,7 @@ TEST_CASE("files are read beside whoever asks, who waits for nothing, and what i
             return [&, by = std::this_thread::get_id()] { delivered.push_back(by == std::this_thread::get_id() ? "here" : "far"); };
         });
         files.write("saving", [&]() -> FileWorker::Done { return [&] { delivered.push_back("saved"); }; });
-        // However long that takes, frames go on, and say what they have not got yet.
+        // However long the disk takes, frames go on, and can say what they are waiting for.
         files.deliver();
         CHECK(delivered.empty());
         CHECK(files.now() == "reading /far/away");
@@ -188,7 +189,7 @@ TEST_CASE("a scene is described in words: how much, of what kind, how large") {
           these("1 234 567, 3 broken ones left out", "3D Gaussians", "degree 1, 3 in the file", "64.0 MiB", "2.0 KiB"));
     CHECK(valueOf("Scale") == "0.25 metres a scene unit");
     CHECK(describeFacts({}, 1.0).at(0).second == "0");
-    // From what loading met.
+    // From what the loader found.
     const Home work;
     fs::create_directory(work.path / "sog");
     work.write("sog/meta.json", std::string(100, 'x'));
@@ -233,7 +234,7 @@ TEST_CASE("a folder with one scene in it is that scene, as it is on the command 
     fs::create_directory(work.path / "garden" / "more");
     CHECK_FALSE(looksLikeScene(work.path / "garden"));
     fs::remove(work.path / "garden" / "more");
-    // The command line opens no more files than these to find it.
+    // The command line opens at most this many files to find the scene.
     for (int i = 0; i < kMostFilesOpened - 2; ++i) { work.add(fmt::format("garden/{}.txt", i)); }
     CHECK(looksLikeScene(work.path / "garden"));
     work.add("garden/one-more.txt");
@@ -241,7 +242,8 @@ TEST_CASE("a folder with one scene in it is that scene, as it is on the command 
     fs::remove(work.path / "garden" / "one-more.txt");
     work.add("garden/second.spz");
     CHECK_FALSE(looksLikeScene(work.path / "garden"));
-    // A folder of several is opened at its first, in natural order; others are none of one's own.
+    // A folder with several scenes opens at the first one, in natural order; the other cases have no first
+    // scene.
     CHECK(firstSceneIn(work.at("garden")) == work.at("garden/garden.ply"));
     CHECK(these(firstSceneIn(work.path.string()), firstSceneIn(work.at("garden/garden.ply")), firstSceneIn("builtin:atelier")) ==
           these("", "", ""));
@@ -257,7 +259,7 @@ TEST_CASE("at a viewpoint the eyes are there, look that way and stand upright, w
     CHECK(glm::distance(placed.orientation * glm::dvec3(0, -1, 0), up) < 1e-9);
     const glm::dvec3 looks = transform(placed, head).orientation * glm::dvec3(0, 0, 1);
     CHECK(glm::distance(looks, glm::normalize(ahead - glm::dot(ahead, up) * up)) < 1e-9);
-    // What is kept there leads back there.
+    // A viewpoint that is kept there leads back there.
     const View kept = viewOf(placed, head);
     const Similarity again = placedAt(kept, placed, head);
     CHECK(glm::distance(again.position, placed.position) < 1e-9);
@@ -284,13 +286,13 @@ TEST_CASE_FIXTURE(Home, "viewpoints are the cameras beside the scene, and then t
     std::ofstream(old) << "0 0 1  0 0 2  0 -1 0\n0 0 3  1 0 3  0 -1 0\n";
     write("cameras.json", R"([{"img_name": "door", "width": 8, "height": 8, "fx": 8, "fy": 8, "position": [5, 0, 0],
                                     "rotation": [[1,0,0],[0,1,0],[0,0,1]]}])");
-    // Lines that are no view: one that looks along its up, and one that is broken off.
+    // Lines that are not views: one looks along its own up, and one is incomplete.
     std::ofstream(old, std::ios::app) << "0 0 1 0 0 2 0 0 1\n0 0 1 0\n";
     const std::vector<Viewpoint> found = findViewpoints({}, scene, {});
     REQUIRE(found.size() == 3);
     CHECK(these(found[0].name, found[0].view.eye, found[1].view.eye, found[2].name) ==
           these("door", glm::dvec3(5, 0, 0), glm::dvec3(0, 0, 1), "your own 2"));
-    // They are in the coordinates of the scene's file, wherever its positions count from.
+    // Viewpoints are in the coordinates of the scene's file, whatever origin its positions count from.
     Scene far;
     far.origin = {4.0, 0.0, -2.0};
     const std::vector<Viewpoint> there = findViewpoints(far, scene, {});
@@ -298,7 +300,7 @@ TEST_CASE_FIXTURE(Home, "viewpoints are the cameras beside the scene, and then t
     CHECK(these(there[0].view.eye, there[2].view.eye, there[2].view.look) ==
           these(glm::dvec3(1, 0, 2), glm::dvec3(-4, 0, 5), glm::dvec3(-3, 0, 5)));
     CHECK(findViewpoints(far, scene, path / "cameras.json")[0].view.eye == glm::dvec3(1, 0, 2));
-    // Lines of programs before go where all are kept now, in their order and with their names.
+    // Viewpoints from older programs move to where all are kept now, in their order and with their names.
     std::vector<Viewpoint> own = keptViewpoints(scene);
     own.back().name = "\u00fcber dem Tisch \"2\"";
     std::swap(own[0], own[1]);
@@ -308,7 +310,7 @@ TEST_CASE_FIXTURE(Home, "viewpoints are the cameras beside the scene, and then t
     REQUIRE(own.size() == 2);
     CHECK(these(own[0].name, own[0].view.eye, own[0].is_own, own[1].name) ==
           these("\u00fcber dem Tisch \"2\"", glm::dvec3(0, 0, 3), true, "your own 1"));
-    // Those of others lie beside the scene, and count where nothing was kept.
+    // Viewpoints from other people lie beside the scene, and count if the user has kept none.
     CHECK(sharedViewpoints(scene) == at("a.viewpoints.json"));
     writeViewpoints(sharedViewpoints(scene), {own[1]});
     CHECK(keptViewpoints(scene).size() == 2);
@@ -384,13 +386,13 @@ TEST_CASE("the rate is that of the frames of the last second, and those are late
     };
     show(1, 0, 10.0, 0.0, 0);
     show(150, 10, 10.0, 100.0, 0);
-    show(4, 330, 10.0, 1000.0 / 330.0, 4);   // the last and the three before reach back further than a second
-    show(3, 330, 330.0, 1000.0 / 330.0, 1);  // a runtime that then states that as its period
+    show(4, 330, 10.0, 1000.0 / 330.0, 4);   // the last frame and the three before it span more than a second
+    show(3, 330, 330.0, 1000.0 / 330.0, 1);  // then a runtime that reports this as its period
     show(100, 10, 10.0, 100.0, 0);
     show(50, 20, 10.0, 50.0, 50);
-    show(1, 800, 10.0, 0.0, 0, false);  // nobody was to see the frames before
-    show(50, 20, 20.0, 50.0, 0);        // another rate
-    show(1, 20, 10.0, 50.0, 0);         // and back
+    show(1, 800, 10.0, 0.0, 0, false);  // the frames before were not meant to be seen
+    show(50, 20, 20.0, 50.0, 0);        // a different rate
+    show(1, 20, 10.0, 50.0, 0);         // and back again
     show(1, 60'000, 20.0, 0.0, 0);      // the machine slept
 }
 

@@ -1,4 +1,5 @@
-// Facts about one scene after another: what is dropped or chosen replaces what is shown, or a line says why not; remembered places too.
+// Facts about showing one scene after another: a dropped or chosen scene replaces the one that is shown, or a
+// line says why not. Also about remembered places.
 #include "app/view/scenes/shown_scene.h"
 #include "app/options/modes.h"
 #include "app/view/panel/canvas.h"
@@ -29,7 +30,7 @@ struct Shown : Gpu, Workplace {
     }
     ~Shown() { unsetenv("XDG_CONFIG_HOME"); }
 
-    // One line, and the scene stays as it was.
+    // One line says why, and the scene stays as it was.
     void checkRefused(ShownScene& scenes, const fs::path& place, const std::string& part) {
         CAPTURE(place);
         const LoadedScene* before = scenes.get();
@@ -97,7 +98,7 @@ TEST_CASE_FIXTURE(Shown, "one that was asked for while another came takes its pl
     CHECK(others.get() == nullptr);
     CHECK(others.take(state).empty());
     CHECK(others.name() == "builtin:step-edge");
-    // That of the command line has nothing to fall back to.
+    // The scene of the command line has nothing to fall back to.
     options.scene = (path / "gone.ply").string();
     ShownScene none(context(), options, log);
     CHECK_THROWS_AS(static_cast<void>(none.take(state)), Error);
@@ -152,12 +153,12 @@ TEST_CASE_FIXTURE(Shown, "a remembered place that is of no use is one line, the 
         CAPTURE(text);
         spoil(text);
         checkSaid();
-        // The next save makes it whole.
+        // The next save repairs it.
         CHECK(saveViewSettings(options.scene, moved) == "saved as " + file.string());
         CHECK_FALSE(showAgain(complaint));
         CHECK(complaint.empty());
     }
-    // What is no file stays, also when it is saved, and nothing waits for a pipe.
+    // Anything but a regular file stays, even when settings are saved, and nothing waits for a pipe.
     fs::remove(file);
     fs::create_directory(file);
     checkSaid();
@@ -167,7 +168,7 @@ TEST_CASE_FIXTURE(Shown, "a remembered place that is of no use is one line, the 
     REQUIRE(mkfifo(file.c_str(), 0600) == 0);
     checkSaid();
     CHECK(fs::is_fifo(file));
-    // Nothing half-written lies about.
+    // No half-written file is left.
     CHECK(std::distance(fs::directory_iterator(file.parent_path()), fs::directory_iterator()) == 1);
 }
 
@@ -206,7 +207,7 @@ TEST_CASE_FIXTURE(Shown, "a loader that was told to give up ends, and keeps noth
     CHECK(context().memoryUse().current_bytes == before);
     CHECK(early.take() == nullptr);
     CHECK(late.take() == nullptr);
-    // Nor does one that was loaded whole when another one was asked for.
+    // Nor does a scene that was fully loaded when another one was requested.
     ShownScene scenes(context(), options, log);
     while (!scenes.isNextReady()) { std::this_thread::yield(); }
     const std::uint64_t one = context().memoryUse().current_bytes;
@@ -303,7 +304,7 @@ TEST_CASE_FIXTURE(
         const GpuScene scene(context(), loadScene((path / name).string()));
         return context().memoryUse().current_bytes - before;
     };
-    // Room for one and a half of them, and their lists.
+    // Enough for one and a half of them, with their lists.
     ContextOptions limited;
     limited.memory_limit_bytes = bytesOf("many.ply") + bytesOf("more.ply") - bytesOf("many.ply") / 4;
     const Context small(limited);
@@ -320,14 +321,14 @@ TEST_CASE_FIXTURE(
     CHECK(scenes.take(state).empty());
     REQUIRE(scenes.get() != nullptr);
     CHECK(scenes.name() == more);
-    // One that fits by no means: then what was shown comes back.
+    // This one cannot fit at all, so the previous scene comes back.
     scenes.begin(most);
     CHECK(scenes.take(state).find(" goes first") != std::string::npos);
     CHECK(scenes.take(state).find("MiB") != std::string::npos);
     CHECK(scenes.get() == nullptr);
     CHECK(scenes.take(state).empty());
     CHECK(scenes.name() == more);
-    // And where its wearer stood is known.
+    // And the program still knows where its wearer stood.
     scenes.begin(options.scene);
     static_cast<void>(scenes.take(state));
     REQUIRE(scenes.take(state).empty());
@@ -364,13 +365,13 @@ TEST_CASE_FIXTURE(Shown, "viewpoints are kept, named, put in order, forgotten, s
     list.forget();
     CHECK(names() == "door;your own 2;");
     CHECK_FALSE(list.requireOwn());
-    // Shared, and read by somebody who has none of them; twice is no more.
+    // Shared, then read by somebody who has none of them; reading twice adds nothing.
     list.writeShared();
     files.finish();
     CHECK(said == "2 viewpoints are in " + (path / "one.viewpoints.json").string());
     scenes.get()->viewpoints.clear();
     list.show(scenes.get());
-    // Reading that has not begun is dropped by finish(); what was read is written then.
+    // finish() drops reading that has not begun; otherwise it writes what was read.
     const auto readAll = [&] {
         while (!files.now().empty()) { std::this_thread::yield(); }
         files.finish();
@@ -385,7 +386,7 @@ TEST_CASE_FIXTURE(Shown, "viewpoints are kept, named, put in order, forgotten, s
     list.read((path / "gone.json").string());
     readAll();
     CHECK(said.find("gone.json") != std::string::npos);
-    // The tour rests at each, and ends after the last.
+    // The tour pauses at each viewpoint, and ends after the last.
     std::string toured;
     list.toggleTour();
     for (int i = 0; i < 100 && list.isTouring(); ++i) {
@@ -400,7 +401,7 @@ TEST_CASE_FIXTURE(Shown, "another method is drawn once its kernels are there, ma
     options.run.stereo.mode = settings.stereo.mode = Mode::kMono;
     const glm::uvec2 size_px(64, 64);
     ShownScene scenes(context(), options, log, FramesAhead{settings.stereo, size_px, false, false, {}});
-    // Chosen while the first one loads.
+    // Chosen while the first scene loads.
     settings.stereo.mode = Mode::kShared;
     scenes.expect(settings.stereo, size_px, false);
     REQUIRE(scenes.take(state).empty());
@@ -418,7 +419,8 @@ TEST_CASE_FIXTURE(Shown, "another method is drawn once its kernels are there, ma
         return scenes.frame().kernelCount() == before;
     };
     CHECK(drawsWithoutCompiling());
-    // Chosen while it is shown: until then frames go on as they were. Numbers of sliders are there at once.
+    // Chosen while it is shown: frames go on as before until the kernels are ready. Values of sliders apply
+    // at once.
     const ViewSettings shared = settings;
     settings.stereo.mode = Mode::kTwoPass;
     scenes.expect(settings.stereo, size_px, false);
@@ -435,7 +437,7 @@ TEST_CASE_FIXTURE(Shown, "another method is drawn once its kernels are there, ma
     settings.stereo.warp.budget = 0.9;
     scenes.expect(settings.stereo, size_px, false);
     CHECK(these(scenes.isMakingKernels(), scenes.drawable(settings)) == these(false, settings));
-    // Chosen and left again.
+    // Chosen, and then changed back.
     const ViewSettings two_pass = settings;
     settings.stereo.mode = Mode::kPaper;
     scenes.expect(settings.stereo, size_px, false);
@@ -443,7 +445,7 @@ TEST_CASE_FIXTURE(Shown, "another method is drawn once its kernels are there, ma
     scenes.expect(settings.stereo, size_px, false);
     waitUntilReady();
     CHECK(scenes.drawable(settings) == settings);
-    // Splats of another kind have other kernels.
+    // Splats of another kind need other kernels.
     scenes.begin("builtin:atelier");
     REQUIRE(scenes.take(state).empty());
     CHECK(drawsWithoutCompiling());

@@ -1,4 +1,4 @@
-// What the viewer begins with on which device.
+// What the viewer starts with on which device.
 #include "app/view/settings/device_defaults.h"
 #include "tests/suite.h"
 

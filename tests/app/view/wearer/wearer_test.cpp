@@ -1,4 +1,5 @@
-// Facts about the wearer without a headset: who points, where a throw lands, how sticks move and turn, where the eyes are taken to look.
+// Facts about the wearer without a headset: who points, where a throw lands, how sticks move and turn, where
+// the eyes are assumed to look.
 #include "app/view/wearer/gaze_follower.h"
 #include "app/view/wearer/teleport.h"
 #include "app/view/wearer/wearer_controls.h"
@@ -6,7 +7,7 @@
 
 SUITE(wearer) {
 
-// A hand that points straight at a place of a panel, half a metre before it.
+// A hand that points straight at a place on a panel, from half a metre in front of it.
 xr::Hand pointingAt(const PanelInRoom& panel, const glm::dvec2& from_middle_m, bool clicks = false) {
     xr::Hand hand;
     hand.aim = compose(panel.roomFromPanel(), Pose{{1, 0, 0, 0}, {from_middle_m.x, from_middle_m.y, -0.5}});
@@ -25,7 +26,7 @@ struct Pointing {
     PanelInRoom panel{{800, 400}, 0.8};
     std::array<xr::Hand, 2> hands;
 
-    // Where the pointer is then, from the left; -1: nowhere.
+    // The pointer's distance from the panel's left edge; -1 if there is none.
     double at(bool shown = true) {
         panel.update(hands, shown);
         return panel.pointer().place_px.value_or(glm::dvec2(-1.0)).x;
@@ -35,7 +36,7 @@ struct Pointing {
     }
 };
 
-// A wearer, who is updated each tenth of a second.
+// A wearer, updated every tenth of a second.
 struct Wearer {
     PanelInRoom panel{{800, 400}, 0.8};
     WearerControls controls;
@@ -74,7 +75,7 @@ TEST_CASE_FIXTURE(Wearer, "a pinch with the palm towards the eyes is the menu bu
         update();
         return state.settings().panel;
     };
-    CHECK_FALSE(pinch(-0.03));  // of a left hand, the index finger is at the left then
+    CHECK_FALSE(pinch(-0.03));  // on a left hand, the index finger would then be to the left
     CHECK_FALSE(pinch(0.03));
     CHECK(pinch(-0.03));
 }
@@ -137,7 +138,7 @@ TEST_CASE_FIXTURE(Pointing, "a trigger that was pulled beside the panel does not
 }
 
 TEST_CASE_FIXTURE(Pointing, "a ray meets the panel where it points, from the front alone; a strip joins its ends and faces the eye") {
-    // A quarter to the right and downwards of the panel's middle.
+    // Right of the panel's middle and below it, by a quarter.
     hands[kRight] = pointingAt(panel, {0.2, 0.1});
     CHECK(at() == doctest::Approx(600));
     CHECK(panel.pointer().place_px->y == doctest::Approx(300));
@@ -146,9 +147,10 @@ TEST_CASE_FIXTURE(Pointing, "a ray meets the panel where it points, from the fro
     REQUIRE(seen.size() == 1);
     CHECK(these(seen[0].sprite, seen[0].strip.size_m.y) == these(Sprite::kRay, doctest::Approx(0.5)));
     CHECK(glm::distance(seen[0].strip.room_from_strip.position, transform(panel.roomFromPanel(), {0.2, 0.1, -0.25})) < 1e-9);
-    hands[kRight].aim = compose(panel.roomFromPanel(), {glm::dquat(0, 0, 1, 0), {0.2, 0.1, 0.5}});  // behind it, towards it
+    // From behind the panel, towards it.
+    hands[kRight].aim = compose(panel.roomFromPanel(), {glm::dquat(0, 0, 1, 0), {0.2, 0.1, 0.5}});
     CHECK(at() < 0.0);
-    // It fades before it is there.
+    // The ray fades before it reaches the panel.
     const auto behind = panel.rays(glm::dvec3(0.0), std::nullopt);
     REQUIRE(behind.size() == 1);
     CHECK(behind[0].sprite == Sprite::kFadingRay);
@@ -182,7 +184,7 @@ TEST_CASE("a path meets what it goes into between two of its points, and passes 
     CHECK(*met.meets == doctest::Approx(6.2));
     CHECK_FALSE(met.is_hidden);
     CHECK_FALSE(followPath(points, {}).meets.has_value());
-    // A post that hides a part of it, then sight of what is farther away.
+    // A post hides a part of it; beyond the post there is a view of what is farther away.
     Depths post = wall;
     for (std::optional<double>& depth : post) { depth = 20.0; }
     post[7].reset();
@@ -215,14 +217,14 @@ TEST_CASE_FIXTURE(Wearer, "one does not teleport to where the arc would lead thr
 }
 
 TEST_CASE("a throw lands on the floor, where physics puts it") {
-    // 7 m/s straight ahead from 1.2 m: it falls for sqrt(2 h / g).
+    // 7 m/s straight ahead from a height of 1.2 m: it falls for sqrt(2 h / g).
     const TeleportAim level = aimTeleport({{1, 0, 0, 0}, {0.2, 0.4, 0.3}}, 1.6);
     REQUIRE(level.target.has_value());
     CHECK(these(level.target->y, level.target->x, level.target->z, level.arc.points.size()) ==
           these(doctest::Approx(1.6), doctest::Approx(0.2), doctest::Approx(0.3 + 7.0 * std::sqrt(2.0 * 1.2 / 9.8)),
                 kArcPieces * kPointsOfPiece + 1));
     CHECK(glm::distance(level.arc.points.front(), glm::dvec3(0.2, 0.4, 0.3)) < 1e-12);
-    // Upwards it flies farther, and down at one's feet not at all.
+    // Aimed upwards it flies farther; aimed at one's feet it does not fly at all.
     const auto reach = [](double up_rad) {
         const TeleportAim aim = aimTeleport({glm::angleAxis(up_rad, glm::dvec3(1, 0, 0)), {0.0, 0.4, 0.0}}, 1.6);
         return glm::length(glm::dvec2(aim.target->x, aim.target->z));
@@ -232,7 +234,7 @@ TEST_CASE("a throw lands on the floor, where physics puts it") {
     CHECK_FALSE(aimTeleport({{1, 0, 0, 0}, {0.0, 1.7, 0.0}}, 1.6).target.has_value());
 }
 
-// A stair goes up at z = 1, and a table stands on it from z = 2 on.
+// A stair goes up at z = 1, and from z = 2 on a table stands on it.
 std::vector<glm::dvec3> stairAndTable() {
     std::vector<glm::dvec3> ground;
     for (int z = -5; z < 35; ++z) {
@@ -289,7 +291,7 @@ TEST_CASE_FIXTURE(Wearer, "nobody gets under the floor, which holds where nothin
     floorAt(1.2);
     push(kRight, {0.0, 0.0});
     CHECK(place().y == doctest::Approx(-0.4));
-    // A floor a little below draws down, one far below does not.
+    // A floor slightly below pulls the wearer down, one far below does not.
     for (const auto& [floor_y, end_y] : {std::pair(1.5, -0.1), std::pair(2.6, -0.1)}) {
         for (int i = 0; i < 30; ++i) {
             floorAt(floor_y);
@@ -357,14 +359,14 @@ TEST_CASE("the stick turns smoothly, a right angle in a second, which counts as 
     smooth.push(kRight, {0.0, 0.0});
     CHECK_FALSE(smooth.controls.isMoving());
     Wearer wearer;
-    // Turns by 30 degrees since the last one.
+    // Turns by 30 degrees since the last call.
     const auto turns = [&](const glm::dvec2& stick) {
         const double before_rad = wearer.turn_rad();
         wearer.push(kRight, stick);
         return std::lround((wearer.turn_rad() - before_rad) / 0.5235987755982988);
     };
     CHECK(turns({0.9, 0.0}) == 1);
-    CHECK(turns({0.6, 0.7}) == 0);  // rises and sinks here
+    CHECK(turns({0.6, 0.7}) == 0);  // here the stick lifts and lowers
     CHECK(turns({0.9, 0.0}) == 0);
     CHECK(turns({0.3, 0.7}) == 0);
     CHECK(turns({0.9, 0.0}) == 1);
@@ -384,10 +386,10 @@ TEST_CASE("an eye that nobody sees looks at the middle of its lens, one that is 
     CHECK(angleBetween(gazes[kRight]->direction, kAside) < 1e-6);
     CHECK(angleBetween(kEyes[kLeft].orientation * gazes[kLeft]->direction, kAside) < 1e-6);
     CHECK(gazes[kLeft]->clear_rad == doctest::Approx(GazeFollower::kSeenClearRadians));
-    // From now on at once.
+    // From now on the gaze follows at once.
     gazes = follower.update(glm::dvec3(0.0, 0.0, 1.0), kEyes, kLensClear, kStep);
     CHECK(angleBetween(gazes[kRight]->direction, {0.0, 0.0, 1.0}) < 1e-6);
-    // No more than without a tracker.
+    // No sharper than without a tracker.
     CHECK(follower.update(kAside, kEyes, 0.05, kStep)[kLeft]->clear_rad == doctest::Approx(0.05));
 }
 

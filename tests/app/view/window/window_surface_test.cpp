@@ -1,4 +1,4 @@
-// Facts about what a window takes of what displays offer.
+// Facts about which of a display's offers a window takes.
 #include "app/view/window/window_surface.h"
 #include "tests/suite.h"
 
@@ -19,7 +19,7 @@ TEST_CASE("pictures are as large as the compositor says, or as the window where 
     CHECK(windowExtent(able({UINT32_MAX, UINT32_MAX}, {1, 1}, {4096, 4096}), kWindow) == kWindow);
     CHECK(windowExtent(able({UINT32_MAX, UINT32_MAX}, {1, 1}, {1024, 4096}), kWindow) == vk::Extent2D(1024, 720));
     CHECK(windowExtent(able({UINT32_MAX, UINT32_MAX}, {2000, 1}, {4096, 4096}), kWindow) == vk::Extent2D(2000, 720));
-    // Wayland's, before the window was ever shown.
+    // On Wayland, before the window is first shown.
     CHECK(windowExtent(able({UINT32_MAX, UINT32_MAX}, {1, 1}, {0, 0}), kWindow) == vk::Extent2D(1, 1));
 }
 
@@ -37,7 +37,7 @@ TEST_CASE("formats that show bytes as they are are taken, eight bits first") {
           Format::eR8G8B8A8Unorm);
     CHECK(windowFormat(Offered{{Format::eA2B10G10R10UnormPack32, space}})->format == Format::eA2B10G10R10UnormPack32);
     CHECK_FALSE(windowFormat(Offered{{Format::eB8G8R8A8Srgb, space}}).has_value());
-    // Light instead of encoded values.
+    // Linear light instead of encoded values.
     CHECK_FALSE(windowFormat(Offered{{Format::eR8G8B8A8Unorm, vk::ColorSpaceKHR::eExtendedSrgbLinearEXT}}).has_value());
     CHECK(windowFormat(Offered{{Format::eUndefined, space}})->format == Format::eB8G8R8A8Unorm);
 }

@@ -1,4 +1,4 @@
-// A build without network says so.
+// A build without network support says so.
 #include "engine/files/web/web_files.h"
 #include "tests/engine/files/ply_files.h"
 

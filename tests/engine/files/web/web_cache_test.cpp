@@ -1,11 +1,12 @@
-// What is kept on the disk: asked about, not fetched again; there when the server is gone; within its limit; and whole, whoever uses it.
+// What is kept on the disk is revalidated, not fetched again; it is used when the server is gone; it stays
+// within its limit and complete, whoever uses it.
 #include "tests/engine/files/web/web_runs.h"
 
 SUITE(web_cache) {
 
 const std::string kPly = makePly(45).bytes(), kOther = makePly(9).bytes();
 
-// As a good server does: 304 for who has the version already.
+// As a good server does: it answers 304 to a client that already has the version.
 WebServer::Handler withVersions(std::string bytes) {
     return [held = std::move(bytes)](const WebRequest& request) {
         const std::string version = fmt::format("ETag: \"{}\"\r\nLast-Modified: Thu, 01 Jan 2026 00:00:00 GMT\r\n", held.size());
@@ -54,7 +55,7 @@ TEST_CASE("a file of which the server says no version is fetched each time") {
     const WebServer server({{"/a.ply", kPly}});
     for (int turn = 0; turn < 2; ++turn) { (void)loadFromWeb(server.at("/a.ply"), webSettings(folder)); }
     CHECK(server.asked().size() == 2);
-    // As is one whose end the server does not tell, since it may be cut off.
+    // So is a file whose end the server does not announce, since it may have been cut off.
     const WebServer endless([](const WebRequest& request) {
         CHECK_FALSE(request.headers.contains("if-none-match"));
         return WebAnswer{"HTTP/1.1 200 OK\r\nETag: \"1\"\r\n\r\n" + kPly, WebAnswer::Then::kClose};
@@ -70,7 +71,7 @@ TEST_CASE("without its server a scene is shown as it was, and one line says so")
     });
     const std::string address = server.at("/a.ply");
     (void)loadFromWeb(address, webSettings(folder));
-    // A server that is there and has it no more is believed; the copy stays.
+    // If a server is there and no longer has the file, it is believed; the copy stays.
     CHECK(contains(webError(address, webSettings(folder)), "is not there"));
     LoadNotes busy, gone;
     checkSameScene(scene, loadFromWeb(address, webSettings(folder), &busy));
@@ -98,7 +99,8 @@ TEST_CASE("the cache keeps its limit, and what was used last") {
     CHECK(filesIn(folder.file("cache")).size() == 4);
     CHECK(bytesIn(folder.file("cache")) <= settings.cache_bytes);
     CHECK(fs::exists(first));
-    // One that is larger than all of it is not taken, whether or not the server says so before; without a cache it is shown, and not kept.
+    // A file larger than the whole cache is not taken, whether or not the server announces its size; without
+    // a cache it is shown and not kept.
     const WebServer silent([](const WebRequest&) { return WebAnswer{"HTTP/1.1 200 OK\r\n\r\n" + kPly, WebAnswer::Then::kClose}; });
     settings.cache_bytes = kPly.size() / 2;
     CHECK(contains(webError(server.at("/a.ply"), settings),
@@ -140,7 +142,7 @@ TEST_CASE("a broken cache is one without the file") {
         (void)folder.write("cache/" + note, broken);
         checkSameScene(scene, loadFromWeb(server.at("/a.ply"), settings));
     }
-    // What a broken-off program left is removed after a while, what another one fetches now is not.
+    // What an interrupted program left is removed after a while; what another program is fetching is not.
     (void)folder.write("cache/0-1-2.part", "old");
     (void)folder.write("cache/0-1-3.part", "new");
     (void)folder.write("cache/0.json", "{}");

@@ -1,4 +1,5 @@
-// Servers that are busy, cut off, lie, lead elsewhere or vanish: the scene all the same, or one plain line and nothing left behind.
+// Servers that are busy, break off, lie, redirect or vanish: the scene loads anyway, or one plain line says
+// why not and nothing is left behind.
 #include "tests/engine/files/gltf_files.h"
 #include "tests/engine/files/web/web_runs.h"
 
@@ -13,18 +14,18 @@ WebAnswer cutAfter(std::size_t bytes, WebAnswer::Then then = WebAnswer::Then::kC
     return whole;
 }
 
-// Part of a file with the version "1".
+// Part of a file of version "1".
 WebAnswer partOf(const std::string& whole, std::size_t from, std::size_t end, const std::string& total, const std::string& etag = "\"1\"") {
     return answer("206 Partial Content", fmt::format("ETag: {}\r\nContent-Range: bytes {}-{}/{}\r\n", etag, from, end - 1, total),
                   whole.substr(from, end - from));
 }
 
-// As a server that does not know how long it is, or says something else.
+// Like a server that does not know the file's length, or states another one.
 WebAnswer withLength(const std::string& header, const std::string& body) {
     return {fmt::format("HTTP/1.1 200 OK\r\n{}\r\n{}", header, body), WebAnswer::Then::kClose};
 }
 
-// The error, of a server that gives every request this answer; nothing is left in the cache then.
+// The error when a server gives every request this answer; afterwards the cache must be empty.
 std::string errorOf(const WebAnswer& given, WebSettings (*settings)(const Folder&) = webSettings, std::size_t attempts = 1) {
     const Folder folder;
     const WebServer server([given](const WebRequest&) { return given; });
@@ -57,7 +58,7 @@ TEST_CASE("a file that broke off goes on where it ended, if it is still the same
         return partOf(kPly, from, kPly.size(), std::to_string(kPly.size()), etag);
     };
     const auto whole = [](const char* headers) { return answer("200 OK", headers, kPly); };
-    // The rest, but for its last byte.
+    // The rest, without its last byte.
     WebAnswer shorter =
         answer("206 Partial Content", fmt::format("ETag: \"1\"\r\nContent-Range: bytes {}-{}/{}\r\n", half, kPly.size() - 1, kPly.size()),
                kPly.substr(half, kPly.size() - 1 - half));
@@ -65,24 +66,25 @@ TEST_CASE("a file that broke off goes on where it ended, if it is still the same
     const std::string asks = fmt::format("bytes={}- \"1\"", half);
     struct {
         const char* etag;  // of the first half
-        WebAnswer second;  // after which the whole file is sent
-        Asked asked;       // what was asked for then
+        WebAnswer second;  // after it, the whole file is sent
+        Asked asked;       // what was requested then
     } const breaks[]{{"\"1\"", rest(half, "\"1\""), {" ", asks}},
-                     // A server that sends the whole, of this version or another.
+                     // A server that sends the whole file, of this version or another.
                      {"\"1\"", whole("ETag: \"1\"\r\n"), {" ", asks}},
                      {"\"1\"", whole("ETag: \"2\"\r\n"), {" ", asks}},
-                     // A rest that is none, or of another version: the whole is asked for.
+                     // What is sent is not the rest, or belongs to another version: the whole file is
+                     // requested.
                      {"\"1\"", rest(half, "\"2\""), {" ", asks, " "}},
                      {"\"1\"", rest(half + 1, "\"1\""), {" ", asks, " "}},
                      {"\"1\"", rest(0, "\"1\""), {" ", asks, " "}},
                      {"\"1\"", answer("206 Partial Content", "ETag: \"1\"\r\n", kPly.substr(half)), {" ", asks, " "}},
                      {"\"1\"", answer("206 Partial Content", "ETag: \"1\"\r\nContent-Range: bytes */9\r\n", "x"), {" ", asks, " "}},
                      {"\"1\"", answer("416 Range Not Satisfiable"), {" ", asks, " "}},
-                     // A rest that is too short is one more break; nothing goes on from a busy server's answer.
+                     // A rest that is too short is one more break; a busy server's answer is never continued.
                      {"\"1\"", shorter, {" ", asks, fmt::format("bytes={}- \"1\"", kPly.size() - 1)}},
                      {"\"1\"", answer("503 Service Unavailable", "", "busy"), {" ", asks, asks}},
                      {"\"1\"", {"HTTP/1.1 200 OK\r\nContent-", WebAnswer::Then::kClose}, {" ", asks, asks}},
-                     // Without a version that says that every byte is the same, nothing is put together.
+                     // Parts are put together only with a version that guarantees every byte to be the same.
                      {"W/\"1\"", whole(""), {" ", " "}}};
     for (const auto& one : breaks) {
         CAPTURE(one.second.bytes.substr(0, 120));
@@ -143,7 +145,7 @@ TEST_CASE("a few attempts are enough") {
     CHECK(errorOf(cutAfter(100), webSettings, 4) ==
           fmt::format("was cut off after 100 of {} bytes, after 4 attempts; try again later", kPly.size()));
     CHECK(errorOf(WebAnswer{"", WebAnswer::Then::kClose}, webSettings, 4).starts_with("the server hangs up ("));
-    // One that asks for an hour gets no second request.
+    // If a server asks to wait an hour, there is no second request.
     CHECK(errorOf(answer("429 Too Many Requests", "Retry-After: 3600\r\n")) == "the server asks to wait 3600 s; try again then");
 }
 
@@ -152,7 +154,7 @@ TEST_CASE("a file that is not there, not for everybody, empty or no scene is ref
     CHECK(errorOf(answer("403 Forbidden")) == "may not be read (the server answers 403), expected an address that anybody may read");
     CHECK(errorOf(answer("204 No Content")).starts_with("cannot be fetched (the server answers 204)"));
     CHECK(errorOf(answer("304 Not Modified")).starts_with("cannot be fetched (the server answers 304)"));
-    // Whatever comes with it, and however much.
+    // Whatever comes with the answer, and however much.
     CHECK(errorOf(answer("404 Not Found", "", std::string(1 << 20, 'x'))).starts_with("is not there"));
     CHECK(errorOf({"hello\r\n\r\n", WebAnswer::Then::kClose}).starts_with("cannot be fetched ("));
     const Folder folder;
@@ -162,13 +164,13 @@ TEST_CASE("a file that is not there, not for everybody, empty or no scene is ref
 }
 
 TEST_CASE("what a server says of a file's length is not believed") {
-    // Longer than it is: cut off.
+    // Longer than the file: cut off.
     CHECK(errorOf(withLength(fmt::format("Content-Length: {}\r\n", kPly.size() + 1), kPly), webSettings, 4)
               .starts_with(fmt::format("was cut off after {} of {} bytes", kPly.size(), kPly.size() + 1)));
-    // Longer than any disk: not even begun.
+    // Longer than any disk: not even started.
     CHECK(errorOf(withLength("Content-Length: 9000000000000000000\r\n", kPly))
               .starts_with("is 9000000000000000000 bytes long, expected at most"));
-    // More than may be taken.
+    // More than is allowed.
     const auto little = [](const Folder& folder) {
         WebSettings settings = webSettings(folder);
         settings.fetch.most_bytes = kPly.size() - 1;
@@ -178,7 +180,7 @@ TEST_CASE("what a server says of a file's length is not believed") {
     const std::string most = fmt::format("{} bytes, which is the most that is taken", kPly.size() - 1);
     CHECK(errorOf(withLength("", kPly), little) == "is longer than " + most);
     CHECK(errorOf(withLength(chunked, chunk), little) == "is longer than " + most);
-    // Chunks that break off are no end of the file.
+    // Chunks that break off do not end the file.
     CHECK(errorOf(withLength(chunked, chunk.substr(0, chunk.find('\n') + 1 + 300)), webSettings, 4)
               .starts_with("was cut off after 300 bytes"));
 
@@ -187,7 +189,7 @@ TEST_CASE("what a server says of a file's length is not believed") {
     const WebServer server([](const WebRequest&) { return withLength(fmt::format("Content-Length: {}\r\n", kPly.size() - 9), kPly); });
     CHECK(contains(webError(server.at("/a.ply"), webSettings(folder)), "a.ply: "));
 
-    // Of unknown length, all the same the scene.
+    // With unknown length, the scene loads all the same.
     const Scene scene = loadScene(folder.write("a.ply", kPly));
     for (const WebAnswer& given :
          {withLength("", kPly), withLength("Content-Length: 99999999999999999999999\r\n", kPly), withLength(chunked, chunk)}) {
@@ -301,7 +303,7 @@ TEST_CASE("a body that is packed on its way is unpacked, and never resumed") {
         std::filesystem::remove_all(folder.file("cache"));
     }
     std::string broken = deflated(kPly, MAX_WBITS + 16);
-    broken[broken.size() - 6] ^= 1;  // of the checksum, behind all of the file
+    broken[broken.size() - 6] ^= 1;  // of the checksum, at the end of the whole file
     CHECK(errorOf(answer("200 OK", "Content-Encoding: gzip\r\n", broken)).starts_with("cannot be fetched ("));
 }
 

@@ -7,7 +7,7 @@
 
 namespace binosplat::test {
 
-// Without pauses between attempts, into a cache in the folder of the test.
+// Without pauses between attempts, into a cache in the test's folder.
 inline WebSettings webSettings(const Folder& folder) {
     setEnvironment("no_proxy", "127.0.0.1");
     WebSettings settings;
@@ -22,7 +22,8 @@ inline Scene loadFromWeb(const std::string& address, const WebSettings& settings
     return loadSceneFromAnywhere(address, 0, notes != nullptr ? *notes : ignored, progress, level, settings);
 }
 
-// The message of the Error that it throws, one line that begins with the address; empty if there is none.
+// The message of the Error that it throws, which must be one line that begins with the address; empty if it
+// throws none.
 inline std::string webError(const std::string& address, const WebSettings& settings) {
     try {
         (void)loadFromWeb(address, settings);
@@ -43,7 +44,7 @@ inline std::vector<std::string> filesIn(const std::filesystem::path& folder) {
     return names;
 }
 
-// Everything in a folder, by its path after `prefix`.
+// Everything in a folder, by path after `prefix`.
 inline WebPages filesOf(const std::filesystem::path& folder, const std::string& prefix = "/") {
     WebPages files;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {

@@ -1,4 +1,5 @@
-// Scenes of every format at addresses: the same as on the disk, and no more is asked for than they need.
+// Scenes of every format at web addresses: they equal those on the disk, and nothing is requested that they
+// do not need.
 #include "tests/engine/files/gltf_files.h"
 #include "tests/engine/files/hostile_scenes.h"
 #include "tests/engine/files/ksplat_files.h"
@@ -171,12 +172,12 @@ TEST_CASE("of a streamed scene the files of the level that is read are fetched, 
         }
         std::filesystem::remove_all(folder.file("cache"));
     }
-    // Of a level that cannot fit nothing is fetched.
+    // Nothing of a level that cannot fit is fetched.
     const WebServer server(filesOf(path, "/s/"));
     const auto fits = [](std::uint64_t splats, int) { return splats < 16; };
     CHECK(loadFromWeb(server.at("/s/lod-meta.json"), webSettings(folder), nullptr, {std::nullopt, fits}).size() == 16);
     for (const std::string& name : server.asked()) { CHECK_FALSE(name.starts_with("/s/a")); }
-    // Without its environment it is shown, too.
+    // Without its environment, the scene is shown all the same.
     std::filesystem::remove_all(folder.file("scene/env"));
     const WebServer without(filesOf(path, "/s/"));
     LoadNotes notes;

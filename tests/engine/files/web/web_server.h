@@ -1,4 +1,4 @@
-// A small HTTP server on the loopback address, as well or badly behaved as a test wants.
+// A small HTTP server on the loopback address, as well or as badly behaved as a test wants.
 #pragma once
 
 #include "tests/suite.h"
@@ -15,19 +15,19 @@
 namespace binosplat::test {
 
 struct WebRequest {
-    std::string path;                            // with what follows a question mark
-    std::map<std::string, std::string> headers;  // by names in small letters
-    std::size_t number = 0;                      // how many came before it
+    std::string path;                            // with everything after a question mark
+    std::map<std::string, std::string> headers;  // by name, in lower case
+    std::size_t number = 0;                      // number of requests before it
 
-    // Empty if there is no header of that name.
+    // Empty if there is no header with that name.
     [[nodiscard]] std::string header(const std::string& name) const {
         const auto found = headers.find(name);
         return found != headers.end() ? found->second : "";
     }
 };
 
-// What a server does with one request: `bytes` go out as they are; then the connection stays open, is closed, or is left to wait until
-// the client closes it.
+// A server's answer to one request: `bytes` are sent as they are; then the connection stays open, is closed,
+// or waits until the client closes it.
 struct WebAnswer {
     std::string bytes;
     enum class Then { kGoOn, kClose, kHang } then = Then::kGoOn;
@@ -37,7 +37,7 @@ inline WebAnswer answer(const std::string& status, const std::string& headers = 
     return {fmt::format("HTTP/1.1 {}\r\nContent-Length: {}\r\n{}\r\n{}", status, body.size(), headers, body)};
 }
 
-// A server with these files by their paths, "/a/b.ply"; others do not exist.
+// A server with these files, by path such as "/a/b.ply"; no others exist.
 using WebPages = std::map<std::string, std::string>;
 inline WebAnswer answerFrom(const WebPages& files, const WebRequest& request) {
     const auto found = files.find(request.path);
@@ -77,7 +77,7 @@ public:
         return connections_.size();
     }
 
-    // From now on nothing listens there; requests in progress go on. A handler may call it, too.
+    // From now on nothing listens there; requests in progress continue. A handler may call it, too.
     void refuse() { ::shutdown(listener_, SHUT_RDWR); }
 
     // Ends everything.

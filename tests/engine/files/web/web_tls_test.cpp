@@ -1,4 +1,5 @@
-// Somebody else's server, over TLS: whose certificate is trusted, and how many connections the files of a scene take.
+// A foreign server, over TLS: whose certificate is trusted, and how many connections the files of a scene
+// take.
 #include "tests/engine/files/sog_scenes.h"
 #include "tests/engine/files/web/web_runs.h"
 #include "tests/xr/simulated/installed.h"
@@ -7,7 +8,7 @@
 
 SUITE(web_tls) {
 
-// A program that runs beside the test, for at most a minute.
+// A program that runs beside the test, for a minute at most.
 class Beside {
 public:
     Beside(const Folder& folder, const std::string& command)
@@ -22,7 +23,7 @@ public:
         ::pclose(told_);
     }
 
-    // The next line of what it prints that has `part` in it; none at its end.
+    // The next line of its output that contains `part`; none once the output has ended.
     std::optional<std::string> lineWith(const std::string& part) {
         std::array<char, 1024> line{};
         while (std::fgets(line.data(), static_cast<int>(line.size()), told_) != nullptr) {
@@ -37,7 +38,7 @@ private:
     pid_t pid_ = 0;
 };
 
-// What a program of its own may listen on: free a moment ago.
+// A port for another program to listen on: it was free a moment ago.
 int freePort() {
     const std::string address = WebServer(WebPages()).at("");
     return std::stoi(address.substr(address.rfind(':') + 1));
@@ -47,7 +48,7 @@ TEST_CASE("a server is refused whose certificate is not valid; one with HTTP/2 s
     if (!isInstalled("openssl", "openssl") || !isInstalled("nghttpd", "nghttp2-server")) { return; }
     const Folder folder;
     const std::string scene = writeSogFolder(folder, "sog", makeSog());
-    // A certificate of the loopback address that nobody vouches for.
+    // A certificate for the loopback address that nobody vouches for.
     const std::string make =
         "openssl req -x509 -newkey rsa:2048 -nodes -keyout key.pem -out own.pem -subj /CN=localhost "
         "-addext subjectAltName=DNS:localhost,IP:127.0.0.1 2> /dev/null";
@@ -57,7 +58,7 @@ TEST_CASE("a server is refused whose certificate is not valid; one with HTTP/2 s
     Beside server(folder, fmt::format("nghttpd -v -a 127.0.0.1 -d '{}' {} key.pem own.pem 2> /dev/null", scene, port));
     REQUIRE(server.lineWith("listen 127.0.0.1"));
     CHECK(webError(address, webSettings(folder)).starts_with(address + ": the server's certificate is not valid ("));
-    // As one of an authority that the user trusts it is taken.
+    // When issued by an authority that the user trusts, it is accepted.
     setEnvironment("SSL_CERT_FILE", folder.file("own.pem"));
     checkSameScene(loadScene(scene), loadFromWeb(address, webSettings(folder)));
     setEnvironment("SSL_CERT_FILE", "");

@@ -1,4 +1,5 @@
-// Scenes that move, on the device: the frame of the time, what lies between two, and what is late or broken.
+// Moving scenes on the device: the frame for the current time, what lies between two frames, and frames that
+// are late or broken.
 #include "engine/stream/moving_scene.h"
 
 #include "tests/engine/files/ply_files.h"
@@ -33,10 +34,10 @@ Image pictureOf(const Context& context, const Scene& scene) {
     return pictureOf(frame);
 }
 
-// At the middle of a scene frame.
+// Halfway through a scene frame.
 double timeOf(double frame) { return (frame + 0.5) / kRate; }
 
-// Until the scene of the time is shown, or what there is of it.
+// Until the scene for this time is shown, or as much of it as there is.
 template <typename Is>
 void updateUntil(MovingScene& scene, const Is& is) {
     do {
@@ -45,7 +46,8 @@ void updateUntil(MovingScene& scene, const Is& is) {
     } while (!is());
 }
 
-// The worst of the frames after the first eight, from so far behind the view: four frames of display for each of the scene.
+// The worst frame after the first eight, seen from this far behind the view, with four display frames for
+// each scene frame.
 double worstFromPasts(MovingScene& moving, double back_m, int frames) {
     KeptFrame temporal(Gpu::shared(), moving.scene()), full(Gpu::shared(), moving.scene());
     std::array<Eye, 2> eyes = atelierEyes();
@@ -98,7 +100,7 @@ TEST_CASE_FIXTURE(Sliding, "between two frames there is what lies between their 
     const Image between = pictureOf(frame), wanted = pictureOf(context(), slidingAtelier(2.25));
     CHECK(compare(between, wanted).psnrDb() > 60.0);
     CHECK(compare(between, pictureOf(context(), slidingAtelier(2.0))).psnrDb() < 50.0);
-    // Files need not end as they begin.
+    // Files may end differently from how they began.
     moving->setTime((kFrames - 0.5) / kRate);
     moving->settle({});
     CHECK(pictureOf(frame).values == pictureOf(context(), loadScene(fileOf(kFrames - 1))).values);
@@ -125,7 +127,7 @@ TEST_CASE_FIXTURE(Sliding, "frames go on while the next is read, which is late a
 TEST_CASE_FIXTURE(Sliding, "a frame that is not there in time is late, counted once, and shown when it comes") {
     std::atomic<bool> holds = false;
     MovingSettings settings;
-    settings.memory_bytes = 1;  // the next ones alone
+    settings.memory_bytes = 1;  // only the next ones
     settings.draw_as = [&](Scene&, LoadNotes&) { holds.wait(true); };
     const auto moving = open(std::move(settings));
     KeptFrame frame(context(), moving->scene());
@@ -181,7 +183,7 @@ TEST_CASE_FIXTURE(Sliding, "frames may have more splats or fewer, as far as the 
         CHECK(moving->counters().splats_resident == whole.size());
         CHECK(pictureOf(frame).values == pictureOf(context(), whole).values);
     }
-    // One that has grown since its size was looked at.
+    // A file that has grown since its size was read.
     writePly(slidingAtelier(4, 60'000), fileOf(4));
     moving->setTime(timeOf(4));
     CHECK_THROWS_WITH_AS(moving->settle({}), doctest::Contains("there is room for"), Error);
@@ -236,7 +238,7 @@ TEST_CASE_FIXTURE(Gpu, "frames under way have room for what changes, whether it 
     const Eye middle = eyeOf(*builtinView("atelier"), {192, 144});
     const FrameSettings settings = settingsOf(Mode::kTemporal, true);
     for (int step = 0; step < 16; ++step) {
-        // Another frame of the scene in every second, and in three one after the other.
+        // A different scene frame every second display frame, and in three in a row.
         const int at = step < 8 ? step / 2 : step - 4;
         moving.setTime(timeOf(std::min(at, 8)));
         moving.settle({});

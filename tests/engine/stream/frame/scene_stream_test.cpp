@@ -1,4 +1,5 @@
-// Streamed scenes on the device: something to see at once, all that the eyes ask for in the end, and never more than there is room for.
+// Streamed scenes on the device: something is visible at once, everything that the eyes need in the end, and
+// never more than fits.
 #include "engine/stream/scene_stream.h"
 
 #include "tests/engine/files/streamed_scenes.h"
@@ -21,7 +22,7 @@ std::array<Eye, 2> atelierEyes(std::uint32_t side_px = 256, double yaw_rad = 0.0
     return stereoPair(middle, 0.063);
 }
 
-// The atelier in 64 leaves of four levels, in a folder for all of the tests.
+// The atelier in 64 leaves of four levels, in a folder that all tests share.
 std::string writtenAtelier() {
     static const Workplace place;
     const std::string folder = (place.path / "split").string();
@@ -43,14 +44,14 @@ struct Streamed : Gpu {
                                                     const WebSettings& web = {}) const {
         return std::make_unique<SceneStream>(context(), std::make_unique<ChunkSource>(from, web), settings);
     }
-    // Of the left eye, in full.
+    // The left eye's full render.
     template <typename AnyScene>
     [[nodiscard]] Image pictureOf(const AnyScene& scene) const {
         KeptFrame frame(context(), scene);
         (void)frame.render(eyes, full);
         return frame.readPicture(kLeft);
     }
-    // Frames until nothing changes any more.
+    // Renders until nothing changes any more.
     template <typename PerFrame>
     void showUntilSettled(SceneStream& stream, StereoFrame& frame, std::span<const Eye> seen, const PerFrame& per_frame) const {
         for (int frames = 0; frames < 100'000; ++frames) {
@@ -108,7 +109,7 @@ TEST_CASE_FIXTURE(Streamed, "frames go on while levels come: the coarsest of all
     waited->settle(eyes);
     CHECK(these(stream->counters().splats_read, stream->counters().chunks_resident) == these(waited->counters().splats_resident, 64));
     CHECK(compare(pictureOf(stream->scene()), pictureOf(waited->scene())).psnrDb() > 60.0);
-    // All round and back: nothing is left over.
+    // All the way round and back: nothing is left over.
     for (const double yaw : {1.5, 3.0, 4.5, 0.0}) {
         showUntilSettled(*stream, frame, atelierEyes(96, yaw),
                          [&](const FrameResult& result) { CHECK(result.counters.splats_read <= 2 * kSplats); });
@@ -172,7 +173,7 @@ TEST_CASE_FIXTURE(Streamed, "whatever a server does to a chunk, the coarser leve
     struct {
         const char* name;
         WebAnswer answer;
-        const char* line = "";  // none: the chunk comes when it is asked for again
+        const char* line = "";  // empty: the chunk comes when it is requested again
     } const faults[]{{"busy", answer("429 Too Many Requests", "Retry-After: 0\r\n")},
                      {"cuts off", cut_off},
                      {"not there", answer("404 Not Found"), "404"},
@@ -204,7 +205,7 @@ TEST_CASE_FIXTURE(Streamed, "whatever a server does to a chunk, the coarser leve
         }
         CAPTURE(fmt::format("{}", fmt::join(lines, "\n")));
         checkSays(lines, fault.line);
-        // Of those leaves the next coarser level, so that there is no hole.
+        // For those leaves the next coarser level is shown, so there is no hole.
         CHECK(stream->counters().splats_resident == between(all / 2, all));
         CHECK(compare(shown, expected).psnrDb() > 25.0);
     }

@@ -1,4 +1,5 @@
-// A program's own test moves inputs from inside (XR_EXT_conformance_automation); where the wearer looks (XR_EXT_eye_gaze_interaction).
+// A program's own test moves inputs from inside (XR_EXT_conformance_automation), and where the wearer looks
+// (XR_EXT_eye_gaze_interaction).
 #include "tests/xr/simulated/api/simulated_fixture.h"
 
 SUITE(simulated_automation) {
@@ -44,7 +45,7 @@ struct AutomationFixture : SessionFixture {
     void switchTo(bool active, XrPath hand) const { REQUIRE(setActive(session, path(kTouch), hand, active) == XR_SUCCESS); }
 };
 
-// A space on the pose that is bound in both hands, which names neither.
+// A space for the pose that is bound for both hands, which names neither.
 struct EitherHandFixture : AutomationFixture {
     XrSpace space = makeActionSpace(grip);
 
@@ -60,7 +61,7 @@ struct Gaze {
     XrSpaceLocation location;
     XrTime sampled;
 
-    // Degrees from where the head looks: to the left, and upwards.
+    // Degrees from the direction of the head: to the left, and upwards.
     double yaw() const { return angle(-forward().x); }
     double pitch() const { return angle(forward().y); }
 
@@ -108,7 +109,7 @@ private:
     long frames_ = 0;
 };
 
-// What the answer is that the headset tracks eyes; 7 if there is none.
+// The answer to whether the headset tracks eyes; 7 if there is none.
 XrBool32 supportsGaze(const std::string& script, const Extensions& extensions) {
     const InstanceFixture made(kQuietScript + script, extensions);
     XrSystemEyeGazeInteractionPropertiesEXT eyes{XR_TYPE_SYSTEM_EYE_GAZE_INTERACTION_PROPERTIES_EXT, nullptr, 7};
@@ -123,7 +124,7 @@ TEST_CASE_FIXTURE(AutomationFixture, "what is set is read after the next xrSyncA
     CHECK(number(pull, right).currentState == 0);
     synchronize();
     CHECK(these(number(pull, right).currentState, number(pull, left).currentState) == these(0.75f, 0.25f));
-    // A pose is put where it is said to be, in any space.
+    // A pose is where it was set, in any space.
     const XrPosef pose{{0, 0, 0, 1}, {1, 2, 3}};
     CHECK(setLocation(session, left, path("/user/hand/left/input/grip/pose"), local, pose) == XR_SUCCESS);
     synchronize();
@@ -148,14 +149,14 @@ TEST_CASE_FIXTURE(AutomationFixture, "devices take up profiles, one by one, and 
     CHECK(setActive(session, path(kSimple), left, XR_FALSE) == XR_SUCCESS);
     synchronize();
     CHECK(these(boolean(jump, left).isActive, boolean(jump, right).isActive) == these(XR_FALSE, XR_TRUE));
-    // There is a gamepad as soon as somebody says so.
+    // A gamepad exists as soon as the program sets it active.
     CHECK(boolean(jump, gamepad).isActive == XR_FALSE);
     CHECK(setActive(session, path(kXbox), gamepad, XR_TRUE) == XR_SUCCESS);
     CHECK(setBool(session, gamepad, path("/user/gamepad/input/a/click"), XR_TRUE) == XR_SUCCESS);
     synchronize();
     CHECK(profileOf(gamepad) == kXbox);
     CHECK(boolean(jump, gamepad).currentState == XR_TRUE);
-    // A profile that the program has no bindings for.
+    // A profile for which the program has no bindings.
     CHECK(setActive(session, path("/interaction_profiles/valve/index_controller"), right, XR_TRUE) == XR_SUCCESS);
     synchronize();
     CHECK(profileOf(right) == "none");
@@ -163,7 +164,8 @@ TEST_CASE_FIXTURE(AutomationFixture, "devices take up profiles, one by one, and 
 }
 
 TEST_CASE("a pose of either hand is that of one that is there, stays though it is put down, and goes to one that is synchronized") {
-    // Whether the left hand is put down or taken up, which hand is synchronized, if not both, and whose pose it is then.
+    // Whether the left hand is put down or taken up; which hand is synchronized, if not both; and whose pose
+    // it is then.
     using Step = std::array<std::string, 3>;
     for (const std::vector<Step>& steps :
          {std::vector<Step>{{"down", "", "right"}, {"up", "", "right"}},
@@ -204,7 +206,7 @@ TEST_CASE("the headset says whether it tracks eyes, to whoever enabled the exten
     const Extensions enabled = withGaze({});
     for (const char* script : {"", "eye-tracking on\n", "eye-tracking refused\n"}) { CHECK(supportsGaze(script, enabled) == XR_TRUE); }
     CHECK(these(supportsGaze("eye-tracking off\n", enabled), supportsGaze("", {})) == these(XR_FALSE, 7));
-    // Its hands may be declared by an action.
+    // Actions may name the eyes among their subaction paths.
     const InstanceFixture made(kQuietScript, enabled);
     made.makeAction(made.makeActionSet("looking"), "look", XR_ACTION_TYPE_POSE_INPUT, {made.path("/user/eyes_ext")});
 }
@@ -222,7 +224,7 @@ TEST_CASE("the gaze goes where the script says, from between the eyes, with the 
     const XrFrameState frame = made.frame();
     REQUIRE(made.sync(made.set) == XR_SUCCESS);
     CHECK(made.read(frame.predictedDisplayTime, made.view).sampled == frame.predictedDisplayTime);
-    // In the room it turns with the head.
+    // Seen from the room, it turns with the head.
     gaze = made.read(frame.predictedDisplayTime, made.makeSpace(XR_REFERENCE_SPACE_TYPE_STAGE));
     checkNear(gaze.location.pose.position, {0.1f, 1.5f, 0.2f});
     CHECK(gaze.yaw() > 35.0);
@@ -238,13 +240,13 @@ TEST_CASE("a gaze may be lost, found again, and be too poor to rely on; whatever
     CHECK(these(gaze.is_active, gaze.location.locationFlags) == these(true, kValid));
     CHECK(gaze.sampled > 0);
     CHECK(made.at(0.35).location.locationFlags == (kValid | kTracked));
-    // The head is lost, not the eyes in it.
+    // The head is lost, but not the eyes in it.
     CHECK(made.at(0.44).location.locationFlags == (kValid | kTracked));
     CHECK(made.at(0.45, made.local).location.locationFlags == 0);
-    // Both parts of a gaze are tracked, or neither.
+    // Both parts of a gaze are tracked, or neither is.
     CHECK(made.at(0.55, made.local).location.locationFlags == XR_SPACE_LOCATION_ORIENTATION_VALID_BIT);
 
-    // A gaze is known in itself, lost or poor, though only a gaze that is seen has a sample.
+    // A lost or poor gaze still has a location in its own space, but only a tracked gaze has a sample.
     for (const double time_s : {0.15, 0.25}) {
         gaze = made.read(kStart + std::lround(time_s * 1e9), made.gaze_space);
         CHECK(these(gaze.location.locationFlags, (gaze.sampled > 0)) == these((kValid | kTracked), (time_s > 0.2)));
@@ -273,7 +275,7 @@ TEST_CASE("a program's own test moves the gaze from inside") {
     const XrPath eyes = made.path("/user/eyes_ext"), gaze = made.path(kGazePath);
     const auto setLocation = made.XR(xrSetInputDeviceLocationEXT);
     const auto setActive = made.XR(xrSetInputDeviceActiveEXT);
-    // Half a right angle to the left.
+    // 45 degrees to the left.
     const XrPosef left{{0, std::sin(0.3926991f), 0, std::cos(0.3926991f)}, {0, 0, 0}};
     CHECK(setLocation(made.session, eyes, gaze, made.view, left) == XR_SUCCESS);
     CHECK(setLocation(made.session, eyes, made.path("/user/eyes_ext/input/aim/pose"), made.view, left) == XR_ERROR_PATH_UNSUPPORTED);

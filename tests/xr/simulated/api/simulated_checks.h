@@ -1,4 +1,5 @@
-// Answers of the simulated runtime, checked in tables: to changes made one at a time, to what is missing, in calls that list.
+// Checks of the simulated runtime's results, in tables: for changes made one at a time, for missing
+// arguments, and for calls that list.
 #pragma once
 
 #include "tests/suite.h"
@@ -14,7 +15,7 @@ struct StringMaker<XrResult> {
 
 namespace binosplat::test {
 
-// What each of some calls answered.
+// Checks the results of several calls.
 inline void checkEach(XrResult expected, std::initializer_list<XrResult> answers) {
     int number = 0;
     for (const XrResult answer : answers) {
@@ -24,7 +25,7 @@ inline void checkEach(XrResult expected, std::initializer_list<XrResult> answers
     }
 }
 
-// What a call answers while a value is another.
+// The result of a call while a variable has another value.
 template <class Value, class Call>
 auto with(Value& place, std::type_identity_t<Value> value, const Call& call) {
     const Value before = std::exchange(place, value);
@@ -38,7 +39,7 @@ template <class Value>
 auto to(Value& place, std::type_identity_t<Value> value) {
     return [&place, value](const auto& call) { return with(place, value, call); };
 }
-// What a call answers to each of some changes, made one at a time.
+// Checks the results of a call with changes made one at a time.
 template <class Call, class... Change>
 void checkChanges(const Call& call, XrResult expected, const Change&... changes) {
     int number = 0;
@@ -50,7 +51,8 @@ void checkChanges(const Call& call, XrResult expected, const Change&... changes)
     (check(changes), ...);
 }
 
-// What a call answers to a handle that is none, and to each structure, or place for an answer, that is missing or of another type.
+// Checks the results of a call with an invalid handle, and with each structure, or place for an answer,
+// missing or of the wrong type.
 template <class Function, class Handle, class... Places>
 void checkArguments(Function call, Handle handle, Places*... places) {
     const auto answer = [&](Handle of, Places*... to) { return call(of, to...); };
@@ -64,7 +66,8 @@ void checkArguments(Function call, Handle handle, Places*... places) {
     std::apply([&](auto&... place) { (checkOne(place), ...); }, all);
 }
 
-// All that a function lists in two calls, and what it says of too little room and of places that are missing.
+// Everything that a function lists in two calls; also checks its results for too little capacity and for
+// missing places.
 template <class Value, class List>
 std::vector<Value> checkList(const List& list, const Value& blank = {}) {
     std::uint32_t count = 0;

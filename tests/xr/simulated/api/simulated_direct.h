@@ -1,4 +1,4 @@
-// The runtime without a loader between: for what Debian's loader, of API 1.0, keeps to itself.
+// The runtime without a loader in between: for what Debian's loader, with API 1.0, does not pass on.
 #pragma once
 
 #include "tests/xr/simulated/api/simulated_fixture.h"

@@ -1,4 +1,5 @@
-// Headless sessions without a loader: the extensions that need no graphics, and objects that end in every order.
+// Headless sessions without a loader: the extensions that need no graphics, and objects that are destroyed in
+// every order.
 #include "tests/xr/simulated/api/simulated_direct.h"
 
 SUITE(simulated_extensions) {
@@ -14,7 +15,7 @@ std::vector<bool> presences(const HeadlessSession& made) {
     return found;
 }
 
-// The joints of a hand where they were located last.
+// The joints of a hand, as last located.
 struct Hand {
     const HeadlessSession& made;
     XrHandTrackerEXT tracker = XR_NULL_HANDLE;
@@ -55,7 +56,7 @@ struct Everything : HeadlessSession {
     XrAction action = makeAction(set, "grip", XR_ACTION_TYPE_POSE_INPUT);
     XrSpace reference_space = makeSpace(XR_REFERENCE_SPACE_TYPE_STAGE), action_space = XR_NULL_HANDLE;
     XrHandTrackerEXT tracker = Hand(*this, XR_HAND_LEFT_EXT).tracker;
-    // By their names.
+    // By name.
     std::map<std::string, Object> objects{
         {"messenger", {"", [&] { return XR(xrDestroyDebugUtilsMessengerEXT)(messenger); }}},
         {"set", {"", [&] { return XR(xrDestroyActionSet)(set); }}},
@@ -77,7 +78,7 @@ struct Everything : HeadlessSession {
         begin();
     }
 
-    // What is left is used: it must not look at what is gone.
+    // Uses what is left, which must not touch what is gone.
     void use(const std::set<std::string>& gone) const {
         XrEventDataBuffer event{XR_TYPE_EVENT_DATA_BUFFER};
         CHECK(XR_SUCCEEDED(XR(xrPollEvent)(instance, &event)));
@@ -95,7 +96,7 @@ TEST_CASE("time is converted to CLOCK_MONOTONIC and back") {
     XrTime time = 0, later = 0;
     checkEach(XR_SUCCESS, {toTime(made.instance, &now, &time), toTimespec(made.instance, time, &back)});
     CHECK(nanoseconds(back) == nanoseconds(now));
-    // In lock-step the two meet when they are first asked for: OpenXR's time has not begun to move.
+    // In lock-step, the two clocks are equal when first asked for: OpenXR's time has not begun to move.
     CHECK(time <= kStart);
     CHECK(time > 0);
     now.tv_sec += 2;
@@ -145,7 +146,7 @@ TEST_CASE("the application is told whether somebody wears the headset: when the 
         for (int i = 0; i < 3; ++i) { made.sync(); }
         CHECK(presences(made) == std::vector<bool>{true});
     }
-    // Without its extension nobody hears of it.
+    // Without its extension, no event is sent.
     const HeadlessSession plain(k1_0, {}, script);
     plain.begin();
     for (int i = 0; i < 3; ++i) { plain.sync(); }
@@ -208,7 +209,7 @@ TEST_CASE("hands hold the script's controllers, in focus and while they are trac
     CHECK(left.joints[3].locationFlags == 0);
     made.begin();
     CHECK(left.isActiveAt(0.1));
-    // The palm lies beside the grip pose, at -0.1 1 0, and moves a metre a second.
+    // The palm lies beside the grip pose, at -0.1 1 0, and moves one metre per second.
     CHECK(left.joints[XR_HAND_JOINT_PALM_EXT].pose.position.x == doctest::Approx(-0.12));
     CHECK(left.joints[XR_HAND_JOINT_PALM_EXT].pose.position.y == doctest::Approx(1));
     for (const auto& joint : left.joints) {
@@ -216,7 +217,7 @@ TEST_CASE("hands hold the script's controllers, in focus and while they are trac
         CHECK(joint.radius > 0);
     }
     for (const auto& speed : left.speeds) { CHECK(speed.linearVelocity.x == doctest::Approx(1)); }
-    // The right trigger is pulled: its index finger is bent, no other.
+    // The right trigger is pulled: the index finger bends, and no other.
     CHECK(right.isActiveAt(0.1));
     const double straight = left.reach(XR_HAND_JOINT_INDEX_TIP_EXT, XR_HAND_JOINT_INDEX_PROXIMAL_EXT);
     CHECK(straight == doctest::Approx(0.085));
@@ -244,7 +245,7 @@ TEST_CASE("the joints of a hand turn with its controller, and those of a finger 
         REQUIRE(hand->isActiveAt(0.5));
         for (const auto& speed : hand->speeds) { CHECK(speed.velocityFlags == kMoving); }
     }
-    // A quarter of pi in a second, to the left, which is about +y.
+    // A quarter of pi per second to the left, which is about +y.
     for (const auto& speed : left.speeds) {
         CHECK(these(speed.angularVelocity.x, speed.angularVelocity.y, speed.angularVelocity.z) ==
               these(doctest::Approx(0), doctest::Approx(0.25 * 3.14159265).epsilon(1e-3), doctest::Approx(0)));
@@ -264,7 +265,7 @@ TEST_CASE("a headless session has no swapchains, needs no frames, and is in focu
     CHECK(made.states() == States{XR_SESSION_STATE_IDLE, XR_SESSION_STATE_READY});
     made.begin();
     CHECK(made.states() == States{XR_SESSION_STATE_SYNCHRONIZED, XR_SESSION_STATE_VISIBLE, XR_SESSION_STATE_FOCUSED});
-    // Each xrSyncActions is a frame's time: 0, 0.1, 0.2, 0.3 s in focus.
+    // Each xrSyncActions takes a frame's time: 0, 0.1, 0.2, 0.3 s in focus.
     for (int i = 0; i < 4; ++i) { CHECK(made.sync() == XR_SUCCESS); }
     CHECK(made.sync() == XR_SESSION_NOT_FOCUSED);
     CHECK(made.states() == States{XR_SESSION_STATE_VISIBLE});
@@ -288,7 +289,7 @@ TEST_CASE("a headless session may have frames, which nobody draws; time and stat
               these(XR_FALSE, kStart + frame * 100'000'000, 100'000'000));
         for (int i = 0; i < 2; ++i) { CHECK(made.sync() == (frame < 3 ? XR_SUCCESS : XR_SESSION_NOT_FOCUSED)); }
         REQUIRE(begin(made.session, nullptr) == XR_SUCCESS);
-        // Its picture would need a swapchain, which there cannot be; even one that names none is refused as a layer.
+        // Its picture would need a swapchain, which cannot exist here; even a layer without one is refused.
         const XrCompositionLayerQuad quad{XR_TYPE_COMPOSITION_LAYER_QUAD};
         CHECK(made.endFrame(state.predictedDisplayTime, {headerOf(quad)}) == XR_ERROR_LAYER_INVALID);
         REQUIRE(made.endFrame(state.predictedDisplayTime) == XR_SUCCESS);
@@ -313,7 +314,7 @@ TEST_CASE("objects end in every order, each once, and with their parents") {
         for (const auto& [name, object] : Everything(attaches).objects) { order.push_back(name); }
         int number = 0;
         do {
-            // A share of the 5040 orders; 37 is prime, so that none of the objects keeps a place.
+            // A share of the 5040 orders; 37 is prime, so no object keeps its place.
             if (number++ % 37 != 0) { continue; }
             const Everything made(attaches);
             std::set<std::string> gone;

@@ -137,7 +137,7 @@ VulkanDevice::~VulkanDevice() {
         instance, messenger, nullptr);
     vkDestroyInstance(instance, nullptr);
     if (messages.empty()) { return; }
-    // The tests are over.
+    // At the end of the tests.
     for (const std::string& message : messages) { std::fprintf(stderr, "%s\n", message.c_str()); }
     std::_Exit(1);
 }

@@ -1,5 +1,6 @@
-// Programs for the simulated runtime, as far as tests need them: an instance, through the standard loader or without one; a session on a
-// Vulkan device with validation, or a headless one; frames and actions. Any message of the Vulkan validation layer fails the test.
+// Programs for the simulated runtime, as far as tests need them: an instance, through the standard loader or
+// without it; a session on a Vulkan device with validation, or a headless one; frames and actions. Any
+// message of the Vulkan validation layer fails the test.
 #pragma once
 
 #define XR_USE_GRAPHICS_API_VULKAN
@@ -17,7 +18,7 @@
 namespace binosplat::test {
 
 inline constexpr const char* kQuietScript = "size 64 64\nframes none\n";
-inline constexpr XrTime kStart = 1'000'000'000;  // of time in lock-step
+inline constexpr XrTime kStart = 1'000'000'000;  // where time in lock-step begins
 inline constexpr XrPosef kIdentity{{0, 0, 0, 1}, {0, 0, 0}};
 inline constexpr auto kStereo = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
 inline constexpr const char* kTouch = "/interaction_profiles/oculus/touch_controller";
@@ -37,7 +38,7 @@ void setText(char (&destination)[size], const std::string& text) {
 }
 
 XrInstanceCreateInfo instanceInfo(const Extensions& extensions, XrVersion version = XR_MAKE_VERSION(1, 0, 0));
-// What the making of an instance answers; it is destroyed again.
+// The result of creating an instance, which is destroyed again.
 XrResult tryInstance(const XrInstanceCreateInfo& info, PFN_xrGetInstanceProcAddr find = xrGetInstanceProcAddr);
 XrActionSetCreateInfo actionSetInfo(const std::string& name, const std::string& localized_name);
 XrActionCreateInfo actionInfo(const std::string& name, const std::string& localized_name, XrActionType type = XR_ACTION_TYPE_BOOLEAN_INPUT);
@@ -48,7 +49,8 @@ const XrCompositionLayerBaseHeader* headerOf(const Layer& layer) {
     return reinterpret_cast<const XrCompositionLayerBaseHeader*>(&layer);
 }
 
-// The environment that the runtime reads, and an empty folder for what it writes; both end with the test.
+// The environment that the runtime reads, and an empty folder for what it writes; both last as long as the
+// test.
 class Headset {
 public:
     explicit Headset(const std::string& script);
@@ -97,12 +99,12 @@ struct InstanceFixture : Headset {
         REQUIRE(XR(xrPathToString)(instance, path, sizeof text, &count, text) == XR_SUCCESS);
         return text;
     }
-    // The next event's type; XR_TYPE_UNKNOWN if none waits.
+    // The next event's type, or XR_TYPE_UNKNOWN if there is none.
     XrStructureType poll(XrEventDataBuffer& event) const {
         event = {XR_TYPE_EVENT_DATA_BUFFER};
         return XR(xrPollEvent)(instance, &event) == XR_SUCCESS ? event.type : XR_TYPE_UNKNOWN;
     }
-    // All that wait, and of them those of a type.
+    // All waiting events, and those of one type.
     template <class Event>
     std::vector<Event> events(XrStructureType type) const {
         std::vector<Event> found;
@@ -141,7 +143,7 @@ struct InstanceFixture : Headset {
                                                         static_cast<std::uint32_t>(bindings.size()), bindings.data()};
         return XR(xrSuggestInteractionProfileBindings)(instance, &info);
     }
-    // An action of its own is bound.
+    // Binds a new action.
     XrResult suggest(const std::string& profile, const std::string& binding, XrActionType type = XR_ACTION_TYPE_POSE_INPUT) const {
         const XrActionSet set = makeActionSet("set");
         const XrResult result = suggest(profile, {{makeAction(set, "action", type), path(binding)}});
@@ -170,7 +172,7 @@ struct InstanceFixture : Headset {
     XrActionStatePose pose(XrAction action, XrPath hand = XR_NULL_PATH) const {
         return stateOf<XrActionStatePose>(XR(xrGetActionStatePose), XR_TYPE_ACTION_STATE_POSE, action, hand);
     }
-    // The path of the profile that is in use, or "none".
+    // The path of the current profile, or "none".
     std::string profileOf(XrPath user_path) const {
         XrInteractionProfileState state{XR_TYPE_INTERACTION_PROFILE_STATE};
         REQUIRE(XR(xrGetCurrentInteractionProfile)(session, user_path, &state) == XR_SUCCESS);
@@ -198,7 +200,7 @@ struct InstanceFixture : Headset {
         REQUIRE(XR_SUCCEEDED(endFrame(state.predictedDisplayTime, layers)));
         return state;
     }
-    // What the end of a frame with a layer answers; if it is refused, the frame is ended without it.
+    // The result of ending a frame with a layer; if it is refused, the frame is ended without the layer.
     XrResult show(const void* layer) const {
         const XrTime time = waitFrame().predictedDisplayTime;
         REQUIRE(XR(xrBeginFrame)(session, nullptr) == XR_SUCCESS);
@@ -254,7 +256,7 @@ private:
     PFN_xrGetInstanceProcAddr find_function;
 };
 
-// A Vulkan instance and device made through a runtime.
+// A Vulkan instance and device created through a runtime.
 struct VulkanDevice {
     VkInstance instance = VK_NULL_HANDLE;
     VkPhysicalDevice physical_device = VK_NULL_HANDLE;
@@ -273,8 +275,8 @@ private:
 };
 
 struct VulkanFixture : InstanceFixture {
-    // Of the first fixture of a program, for all of them; where the runtime is to find Vulkan's functions by a loader, of the fixture
-    // alone.
+    // All fixtures of a program share those of the first. If the runtime gets Vulkan's functions through a
+    // loader, a fixture has its own.
     explicit VulkanFixture(const std::string& script = kQuietScript, const Extensions& more_extensions = {},
                            PFN_vkGetInstanceProcAddr loader = nullptr);
     ~VulkanFixture();
@@ -301,7 +303,7 @@ struct SessionFixture : VulkanFixture {
         makeSession();
     }
 
-    // Also another one, once the first is gone.
+    // Also a second one, once the first is gone.
     void makeSession() {
         const XrGraphicsBindingVulkan2KHR graphics = binding();
         const XrSessionCreateInfo info{XR_TYPE_SESSION_CREATE_INFO, &graphics, 0, system};
@@ -329,7 +331,7 @@ struct SessionFixture : VulkanFixture {
         for (const XrSwapchainImageVulkan2KHR& one : found) { images.push_back(one.image); }
         return images;
     }
-    // Its index is returned.
+    // Returns its index.
     std::uint32_t acquire(XrSwapchain swapchain) const {
         std::uint32_t index = 0;
         REQUIRE(xrAcquireSwapchainImage(swapchain, nullptr, &index) == XR_SUCCESS);

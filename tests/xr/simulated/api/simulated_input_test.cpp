@@ -1,11 +1,12 @@
-// Chapter 11 of OpenXR on the simulated runtime: action sets, actions, bindings, what actions read, and haptics.
+// Chapter 11 of OpenXR on the simulated runtime: action sets, actions, bindings, the values of actions, and
+// haptics.
 #include "tests/xr/simulated/api/simulated_fixture.h"
 
 SUITE(simulated_input) {
 
 constexpr auto kBoolean = XR_ACTION_TYPE_BOOLEAN_INPUT;
 
-// Ten frames per second, so that frame n is shown at n/10 seconds.
+// Ten frames per second, so frame n is shown at n/10 seconds.
 constexpr const char* kScript =
     "size 64 64\nframes none\nrate 10\n"
     "controller left 0 position -1 1 0\ncontroller left 2 position 1 1 0\n"
@@ -38,7 +39,8 @@ struct InputFixture : SessionFixture {
         attach({set});
         focus();
     }
-    // Frames up to the one that is shown at n/10 seconds, and what the controllers are then; three have brought the session to FOCUSED.
+    // Runs frames up to the one shown at n/10 seconds, and returns the controllers' state then; the first
+    // three brought the session to FOCUSED.
     void runTo(int n) {
         for (; shown < n; ++shown) { frame(); }
         REQUIRE(sync(set) == XR_SUCCESS);
@@ -203,7 +205,7 @@ TEST_CASE_FIXTURE(InputFixture, "a button is pressed at the script's times, seen
     for (int i = 0; i < 2; ++i) { frame(); }
     REQUIRE(sync(set) == XR_SUCCESS);
     CHECK(these(boolean(click).currentState, boolean(click).changedSinceLastSync) == these(XR_FALSE, XR_TRUE));
-    // A set that is not synced is inactive, and so is a hand that is left out.
+    // A set that is not synced is inactive, and so is a hand that is not included.
     REQUIRE(sync(set, left) == XR_SUCCESS);
     CHECK(these(number(pull, left).isActive, number(pull, right).isActive) == these(XR_TRUE, XR_FALSE));
     CHECK(sync() == XR_SUCCESS);
@@ -238,8 +240,9 @@ TEST_CASE_FIXTURE(InputFixture, "action spaces are made of pose actions, and mov
     CHECK((locate(held, local, 1'500'000'000).locationFlags & XR_SPACE_LOCATION_POSITION_VALID_BIT) != 0);
     CHECK(locate(other, stage, 1'000'000'000).pose.position.x == doctest::Approx(-1));
 
-    // The right controller is off from 2 s on: inactive, and its space is nowhere, but spaces of one action are known in one another while
-    // its set is active, whether that was read before or after.
+    // The right controller is off from 2 s on: inactive, and its space has no location. But spaces of the
+    // same action have locations relative to each other while its set is active, whether that was read before
+    // or after.
     CHECK(locate(above, held, 2'500'000'000).locationFlags == 15);
     runTo(11);
     CHECK(these(number(pull, right).isActive, number(pull, right).currentState, number(pull, right).lastChangeTime) ==
@@ -356,7 +359,7 @@ TEST_CASE_FIXTURE(SessionFixture, "suggested paths are converted to the action's
         const XrBoundSourcesForActionEnumerateInfo info{XR_TYPE_BOUND_SOURCES_FOR_ACTION_ENUMERATE_INFO, nullptr, action};
         std::uint32_t count = 99;
         REQUIRE(xrEnumerateBoundSourcesForAction(session, &info, 0, &count, nullptr) == XR_SUCCESS);
-        CHECK(count == expected);  // a button is no stick
+        CHECK(count == expected);  // a button is not a stick
     }
 }
 

@@ -1,4 +1,5 @@
-// Foveated insets (XR_VARJO_quad_views, and 1.1) on the simulated runtime: where they are, how large, and that of them the wearer sees.
+// Foveated insets (XR_VARJO_quad_views, and 1.1) on the simulated runtime: where they are, how large, and
+// that the wearer sees them.
 #include "tests/xr/simulated/api/simulated_direct.h"
 #include "tests/xr/simulated/api/simulated_painter.h"
 #include "xr/simulated/compose/picture_file.h"
@@ -42,7 +43,7 @@ struct QuadFixture : SessionFixture {
         const auto list = [&](auto... step) { return xrLocateViews(session, &info, &state, step...); };
         const Views views = checkList<XrView>(list, {XR_TYPE_VIEW});
         REQUIRE(views.size() == 4);
-        // What a program may rely on, wherever the inset is.
+        // What a program can rely on, wherever the inset is.
         for (std::size_t eye = 0; eye < 2; ++eye) {
             const XrView &context = views[eye], &inset = views[eye + 2];
             CHECK(std::memcmp(&context.pose, &inset.pose, sizeof(XrPosef)) == 0);
@@ -56,7 +57,7 @@ struct QuadFixture : SessionFixture {
     Views locateNext() const { return locateViews(frame().predictedDisplayTime); }
 };
 
-// Pictures of a colour for the context views, which are red, and for the left and the right inset, which are green and blue.
+// Pictures of one colour: red for the context views, green for the left inset and blue for the right one.
 struct PaintedFixture : QuadFixture {
     Painter painter{*this};
     std::array<XrSwapchain, 3> swapchains{};
@@ -127,18 +128,18 @@ TEST_CASE("insets lie about the gaze, with the poses of their eyes, and stay in 
     const auto firstOf = [](const std::string& script) { return QuadFixture("frames none\n" + script).locateNext(); };
     const Views ahead = firstOf("");
     for (const std::size_t view : {2u, 3u}) { checkAngles(ahead[view], {-20, 20, 20, -20}); }
-    // To the left, and down; the pitch is about the turned head's own axis.
+    // To the left and down; the pitch is about the turned head's own axis.
     const double down = std::atan2(std::tan(5.0 * kDegree), std::cos(15.0 * kDegree)) / kDegree;
     checkAngles(firstOf("gaze 0 15 -5\n")[2], {-35, 5, 20 - down, -20 - down});
     checkAngles(firstOf("gaze 0 80 0\n")[3], {-45, -5, 20, -20});
     checkAngles(firstOf("gaze 0 0 80\n")[2], {-20, 20, 45, 5});
-    // Straight ahead is beside the axis of an eye that is turned outwards.
+    // Straight ahead lies beside the axis of an eye that is turned outwards.
     const Views canted = firstOf("eye left cant 10\neye right cant 10\n");
     checkAngles(canted[2], {-10, 30, 20, -20});
     checkAngles(canted[3], {-30, 10, 20, -20});
-    // A view that is narrower than its inset is all inset.
+    // If a view is narrower than its inset, the inset fills it.
     checkAngles(firstOf("eye left angles -15 10 45 -45\n")[2], {-15, 10, 20, -20});
-    // Without a good gaze they lie about the lens's middle.
+    // Without a good gaze, insets lie around the middle of the lens.
     checkAngles(firstOf("gaze 0 15 0\neye-tracking off\n")[2], {-20, 20, 20, -20});
     const QuadFixture lost("frames none\nrate 100\ngaze 0 15 0\nat 0.01 gaze degraded\n");
     checkAngles(lost.locateNext()[2], {-35, 5, 20, -20});
@@ -195,7 +196,7 @@ TEST_CASE("a session in stereo draws no insets, though the headset has them, and
 TEST_CASE("the wearer sees each inset in the place of what its view shows there") {
     PaintedFixture painted("rate 100\ngaze 0 0 0\ngaze 0.01 0 0\ngaze 0.02 15 0\n");
     for (int i = 0; i < 3; ++i) { REQUIRE(painted.showViews() == XR_SUCCESS); }
-    // tan 20 is 0.364 of the 32 pixels to either side: 20.4 to 43.6.
+    // tan 20 is 0.364 of the 32 pixels on either side: 20.4 to 43.6.
     const simulated::RgbPicture ahead = simulated::readPng(painted.written / "frame_000001.png");
     REQUIRE(ahead.size_px == glm::uvec2(128, 64));
     for (const auto& [first, colour] : {std::pair(0u, 'g'), std::pair(64u, 'b')}) {

@@ -1,11 +1,12 @@
-// Chapters 4 to 6 of OpenXR on the simulated runtime: the library, instances, systems, view configurations, paths and names of values.
+// Chapters 4 to 6 of OpenXR on the simulated runtime: the library, instances, systems, view configurations,
+// paths and names of values.
 #include "tests/xr/simulated/api/simulated_direct.h"
 
 #include <unistd.h>
 
 SUITE(simulated_instance) {
 
-// What is said on standard error, with explanations on.
+// What appears on standard error when explanations are on.
 template <class Body>
 std::string explainedBy(Body&& body) {
     std::FILE* const said = std::tmpfile();
@@ -33,7 +34,7 @@ XrResult tryScript(const std::string& script, const Extensions& extensions = {})
 
 TEST_CASE("the library shows one function, which negotiates version 1, and 1.1 or what its loader can do with") {
     const Direct runtime;
-    // What is found then belongs to another library that this one needs.
+    // A symbol that is found belongs to another library, on which this one depends.
     for (const char* name : {"xrCreateInstance", "xrGetInstanceProcAddr", "vkCreateInstance"}) {
         Dl_info owner{};
         void* const found = dlsym(runtime.library, name);
@@ -51,7 +52,7 @@ TEST_CASE("the library shows one function, which negotiates version 1, and 1.1 o
     CHECK(XR_VERSION_MINOR(runtime.api) == 1);
     CHECK(with(info.most_api, XR_MAKE_VERSION(1, 0, 0xFFF), negotiate) == XR_SUCCESS);
     CHECK(XR_VERSION_MINOR(request.api) == 0);
-    // The loader answers for the layers by itself; a loader that asks is told of none.
+    // The loader itself answers for layers; a loader that asks the runtime gets none.
     PFN_xrVoidFunction found = nullptr;
     REQUIRE(runtime.get(XR_NULL_HANDLE, "xrEnumerateApiLayerProperties", &found) == XR_SUCCESS);
     const auto enumerateLayers = reinterpret_cast<PFN_xrEnumerateApiLayerProperties>(found);
@@ -81,7 +82,7 @@ TEST_CASE("extensions are listed in two calls, and enabled alone, and all, some 
         CHECK_MESSAGE(names.contains(name), name);
     }
     CHECK(tryScript("extension XR_KHR_visibility_mask off\n", {XR_KHR_VISIBILITY_MASK_EXTENSION_NAME}) == XR_ERROR_EXTENSION_NOT_PRESENT);
-    // The fixture enables three of them by itself.
+    // The fixture itself enables three of them.
     const SessionFixture made(kQuietScript, all);
     made.focus();
     made.turn(made.makeSwapchain());
@@ -112,7 +113,7 @@ TEST_CASE("instances are of 1.0 and 1.1, whatever the patch; one is refused for 
                      to(application.apiVersion, XR_MAKE_VERSION(0, 9, 0)), to(application.apiVersion, 1));
         checkChanges(make, XR_SUCCESS, to(application.apiVersion, XR_MAKE_VERSION(1, 0, 34)), to(application.apiVersion, k1_1),
                      to(application.apiVersion, XR_MAKE_VERSION(1, 1, 4711)));
-        // Names that are not ended.
+        // Names without a terminator.
         for (char* const name : {application.engineName, application.applicationName}) {
             info = instanceInfo({});
             std::memset(name, 'a', name == application.engineName ? sizeof application.engineName : sizeof application.applicationName);
@@ -131,7 +132,7 @@ TEST_CASE("layers are the loader's business, whatever they are called") {
     info.enabledApiLayerCount = 1;
     info.enabledApiLayerNames = &name;
     CHECK(tryInstance(info, Direct().get) == XR_SUCCESS);
-    // The loader wants the layer to be there, so it is one that there is: the loader hands its name on.
+    // The loader requires the layer to exist, so this one does; the loader passes its name on.
     for (const auto& layer : checkList<XrApiLayerProperties>(xrEnumerateApiLayerProperties, {XR_TYPE_API_LAYER_PROPERTIES})) {
         name = layer.layerName;
         CHECK(tryInstance(info) == XR_SUCCESS);
@@ -194,7 +195,7 @@ TEST_CASE("an instance empties the folder of an earlier run, one that is refused
     CHECK(tryInstance(instanceInfo({}), runtime.get) == XR_SUCCESS);
     CHECK_FALSE(std::filesystem::exists(picture));
     CHECK(std::filesystem::file_size(log) == 0);
-    // Somebody else's log, here behind a link.
+    // A log that belongs to somebody else, here behind a link.
     std::ofstream(headset.folder / "victim") << "keep me";
     std::filesystem::remove(log);
     std::filesystem::create_symlink(headset.folder / "victim", log);

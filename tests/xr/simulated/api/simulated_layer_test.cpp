@@ -1,4 +1,5 @@
-// Section 10.6 of OpenXR on the simulated runtime: layers, flat and around, and what of them reaches the eyes and the log.
+// Section 10.6 of OpenXR on the simulated runtime: layers, flat and curved, and what reaches the eyes and the
+// log.
 #include "tests/xr/simulated/api/simulated_painter.h"
 #include "xr/simulated/compose/picture_file.h"
 
@@ -69,7 +70,7 @@ struct SurroundFixture : SessionFixture {
         painter.paint(cube_map, 4, 4, texels);
         cube.swapchain = cube_map;
     }
-    // In the middle of the left eye's last picture.
+    // The colour in the middle of the left eye's last picture.
     Texel seen() const {
         const simulated::RgbPicture both = simulated::readPng(written / logged().back()["picture"].get<std::string>());
         const std::size_t i = 3 * (8 * std::size_t{both.size_px.x} + 8);
@@ -120,14 +121,14 @@ TEST_CASE_FIXTURE(FlatFixture, "layers are of a known type, some eye's, of poses
     CHECK(with(quad.pose.orientation.w, 0, showQuad) == XR_ERROR_POSE_INVALID);
     CHECK(with(quad.eyeVisibility, static_cast<XrEyeVisibility>(3), showQuad) == kNotValid);
     CHECK(with(quad.eyeVisibility, XR_EYE_VISIBILITY_RIGHT, showQuad) == XR_SUCCESS);
-    // It may be a line or a point, but not inside out.
+    // It may be a line or a point, but not negative.
     checkChanges(showQuad, XR_SUCCESS, to(quad.size, {0, 0}), to(quad.size, {1, 0}));
     checkChanges(showQuad, kNotValid, to(quad.size, {1, -1}), to(quad.size, {NAN, 1}));
     // A view for each eye.
     checkChanges(showViews, kNotValid, to(projection.viewCount, 1), to(projection.viewCount, 3), to(projection.views, nullptr),
                  to(views[0].type, XR_TYPE_VIEW), to(views[0].fov.angleRight, 1.6f));
     CHECK(with(views[1].pose.orientation, {1, 1, 0, 0}, showViews) == XR_ERROR_POSE_INVALID);
-    // Depth is checked as colour is.
+    // Depth is checked like colour.
     CHECK(with(depths[0].subImage.imageRect.extent.width, 65, showViews) == XR_ERROR_SWAPCHAIN_RECT_INVALID);
     checkChanges(showViews, kNotValid, to(depths[0].minDepth, -0.5f), to(depths[0].maxDepth, 2), to(depths[0].nearZ, depths[0].farZ));
     CHECK(with(depths[1].subImage.swapchain, colour, showViews) == XR_ERROR_LAYER_INVALID);
@@ -153,7 +154,7 @@ TEST_CASE_FIXTURE(FlatFixture, "rectangles stay inside their image, of a swapcha
         INFO("outside.offset.x ", outside.offset.x, ", outside.extent.width ", outside.extent.width);
         CHECK(with(quad.subImage.imageRect, outside, showQuad) == XR_ERROR_SWAPCHAIN_RECT_INVALID);
     }
-    // Empty ones reach out nowhere.
+    // Empty rectangles exceed nothing.
     for (const XrRect2Di& inside : {XrRect2Di{{63, 31}, {1, 1}}, XrRect2Di{{0, 0}, {0, 32}}, XrRect2Di{{64, 32}, {0, 0}}}) {
         CHECK(with(quad.subImage.imageRect, inside, showQuad) == XR_SUCCESS);
     }
@@ -179,7 +180,7 @@ TEST_CASE("frames are logged, and pictures written for those with layers, also o
     const std::vector<Json> lines = made.logged();
     REQUIRE(lines.size() == 4);
     CHECK(lines[3] == expecting(lines[3], {{"frame", 3}, {"session_state", "FOCUSED"}, {"should_render", true}, {"blend_mode", "OPAQUE"}}));
-    CHECK(lines[3]["gpu_ms"].get<double>() == doctest::Approx(2 * 2.048));  // of both views
+    CHECK(lines[3]["gpu_ms"].get<double>() == doctest::Approx(2 * 2.048));  // for both views
     CHECK(these(lines[3]["eyes"][0]["fov"]["left"].get<double>(), lines[2].contains("picture")) == these(doctest::Approx(-0.7), false));
     REQUIRE(lines[3]["layers"].size() == 2);
     const Json &projection = lines[3]["layers"][0], &quad = lines[3]["layers"][1];
@@ -221,7 +222,7 @@ TEST_CASE_FIXTURE(SurroundFixture, "layers that surround reach the wearer and th
     CHECK(show(&cube) == XR_SUCCESS);
     CHECK(seen() == Texel{0, 0, 0, 255});
 
-    // A frame that is refused stands in the log, with the layer and the value that were wrong, and has no picture.
+    // A refused frame appears in the log with the layer and the value that were wrong, and without a picture.
     cylinder.centralAngle = 7;
     const XrTime time = waitFrame().predictedDisplayTime;
     REQUIRE(xrBeginFrame(session, nullptr) == XR_SUCCESS);

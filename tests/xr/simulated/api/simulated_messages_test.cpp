@@ -1,4 +1,5 @@
-// XR_EXT_debug_utils on the simulated runtime: what the application's own function hears of refusals, and of its own messages.
+// XR_EXT_debug_utils on the simulated runtime: what the application's own function receives about refusals,
+// and its own messages.
 #include "tests/xr/simulated/api/simulated_direct.h"
 
 SUITE(simulated_messages) {
@@ -31,7 +32,7 @@ struct Heard {
     XrDebugUtilsMessengerCreateInfoEXT info() {
         return {XR_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT, nullptr, kError | kInfo, kValidation | kGeneral, hear, &messages};
     }
-    // The only message since the last one.
+    // The only message since the last call.
     std::string take() {
         REQUIRE(messages.size() == 1);
         return std::exchange(messages, {})[0];
@@ -68,7 +69,7 @@ XrDebugUtilsLabelEXT label(const char* name) { return {XR_TYPE_DEBUG_UTILS_LABEL
 TEST_CASE_FIXTURE(MessageFixture, "a refused call is told to the application's own function, with what was wrong, to which it asked for") {
     beMistaken();
     CHECK(heard.take() == kMistake);
-    // The loader's own questions are no mistakes.
+    // The loader's own queries are not mistakes.
     CHECK_FALSE(has("xrMakeCoffee"));
     CHECK(heard.messages.empty());
     CHECK(XR(xrDestroyDebugUtilsMessengerEXT)(messenger) == XR_SUCCESS);
@@ -178,7 +179,7 @@ TEST_CASE("a messenger in the chain hears why the instance itself was refused; m
         CHECK(heard.take() ==
               "error validation: XR_ERROR_EXTENSION_NOT_PRESENT in xrCreateInstance: XR_KHR_opengl_enable: this runtime has Vulkan alone, "
               "XR_KHR_vulkan_enable2 or XR_KHR_vulkan_enable");
-        // Without the extension nobody listens.
+        // Without the extension, there is nobody to receive messages.
         info = instanceInfo(unknown);
         info.next = &messenger_info;
         CHECK(tryInstance(info, runtime.get) == XR_ERROR_EXTENSION_NOT_PRESENT);

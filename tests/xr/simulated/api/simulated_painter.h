@@ -26,7 +26,8 @@ public:
         return fixture.makeSwapchain(info);
     }
 
-    // Acquires an image and writes the texels of all its layers, the first layer's first row first. It is not released.
+    // Acquires an image and writes the texels of all its layers, from the first row of the first layer on.
+    // Does not release it.
     template <class Texel>
     void begin(XrSwapchain swapchain, std::uint32_t width, std::uint32_t height, const std::vector<Texel>& texels) const {
         const std::uint32_t index = fixture.acquire(swapchain);
@@ -89,7 +90,7 @@ private:
         std::memcpy(mapped, texels, bytes);
         vkUnmapMemory(fixture.device, memory);
         run([&](VkCommandBuffer commands) {
-            // An application finds images ready for drawing and leaves them so.
+            // An application gets images in the layout for drawing, and returns them in it.
             move(commands, image, layers, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
             const VkBufferImageCopy region{0, 0, 0, {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, layers}, {0, 0, 0}, size};
             vkCmdCopyBufferToImage(commands, buffer, image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);

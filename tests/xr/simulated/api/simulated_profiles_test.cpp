@@ -1,4 +1,5 @@
-// Every input of every interaction profile, moved and read back, and what may be bound with which version; without a loader.
+// Every input of every interaction profile, moved and read back, and what can be bound in which version;
+// without a loader.
 #include "tests/xr/simulated/api/simulated_direct.h"
 #include "xr/simulated/api/profiles.h"
 
@@ -25,7 +26,8 @@ XrActionType typeOf(simulated::ComponentKind kind) {
     }
 }
 
-// Of 1.1, with the extension that the profile may need; without one for older names of the palm and the finger tips.
+// Version 1.1, with the extension that the profile may need, and without one for older names of the palm and
+// the finger tips.
 simulated::Enabled enabledFor(const Profile& profile) {
     simulated::Enabled enabled{true, {XR_EXT_CONFORMANCE_AUTOMATION_EXTENSION_NAME}};
     if (!enabled.meets(profile.depends)) { enabled.extensions.insert(std::string(profile.depends)); }
@@ -126,7 +128,7 @@ struct Played : HeadlessSession {
     }
 };
 
-// What answers where it is bound: of 1.0, of 1.1, and of 1.0 with an extension.
+// Whether it can be bound in 1.0, in 1.1, and in 1.0 with an extension.
 struct Binding {
     std::string profile, path, extension;
     bool of_1_0, of_1_1;
@@ -139,7 +141,8 @@ struct Binding {
     }
 };
 
-// A line for each profile, whose paths it takes in "1.0" and 1.1, from "1.1" on, or never ("none"), and with an extension.
+// One line per profile: whether its paths are accepted in "1.0" and 1.1, from "1.1" on, or never ("none"),
+// and the extension.
 std::vector<Binding> bindingsIn(const char* lines) {
     std::vector<Binding> bindings;
     std::istringstream stream(lines);
@@ -152,8 +155,9 @@ std::vector<Binding> bindingsIn(const char* lines) {
     return bindings;
 }
 
-// The core's, nobody's, and those of extensions of which some became part of 1.1. The palm's surface is grip_surface in 1.1 and palm_ext by
-// an extension; finger tips are poses of every hand, gestures of the hands' profile alone; the eyes' profile has a gaze, and nothing else.
+// Paths of the core, of nobody, and of extensions, some of which became part of 1.1. The palm's surface is
+// grip_surface in 1.1 and palm_ext in an extension. Finger tips are poses of every hand, gestures exist only
+// in the hands' profile, and the eyes' profile has a gaze and nothing else.
 constexpr const char* kBindings =
     R"(1.0 - khr/simple_controller hand/left/input/select/click hand/right/output/haptic
 1.0 - google/daydream_controller hand/left/input/trackpad/touch

@@ -1,5 +1,6 @@
-// A program that was not written for the simulated runtime, Khronos's hello_xr: what it does and sees on it, also where it is lost, and
-// that runs in lock-step repeat bit for bit. BINOSPLAT_WRITE_GOLDENS=1 makes the golden picture anew.
+// A program that was not written for the simulated runtime, Khronos's hello_xr: what it does and sees there,
+// also when the session is lost, and that runs in lock-step repeat bit for bit. BINOSPLAT_WRITE_GOLDENS=1
+// writes a new golden picture.
 #include "tests/shared_data.h"
 #include "tests/xr/simulated/api/simulated_fixture.h"
 #include "tests/xr/simulated/installed.h"
@@ -17,10 +18,11 @@ using Json = nlohmann::json;
 
 constexpr double kLeastDb = 40.0;
 
-// Periods of 10 ms are whole nanoseconds: frame n is displayed at n * 0.01 s exactly.
+// Periods of 10 ms are whole nanoseconds: frame n is displayed at exactly n * 0.01 s.
 const std::string kQuiet = "rate 100\nsize 64 64\nframes none\n";
 
-// Unequal, canted views of a head that looks about, hands in sight; the picture is of frame 20, when the head turns.
+// Unequal, canted views of a head that looks around, with hands in sight; the picture is of frame 20, while
+// the head turns.
 const char* const kLooking =
     "size 240 200\n"
     "eye left angles -35 28 27 -33\n"
@@ -38,11 +40,12 @@ const char* const kLooking =
 
 bool haveHelloXr() { return isInstalled("hello_xr", "libopenxr-utils"); }
 
-// A stranger's run. hello_xr ends when its session ends or when a key is pressed: its input is a pipe that stays open and silent.
+// A run of a foreign program. hello_xr ends when its session ends or when a key is pressed: its input is a
+// pipe that stays open and silent.
 struct Run : Headset {
-    int exit_status = -1;  // 124: it did not end within its time
+    int exit_status = -1;  // 124: it did not end in time
     std::string output;
-    std::vector<Json> frames;  // of the log
+    std::vector<Json> frames;  // from the log
 
     explicit Run(const std::string& script, const std::string& command = "hello_xr -g Vulkan2", const std::string& environment = "")
         : Headset(script) {
@@ -90,7 +93,7 @@ double psnrDb(const RgbPicture& a, const RgbPicture& b) {
     return sum == 0.0 ? 200.0 : -10.0 * std::log10(sum / static_cast<double>(a.bytes.size()));
 }
 
-// The mean column and row of pixels of pure blue: a cube's faces are drawn in six pure colours, and nothing else is.
+// The mean column and row of pure blue pixels: a cube's faces have six pure colours, which nothing else has.
 glm::dvec2 centreOfBlue(const RgbPicture& picture) {
     glm::dvec2 sum(0.0);
     double count = 0.0;
@@ -123,7 +126,7 @@ TEST_CASE("hello_xr runs on it from start to end, and no validation layer has an
         CHECK(hello.says("Core Validation output type: text"));
         outputs = {hello.output, textIn(hello.folder / "test.script.validation")};
     }
-    // By the older extension, paced by a real clock.
+    // With the older extension, and a real clock.
     const Run older(script, "hello_xr -g Vulkan", validation + "SIMULATED_OPENXR_CLOCK=real");
     CHECK(older.exit_status == 0);
     outputs.push_back(older.output);
@@ -153,7 +156,7 @@ TEST_CASE("a lost session and a lost instance are left and made anew") {
     CHECK(run.count("lose-session") == 1);
     CHECK(run.count("state FOCUSED") == 3);
     CHECK(run.says("XR_SESSION_STATE_LOSS_PENDING"));
-    // Frames count on, and those of a new session are later ones.
+    // Frame numbers continue, and times of a new session are later.
     XrTime last = 0;
     for (std::size_t i = 0; i < run.frames.size(); ++i) {
         REQUIRE(run.frames[i]["frame"] == i);
@@ -173,7 +176,7 @@ TEST_CASE("a recorded walk reaches the program as it was walked" * needsSharedDa
     for (std::size_t i = 10; i < 100; ++i) {
         const Json& frame = run.frames.at(i);
         const Json& layer = frame["layers"].at(0);
-        // LOCAL is level and faces where the head faced at time 0; its heading is in the log.
+        // LOCAL is level and faces where the head faced at time 0; the log has the head's heading.
         const Json& q = layer["stage_from_space"]["orientation"];
         const glm::dquat stage_from_local(q[3].get<double>(), q[0].get<double>(), q[1].get<double>(), q[2].get<double>());
         for (const std::size_t eye : {0u, 1u}) {
@@ -192,7 +195,8 @@ TEST_CASE("hello_xr looks as it did, and a lock-step run writes the same files a
     if (!haveHelloXr()) { return; }
     const Run run(kLooking), again(kLooking);
     REQUIRE_MESSAGE(run.exit_status == 0, run.output);
-    CHECK(std::distance(std::filesystem::directory_iterator(run.written), {}) == 3);  // two pictures and the log
+    // Two pictures and the log.
+    CHECK(std::distance(std::filesystem::directory_iterator(run.written), {}) == 3);
     CHECK(std::system(("diff -r " + run.written.string() + " " + again.written.string()).c_str()) == 0);
     const auto eye = [&](std::size_t frame, simulated::Side side) { return run.part(frame, side, {0, 0}, {240, 200}); };
     const RgbPicture left = eye(20, kLeft);
@@ -208,16 +212,17 @@ TEST_CASE("hello_xr looks as it did, and a lock-step run writes the same files a
         simulated::writePng(actual, left);
         MESSAGE("look at " << actual.string());
     }
-    // What the comparison must tell apart.
+    // What the comparison must be able to tell apart.
     CHECK(psnrDb(golden, eye(20, kRight)) < kLeastDb);
     CHECK(psnrDb(golden, eye(10, kLeft)) < kLeastDb);
 }
 
 TEST_CASE("a cube ahead has its disparity and is upright, and controllers are seen where the script holds them") {
     if (!haveHelloXr()) { return; }
-    // 150 pixels per unit of tangent, eyes 0.1 m apart. hello_xr puts a cube of 0.25 m 2 m ahead of the head, and others on the floor; its
-    // near face, 1.875 m away, is the +z side, pure blue. The right controller's is of 0.1 m: held 0.3 m to the right, 0.2 m above the
-    // eyes' height, its near face 0.5 m ahead.
+    // 150 pixels per unit of tangent, eyes 0.1 m apart. hello_xr puts a cube of 0.25 m 2 m in front of the
+    // head, and others on the floor. Its near face, 1.875 m away, is the +z side, pure blue. The right
+    // controller's cube has 0.1 m; it is held 0.3 m to the right and 0.2 m above eye height, with its near
+    // face 0.5 m ahead.
     const Run run(
         "size 300 300\nipd 0.1\nframes from 20 to 50 every 30\ncontroller left 0 position 0 9 9\n"
         "controller right 0 position 0.3 1.8 -0.55\nat 0.3 controller right off\nat 0.7 exit\n",
@@ -232,7 +237,7 @@ TEST_CASE("a cube ahead has its disparity and is upright, and controllers are se
         CHECK(std::abs(held.x - (150.0 + 150.0 * (0.3 + aside_m) / 0.5)) <= 0.5);
         CHECK(std::abs(held.y - 90.0) <= 0.5);
     }
-    // Not tracked any more: only the background, of one colour.
+    // No longer tracked: only the background, in one colour.
     const RgbPicture empty = run.part(50, kLeft, {200, 0}, {100, 140});
     for (std::size_t i = 0; i < empty.bytes.size(); ++i) { REQUIRE(empty.bytes[i] == empty.bytes[i % 3]); }
 }

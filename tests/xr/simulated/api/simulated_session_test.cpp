@@ -1,4 +1,5 @@
-// Chapter 9 and section 10.4 of OpenXR on the simulated runtime: a session's life, its frames, their pace, and how it ends.
+// Chapter 9 and section 10.4 of OpenXR on the simulated runtime: a session's life, its frames, their pace,
+// and how it ends.
 #include "tests/xr/simulated/api/simulated_fixture.h"
 
 SUITE(simulated_session) {
@@ -6,7 +7,7 @@ SUITE(simulated_session) {
 using Json = nlohmann::json;
 
 const std::string kSmall = "size 64 64\nframes none\n";
-constexpr XrDuration kPeriod = 10'000'000;  // of 100 frames per second
+constexpr XrDuration kPeriod = 10'000'000;  // 100 frames per second
 const States kWholeLife{XR_SESSION_STATE_IDLE,    XR_SESSION_STATE_READY,   XR_SESSION_STATE_SYNCHRONIZED, XR_SESSION_STATE_VISIBLE,
                         XR_SESSION_STATE_FOCUSED, XR_SESSION_STATE_VISIBLE, XR_SESSION_STATE_SYNCHRONIZED, XR_SESSION_STATE_STOPPING};
 
@@ -24,7 +25,7 @@ struct Begun : SessionFixture {
 struct Leaving : Begun {
     Leaving() : Begun("rate 100\nat 0.1 exit") {}
 
-    // Waits for frames, and hands their times on, until the session is to stop.
+    // Waits for frames and passes their times on, until the session should stop.
     template <class Body>
     States runOn(const Body& body) const {
         States seen;
@@ -39,7 +40,7 @@ struct Leaving : Begun {
     }
 };
 
-// What the first call says that fails, of ten frames that end.
+// The result of the first call that fails within ten frames.
 XrResult failureOf(const SessionFixture& made) {
     XrResult result = XR_SUCCESS;
     XrFrameState state{XR_TYPE_FRAME_STATE};
@@ -68,7 +69,7 @@ TEST_CASE_FIXTURE(VulkanFixture, "a session wants a graphics binding and a syste
     XrSwapchain swapchain = XR_NULL_HANDLE;
     REQUIRE(xrCreateSwapchain(session, &swapchain_info, &swapchain) == XR_SUCCESS);
     const XrSpace space = makeSpace(XR_REFERENCE_SPACE_TYPE_LOCAL);
-    // A handle of one type is not taken for another.
+    // A handle of one type is not accepted as another.
     checkEach(XR_ERROR_HANDLE_INVALID,
               {xrDestroySession(reinterpret_cast<XrSession>(space)), xrDestroySpace(reinterpret_cast<XrSpace>(session)),
                xrDestroySwapchain(reinterpret_cast<XrSwapchain>(instance)), xrDestroySession(XR_NULL_HANDLE)});
@@ -95,7 +96,7 @@ TEST_CASE_FIXTURE(SessionFixture, "a session begins once, when it is READY, in s
     CHECK(begin() == XR_SUCCESS);
     CHECK(begin() == XR_ERROR_SESSION_RUNNING);
 
-    // Drawn for from VISIBLE on; in lock-step a frame lasts one period.
+    // Frames are to be drawn from VISIBLE on; in lock-step, a frame lasts one period.
     state = frame();
     CHECK(these(state.shouldRender, state.predictedDisplayPeriod, state.predictedDisplayTime) == these(XR_FALSE, 11'111'111, kStart));
     CHECK(states() == States{XR_SESSION_STATE_SYNCHRONIZED});
@@ -137,7 +138,7 @@ TEST_CASE_FIXTURE(SessionFixture, "frames are waited for, begun and ended in thi
     checkArguments(xrEndFrame, session, &info);
     CHECK(with(info.environmentBlendMode, XR_ENVIRONMENT_BLEND_MODE_ADDITIVE, end) == XR_ERROR_ENVIRONMENT_BLEND_MODE_UNSUPPORTED);
     CHECK(with(info.environmentBlendMode, static_cast<XrEnvironmentBlendMode>(0), end) == XR_ERROR_VALIDATION_FAILURE);
-    // One that was refused can be ended again.
+    // A frame whose end was refused can be ended again.
     checkChanges(end, XR_ERROR_TIME_INVALID, to(info.displayTime, 0), to(info.displayTime, -5));
     CHECK(end() == XR_SUCCESS);
     CHECK(end() == XR_ERROR_CALL_ORDER_INVALID);
@@ -198,7 +199,7 @@ TEST_CASE("a session that is being lost says so with every success, and then fai
     checkEach(XR_ERROR_SESSION_LOST,
               {failureOf(made), xrEnumerateReferenceSpaces(session, 0, &count, nullptr), xrRequestExitSession(session)});
     CHECK(xrDestroySession(session) == XR_SUCCESS);
-    // Time went on, so the script's line is past.
+    // Time has moved on, so the script's line is in the past.
     made.makeSession();
     made.focus();
 }
@@ -218,7 +219,7 @@ TEST_CASE("an instance that is lost says when, and then fails") {
 }
 
 TEST_CASE("events that nobody polls are lost and counted") {
-    // Loses and gains focus with every other frame, from the third on.
+    // Loses and regains focus in every second frame, from the third on.
     std::string script = "rate 10\n";
     for (int i = 0; i < 110; ++i) { script += "at " + std::to_string(0.25 + 0.1 * i) + (i % 2 == 0 ? " focused off\n" : " focused on\n"); }
     const Begun made(script);

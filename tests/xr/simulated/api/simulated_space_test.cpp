@@ -7,7 +7,7 @@ constexpr auto kFloor = XR_REFERENCE_SPACE_TYPE_LOCAL_FLOOR;
 constexpr auto kHidden = XR_VISIBILITY_MASK_TYPE_HIDDEN_TRIANGLE_MESH_KHR;
 constexpr auto kMono = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_MONO;
 
-// The head a metre to the right of the room's middle, and turned to the left.
+// The head is a metre to the right of the room's middle and turned to the left.
 constexpr const char* kAside = "head 0 position 1 1.7 0 turn 90 20\nhead 1 position 2 1.7 0\n";
 
 struct WalkingFixture : SessionFixture {
@@ -56,13 +56,13 @@ TEST_CASE_FIXTURE(SessionFixture, "reference spaces are VIEW, LOCAL and STAGE, e
     CHECK(xrGetReferenceSpaceBoundsRect(session, static_cast<XrReferenceSpaceType>(99), &bounds) == XR_ERROR_VALIDATION_FAILURE);
     CHECK(xrGetReferenceSpaceBoundsRect(session, XR_REFERENCE_SPACE_TYPE_STAGE, nullptr) == XR_ERROR_VALIDATION_FAILURE);
 
-    // Locating wants two spaces, a time and a place for the answer.
+    // Locating needs two spaces, a time and a place for the answer.
     XrSpaceLocation location{XR_TYPE_SPACE_LOCATION};
     checkEach(XR_ERROR_TIME_INVALID, {xrLocateSpace(local, local, 0, &location), xrLocateSpace(local, local, -1, &location)});
     checkArguments([&](XrSpace of, auto* place) { return xrLocateSpace(of, local, 1, place); }, local, &location);
     checkArguments([&](XrSpace base, auto* place) { return xrLocateSpace(local, base, 1, place); }, local, &location);
 
-    // A headset without mask gives an empty one.
+    // A headset without a mask gives an empty one.
     XrVisibilityMaskKHR mask{XR_TYPE_VISIBILITY_MASK_KHR};
     CHECK(XR(xrGetVisibilityMaskKHR)(session, kStereo, 1, XR_VISIBILITY_MASK_TYPE_LINE_LOOP_KHR, &mask) == XR_SUCCESS);
     CHECK(mask.vertexCountOutput == 0);
@@ -77,7 +77,7 @@ TEST_CASE_FIXTURE(WalkingFixture, "spaces are located in one another as the scri
     CHECK(location.pose.orientation.y == doctest::Approx(std::sin(M_PI / 8)));
     CHECK(these(velocity.velocityFlags, velocity.linearVelocity.z, velocity.angularVelocity.y) ==
           these(kMoving, doctest::Approx(-1), doctest::Approx(M_PI / 4).epsilon(1e-3)));
-    // LOCAL starts where the head was: the way back from the head to it is the way that the head went.
+    // LOCAL starts where the head was, so seen from the head it moves the opposite way.
     checkNear(locate(view, local, kStart).pose.position, {0, 0, 0});
     CHECK(locate(view, view, kStart).pose.orientation.w == doctest::Approx(1));
 
@@ -109,7 +109,7 @@ TEST_CASE_FIXTURE(WalkingFixture, "the visibility mask is a mesh in two calls, i
     std::vector<std::uint32_t> indices(mask.indexCountOutput);
     mask.vertices = vertices.data();
     mask.indices = indices.data();
-    // Either capacity of 0 asks for both counts.
+    // If either capacity is 0, both counts are returned.
     mask.vertexCapacityInput = 1;
     mask.vertexCountOutput = mask.indexCountOutput = 0;
     CHECK(getMask(session, kStereo, 0, kHidden, &mask) == XR_SUCCESS);
@@ -125,7 +125,7 @@ TEST_CASE_FIXTURE(WalkingFixture, "the visibility mask is a mesh in two calls, i
     CHECK(getMask(session, kMono, 0, kHidden, &mask) == XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED);
     CHECK(getMask(XR_NULL_HANDLE, kStereo, 0, kHidden, &mask) == XR_ERROR_HANDLE_INVALID);
 
-    // Counter-clockwise triangles within the view, which they fill together.
+    // Counter-clockwise triangles inside the view, which together fill it.
     const double width = std::tan(50 * M_PI / 180) + std::tan(40 * M_PI / 180), height = 1 + std::tan(48 * M_PI / 180);
     double areas[2] = {};
     for (const int visible : {0, 1}) {
@@ -139,7 +139,7 @@ TEST_CASE_FIXTURE(WalkingFixture, "the visibility mask is a mesh in two calls, i
         CHECK(mesh.right() - mesh.left() <= width + 1e-5);
     }
     CHECK(areas[0] + areas[1] == doctest::Approx(width * height));
-    // A polygon of 64 corners on the ellipse has 32 sin(pi / 32) instead of pi.
+    // A polygon with 64 corners on the ellipse has 32 sin(pi / 32) instead of pi.
     CHECK(areas[1] == doctest::Approx(32 * std::sin(M_PI / 32) * width * height / 4));
 
     for (const std::uint32_t view : {0u, 1u}) {
@@ -208,7 +208,8 @@ TEST_CASE("a recentring is announced for LOCAL, and for LOCAL_FLOOR where that i
         std::vector<XrReferenceSpaceType> announced;
         for (const auto& change : made.events<XrEventDataReferenceSpaceChangePending>(XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING)) {
             CHECK(these(change.session, change.changeTime) == these(made.session, kStart + 150'000'000));
-            // From where LOCAL began, at the head of time 0, to where the head is then; LOCAL_FLOOR is below it both times.
+            // From LOCAL's first origin, at the head's pose at time 0, to the head's pose now; LOCAL_FLOOR is
+            // below it both times.
             CHECK(change.poseValid == XR_TRUE);
             const XrPosef& pose = change.poseInPreviousSpace;
             checkNear(pose.position, {0, change.referenceSpaceType == kFloor ? 0 : 0.15f, -0.3f});

@@ -1,4 +1,5 @@
-// XR_KHR_vulkan_enable2 and section 10.1 of OpenXR on the simulated runtime: devices, swapchains, and images' layouts.
+// XR_KHR_vulkan_enable2 and section 10.1 of OpenXR on the simulated runtime: devices, swapchains, and images'
+// layouts.
 #include "tests/xr/simulated/api/simulated_direct.h"
 #include "tests/xr/simulated/api/simulated_painter.h"
 
@@ -7,7 +8,7 @@ SUITE(simulated_swapchain) {
 constexpr XrSwapchainUsageFlags kWritten = XR_SWAPCHAIN_USAGE_UNORDERED_ACCESS_BIT, kMutable = XR_SWAPCHAIN_USAGE_MUTABLE_FORMAT_BIT;
 constexpr XrSwapchainImageWaitInfo kWait{XR_TYPE_SWAPCHAIN_IMAGE_WAIT_INFO, nullptr, XR_INFINITE_DURATION};
 
-// Vulkan's loader, which notes what images are made with.
+// Vulkan's loader, which records how images are created.
 struct ImageRecorder {
     static inline PFN_vkGetDeviceProcAddr find_in_device = nullptr;
     static inline PFN_vkCreateImage create_image = nullptr;
@@ -154,7 +155,7 @@ TEST_CASE_FIXTURE(SessionFixture, "formats are enumerated, sRGB first, and a swa
     checkChanges(make, XR_SUCCESS, to(info.mipCount, 7), to(info.arraySize, 2));
     checkArguments(xrCreateSwapchain, session, &info, &swapchain);
 
-    // One of the largest view that is offered can be made.
+    // A swapchain as large as the largest view on offer can be created.
     XrViewConfigurationView views[2] = {{XR_TYPE_VIEW_CONFIGURATION_VIEW}, {XR_TYPE_VIEW_CONFIGURATION_VIEW}};
     REQUIRE(xrEnumerateViewConfigurationViews(instance, system, kStereo, 2, &count, views) == XR_SUCCESS);
     info.width = views[0].maxImageRectWidth;
@@ -173,7 +174,7 @@ TEST_CASE_FIXTURE(SessionFixture, "every format, use and shape can be held whole
                                                 kSampled | kMutable, kWritten | kMutable, kWritten}) {
             for (const std::uint32_t shape : {0, 1, 2, 3}) {
                 XrSwapchainCreateInfo info = swapchainInfo(static_cast<VkFormat>(formats[i]));
-                // One of the uses is no attachment.
+                // One of the uses is not as an attachment.
                 info.usageFlags = use == (kSampled | kCopied) ? use : info.usageFlags | use;
                 info.arraySize = shape == 1 ? 2 : 1;
                 info.mipCount = shape == 2 ? 2 : 1;
@@ -181,7 +182,7 @@ TEST_CASE_FIXTURE(SessionFixture, "every format, use and shape can be held whole
                 INFO("format ", formats[i], " use ", use, " shape ", shape);
                 XrSwapchain swapchain = XR_NULL_HANDLE;
                 const XrResult made = xrCreateSwapchain(session, &info, &swapchain);
-                // Not every device writes every format from shaders.
+                // Not every device can write every format from shaders.
                 if ((use & kWritten) != 0 && made == XR_ERROR_FEATURE_UNSUPPORTED) { continue; }
                 REQUIRE(made == XR_SUCCESS);
                 const std::size_t images = imagesOf(swapchain).size();
@@ -248,7 +249,7 @@ TEST_CASE_FIXTURE(SessionFixture, "images are acquired, waited for and released 
     checkEach(XR_SUCCESS, {xrWaitSwapchainImage(swapchain, &at_once), xrReleaseSwapchainImage(swapchain, nullptr)});
     CHECK(acquire(swapchain) == first);
 
-    // A static one has one image, for one time.
+    // A static swapchain has one image, which can be acquired once.
     XrSwapchainCreateInfo info = swapchainInfo();
     info.createFlags = XR_SWAPCHAIN_CREATE_STATIC_IMAGE_BIT;
     const XrSwapchain fixed = makeSwapchain(info);
@@ -288,7 +289,7 @@ TEST_CASE_FIXTURE(SessionFixture, "images are found in attachment layouts, on ev
         for (int round = 0; round < 5; ++round) {
             const VkImage image = imagesOf(swapchain)[acquire(swapchain)];
             REQUIRE(xrWaitSwapchainImage(swapchain, &kWait) == XR_SUCCESS);
-            // As an application that draws would touch it; validation watches the layout it is found in.
+            // Uses the image as a drawing application would; validation checks the layout.
             painter.run([&](VkCommandBuffer commands) {
                 Painter::move(commands, image, 1, layout, layout, is_depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT);
             });
@@ -304,7 +305,7 @@ TEST_CASE("images come in as many, and in the order, as the script says") {
     CHECK(std::set(order.begin(), order.end()).size() == 5);
     std::size_t in_turn = 0;
     for (std::size_t i = 1; i < order.size(); ++i) {
-        CHECK(order[i] != order[i - 1]);  // the one on show
+        CHECK(order[i] != order[i - 1]);  // the one being shown
         in_turn += order[i] == (order[i - 1] + 1) % 5 ? 1 : 0;
     }
     CHECK(in_turn < 30);

@@ -1,4 +1,5 @@
-// The simulated runtime called from many threads at once: every function may be, except for the handles that one of them destroys.
+// The simulated runtime called from many threads at once: every function allows it, except with handles that
+// are being destroyed.
 #include "tests/xr/simulated/api/simulated_fixture.h"
 
 #include <barrier>
@@ -10,7 +11,7 @@ SUITE(simulated_threads) {
 
 constexpr int kThreads = 8, kRounds = 25;
 
-// What goes wrong in the threads is counted, as doctest's own assertions would print from all of them.
+// Failures in the threads are counted, since doctest's own assertions would print from all of them.
 struct Failures {
     std::atomic<int> count{0};
     void expect(bool holds) {
@@ -153,7 +154,7 @@ TEST_CASE_FIXTURE(SessionFixture, "one thread waits for frames while another end
         waited.pop();
         guard.unlock();
         CHECK(xrBeginFrame(session, nullptr) == XR_SUCCESS);
-        // From here on the other thread may have the next one.
+        // From here on, the other thread may have the next one.
         CHECK(endFrame(state.predictedDisplayTime) == XR_SUCCESS);
         if (i > 0) { CHECK(std::abs(state.predictedDisplayTime - last - state.predictedDisplayPeriod) <= 1); }
         last = state.predictedDisplayTime;

@@ -1,4 +1,5 @@
-// Facts about the way from an application's swapchain images through the runtime to the wearer's eyes, pixel by pixel.
+// Facts about the way from an application's swapchain images through the runtime to the wearer's eyes, pixel
+// by pixel.
 #include "tests/xr/simulated/api/simulated_painter.h"
 #include "xr/simulated/compose/compose.h"
 #include "xr/simulated/compose/picture_file.h"
@@ -21,7 +22,7 @@ constexpr Rgb kBlackSeen{0, 0, 0}, kRedSeen{255, 0, 0}, kGreenSeen{0, 255, 0}, k
 
 int encoded(double linear) { return static_cast<int>(std::lround(255.0 * simulated::encodeSrgb(linear))); }
 
-// Eyes at one place, looking from where the script says; the last picture that was written is read back.
+// Both eyes at one place, looking where the script says; the last picture is read back.
 struct Wearer : SessionFixture {
     Painter painter{*this};
 
@@ -64,7 +65,7 @@ TEST_CASE_FIXTURE(Wearer, "every format comes through, encoded as its format say
           std::tuple(VK_FORMAT_R8G8B8A8_UNORM, false, true), std::tuple(VK_FORMAT_B8G8R8A8_UNORM, true, true)}) {
         CAPTURE(format);
         const simulated::RgbPicture seen = see(quadOf(painted(texels, format)));
-        // Of 4 x 4 pixels the outermost look past the texels' centres: their corners show one texel alone.
+        // The outermost of 4 x 4 pixels look past the texels' centres, so their corners show a single texel.
         for (std::uint32_t corner = 0; corner < 4; ++corner) {
             Rgb expected{};
             for (std::size_t channel = 0; channel < 3; ++channel) {
@@ -80,7 +81,8 @@ TEST_CASE_FIXTURE(Wearer, "every format comes through, encoded as its format say
 }
 
 TEST_CASE_FIXTURE(Wearer, "each eye gets its array layer and its rectangle") {
-    // Two layers of 4 x 2: the left half of the first is red, the right half of the second is green, the rest is white.
+    // Two layers of 4 x 2: the left half of the first is red, the right half of the second is green, the rest
+    // is white.
     const XrSwapchain swapchain = painter.makeSwapchain(VK_FORMAT_R8G8B8A8_SRGB, 4, 2, 2);
     std::vector<Bytes4> texels(16, kWhite);
     for (const std::size_t row : {0u, 1u}) {
@@ -116,7 +118,7 @@ TEST_CASE_FIXTURE(Wearer, "what is seen is the image released last, not the one 
 
 TEST_CASE_FIXTURE(Wearer, "layers lie over one another in their order, with their alpha and for their eye") {
     XrCompositionLayerQuad below = quadOf(plain(kBlue)), above = quadOf(plain({255, 255, 255, 128}));
-    // Not by depth.
+    // The order does not depend on depth.
     above.pose.position.z = -2;
     above.size = {4, 4};
     CHECK(at(see(below, above), kLeft, 0, 0) == Rgb{255, 255, 255});
@@ -133,7 +135,7 @@ TEST_CASE_FIXTURE(Wearer, "layers lie over one another in their order, with thei
 }
 
 TEST_CASE("VIEW goes with the head, LOCAL and STAGE stay") {
-    // Three frames pass until the session has the focus: by then the head has turned.
+    // Three frames pass until the session has the focus, and by then the head has turned.
     const Wearer made("head 0 turn 0 0\nhead 0.01 turn 90 0\n");
     XrCompositionLayerQuad quad = made.quadOf(made.plain(kGreen));
     CHECK(at(made.see(quad), kLeft, 1, 1) == kBlackSeen);
@@ -150,9 +152,9 @@ TEST_CASE("VIEW goes with the head, LOCAL and STAGE stay") {
 }
 
 TEST_CASE("a picture drawn for another pose is turned to where it belongs") {
-    // Drawn for a head that looked straight ahead; the head has turned left by atan(1/2). A tangent t of the eye is (t - 1/2) / (1 + t / 2)
-    // in the picture. The pixels' middles -3/4, -1/4, 1/4 and 3/4 are at -2, -6/7, -2/9 and 2/11 there: outside, then in columns 0.29, 1.56
-    // and 2.36.
+    // Drawn for a head that looked straight ahead; since then the head has turned left by atan(1/2). A
+    // tangent t of the eye is (t - 1/2) / (1 + t / 2) in the picture. The pixels' middles -3/4, -1/4, 1/4 and
+    // 3/4 are at -2, -6/7, -2/9 and 2/11 there: outside, then in columns 0.29, 1.56 and 2.36.
     const Wearer made("head 0 turn 0 0\nhead 0.01 turn 26.565051177 0\n");
     const XrSwapchain swapchain = made.painter.makeSwapchain(VK_FORMAT_R8G8B8A8_SRGB, 4, 4);
     std::vector<Bytes4> texels;
@@ -164,7 +166,8 @@ TEST_CASE("a picture drawn for another pose is turned to where it belongs") {
     const simulated::RgbPicture seen = made.see(projection);
     CHECK(at(seen, kLeft, 0, 1) == kBlackSeen);
     CHECK(at(seen, kLeft, 1, 1) == kRedSeen);
-    // Texel middles are at 0.5, 1.5 ...: column 1.556 is 1.056 texels from the first, so 94.4 % of green and 5.6 % of blue.
+    // Texel middles are at 0.5, 1.5 ...: column 1.556 is 1.056 texels from the first, so 94.4 % green and 5.6
+    // % blue.
     CHECK(at(seen, kLeft, 2, 1) == Rgb{0, encoded(17.0 / 18.0), encoded(1.0 / 18.0)});
     CHECK(at(seen, kLeft, 3, 1)[0] == 0);
 }

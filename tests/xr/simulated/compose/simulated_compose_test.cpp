@@ -1,4 +1,4 @@
-// Facts about what the simulated wearer sees: pixels and blending derived by hand.
+// Facts about what the simulated wearer sees: pixels and blending, derived by hand.
 #include "tests/xr/simulated/folder.h"
 #include "xr/simulated/compose/compose.h"
 #include "xr/simulated/compose/picture_file.h"
@@ -45,7 +45,7 @@ Canvas halves(glm::uvec2 size_px, const glm::vec4& colour) {
     return canvas;
 }
 
-// Every byte occurs, without order.
+// Every byte value occurs, in no order.
 Canvas noise(glm::uvec2 size_px) {
     Canvas canvas(size_px);
     std::uint32_t state = 1;
@@ -82,7 +82,7 @@ Layer blended(QuadLayer layer, bool unpremultiplied) {
     return layer;
 }
 
-// The middle pixel of an eye that looks to the left, and up.
+// The middle pixel of an eye that looks to the left and up.
 Rgb lookAt(const Layer& layer, double yaw_rad, double pitch_rad, const glm::dvec3& place = {}) {
     EyeView eye = eyeOf({64, 64});
     eye.stage_from_eye = {glm::angleAxis(yaw_rad, glm::dvec3(0, 1, 0)) * glm::angleAxis(pitch_rad, glm::dvec3(1, 0, 0)), place};
@@ -101,7 +101,7 @@ TEST_CASE("a projection of the eye's own view comes through byte for byte, also 
     CHECK(compose(eye, {projection(canvas, submitted)}) == seen);
     submitted.fov.right_rad += 0.004;  // a fifth of a pixel
     CHECK(compose(eye, {projection(canvas, submitted)}) != seen);
-    // Of more than the eye sees.
+    // A picture that covers more than the eye sees.
     const Canvas wide = noise({70, 51});
     const double across = (std::tan(0.6) + std::tan(0.9)) / 64, down = (std::tan(0.7) + std::tan(0.8)) / 48;
     submitted.fov = {std::atan(-std::tan(0.9) - 4 * across), std::atan(std::tan(0.6) + 2 * across), std::atan(std::tan(0.7) + down),
@@ -118,7 +118,7 @@ TEST_CASE("an inset and its view are one picture: what shows through the inset i
     const EyeView eye = eyeOf({4, 4});
     const Canvas red({4, 4}, {255, 0, 0, 255}), clear({2, 2}, {0, 0, 0, 0});
     ProjectionLayer layer = projection(red, eye);
-    // The middle half, each way.
+    // The middle half in both directions.
     const double half = std::atan(0.5);
     layer.insets[kLeft] = ProjectionView{clear.picture(), clear.whole(), {}, {-half, half, half, -half}};
     layer.blending = {true, false};
@@ -126,7 +126,7 @@ TEST_CASE("an inset and its view are one picture: what shows through the inset i
     const RgbPicture seen = compose(eye, {projection(white, eye), layer});
     CHECK(these(at(seen, 0, 1), at(seen, 1, 1), at(seen, 2, 2), at(seen, 2, 3), at(compose(eye, {layer}, kRight), 1, 1)) ==
           these(Rgb{255, 0, 0}, Rgb{255, 255, 255}, Rgb{255, 255, 255}, Rgb{255, 0, 0}, Rgb{255, 0, 0}));
-    // An empty one is none.
+    // An empty inset counts as none.
     layer.insets[kLeft]->rect.extent = {0, 2};
     CHECK(at(compose(eye, {layer}), 1, 1) == Rgb{255, 0, 0});
 }
@@ -135,7 +135,8 @@ TEST_CASE("halves beyond white are white and NaN is black") {
     const EyeView eye = eyeOf({2, 2});
     for (const glm::vec4& odd : {glm::vec4(-1.0f, 7.0f, 0.5f, 1.0f), glm::vec4(std::nanf(""), INFINITY, 0.5f, 1.0f)}) {
         const Canvas canvas = halves({2, 2}, odd);
-        CHECK(at(compose(eye, {projection(canvas, eye)}), 0, 0) == Rgb{0, 255, 188});  // half the light is 188
+        // Half the light is 188.
+        CHECK(at(compose(eye, {projection(canvas, eye)}), 0, 0) == Rgb{0, 255, 188});
     }
 }
 
@@ -157,10 +158,11 @@ TEST_CASE("looking up moves the picture down, and views upside down are turned o
 }
 
 TEST_CASE("a quad covers the pixels that its corners say, for each eye") {
-    // 32 pixels between tangents -1 and 1, 16 per unit. A quad 2 m ahead from x = -0.5 to 1.5 and y = 0 to 1 spans tangents -0.25 to 0.75
-    // and 0 to 0.5: columns 12 to 27, rows 8 to 15.
+    // 32 pixels between tangents -1 and 1 are 16 per unit. A quad 2 m ahead from x = -0.5 to 1.5 and y = 0 to
+    // 1 spans tangents -0.25 to 0.75 and 0 to 0.5: columns 12 to 27, rows 8 to 15.
     const Canvas white({4, 4}, {255, 255, 255, 255});
-    // For an eye an eighth of a metre further to the right, of 16 pixels per unit at 2 m, they are one less.
+    // For an eye an eighth of a metre further to the right, with 16 pixels per unit at 2 m, it is one column
+    // further left.
     for (const std::uint32_t shift : {0u, 1u}) {
         EyeView eye = eyeOf({32, 32});
         eye.stage_from_eye.position.x = 0.125 * shift;
@@ -216,7 +218,7 @@ TEST_CASE("rectangles outside the picture are refused, and empty ones show nothi
         CHECK(at(compose(eye, {views}), 0, 0) != kBlack);
         flat.rect = cylinder.rect = sphere.rect = views.views[kLeft].rect = rect;
         CHECK(compose(eye, {flat, cylinder, sphere, views}) == compose(eye, {}));
-        // The other eye's part of a projection is whole.
+        // The other eye's part of a projection is complete.
         CHECK(at(compose(eye, {views}, kRight), 0, 0) != kBlack);
     }
 }
@@ -227,7 +229,7 @@ TEST_CASE("eyes side by side keep their pixels, come back from files, and those 
     const Folder folder;
     writePng(folder.path / "a.png", both);
     CHECK(readPng(folder.path / "a.png") == both);
-    // No chunk that would tell one run from another.
+    // No chunk differs from run to run.
     const std::string once = folder.bytesOf("a.png");
     for (const char* chunk : {"tIME", "tEXt", "iTXt", "zTXt"}) { CHECK(once.find(chunk) == std::string::npos); }
     writePng(folder.path / "b.png", both);
@@ -236,7 +238,7 @@ TEST_CASE("eyes side by side keep their pixels, come back from files, and those 
     CHECK(folder.names() == std::set<std::string>{"a.png", "b.png"});
 }
 
-#ifndef _WIN32  // where links take a privilege
+#ifndef _WIN32  // on Windows, links need a privilege
 TEST_CASE_FIXTURE(InFolder, "a picture is not written through a link or over an unfinished one") {
     folder.write("victim", "keep me");
     for (const char* name : {".a.unfinished.png", "b.png"}) { std::filesystem::create_symlink("victim", folder.path / name); }
@@ -254,18 +256,22 @@ TEST_CASE_FIXTURE(InFolder, "a picture is not written through a link or over an 
 #endif
 
 TEST_CASE("a cylinder's picture lies on its arc about the middle") {
-    // A quarter turn wide and as high as wide: longitudes within 45 degrees, heights within pi/4 of the radius.
+    // A quarter turn wide and as high as wide: longitudes within 45 degrees, heights within pi/4 of the
+    // radius.
     Canvas canvas({2, 1}, {255, 0, 0, 255});
     canvas.fill({{1, 0}, {1, 1}}, {0, 0, 255, 255});
     CylinderLayer layer{canvas.picture(), canvas.whole(), {}, 0.0, 2.0 * kEighth, 1.0, Visibility::kBoth, {}};
-    // 100 pixels per unit of tangent, so far away that the left edge is the eye's, and the top where y/z = pi/4 in the middle.
+    // 100 pixels per unit of tangent, so far away that the left edge is the eye's, and the top is where y/z =
+    // pi/4 in the middle.
     const RgbPicture far_away = compose(eyeOf({200, 200}), {layer});
     CHECK(these(at(far_away, 10, 100), at(far_away, 190, 100)) == these(Rgb{255, 0, 0}, Rgb{0, 0, 255}));
     CHECK(at(far_away, 99, 23)[0] > 100);
     CHECK(at(far_away, 99, 20) == kBlack);
-    // At 45 degrees to the side the wall is farther away by sqrt(2), so its edge is seen at pi/4 * sqrt(2) > 1.
+    // At 45 degrees to the side, the wall's depth z is smaller by sqrt(2), so its edge is at pi/4 * sqrt(2) >
+    // 1.
     CHECK(at(far_away, 1, 1)[0] > 100);
-    // From its axis it looks the same, however large; from nearer to its wall it is wider than the view.
+    // From its axis it looks the same, whatever its size; from a point nearer to its wall it is wider than
+    // the view.
     layer.radius_m = 2.0;
     CHECK(compose(eyeOf({200, 200}), {layer}) == far_away);
     layer.radius_m = INFINITY;
@@ -294,7 +300,8 @@ TEST_CASE("a sphere's picture lies between its angles") {
     CHECK(looking(-2.0 * kEighth, 0.5 * kEighth)[1] > 240);
     CHECK(looking(2.0 * kEighth, -0.5 * kEighth)[2] > 240);
     CHECK(these(looking(0.0, 1.5 * kEighth), looking(0.0, -1.5 * kEighth)) == these(kBlack, kBlack));
-    // A sphere about the eye is as one far away; from outside only its far half is seen, from within.
+    // A sphere around the eye looks as if it were far away. From outside, only the inside of its far half is
+    // seen.
     const Rgb before = looking(2.0 * kEighth, 0.3 * kEighth);
     layer.radius_m = 3.0;
     CHECK(looking(2.0 * kEighth, 0.3 * kEighth) == before);
@@ -309,13 +316,13 @@ TEST_CASE("a sphere's picture lies between its angles") {
 
 TEST_CASE("a cube map's faces are in Vulkan's order, and the top left texel of each is where Vulkan has it") {
     const std::array<Rgb, 6> colours{{{255, 0, 0}, {0, 255, 0}, {0, 0, 255}, {255, 255, 0}, {255, 0, 255}, {0, 255, 255}}};
-    // Where each is seen: to the left, and up, in eighths of a turn.
+    // Where each is seen: to the left and up, in eighths of a turn.
     const std::array<glm::dvec2, 6> ways{{{-2, 0}, {2, 0}, {0, 2}, {0, -2}, {4, 0}, {0, 0}}};
     std::vector<Canvas> canvases;
     for (const auto& [r, g, b] : colours) { canvases.emplace_back(glm::uvec2(2, 2), std::array{r, g, b, 255}); }
     CubeLayer layer;
     for (std::size_t face = 0; face < 6; ++face) { layer.faces[face] = canvases[face].picture(); }
-    // Infinitely far, so that the place does not matter.
+    // Infinitely far away, so the place does not matter.
     const auto looking = [&](double yaw_rad, double pitch_rad) { return lookAt(layer, yaw_rad, pitch_rad, {5, 6, 7}); };
     for (std::size_t face = 0; face < 6; ++face) { CHECK(looking(ways[face].x * kEighth, ways[face].y * kEighth) == colours[face]); }
     layer.stage_from_cube = glm::angleAxis(2.0 * kEighth, glm::dvec3(0, 1, 0));  // its -z is the stage's -x
@@ -338,7 +345,7 @@ TEST_CASE("the room shows as far as alpha lets it or is added") {
         return at(composeEye(eyeOf({2, 2}), kLeft, layers, backdrop), 0, 0);
     };
     CHECK(seen({}, room) == Rgb{255, 0, 0});
-    // Half of blue's light over it: half the light is the byte 188 of sRGB.
+    // Over it, half of blue's light: half the light is byte 188 in sRGB.
     const Canvas blue = halves({2, 2}, {0.0f, 0.0f, 1.0f, 0.5f}), green({2, 2}, {0, 255, 0, 255});
     CHECK(seen({blended(quad(blue, {0, 0, -1}, {9, 9}), true)}, room) == Rgb{188, 0, 188});
     CHECK(seen({quad(green, {0, 0, -2}, {9, 9})}, room) == Rgb{0, 255, 0});

@@ -18,9 +18,9 @@ std::string frameLine(const std::string& picture) {
 
 TEST_CASE("a frame is one line of JSON, whose numbers read back as they were") {
     FrameRecord record;
-    record.display_time_ns = 9'007'199'254'740'993;  // not a double
+    record.display_time_ns = 9'007'199'254'740'993;  // not representable as a double
     record.stage_from_head = {glm::dquat(0.1, 0.2, 0.3, 0.4), {0.1, 1.0 / 3.0, std::nextafter(1.0, 2.0)}};
-    record.events = {"\xff\xfe"};  // no UTF-8
+    record.events = {"\xff\xfe"};  // not UTF-8
     const std::string line = makeFrameLine(record);
     CHECK(line.find('\n') == std::string::npos);
     const Json json = Json::parse(line);
@@ -65,7 +65,7 @@ SCRIPT(simulated_log, "xr/simulated/log/simulated_log") {
     };
     ScriptHost host{begin, folder.path};
     host.names = {{"FOLDER", folder.path.string()}, {"FOLDER_NAME", folder.path.filename().string()}};
-#ifndef _WIN32  // where links take a privilege
+#ifndef _WIN32  // on Windows, links need a privilege
     host.features = {"posix"};
 #endif
     host.verbs["touch"] = [&](const std::string& names) {

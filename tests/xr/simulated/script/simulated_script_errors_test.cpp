@@ -1,4 +1,4 @@
-// Facts about scripts with mistakes: each is named with its file and line, and nothing crashes.
+// Facts about scripts with mistakes: each is reported with its file and line, and nothing crashes.
 #include "tests/script.h"
 #include "tests/xr/simulated/folder.h"
 #include "xr/simulated/script/script.h"
@@ -14,7 +14,7 @@ Outcome parse(const std::string& text, const std::string& name) {
     } catch (const ScriptError& error) { return {1, "", error.what() + std::string("\n")}; }
 }
 
-// `> SCRIPT`, within which \n ends a line.
+// `> SCRIPT`, in which \n ends a line.
 SCRIPT(simulated_script_errors, "xr/simulated/script/simulated_script_errors") {
     const Folder folder;
     const auto refusal = [&](const std::string& text, const std::string&) {
@@ -25,7 +25,8 @@ SCRIPT(simulated_script_errors, "xr/simulated/script/simulated_script_errors") {
 #ifndef _WIN32
     host.features = {"posix"};
 #endif
-    // headset FROM => TO: a headset's file with a part of it replaced. long FILE MIB: one byte more than that.
+    // headset FROM => TO: a headset's file with a part of it replaced. long FILE MIB: a file one byte longer
+    // than that.
     host.verbs = {{"headset", [&](const std::string& edit) { folder.write("h.toml", edited(kHeadsetToml, edit)); }},
                   {"long", [&](const std::string& words) {
                        const std::size_t mebibytes = std::stoul(wordsIn(words).at(1));
@@ -34,7 +35,7 @@ SCRIPT(simulated_script_errors, "xr/simulated/script/simulated_script_errors") {
     runScript(host);
 }
 
-// How many of such texts are refused, each with its file's name.
+// How many of these texts are refused, each with its file's name.
 template <class Texts>
 std::size_t countRefused(const Texts& texts) {
     std::size_t refused = 0;
@@ -70,7 +71,7 @@ TEST_CASE("a script cut off anywhere, or with any byte changed, is a script or a
             changed.back()[i] = byte;
         }
     }
-    // Cut at the ends of lines it is a shorter script, within most words it is none.
+    // Cut at the end of a line, it is a shorter script; cut inside a word, it is mostly invalid.
     const std::size_t refused = countRefused(cut);
     CHECK(cut.size() - refused > 20);
     CHECK(refused > 200);

@@ -1,4 +1,4 @@
-// Facts about the simulated headset's scripts: what they say at a time.
+// Facts about the simulated headset's scripts: what they say at a given time.
 #include "tests/script.h"
 #include "tests/xr/simulated/folder.h"
 #include "xr/simulated/script/script.h"
@@ -16,14 +16,14 @@ const double kForever = std::numeric_limits<double>::infinity();
 Script parse(const std::string& text) { return Script::parse(text, "test.script"); }
 
 bool isNear(const glm::dvec3& a, const glm::dvec3& b, double tolerance = 1e-12) { return glm::length(a - b) <= tolerance; }
-// q and -q turn alike.
+// q and -q are the same rotation.
 bool isNear(const glm::dquat& a, const glm::dquat& b, double tolerance = 1e-12) { return 1.0 - std::abs(glm::dot(a, b)) <= tolerance; }
 
 glm::dvec3 forwardOf(const Pose& pose) { return pose.orientation * glm::dvec3(0.0, 0.0, -1.0); }
 
-// `> SCRIPT`, within which \n ends a line, says its notes; of the last one, at a time, there are
+// `> SCRIPT`, in which \n ends a line, prints its notes. About the last one, at a given time, there are
 // upright, head TIME X Y Z FORWARD_X FORWARD_Y FORWARD_Z; input TIME SIDE NAME VALUE; tracked TIME SIDE true;
-// and `frames`, which of the first ten have a picture.
+// and `frames`: which of the first ten have a picture.
 SCRIPT(simulated_script, "xr/simulated/script/simulated_script") {
     const Folder folder;
     std::optional<Script> script;
@@ -100,7 +100,7 @@ TEST_CASE("LOCAL stands where the head is at time zero without its tilt, or wher
     CHECK(isNear(local.position, {1.0, 1.6, 0.0}));
     CHECK(isNear(forwardOf(local), {-0.5, 0.0, -std::sqrt(0.75)}));
     CHECK(isNear(forwardOf(parse("head 0 turn 90 40").stageFromLocal()), {-1.0, 0.0, 0.0}));
-    // Of a head that looks straight up it keeps the right.
+    // If the head looks straight up, its right-hand side stays.
     CHECK(isNear(parse("head 0 turn 30 90").stageFromLocal().orientation * glm::dvec3(1, 0, 0), {std::sqrt(0.75), 0.0, -0.5}));
 
     const Script said =
@@ -118,7 +118,7 @@ TEST_CASE("controllers move and aim from their grip") {
         parse("controller right 0 position 0 1 0 turn 90 0\ncontroller right 2 position 0 3 0\naim right position 0 0 -0.1 turn 0 90\n");
     const auto [left, right] = script.at(1.0).controllers;
     CHECK(isNear(right.stage_from_grip.position, {0.0, 2.0, 0.0}));
-    // Ahead of a hand that is turned to the left is -x.
+    // In front of a hand that is turned to the left is -x.
     CHECK(isNear(right.stage_from_aim.position, {-0.1, 2.0, 0.0}));
     CHECK(isNear(forwardOf(right.stage_from_aim), {0.0, 1.0, 0.0}));
     CHECK(isNear(left.stage_from_grip.position, {-0.2, 1.2, -0.35}));
