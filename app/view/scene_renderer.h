@@ -43,18 +43,19 @@ public:
     // The runtime refuses depth after all; false: depth was off already.
     bool dropDepth(ConnectedHeadset& headset);
 
-    // Prepares what render() will show of the scene that is drawn, and sets the pictures of `views`. Throws Error if memory is short; then
-    // nothing is shown until this succeeds with less.
+    // Prepares what render() will show of the scene that is drawn, and sets the pictures of `views`. Throws
+    // Error if memory is short; then nothing is shown until this succeeds with less.
     void prepare(ConnectedHeadset& headset, ShownScene& shown, const Similarity& scene_from_room, const ViewSettings& settings,
                  FrameViews& views);
     // See ShownScene; once that is prepared.
     void meetOther(const ConnectedHeadset& headset, ShownScene& shown) const;
-    // Renders and presents that, in one submission with what `record_panel` records, and does not wait for it. With a `window`, one eye's
-    // picture is kept for it.
+    // Renders and presents that, in one submission with what `record_panel` records, and does not wait for
+    // it. With a `window`, one eye's picture is kept for it.
     void render(ConnectedHeadset& headset, ShownScene& shown, const ViewSettings& settings, MirrorWindow* window,
                 const std::function<void(Commands&)>& record_panel);
 
-    // What the eyes see, or the dominant one, in full at the headset's size, without a mask, whatever the frames are.
+    // What the eyes see, or the dominant one, in full at the headset's size, without a mask, whatever the
+    // frames are.
     [[nodiscard]] PictureShot shotOf(const ShownScene& shown, const Similarity& scene_from_room, const ViewSettings& settings,
                                      const FrameViews& views) const;
 
@@ -140,7 +141,8 @@ private:
     std::uint64_t governed_count_ = 0;
     std::uint32_t measured_part_ = 0;
     bool said_beaten_ = false;
-    std::array<std::uint64_t, 2> cut_short_{};  // frames, as last said: of the scene shown, and of the other one
+    // Frames, as last said: of the scene shown, and of the other one.
+    std::array<std::uint64_t, 2> cut_short_{};
     bool was_cut_short_ = false;
     FrameResult last_;
     std::array<std::uint32_t, 2> hidden_tiles_{};  // as last said

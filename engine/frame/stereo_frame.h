@@ -49,7 +49,8 @@ public:
     // seldom cut short. `signals`, if given, is signalled when the frame is done.
     std::optional<FrameResult> renderAhead(std::span<const Eye> eyes, const FrameSettings& settings,
                                            const std::function<void(Commands&)>& append = {}, vk::Semaphore signals = {});
-    // In place of a frame, while those of another StereoFrame are shown: waits for the frame before the last, as renderAhead does.
+    // In place of a frame, while those of another StereoFrame are shown: waits for the frame before the last,
+    // as renderAhead does.
     void passOver();
     // A frame for commands that the caller submits, to the device's queue and in the order of recording.
     struct Lent {

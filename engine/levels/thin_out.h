@@ -38,8 +38,8 @@ public:
     // How far another scene's pictures for these eyes are from this one's: the mean square over pixels and
     // channels.
     [[nodiscard]] double errorOf(const Scene& scene);
-    // The same for each splat of the other scene, which must have some, where it shows; from one of `every` of
-    // the eyes.
+    // The same for each splat of the other scene, which must have some, where it shows; from one of `every`
+    // of the eyes.
     [[nodiscard]] std::vector<SplatError> splatErrorsOf(const Scene& scene, const Progress& progress = {}, std::size_t every = 1);
 
 private:

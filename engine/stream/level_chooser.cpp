@@ -13,8 +13,8 @@ namespace {
 
 // A step that was chosen the time before counts this much more, and one that was not this much less.
 constexpr double kKept = 1.25;
-// A level that is off by more than this, 36 dB, is not fine enough while its splats are farther apart than this share of
-// the usual limit.
+// A level that is off by more than this, 36 dB, is not fine enough while its splats are farther apart than
+// this share of the usual limit.
 constexpr float kMostError = 2.5e-4f;
 constexpr double kCloser = 0.5;
 

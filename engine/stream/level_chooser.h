@@ -1,12 +1,13 @@
 // Which level of detail each leaf of a streamed scene is to show, by how the eyes see it.
 //
-// n splats across a leaf that takes a square of s x s pixels lie s / sqrt(n) pixels apart. A step from a level of m splats to the next
-// finer one, of n, is worth s^2 / sqrt(m n): the mean square of that distance in pixels, which is also what its splats gain each if the
-// error of a leaf is its area times the square of the distance. Where the errors of levels were measured, a step is worth what the error
-// falls by, times the area, for each splat that it adds, and no more than the step before it. Steps are taken from the greatest worth down
-// while the budget lasts, and not at all where splats lie closer than pixels; so splats end up as dense on the screen everywhere as the
-// budget allows, or denser where they are missed more: from a level that is known to be off by more than 36 dB steps are taken until its
-// splats are twice as close.
+// n splats across a leaf that takes a square of s x s pixels lie s / sqrt(n) pixels apart. A step from a
+// level of m splats to the next finer one, of n, is worth s^2 / sqrt(m n): the mean square of that distance
+// in pixels, which is also what its splats gain each if the error of a leaf is its area times the square of
+// the distance. Where the errors of levels were measured, a step is worth what the error falls by, times the
+// area, for each splat that it adds, and no more than the step before it. Steps are taken from the greatest
+// worth down while the budget lasts, and not at all where splats lie closer than pixels; so splats end up as
+// dense on the screen everywhere as the budget allows, or denser where they are missed more: from a level
+// that is known to be off by more than 36 dB steps are taken until its splats are twice as close.
 #pragma once
 
 #include "engine/files/lod_tree.h"
@@ -29,9 +30,11 @@ struct ChoiceSettings {
     std::uint64_t splats = 0;  // at most
     std::uint64_t pages = 0;   // at most, of page_splats; each level of a leaf begins a page of its own
     std::uint32_t page_splats = 512;
-    double finest_px = 0.5;        // splats need not be closer on the screen, or half of it where levels are far off
-    double look_ahead_rad = 0.35;  // beyond the edge of the view, the worth of a step falls by a factor of e for each of these
-    double nearest = 0.2;          // nothing is nearer to an eye, scene units
+    // Splats need not be closer on the screen, or half of it where levels are far off.
+    double finest_px = 0.5;
+    // Beyond the edge of the view, the worth of a step falls by a factor of e for each of these.
+    double look_ahead_rad = 0.35;
+    double nearest = 0.2;  // nothing is nearer to an eye, scene units
     bool operator==(const ChoiceSettings&) const = default;
 };
 

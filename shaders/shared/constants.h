@@ -293,16 +293,18 @@ BINOSPLAT_CONSTANT float kMaxSpread = 4.0f;
 // and rounding must not decide.
 BINOSPLAT_CONSTANT float kInFrontRatio = 1.01f;
 
-// contribute sums in fixed point, so that the order of threads does not matter: steps of 2^-20. What a pixel adds is at most
-// kMaxPixelError, so that a tile's sum stays within 31 bits. A splat's sums, in this order; or two, of which the second
-// is w times the mean square over channels, times kSquareScale.
+// contribute sums in fixed point, so that the order of threads does not matter: steps of 2^-20. What a pixel
+// adds is at most kMaxPixelError, so that a tile's sum stays within 31 bits. A splat's sums, in this order;
+// or two, of which the second is w times the mean square over channels, times kSquareScale.
 BINOSPLAT_CONSTANT float kContributionSteps = 1048576.0f;
-BINOSPLAT_CONSTANT uint kSumWeight = 0;       // w
-BINOSPLAT_CONSTANT uint kSumMissing = 1;      // w times what the pixel lacks: three channels
-BINOSPLAT_CONSTANT uint kSumOpacityPull = 4;  // by how much the squared error falls with the logarithm of the opacity: w D . missing,
-BINOSPLAT_CONSTANT uint kSumOpacityHold = 5;  // w D . D, where D is how far the splat's colour is from what lies behind it
-BINOSPLAT_CONSTANT uint kSumSizePull = 6;     // and with that of its size: rho times the former,
-BINOSPLAT_CONSTANT uint kSumSizeHold = 7;     // and rho^2 times
+BINOSPLAT_CONSTANT uint kSumWeight = 0;   // w
+BINOSPLAT_CONSTANT uint kSumMissing = 1;  // w times what the pixel lacks: three channels
+// By how much the squared error falls with the logarithm of the opacity: w D . missing,
+BINOSPLAT_CONSTANT uint kSumOpacityPull = 4;
+// w D . D, where D is how far the splat's colour is from what lies behind it
+BINOSPLAT_CONSTANT uint kSumOpacityHold = 5;
+BINOSPLAT_CONSTANT uint kSumSizePull = 6;  // and with that of its size: rho times the former,
+BINOSPLAT_CONSTANT uint kSumSizeHold = 7;  // and rho^2 times
 BINOSPLAT_CONSTANT uint kErrorSums = 2, kContributionSums = 8;
 BINOSPLAT_CONSTANT float kSquareScale = 64.0f;  // mean squares up to 1/16 are told apart, in steps of 2^-26
 

@@ -60,23 +60,29 @@ struct ShownWindow {
 // The panel's content.
 struct PanelStatus {
     std::string scene;
-    bool compares = false;                                   // there is another one, to compare with
-    bool compares_next = false;                              // the next one that is chosen is to be compared with it
-    bool shows_other = false;                                // the other one stays in sight, without a button held
-    std::string state;                                       // why the headset shows nothing; empty: it shows something
-    bool has_scene = false;                                  // there is something to see
-    std::optional<double> loading;                           // share done, while a scene is loading
-    const FrameResult* frame = nullptr;                      // the last one; null before the first
-    std::vector<float> frame_ms;                             // wall-clock time from frame to frame, oldest first
-    std::string governor;                                    // what the governor does about the frame rate, and why
-    std::string message;                                     // the outcome of the last button
-    std::string files;                                       // the file task beside the frames; empty: none
-    bool can_reload_shaders = false;                         // there is a button for it
-    bool takes_depth = false;                                // there is a box for it
-    bool can_pass_through = false;                           // there is a box for it
-    std::vector<ToolChoice> tools;                           // the tools' choices for the wearer
-    std::array<const xr::ProfileBindings*, 2> held{};        // what the hands hold; null: unknown
-    std::vector<double> refresh_rates;                       // that the headset offers; if any, shown as a row
+    bool compares = false;  // there is another one, to compare with
+    // The next one that is chosen is to be compared with it.
+    bool compares_next = false;
+    // The other one stays in sight, without a button held.
+    bool shows_other = false;
+    // Why the headset shows nothing; empty: it shows something.
+    std::string state;
+    bool has_scene = false;              // there is something to see
+    std::optional<double> loading;       // share done, while a scene is loading
+    const FrameResult* frame = nullptr;  // the last one; null before the first
+    // wall-clock time from frame to frame, oldest first
+    std::vector<float> frame_ms;
+    // What the governor does about the frame rate, and why.
+    std::string governor;
+    std::string message;                               // the outcome of the last button
+    std::string files;                                 // the file task beside the frames; empty: none
+    bool can_reload_shaders = false;                   // there is a button for it
+    bool takes_depth = false;                          // there is a box for it
+    bool can_pass_through = false;                     // there is a box for it
+    std::vector<ToolChoice> tools;                     // the tools' choices for the wearer
+    std::array<const xr::ProfileBindings*, 2> held{};  // what the hands hold; null: unknown
+    // Rates that the headset offers; if there are any, they are shown as a row.
+    std::vector<double> refresh_rates;
     std::vector<std::pair<std::string, std::string>> facts;  // of the scene, see describeFacts
     ShownPlace place;
     ShownRate rate;

@@ -71,7 +71,8 @@ void ShownScene::meetOther(std::span<const Eye> eyes, const FrameSettings& frame
     const auto meet = [&](StereoFrame& other, std::span<const Eye> seen, const FrameSettings& settings) {
         const std::vector<Eye> there = seenFromResting(seen);
         other.makeRoom(there, settings);
-        for (int turn = 0; turn < 2; ++turn) { (void)other.renderAhead(there, settings); }  // each has memory of its own
+        // Each has memory of its own.
+        for (int turn = 0; turn < 2; ++turn) { (void)other.renderAhead(there, settings); }
     };
     meet(*other_.frame, eyes, frame);
     if (inset_eyes.empty()) { return; }

@@ -185,8 +185,10 @@ void ShownScene::rebuildKernels() {
 
 std::string ShownScene::goOnWithout(const std::string& why) {
     if (shown_.scene) { return why; }
-    const std::string instead = gone_first_.empty() ? options_.scene : gone_first_;  // which another one had displaced
-    if (asked_ == instead) { throw; }                                                // nothing to show instead
+    // Another scene may have displaced it.
+    const std::string instead = gone_first_.empty() ? options_.scene : gone_first_;
+    // There is nothing to show instead.
+    if (asked_ == instead) { throw; }
     load(instead);
     return why;
 }

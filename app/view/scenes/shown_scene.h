@@ -26,8 +26,8 @@ public:
     [[nodiscard]] LoadedScene* get() const { return shown_.scene.get(); }
     // The one that frames draw: the same, or the other one of a comparison, see draw().
     [[nodiscard]] LoadedScene* drawn() const { return drawing().scene.get(); }
-    // The frame of the scene that is drawn, once there is one; and another one, made at the first call, for the insets of a headset that
-    // has them. Throws Error if the device lacks the memory.
+    // The frame of the scene that is drawn, once there is one; and another one, made at the first call, for
+    // the insets of a headset that has them. Throws Error if the device lacks the memory.
     [[nodiscard]] StereoFrame& frame() const { return *drawing().frame; }
     [[nodiscard]] StereoFrame& insets();
     void dropInsets() { shown_.insets.reset(), other_.insets.reset(); }
@@ -37,7 +37,8 @@ public:
     }
     // Makes their kernels anew, see StereoFrame.
     void rebuildKernels();
-    // The scene's name or, until it is loaded, that of the requested one; with the other one's, if there is one.
+    // The scene's name or, until it is loaded, that of the requested one; with the other one's, if there is
+    // one.
     [[nodiscard]] const std::string& name() const { return shown_.scene ? shown_.scene->name : asked_; }
     [[nodiscard]] std::string names() const;
     // The share done of the next scene or, if none is loading, of the visible part of a streamed one; empty
@@ -63,10 +64,11 @@ public:
     // `settings`, with the method replaced by one that can be drawn until its kernels are ready.
     [[nodiscard]] ViewSettings drawable(ViewSettings settings) const;
 
-    // Begins to load another scene, and then `compared`, if given, to compare with it; the current one stays until that is loaded. If
-    // the next scene is to be compared with the current one, it does that instead.
+    // Begins to load another scene, and then `compared`, if given, to compare with it; the current one stays
+    // until that is loaded. If the next scene is to be compared with the current one, it does that instead.
     void begin(const std::string& scene, const std::string& compared = {});
-    // The same for the scene `step` further on in the folder of the last requested one, once `files` has found it.
+    // The same for the scene `step` further on in the folder of the last requested one, once `files` has
+    // found it.
     void beginBeside(int step, FileWorker& files);
     // Waits for the next scene, shows it (or, where it lacks memory beside the one shown, has that one go and
     // begins again: then there is none for a while) and places the wearer: where they left it, where `state`
@@ -74,30 +76,37 @@ public:
     // empty; throws it if the options' scene cannot be loaded and there is no other to stay with.
     [[nodiscard]] std::string take(ViewState& state);
 
-    // A scene of the same place that the shown one is compared with; null: none. It goes when another scene is shown.
+    // A scene of the same place that the shown one is compared with; null: none. It goes when another scene
+    // is shown.
     [[nodiscard]] LoadedScene* other() const { return other_.scene.get(); }
     [[nodiscard]] StereoFrame& otherFrame() const { return *other_.frame; }
-    // Of the shown scene's eyes and placements, in the coordinates of the other one: both count from origins of their own.
+    // Of the shown scene's eyes and placements, in the coordinates of the other one: both count from origins
+    // of their own.
     [[nodiscard]] glm::dvec3 otherFromShown() const { return shown_.scene->origin - other_.scene->origin; }
-    // Ends the comparison or, if there is none, has the next scene that is begun compared with this one, or no more. Says so in a line.
+    // Ends the comparison or, if there is none, has the next scene that is begun compared with this one, or
+    // no more. Says so in a line.
     [[nodiscard]] std::string toggleComparison();
     [[nodiscard]] bool comparesNext() const { return compares_next_; }
     // Waits for the other scene. Returns what went wrong, and then there is no comparison, or empty.
     [[nodiscard]] std::string takeOther();
     // The other one cannot be drawn after all, and goes. Returns why, in a line.
     [[nodiscard]] std::string goOnAlone(const Error& error);
-    // Before frames of it are shown: makes what such frames take, and draws two, so that showing it needs no wait. Does nothing if there is
-    // no other scene, or if frames are as they were. The eyes are those of the shown one. Throws Error if the device lacks the memory.
+    // Before frames of it are shown: makes what such frames take, and draws two, so that showing it needs no
+    // wait. Does nothing if there is no other scene, or if frames are as they were. The eyes are those of the
+    // shown one. Throws Error if the device lacks the memory.
     void meetOther(std::span<const Eye> eyes, const FrameSettings& frame, std::span<const Eye> inset_eyes, const FrameSettings& inset);
-    // From now on frames draw the other scene, if there is one, or the shown one again. No frame has a history across such a cut.
+    // From now on frames draw the other scene, if there is one, or the shown one again. No frame has a
+    // history across such a cut.
     void draw(bool other);
     [[nodiscard]] bool drawsOther() const { return draws_other_; }
     // As the drawn scene counts.
     [[nodiscard]] Similarity drawnFrom(Similarity scene_from_room) const;
     [[nodiscard]] std::vector<Eye> seenFromDrawn(std::vector<Eye> eyes) const;
-    // Before a frame of these eyes of the drawn scene: both request what they need, and both move on. Never waits.
+    // Before a frame of these eyes of the drawn scene: both request what they need, and both move on. Never
+    // waits.
     void follow(std::span<const Eye> eyes, double step_seconds);
-    // In each frame: the scene that is not drawn waits for its own frame before the last, as the drawn one does.
+    // In each frame: the scene that is not drawn waits for its own frame before the last, as the drawn one
+    // does.
     void passOver();
 
 private:
@@ -106,7 +115,8 @@ private:
         std::unique_ptr<LoadedScene> scene;
         std::unique_ptr<StereoFrame> frame, insets;
         std::optional<FramesAhead> ready;  // the frames that there are kernels for
-        glm::uvec3 met{0};                 // what it has drawn frames for: their size, and of how many tiles it is known whether they show
+        // What it has drawn frames for: their size, and of how many tiles it is known whether they show.
+        glm::uvec3 met{0};
     };
     [[nodiscard]] const Held& drawing() const { return draws_other_ ? other_ : shown_; }
     [[nodiscard]] Held& drawing() { return draws_other_ ? other_ : shown_; }

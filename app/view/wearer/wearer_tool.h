@@ -31,9 +31,11 @@ struct WearerNow {
     Pose room_from_head;
     std::optional<double> floor_m;  // the floor's y in the room, if the runtime knows
     double step_seconds = 0.0;
-    std::array<PathSeen, 2> paths{};          // of the hands' arcs a moment ago, and how they met the scene
-    std::vector<glm::dvec3> ground_scene{};   // what was seen a moment ago where the ground may be, in the scene
-    std::optional<SceneFloor> scene_floor{};  // if it is known; tools before may have moved the room in this frame
+    std::array<PathSeen, 2> paths{};  // of the hands' arcs a moment ago, and how they met the scene
+    // What was seen a moment ago where the ground may be, in the scene.
+    std::vector<glm::dvec3> ground_scene{};
+    // If it is known; tools before may have moved the room in this frame.
+    std::optional<SceneFloor> scene_floor{};
 };
 
 // A widget of a tool: a choice of two after `words`, or a check box if there are no names.

@@ -1,4 +1,5 @@
-// Facts about two scenes of one place: a held button shows the other one in a headset; a curtain and a held key do in a window.
+// Facts about two scenes of one place: a held button shows the other one in a headset; a curtain and a held
+// key do in a window.
 #include "tests/app/view/view_acts.h"
 
 SUITE(view_compare) {

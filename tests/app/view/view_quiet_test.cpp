@@ -1,4 +1,5 @@
-// Facts about what frames do that may wait, as two layers count it (tests/faults/waits.h): those of a viewer that runs do nothing.
+// Facts about what frames do that may wait, as two layers count it (tests/faults/waits.h): those of a viewer
+// that runs do nothing.
 #include "tests/app/view/view_acts.h"
 
 SUITE(view_quiet) {
@@ -103,7 +104,8 @@ TEST_CASE("nor does one while pictures are taken, a message appears, and the wea
         const std::string scene = wallWithViewpoints(work);
         Acts acts("rate 45\nsize 64 64\nframes none\n");
         acts.wait(1.0).click(placeOf("Picture")).click(placeOf("Picture")).press("left y").move("controller right", kRightDown);
-        for (int round = 0; round < 3; ++round) { acts.press("right thumbstick").wait(0.2); }  // from one viewpoint to the next
+        // From one viewpoint to the next.
+        for (int round = 0; round < 3; ++round) { acts.press("right thumbstick").wait(0.2); }
         for (const double aside : {1.0, -1.0}) { acts.push("right thumbstick", {aside, 0.0}, 0.1).wait(0.2); }
         acts.press("left y").click(placeOf("Picture")).wait(0.2);
         const ViewRun run = runView(work, "jumps", acts.script(), scene + " --load-first --hide-hands --mode " + mode, kWatched);

@@ -276,7 +276,8 @@ TEST_CASE_FIXTURE(Shown,
     CHECK(&scenes.frame() == &scenes.otherFrame());
     CHECK(glm::length(scenes.drawnFrom(place).position + to - (place.position + from)) < 1e-6);
     CHECK(scenes.drawnFrom(place).scale == place.scale);
-    // The next one that is asked for is compared, not shown; that it cannot be read leaves the first one alone.
+    // The next one that is asked for is compared, not shown; that it cannot be read leaves the first one
+    // alone.
     CHECK(scenes.toggleComparison().find("no longer compared") != std::string::npos);
     CHECK(scenes.drawn() == scenes.get());
     CHECK(scenes.toggleComparison().find("to compare with builtin:step-edge") != std::string::npos);
