@@ -127,7 +127,7 @@ std::vector<PathFrame> renderPath(StereoFrame& frame, LiveScene* live, const Fra
                                   double units_per_metre, const HeadPath& path, OutputFiles& files) {
     FrameSettings settings = path_settings;
     settings.units_per_metre = units_per_metre;
-    settings.keep_past = true;
+    settings.keep_history = true;
     const bool stay = kind == Axes::kStay, mono = settings.mode == Mode::kMono;
     std::vector<PathFrame> frames;
     StayingAxes axes(glm::radians(kAxesMarginDegrees));

@@ -30,7 +30,7 @@ constexpr std::string_view nameOf(Mode mode) { return kModeNames[static_cast<std
 constexpr bool reprojects(Mode mode) { return mode == Mode::kReproject || mode == Mode::kPaper || mode == Mode::kPredicted; }
 // True if frames are made from previous ones. A frame without a following one is as in kPredicted or, for
 // kAlternate, as in kShared.
-constexpr bool hasPast(Mode mode) { return mode == Mode::kAlternate || mode == Mode::kTemporal; }
+constexpr bool hasHistory(Mode mode) { return mode == Mode::kAlternate || mode == Mode::kTemporal; }
 // True if each eye is rendered in full.
 constexpr bool rendersBothInFull(Mode mode) { return mode == Mode::kTwoPass || mode == Mode::kShared; }
 
@@ -42,7 +42,7 @@ enum class TileChoice {
     kPredicted,  // cheap ones, and those with the greatest expected error for their cost
     // Tiles of both eyes together with the greatest expected error for their cost and for each frame that
     // they have waited.
-    kPast,
+    kHistory,
 };
 
 // Of a frame that keeps no history.

@@ -155,7 +155,7 @@ bool needSame(const BenchMethod& one, const BenchMethod& other) {
     const StereoOptions &a = one.stereo, &b = other.stereo;
     if (one.resolution != other.resolution) { return false; }
     if (a.mode != b.mode || a.half_periphery != b.half_periphery) { return false; }
-    if (a.mode == Mode::kPredicted || hasPast(a.mode) || hasPast(b.mode)) { return a == b; }
+    if (a.mode == Mode::kPredicted || hasHistory(a.mode) || hasHistory(b.mode)) { return a == b; }
     return !reprojects(a.mode) || (a.warp.center_rois == b.warp.center_rois &&
                                    (a.warp.depth_choice == gpu::kDepthInverse) == (b.warp.depth_choice == gpu::kDepthInverse));
 }
@@ -169,7 +169,7 @@ StereoFrame& MethodFrames::frameFor(const BenchMethod& method) {
 }
 
 MethodFrames::Rendered MethodFrames::render(const Cameras& full_cameras, const CameraOptions& camera, const BenchMethod& method,
-                                            bool compared, bool keep_past, const Cameras* views,
+                                            bool compared, bool keep_history, const Cameras* views,
                                             const std::optional<GovernedSettings>& chosen) {
     stopIfInterrupted();
     StereoOptions stereo = method.stereo;
@@ -179,7 +179,7 @@ MethodFrames::Rendered MethodFrames::render(const Cameras& full_cameras, const C
     settings.near = cameras.near;
     settings.gazes = gazesOf(cameras, stereo);
     settings.keep_classes = compared;
-    settings.keep_past = keep_past;
+    settings.keep_history = keep_history;
     if (chosen) { settings.measured_part = frames_governed_++ % gpu::kMeasuredParts; }
     settings.half_floats = !compared;  // as in the viewer
     // It is not read here, so a mode only pays for it if it needs it itself.

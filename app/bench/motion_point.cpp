@@ -53,7 +53,7 @@ double meanChange(const Image& a, const Image& b) {
 // Empty unless the method bounds the errors of tiles that it keeps.
 std::optional<BoundedTiles> boundedTilesOf(const VisibleErrors& visible, StereoFrame& frame, const BenchMethod& method) {
     const double bound_db = method.stereo.warp.error_bound_db;
-    if (!hasPast(method.stereo.mode) || !(bound_db > 0.0) || method.resolution < 1.0) { return std::nullopt; }
+    if (!hasHistory(method.stereo.mode) || !(bound_db > 0.0) || method.resolution < 1.0) { return std::nullopt; }
     const std::span<const float> squares(visible.tile_squares);
     const std::size_t of_one = squares.size() / 2;
     BoundedTiles both;
@@ -112,9 +112,9 @@ MotionPoint::Posed MotionPoint::posed(const Cameras& cameras) {
     return pose;
 }
 
-MethodFrames::Rendered MotionPoint::render(const Posed& pose, const BenchMethod& method, bool keep_past,
+MethodFrames::Rendered MotionPoint::render(const Posed& pose, const BenchMethod& method, bool keep_history,
                                            const std::optional<GovernedSettings>& chosen) {
-    return frames_.render(pose.pictures, camera_, method, false, keep_past, axes_ ? &pose.views : nullptr, chosen);
+    return frames_.render(pose.pictures, camera_, method, false, keep_history, axes_ ? &pose.views : nullptr, chosen);
 }
 
 Image MotionPoint::show(const Posed& pose, const MethodFrames::Rendered& rendered, int eye) const {
@@ -156,7 +156,7 @@ std::vector<FrameResult> MotionPoint::time(const Cameras& cameras) {
 void MotionPoint::pass(const Cameras& cameras) {
     const Posed pose = posed(cameras);
     for (MethodHistory& sequence : sequences_) {
-        if (hasPast(sequence.method.stereo.mode)) { render(pose, sequence); }
+        if (hasHistory(sequence.method.stereo.mode)) { render(pose, sequence); }
     }
 }
 

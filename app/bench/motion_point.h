@@ -59,7 +59,7 @@ private:
     Posed posed(const Cameras& cameras);
     // A frame of a method, with what its governor chooses.
     MethodFrames::Rendered render(const Posed& pose, MethodHistory& sequence);
-    MethodFrames::Rendered render(const Posed& pose, const BenchMethod& method, bool keep_past,
+    MethodFrames::Rendered render(const Posed& pose, const BenchMethod& method, bool keep_history,
                                   const std::optional<GovernedSettings>& chosen = {});
     // As a wearer sees it.
     [[nodiscard]] Image show(const Posed& pose, const MethodFrames::Rendered& rendered, int eye) const;

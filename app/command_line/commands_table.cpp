@@ -62,7 +62,7 @@ RunOptions readRun(Settings& line, const std::set<std::string>& foreign, const R
 }
 
 // Defaults for consecutive frames.
-RunOptions withPast() {
+RunOptions withHistory() {
     RunOptions standard;
     standard.stereo.mode = Mode::kTemporal;
     return standard;
@@ -93,7 +93,7 @@ Options makeRender(const Settings& given) {
     Settings line = given;
     RenderOptions render;
     render.scene = wordOf(line, "SCENE");
-    render.run = readRun(line, {"view"}, line.contains("path") ? withPast() : RunOptions());
+    render.run = readRun(line, {"view"}, line.contains("path") ? withHistory() : RunOptions());
     render = readRows(renderRows(), line, render);
     if (render.projection != Projection::kFlat) { settlePanorama(render, line); }
     const bool both_eyes = render.run.stereo.mode != Mode::kMono, in_one = render.video || render.projection == Projection::kVr180;
@@ -177,7 +177,7 @@ Options makeView(const Settings& given) {
         throw Error(ExitCode::kUsage, fmt::format("--desktop and --{} contradict each other", other));
     }
     if (line.contains("out") && !view.simulate) { throw Error(ExitCode::kUsage, "--out is given without --simulate"); }
-    RunOptions standard = withPast();
+    RunOptions standard = withHistory();
     standard.stereo.half_periphery = true;
     standard.stereo.axes = Axes::kStay;
     // Simulated runs are the same everywhere.

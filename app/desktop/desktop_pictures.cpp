@@ -31,7 +31,7 @@ void MotionScale::measure(double scale, double gpu_ms) {
 
 DesktopPictures::DesktopPictures(const Context& context) : context_(context), presenter_(context, kPresented) { presenter_.makeKernels(); }
 
-void DesktopPictures::makeRoom(glm::uvec2 size_px, std::size_t eyes) {
+void DesktopPictures::reserve(glm::uvec2 size_px, std::size_t eyes) {
     const bool fits = size_px.x <= room_px_.x && size_px.y <= room_px_.y;
     if (fits && images_.at(eyes - 1)) { return; }
     {
@@ -52,9 +52,9 @@ void DesktopPictures::makeRoom(glm::uvec2 size_px, std::size_t eyes) {
 void DesktopPictures::render(StereoFrame& frame, const std::vector<Eye>& eyes, const FrameSettings& settings, const Look& look,
                              bool waits) {
     const glm::uvec2 size_px = eyes.front().size_px;
-    makeRoom(size_px, eyes.size());
-    frame.makeRoom(eyes, settings);
-    presenter_.makeRoom(size_px, false);
+    reserve(size_px, eyes.size());
+    frame.reserve(eyes, settings);
+    presenter_.reserve(size_px, false);
     const auto present = [&](Commands& commands) {
         for (std::size_t e = 0; e < eyes.size(); ++e) {
             const vk::Image image = *images_[e]->image;

@@ -49,7 +49,7 @@ public:
     void forget() { eyes_.clear(), last_ = {}; }
 
 private:
-    void makeRoom(glm::uvec2 size_px, std::size_t eyes);
+    void reserve(glm::uvec2 size_px, std::size_t eyes);
 
     const Context& context_;
     Presenter presenter_;

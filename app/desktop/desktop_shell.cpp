@@ -174,7 +174,7 @@ FrameSettings DesktopShell::frameSettingsNow(bool at_rest) const {
     frame.half_floats = true;
     frame.keep_both_depths = true;
     frame.keep_classes = settings.tint;
-    frame.keep_past = !at_rest;
+    frame.keep_history = !at_rest;
     frame.times_passes = settings.page == PanelPage::kMethod;
     if (settings.backdrop != Backdrop::kAsSet) { frame.background = colourOf(settings.backdrop); }
     return frame;

@@ -13,7 +13,7 @@ FrameSettings settingsOf(const Sequence& sequence, const Stage& stage) {
     FrameSettings settings;
     settings.mode = sequence.mode;
     settings.near = stage.near;
-    settings.keep_past = true;
+    settings.keep_history = true;
     settings.stereo.budget = sequence.budget;
     settings.half_floats = sequence.half_floats;
     return settings;

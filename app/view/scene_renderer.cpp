@@ -151,7 +151,7 @@ FrameSettings SceneRenderer::settingsOfFrame(ConnectedHeadset& headset, const Vi
     frame.times_passes = settings.page == PanelPage::kMethod;
     frame.mark = governed_count_;
     frame.measured_part = measured_part_ = (measured_part_ + 1) % gpu::kMeasuredParts;
-    frame.keep_past = true;
+    frame.keep_history = true;
     frame.waits_after_jump = false;
     frame.background = backgroundOf(settings, frame.background);
     // If both eyes share a picture, it is seen through either lens.
@@ -183,15 +183,15 @@ void SceneRenderer::prepare(ConnectedHeadset& headset, ShownScene& shown, const 
     all.insert(all.end(), inset_eyes_.begin(), inset_eyes_.end());
     shown.follow(all, headset.session.stepSeconds());
     try {
-        shown.frame().makeRoom(eyes_, frame_);
+        shown.frame().reserve(eyes_, frame_);
         glm::uvec2 largest_px = headset.images->partPx();
         if (headset.inset) {
-            shown.insets().makeRoom(inset_eyes_, inset_frame_);
+            shown.insets().reserve(inset_eyes_, inset_frame_);
             largest_px = glm::max(largest_px, headset.inset_images->partPx());
         } else {
             shown.dropInsets();
         }
-        presenter_.makeRoom(largest_px, headset.images->takesDepth());
+        presenter_.reserve(largest_px, headset.images->takesDepth());
     } catch (const Error&) {
         last_ = {};
         eyes_.clear();

@@ -32,9 +32,9 @@ void FrameRecorder::describeFrame(Commands& commands, const FramePlan& plan) con
 void FrameRecorder::describe(const FramePlan& plan, int index, TargetState& state) const {
     const TargetPlan& target = plan.targets[static_cast<std::size_t>(index)];
     const Picture& picture = room.picture(target.picture);
-    if (target.past) {
-        state.past = pastViewOf(target.eye, target.past->eye, plan.near, glm::vec3(plan.background));
-        state.past_blocks = {.per_group = {.x = 0, .y = 1, .z = 1}, .count = 0};
+    if (target.history) {
+        state.history = historyViewOf(target.eye, target.history->eye, plan.near, glm::vec3(plan.background));
+        state.history_blocks = {.per_group = {.x = 0, .y = 1, .z = 1}, .count = 0};
         state.warp =
             warpViewOf({}, target.eye.size_px, 0, {.choice = target.choice, .budget = plan.budget, .error_bound_db = plan.error_bound_db});
     }
@@ -56,8 +56,8 @@ void FrameRecorder::describe(const FramePlan& plan, int index, TargetState& stat
         state.depth_offset = target.mesh_depths->depth_offset;
     }
     if (target.kept.moments) { state.moments = room.moments().address<gpu::vec2>(); }
-    if (target.kept.past) {
-        state.past_tiles = picture.tiles.address<gpu::PastTile>();
+    if (target.kept.history) {
+        state.history_tiles = picture.tiles.address<gpu::HistoryTile>();
         state.moving = picture.words.address<gpu::uint>();
         state.row_words = target.eye.size_px.x;
     }
@@ -71,8 +71,8 @@ void FrameRecorder::describe(const FramePlan& plan, int index, TargetState& stat
     }
     if (plan.shares() > 1 && index > 0) { state.first_tile = tileCountOf(plan.targets[0]); }
     state.measured = plan.measured_part;
-    state.is_made = target.past ? 1 : 0;
-    state.area = static_cast<float>(target.past ? 1.0 / (target.eye.own_pixel_px * target.eye.own_pixel_px) : 1.0);
+    state.is_made = target.history ? 1 : 0;
+    state.area = static_cast<float>(target.history ? 1.0 / (target.eye.own_pixel_px * target.eye.own_pixel_px) : 1.0);
     state.counters.may_be_coarse = target.coarse ? 1 : 0;
     state.counters.gaze = gazeOf(target);
 }

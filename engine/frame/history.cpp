@@ -16,7 +16,7 @@ constexpr double kJumpDegrees = 6.0;
 constexpr double kJumpZoom = 0.1;
 // From farther away a history is worse than the other eye would be, which is 6 cm away: docs/tried.md, *Reuse
 // over time*. The share is of the distance between the eyes, however large the scene is.
-constexpr double kFarthestPastMetres = 0.05, kFarthestPastShare = 0.8;
+constexpr double kFarthestHistoryMetres = 0.05, kFarthestHistoryShare = 0.8;
 // Beyond this a history is too coarse, or much finer than needed.
 constexpr double kMostZoom = 2.0;
 
@@ -52,15 +52,15 @@ bool jumps(std::span<const Eye> before, std::span<const Eye> eyes, double units_
     return false;
 }
 
-double farthestPast(std::span<const Eye> eyes, double units_per_metre) {
+double farthestHistory(std::span<const Eye> eyes, double units_per_metre) {
     const double between = glm::distance(eyes.front().world_from_camera.position, eyes.back().world_from_camera.position);
-    return std::max(kFarthestPastMetres * units_per_metre, kFarthestPastShare * between);
+    return std::max(kFarthestHistoryMetres * units_per_metre, kFarthestHistoryShare * between);
 }
 
-bool canComeFrom(const Eye& past, const Eye& eye, double farthest) {
-    const double zoom_x = eye.intrinsics.fx / past.intrinsics.fx, zoom_y = eye.intrinsics.fy / past.intrinsics.fy;
+bool canComeFrom(const Eye& history, const Eye& eye, double farthest) {
+    const double zoom_x = eye.intrinsics.fx / history.intrinsics.fx, zoom_y = eye.intrinsics.fy / history.intrinsics.fy;
     const bool zooms = std::min(zoom_x, zoom_y) < 1.0 / kMostZoom || std::max(zoom_x, zoom_y) > kMostZoom;
-    return !zooms && !moves(past.world_from_camera, eye.world_from_camera, farthest);
+    return !zooms && !moves(history.world_from_camera, eye.world_from_camera, farthest);
 }
 
 MovingPays::Asked MovingPays::askedBy(std::span<const Eye> eyes, const FrameSettings& settings) {

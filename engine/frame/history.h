@@ -22,10 +22,10 @@ FrameShape shapeOf(std::span<const Eye> eyes, const FrameSettings& settings);
 // True if lists for these eyes may differ much from those for `before`.
 bool jumps(std::span<const Eye> before, std::span<const Eye> eyes, double units_per_metre);
 // The farthest that a history may lie from these eyes, in scene units.
-double farthestPast(std::span<const Eye> eyes, double units_per_metre);
-// True if what `past` saw is of use for `eye`: their places and axes are close. Sizes may differ, and angles
+double farthestHistory(std::span<const Eye> eyes, double units_per_metre);
+// True if what `history` saw is of use for `eye`: their places and axes are close. Sizes may differ, and angles
 // by less than a factor of two.
-bool canComeFrom(const Eye& past, const Eye& eye, double farthest);
+bool canComeFrom(const Eye& history, const Eye& eye, double farthest);
 
 // Whether warping pays: `predicted` does without as long as it did not pay in the last known frame with the
 // same settings.

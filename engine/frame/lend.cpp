@@ -43,7 +43,7 @@ void StereoFrame::takeBackUnused(std::uint64_t number) {
         idle_.push_back(std::move(found->second));
         lent_.erase(found);
     }
-    pasts_ = {};  // part of what it should have left is missing
+    histories_ = {};  // part of what it should have left is missing
     context_.freedBuffers().endFrame(number);
 }
 

@@ -77,7 +77,7 @@ Image StereoFrame::readInverseDepthMoments() { return {picture(plan_.firstTarget
 const WarpBuffers* StereoFrame::chosenTiles(int eye) const {
     if (static_cast<std::size_t>(eye) >= plan_.targets.size()) { return nullptr; }
     const TargetPlan& target = plan_.targets[static_cast<std::size_t>(eye)];
-    return target.warp || target.past ? &room_.warp(eye) : nullptr;
+    return target.warp || target.history ? &room_.warp(eye) : nullptr;
 }
 
 std::vector<std::uint32_t> StereoFrame::readTileKinds(int eye) {
@@ -90,9 +90,9 @@ std::vector<std::uint32_t> StereoFrame::readTileKinds() {
     const std::optional<int> warped = plan_.warpedTarget();
     if (warped) { return readTileKinds(*warped); }
     // Or that of the single eye that is made from the other.
-    const bool of_left = !plan_.targets[kLeft].past.has_value();
-    return plan_.eyes == 2 && of_left == plan_.targets[kRight].past.has_value() ? readTileKinds(of_left ? kRight : kLeft)
-                                                                                : std::vector<std::uint32_t>{};
+    const bool of_left = !plan_.targets[kLeft].history.has_value();
+    return plan_.eyes == 2 && of_left == plan_.targets[kRight].history.has_value() ? readTileKinds(of_left ? kRight : kLeft)
+                                                                                   : std::vector<std::uint32_t>{};
 }
 
 std::vector<std::uint8_t> StereoFrame::readPixelClasses() {

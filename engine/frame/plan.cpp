@@ -23,22 +23,24 @@ void keepForWarp(Kept& source, const Warp& warp) {
 }  // namespace
 
 // A picture that is neither a history nor the spare one.
-int fourthPicture(const Pasts& pasts) {
+int fourthPicture(const Histories& histories) {
     int picture = 0;
-    while (picture == pasts.spare || picture == pasts.of_eyes[0]->picture || picture == pasts.of_eyes[1]->picture) { ++picture; }
+    while (picture == histories.spare || picture == histories.of_eyes[0]->picture || picture == histories.of_eyes[1]->picture) {
+        ++picture;
+    }
     assert(picture < static_cast<int>(kFramePictures));
     return picture;
 }
 
-// `target` is made from `past`, and some of its tiles are chosen to be rendered.
-void makeFromPast(TargetPlan& target, const Past& past, const FrameSettings& settings, std::size_t eye) {
-    target.past = past;
-    target.choice = TileChoice::kPast;
+// `target` is made from `history`, and some of its tiles are chosen to be rendered.
+void makeFromHistory(TargetPlan& target, const History& history, const FrameSettings& settings, std::size_t eye) {
+    target.history = history;
+    target.choice = TileChoice::kHistory;
     target.gaze = settings.gazes[eye];
 }
 
 bool hasCoarseTiles(const FrameSettings& settings, std::size_t eyes) {
-    const bool may = settings.mode == Mode::kMono || settings.mode == Mode::kPredicted || hasPast(settings.mode);
+    const bool may = settings.mode == Mode::kMono || settings.mode == Mode::kPredicted || hasHistory(settings.mode);
     const auto gazes = std::span(settings.gazes).first(eyes);
     return settings.half_periphery && may && !settings.keep_moments && !settings.mesh_depths[0] &&
            std::ranges::all_of(gazes, [](const auto& gaze) { return gaze.has_value(); });
@@ -65,20 +67,21 @@ void renderChosen(FramePlan& plan, const std::array<int, 2>& order, ListPlan lis
 }
 
 // Both eyes from their histories; the tiles that are rendered again are chosen before anything is culled.
-void planTemporal(FramePlan& plan, const FrameSettings& settings, std::span<const Eye> eyes, const Pasts& pasts, const ListPlan& list) {
+void planTemporal(FramePlan& plan, const FrameSettings& settings, std::span<const Eye> eyes, const Histories& histories,
+                  const ListPlan& list) {
     const std::array order{plan.dominant, 1 - plan.dominant};
-    int picture = pasts.spare;
+    int picture = histories.spare;
     for (const int e : order) {
         const auto eye = static_cast<std::size_t>(e);
         TargetPlan& target = plan.targets[eye];
-        makeFromPast(target, *pasts.of_eyes[eye], settings, eye);
+        makeFromHistory(target, *histories.of_eyes[eye], settings, eye);
         target.picture = picture;
         // Free once this target is made; another size needs memory of its own, since this is still being
         // read.
-        const bool fits = target.past->eye.size_px == eyes[static_cast<std::size_t>(order[1])].size_px;
-        picture = fits ? target.past->picture : fourthPicture(pasts);
+        const bool fits = target.history->eye.size_px == eyes[static_cast<std::size_t>(order[1])].size_px;
+        picture = fits ? target.history->picture : fourthPicture(histories);
     }
-    for (const int e : order) { plan.steps.push_back({Step::Kind::kPast, e}); }
+    for (const int e : order) { plan.steps.push_back({Step::Kind::kHistory, e}); }
     plan.budget = settings.stereo.budget;
     plan.error_bound_db = settings.stereo.error_bound_db;
     plan.measured_part = settings.measured_part;
@@ -87,17 +90,17 @@ void planTemporal(FramePlan& plan, const FrameSettings& settings, std::span<cons
 }
 
 // One eye in full, taking turns, and the other from its history.
-void planAlternate(FramePlan& plan, const Pasts& pasts, const ListPlan& list) {
-    const int full = pasts.turn, other = 1 - full;
+void planAlternate(FramePlan& plan, const Histories& histories, const ListPlan& list) {
+    const int full = histories.turn, other = 1 - full;
     TargetPlan &rendered = plan.targets[full], &warped = plan.targets[other];
-    rendered.picture = pasts.of_eyes[static_cast<std::size_t>(full)]->picture;
-    warped.past = pasts.of_eyes[static_cast<std::size_t>(other)];
-    warped.picture = pasts.spare;
+    rendered.picture = histories.of_eyes[static_cast<std::size_t>(full)]->picture;
+    warped.history = histories.of_eyes[static_cast<std::size_t>(other)];
+    warped.picture = histories.spare;
     warped.choice = TileChoice::kNone;
-    warped.kept.past = false;
+    warped.kept.history = false;
     plan.makeList(list);
     plan.steps.push_back({Step::Kind::kRender, full});
-    plan.steps.push_back({Step::Kind::kPast, other});
+    plan.steps.push_back({Step::Kind::kHistory, other});
 }
 
 std::uint32_t countHidden(std::span<const std::uint8_t> hidden_tiles) {
@@ -126,15 +129,15 @@ std::optional<int> FramePlan::warpedTarget() const {
     return found == targets.end() ? std::nullopt : std::optional(static_cast<int>(found - targets.begin()));
 }
 
-Pasts pastsAfter(const FramePlan& plan, const Pasts& before) {
-    Pasts after = before;
+Histories historiesAfter(const FramePlan& plan, const Histories& before) {
+    Histories after = before;
     for (std::size_t e = 0; e < plan.eyes; ++e) {
         const TargetPlan& target = plan.targets[e];
-        if (target.kept.past) { after.of_eyes[e] = Past{target.eye, target.picture}; }
+        if (target.kept.history) { after.of_eyes[e] = History{target.eye, target.picture}; }
     }
     // A picture that was a history is free, once this frame has read it.
     const auto isFree = [&](int picture) {
-        return std::ranges::none_of(after.of_eyes, [&](const auto& past) { return past && past->picture == picture; });
+        return std::ranges::none_of(after.of_eyes, [&](const auto& history) { return history && history->picture == picture; });
     };
     if (plan.spare_picture) { after.spare = *plan.spare_picture; }
     for (std::size_t e = 0; e < before.of_eyes.size() && !isFree(after.spare); ++e) {
@@ -144,16 +147,17 @@ Pasts pastsAfter(const FramePlan& plan, const Pasts& before) {
     return after;
 }
 
-FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bool may_move, const Pasts& pasts) {
-    const bool keeps_past = hasPast(settings.mode) && settings.keep_past;
-    const bool has_past = keeps_past && pasts.of_eyes[0] && pasts.of_eyes[1];
+FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bool may_move, const Histories& histories) {
+    const bool keeps_history = hasHistory(settings.mode) && settings.keep_history;
+    const bool has_history = keeps_history && histories.of_eyes[0] && histories.of_eyes[1];
     // If no history is kept, `temporal` falls back to `predicted`. If there is none, as after a jump, both
     // eyes are exact, since later pictures are made from them. And if each eye is cheap to render, making one
     // from the other would save a tenth of the time for 15 to 30 dB.
-    const bool coarse = hasCoarseTiles(settings, eyes.size()), predicts = choiceOf(settings.mode) == TileChoice::kPredicted && !keeps_past;
-    const Mode mode = predicts                              ? coarse ? Mode::kShared : Mode::kPredicted
-                      : hasPast(settings.mode) && !has_past ? Mode::kShared
-                                                            : settings.mode;
+    const bool coarse = hasCoarseTiles(settings, eyes.size()),
+               predicts = choiceOf(settings.mode) == TileChoice::kPredicted && !keeps_history;
+    const Mode mode = predicts                                    ? coarse ? Mode::kShared : Mode::kPredicted
+                      : hasHistory(settings.mode) && !has_history ? Mode::kShared
+                                                                  : settings.mode;
     const bool one_eye = mode == Mode::kMono;
     assert(eyes.size() == (one_eye ? 1u : 2u));
     check(!reprojects(mode) || eyes[0].size_px == eyes[1].size_px,
@@ -178,15 +182,15 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
                                          .moments = is_first && settings.keep_moments,
                                          .half_floats = settings.half_floats,
                                          .cut = settings.mesh_depths[static_cast<std::size_t>(e)].has_value(),
-                                         .past = keeps_past},
+                                         .history = keeps_history},
                                 .mesh_depths = settings.mesh_depths[static_cast<std::size_t>(e)],
                                 .picture = e,
-                                .from_past_later = keeps_past && settings.mode == Mode::kTemporal,
+                                .from_history_later = keeps_history && settings.mode == Mode::kTemporal,
                                 .coarse = coarse});
         if (coarse) { plan.targets.back().gaze = settings.gazes[static_cast<std::size_t>(e)]; }
     }
-    plan.keeps_past = keeps_past;
-    if (keeps_past && !has_past) { plan.spare_picture = static_cast<int>(eyes.size()); }
+    plan.keeps_history = keeps_history;
+    if (keeps_history && !has_history) { plan.spare_picture = static_cast<int>(eyes.size()); }
     std::optional<gpu::Place> middle;
     if (settings.order == Order::kDistance) { middle = placeOf(middleOf(eyes)); }
     const auto listOf = [&](int e) {
@@ -196,19 +200,19 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
     const ListPlan both{.eyes = {.first = 0, .count = 2, .order_eye = first, .list = 0, .middle = middle}, .role = Role::kBoth};
 
     if (mode == Mode::kAlternate) {
-        const int full = pasts.turn;
+        const int full = histories.turn;
         planAlternate(
-            plan, pasts,
+            plan, histories,
             {.eyes = {.first = full, .count = 1, .order_eye = full, .list = full, .middle = middle}, .role = plan.targets[full].role});
         return plan;
     }
     const EyeRelation relation = relate(eyes[first], eyes[one_eye ? first : second]);
     plan.shares_order = !one_eye && (middle || relation.same_depths);
-    if (keeps_past && plan.shares_order && eyes[0].size_px == eyes[1].size_px) {
+    if (keeps_history && plan.shares_order && eyes[0].size_px == eyes[1].size_px) {
         plan.shares_ahead = settings.mode == Mode::kTemporal ? 2 : 1;
     }
     if (mode == Mode::kTemporal) {
-        planTemporal(plan, settings, eyes, pasts, both);
+        planTemporal(plan, settings, eyes, histories, both);
         return plan;
     }
 

@@ -36,14 +36,14 @@ struct Warp {
 };
 
 // The last picture of an eye, from which later ones are made.
-struct Past {
+struct History {
     Eye eye;
     int picture = 0;  // of the room's
 };
 // By eye; the room's picture to be made next, which no frame in flight reads; and the eye to be rendered in
 // full next (kAlternate).
-struct Pasts {
-    std::array<std::optional<Past>, 2> of_eyes = {};
+struct Histories {
+    std::array<std::optional<History>, 2> of_eyes = {};
     int spare = 2;
     int turn = 0;
 };
@@ -58,21 +58,21 @@ struct TargetPlan {
     std::optional<MeshDepths> mesh_depths = {};  // that cut through it
     TileChoice choice = TileChoice::kAll;        // of the tiles that are rendered
     std::optional<Warp> warp = {};
-    std::optional<Past> past = {};  // what it is made from instead: its eye's last picture
-    std::optional<Gaze> gaze = {};  // for the choice among what the history has left, and of coarse tiles
-    int picture = 0;                // which of the room's pictures it becomes
+    std::optional<History> history = {};  // what it is made from instead: its eye's last picture
+    std::optional<Gaze> gaze = {};        // for the choice among what the history has left, and of coarse tiles
+    int picture = 0;                      // which of the room's pictures it becomes
     bool keeps_classes = false;
-    bool from_past_later = false;  // frames after this one make it from a history: what they need is kept
-    bool coarse = false;           // tiles that the eye does not see sharply may be
+    bool from_history_later = false;  // frames after this one make it from a history: what they need is kept
+    bool coarse = false;              // tiles that the eye does not see sharply may be
 };
 
 struct Step {
     enum class Kind {
-        kList,    // makes FramePlan::lists[index]
-        kWarp,    // warps pixels into FramePlan::targets[index] and chooses its tiles
-        kPast,    // makes FramePlan::targets[index] from its history
-        kChoose,  // chooses the tiles of all targets that have one
-        kRender,  // renders the chosen tiles
+        kList,     // makes FramePlan::lists[index]
+        kWarp,     // warps pixels into FramePlan::targets[index] and chooses its tiles
+        kHistory,  // makes FramePlan::targets[index] from its history
+        kChoose,   // chooses the tiles of all targets that have one
+        kRender,   // renders the chosen tiles
         // Renders the chosen tiles of all targets at once; their list and pairs need capacity for each.
         kRenderAll,
     };
@@ -93,7 +93,7 @@ struct FramePlan {
     double error_bound_db = 0.0;                        // of that choice: StereoSettings
     std::uint32_t measured_part = gpu::kMeasuredParts;  // FrameSettings
     int dominant = 0;                                   // of the targets
-    bool keeps_past = false;                            // later frames are made from this one
+    bool keeps_history = false;                         // later frames are made from this one
     std::optional<int> spare_picture = {};              // the room's picture for the frame after this one
     // How many pictures that frame renders at the same time.
     int shares_ahead = 1;
@@ -110,7 +110,7 @@ struct FramePlan {
     // True if nothing is in the target's picture until its pairs are sorted. The frames after a history need
     // their lists in one piece.
     [[nodiscard]] bool isSortedInPicture(const TargetPlan& target) const {
-        return target.choice == TileChoice::kAll && !keeps_past && !target.coarse;
+        return target.choice == TileChoice::kAll && !keeps_history && !target.coarse;
     }
     // The first target that is made from another.
     [[nodiscard]] std::optional<int> warpedTarget() const;
@@ -121,10 +121,10 @@ struct FramePlan {
 [[nodiscard]] bool hasCoarseTiles(const FrameSettings& settings, std::size_t eyes);
 
 // The only place that knows what a mode does. Throws Error if eyes that are made from one another have
-// different sizes. `may_move`: warping paid in the frame before, or that is unknown. `pasts`: the histories
+// different sizes. `may_move`: warping paid in the frame before, or that is unknown. `histories`: the histories
 // that earlier frames have left; their pictures may have other sizes.
-FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bool may_move, const Pasts& pasts = {});
+FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bool may_move, const Histories& histories = {});
 // What such a frame leaves to the next one.
-Pasts pastsAfter(const FramePlan& plan, const Pasts& before);
+Histories historiesAfter(const FramePlan& plan, const Histories& before);
 
 }  // namespace binosplat

@@ -1,8 +1,8 @@
 // The steps of a plan as passes. A frame of `temporal` has these, if one order of the splats serves both eyes
 // (planTemporal in plan.cpp):
 //
-//   kPast       for each eye: what its last picture shows of the new one, and the error to expect of each
-//               tile (recordFromPast)
+//   kHistory       for each eye: what its last picture shows of the new one, and the error to expect of each
+//               tile (recordFromHistory)
 //   kChoose     the tiles of both that are rendered again (recordChoice)
 //   kList       the splats that touch these, front to back (recordCull, recordOrder)
 //   kRenderAll  the chosen tiles, and what the next frame is told of them (recordPictures)
@@ -48,8 +48,8 @@ void FrameRecorder::record(Commands& commands, const FramePlan& plan, bool times
             case Step::Kind::kWarp:
                 recordWarp(commands, plan, step.index);
                 break;
-            case Step::Kind::kPast:
-                recordFromPast(kernels, commands, pastOf(plan, step.index));
+            case Step::Kind::kHistory:
+                recordFromHistory(kernels, commands, historyOf(plan, step.index));
                 break;
             case Step::Kind::kChoose:
                 recordChoice(commands, plan);
@@ -87,13 +87,13 @@ void FrameRecorder::recordWarp(Commands& commands, const FramePlan& plan, int in
                            .target_gaze = warp.gaze.has_value()});
 }
 
-PastInputs FrameRecorder::pastOf(const FramePlan& plan, int index) const {
+HistoryInputs FrameRecorder::historyOf(const FramePlan& plan, int index) const {
     const TargetPlan& target = plan.targets[static_cast<std::size_t>(index)];
     return {.buffers = room.lists(),
             .warp = room.warp(index),
             .index = index,
             .role = target.role,
-            .source = room.picture(target.past->picture),
+            .source = room.picture(target.history->picture),
             .target = room.picture(target.picture),
             .shown = room.shown(index).mask(),
             .source_shown = room.shown(index).maskBefore(),
@@ -101,21 +101,21 @@ PastInputs FrameRecorder::pastOf(const FramePlan& plan, int index) const {
 }
 
 void FrameRecorder::recordChoice(Commands& commands, const FramePlan& plan) const {
-    std::vector<PastInputs> eyes;
+    std::vector<HistoryInputs> eyes;
     for (int t = 0; t < static_cast<int>(plan.targets.size()); ++t) {
-        if (plan.targets[static_cast<std::size_t>(t)].choice == TileChoice::kPast) { eyes.push_back(pastOf(plan, t)); }
+        if (plan.targets[static_cast<std::size_t>(t)].choice == TileChoice::kHistory) { eyes.push_back(historyOf(plan, t)); }
     }
     recordChanged(commands, plan, eyes);
     binosplat::recordChoice(kernels, commands, eyes, static_cast<gpu::uint>(plan.shares()));
 }
 
-void FrameRecorder::recordChanged(Commands& commands, const FramePlan& plan, std::span<const PastInputs> pictures) const {
+void FrameRecorder::recordChanged(Commands& commands, const FramePlan& plan, std::span<const HistoryInputs> pictures) const {
     if (!changes_known) { return; }
     const std::optional<std::span<const SceneChange>> changes = scene.changesSince(*changes_known);
     if (!changes || changes->empty()) { return; }
     std::vector<gpu::ChangedRect> rects;
     std::vector<std::size_t> begins;
-    for (const PastInputs& picture : pictures) {
+    for (const HistoryInputs& picture : pictures) {
         begins.push_back(rects.size());
         const auto its = rectsOf(*changes, plan.targets[static_cast<std::size_t>(picture.index)].eye, plan.near);
         rects.insert(rects.end(), its.begin(), its.end());

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "engine/baselines/warp_passes.h"
-#include "engine/frame/room.h"
-#include "engine/passes/past_passes.h"
+#include "engine/frame/capacity.h"
+#include "engine/passes/history_passes.h"
 
 namespace binosplat {
 
@@ -33,9 +33,9 @@ private:
     void describe(const FramePlan& plan, int index, TargetState& state) const;
     void recordWarp(Commands& commands, const FramePlan& plan, int index) const;
     void recordChoice(Commands& commands, const FramePlan& plan) const;
-    void recordChanged(Commands& commands, const FramePlan& plan, std::span<const PastInputs> pictures) const;
+    void recordChanged(Commands& commands, const FramePlan& plan, std::span<const HistoryInputs> pictures) const;
     [[nodiscard]] MovingWords wordsOf(const FramePlan& plan, int warped) const;
-    [[nodiscard]] PastInputs pastOf(const FramePlan& plan, int index) const;
+    [[nodiscard]] HistoryInputs historyOf(const FramePlan& plan, int index) const;
     [[nodiscard]] EyesOfList eyesOf(const ListPlan& list) const;
     // For `count` targets at once.
     void recordPictures(Commands& commands, const FramePlan& plan, int first, int count) const;

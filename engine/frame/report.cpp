@@ -53,14 +53,14 @@ void countWarp(const FrameFacts& frame, std::size_t index, FrameResult& result) 
 }
 
 // For both eyes together, since they share one budget.
-void countPast(const FrameFacts& frame, FrameResult& result) {
+void countHistory(const FrameFacts& frame, FrameResult& result) {
     WarpedCounters& counters = result.counters.warped.emplace();
     std::uint64_t shown = 0;
     WarpedCounters::Work work;
     double left = 0.0, expected = 0.0, found = 0.0, wider = 0.0;
     if (frame.plan.error_bound_db > 0.0) { counters.tiles_over_bound = 0; }
     for (std::size_t t = 0; t < frame.plan.targets.size(); ++t) {
-        if (!frame.plan.targets[t].past) { continue; }
+        if (!frame.plan.targets[t].history) { continue; }
         const TargetState& state = frame.state.targets[t];
         const WarpBuffers& buffers = frame.room.warp(static_cast<int>(t));
         counters.tiles_patched += state.chosen_tiles.count;
@@ -126,7 +126,7 @@ void explainLeftOut(const FrameFacts& frame, FrameResult& result) {
     };
     const FramePlan& plan = frame.plan;
     const bool moments = std::ranges::any_of(plan.targets, [](const TargetPlan& target) {
-        return target.kept.moments || target.kept.past ||
+        return target.kept.moments || target.kept.history ||
                (target.warp &&
                 (target.warp->settings.choice == TileChoice::kPredicted || target.warp->settings.depth_choice == gpu::kDepthInverse));
     });
@@ -145,7 +145,7 @@ void explainLeftOut(const FrameFacts& frame, FrameResult& result) {
         leaveOut(hidden > 0, fmt::format("{} of the {} tiles of the {} eye: its lens never shows them", hidden,
                                          std::uint64_t{tiles.x} * tiles.y, e == kLeft ? "left" : "right"));
     }
-    const bool two_full = two && plan.targets[0].coarse && !plan.targets[0].past && !plan.targets[1].past;
+    const bool two_full = two && plan.targets[0].coarse && !plan.targets[0].history && !plan.targets[1].history;
     leaveOut(two_full, "reprojection: both eyes are rendered, coarsely where they do not see sharply");
     for (std::size_t t = 0; t < plan.targets.size(); ++t) {
         if (plan.targets[t].warp) { explainWarp(frame, t, leaveOut); }
@@ -188,8 +188,8 @@ FrameResult reportFrame(const FrameFacts& frame, std::uint64_t mark) {
         if (target.warp) { countWarp(frame, t, result); }
         if (target.coarse) { countCoarse(state.counters, counters); }
     }
-    if (std::ranges::any_of(frame.plan.targets, [](const TargetPlan& target) { return target.past.has_value(); })) {
-        countPast(frame, result);
+    if (std::ranges::any_of(frame.plan.targets, [](const TargetPlan& target) { return target.history.has_value(); })) {
+        countHistory(frame, result);
     }
     result.sees_nothing = seesNothing(counters);
     explainLeftOut(frame, result);

@@ -1,7 +1,7 @@
 // A frame's report: its counters, and what it left out.
 #pragma once
 
-#include "engine/frame/room.h"
+#include "engine/frame/capacity.h"
 
 namespace binosplat {
 

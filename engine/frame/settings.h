@@ -59,8 +59,8 @@ struct FrameSettings {
     // unless the eyes would see the difference. Not if moments are kept.
     bool half_periphery = false;
     // kAlternate, kTemporal: more frames follow, and are made from this one; this one may be made from the
-    // one before, if that had keep_past, too.
-    bool keep_past = false;
+    // one before, if that had keep_history, too.
+    bool keep_history = false;
     // renderAhead: a frame after a jump of the eyes is waited for, so that it is whole even if its lists were
     // too short; otherwise it is not, and whoever shows it may hide that.
     bool waits_after_jump = true;

@@ -49,7 +49,7 @@ void StereoFrame::show(const GpuScene& scene) {
     room_.show(scene);
     scene_ = &scene;
     moving_pays_.forget();
-    pasts_ = {};
+    histories_ = {};
     changes_known_ = scene.changesRecorded();
     cut_short_ = done_again_ = 0;
 }
@@ -67,7 +67,7 @@ void StereoFrame::takeKernels(StereoFrame& from) {
 
 void StereoFrame::makeKernels(std::span<const Eye> eyes, const FrameSettings& settings) {
     finish();
-    pasts_ = {};
+    histories_ = {};
     prepare(eyes, settings);
     Commands& commands = flight().commands;
     // `predicted` may find that warping does not pay.
@@ -77,8 +77,8 @@ void StereoFrame::makeKernels(std::span<const Eye> eyes, const FrameSettings& se
     }
     recorder(true).record(commands, planFrame(settings, eyes, true));
     commands.drop();
-    if (hasPast(settings.mode) && settings.keep_past) {
-        const FramePlan next = planFrame(settings, eyes, true, pastsAfter(plan_, {}));
+    if (hasHistory(settings.mode) && settings.keep_history) {
+        const FramePlan next = planFrame(settings, eyes, true, historiesAfter(plan_, {}));
         room_.fitPictures(next, settings.hidden_tiles);
         recorder(true).record(commands, next);
         commands.drop();
@@ -98,16 +98,16 @@ FrameResult StereoFrame::render(std::span<const Eye> eyes, const FrameSettings& 
     return result;
 }
 
-void StereoFrame::makeRoom(std::span<const Eye> eyes, const FrameSettings& settings) {
+void StereoFrame::reserve(std::span<const Eye> eyes, const FrameSettings& settings) {
     if (shapeOf(eyes, settings) == shape_) { return; }
-    pasts_ = pastsFor(eyes, settings);
-    FramePlan plan = planFrame(settings, eyes, true, pasts_);
+    histories_ = historiesFor(eyes, settings);
+    FramePlan plan = planFrame(settings, eyes, true, histories_);
     finish();
     shape_ = {};  // some pictures are new, and some may fail
     plan_ = std::move(plan);
-    const Pasts pasts = std::exchange(pasts_, {});
+    const Histories histories = std::exchange(histories_, {});
     room_.fitPictures(plan_, settings.hidden_tiles);
-    pasts_ = pasts;
+    histories_ = histories;
 }
 
 std::optional<FrameResult> StereoFrame::renderAhead(std::span<const Eye> eyes, const FrameSettings& settings, const Append& append,
@@ -115,12 +115,12 @@ std::optional<FrameResult> StereoFrame::renderAhead(std::span<const Eye> eyes, c
     Flight &before_last = flight(), &last = flights_[1 - turn_];
     std::optional<FrameResult> result = land(before_last);
     // Lists have capacity for patches while there is a history, and for whole pictures after it.
-    const bool has_past = pasts_.of_eyes[0] && settings.keep_past;
-    const bool was_warped = std::ranges::any_of(plan_.targets, [](const TargetPlan& target) { return target.past.has_value(); });
-    const bool loses_past =
-        has_past && (!pastsFor(eyes, settings).of_eyes[0] || (was_warped && changedShare(eyes, settings) > kMostChanged));
+    const bool has_history = histories_.of_eyes[0] && settings.keep_history;
+    const bool was_warped = std::ranges::any_of(plan_.targets, [](const TargetPlan& target) { return target.history.has_value(); });
+    const bool loses_history =
+        has_history && (!historiesFor(eyes, settings).of_eyes[0] || (was_warped && changedShare(eyes, settings) > kMostChanged));
     const Likeness likeness = likenessToLast(eyes, settings);
-    const bool jumps = loses_past || likeness == Likeness::kJumps;
+    const bool jumps = loses_history || likeness == Likeness::kJumps;
     bool waits =
         room_.isFirstFrame() || likeness == Likeness::kOther || (jumps && settings.waits_after_jump) || FrameRoom::isCutShort(state_);
     // Lists fill up gradually: they are made longer before they are full, while nothing uses them.
@@ -141,7 +141,7 @@ std::optional<FrameResult> StereoFrame::renderAhead(std::span<const Eye> eyes, c
     done_again_ += renderAtMostTwice(settings, append);
     if (FrameRoom::isCutShort(state_)) {
         ++cut_short_;
-        pasts_ = {};
+        histories_ = {};
     }
     result = take(flight());
     result->counters.ahead = {cut_short_, done_again_};
@@ -172,8 +172,8 @@ std::optional<FrameResult> StereoFrame::land(Flight& flight) {
         ++cut_short_;
         // A tile that did not fit keeps what was made from a history or another picture; a picture made from
         // neither has nothing else.
-        const auto isMade = [](const TargetPlan& target) { return target.past.has_value() || target.warp.has_value(); };
-        if (!std::ranges::all_of(flight.plan.targets, isMade)) { pasts_ = {}; }
+        const auto isMade = [](const TargetPlan& target) { return target.history.has_value() || target.warp.has_value(); };
+        if (!std::ranges::all_of(flight.plan.targets, isMade)) { histories_ = {}; }
     }
     FrameResult result = take(flight);
     result.counters.ahead = {cut_short_, done_again_};
@@ -247,18 +247,18 @@ void StereoFrame::makeRoomForVisible() {
     room_.growIfItFits(plan_, state_);  // nothing is known about pairs yet
 }
 
-Pasts StereoFrame::pastsFor(std::span<const Eye> eyes, const FrameSettings& settings) const {
-    if (!settings.keep_past || eyes.size() != 2 || !pasts_.of_eyes[0] || !pasts_.of_eyes[1] ||
-        askedApartFromSizes(settings) != past_shape_ || !scene_->changesSince(changes_known_)) {
+Histories StereoFrame::historiesFor(std::span<const Eye> eyes, const FrameSettings& settings) const {
+    if (!settings.keep_history || eyes.size() != 2 || !histories_.of_eyes[0] || !histories_.of_eyes[1] ||
+        askedApartFromSizes(settings) != history_shape_ || !scene_->changesSince(changes_known_)) {
         return {};
     }
-    const double farthest = farthestPast(eyes, settings.units_per_metre);
+    const double farthest = farthestHistory(eyes, settings.units_per_metre);
     for (std::size_t e = 0; e < eyes.size(); ++e) {
         // This eye is rendered anyway.
-        if (settings.mode == Mode::kAlternate && static_cast<int>(e) == pasts_.turn) { continue; }
-        if (!canComeFrom(pasts_.of_eyes[e]->eye, eyes[e], farthest)) { return {}; }
+        if (settings.mode == Mode::kAlternate && static_cast<int>(e) == histories_.turn) { continue; }
+        if (!canComeFrom(histories_.of_eyes[e]->eye, eyes[e], farthest)) { return {}; }
     }
-    return pasts_;
+    return histories_;
 }
 
 double StereoFrame::changedShare(std::span<const Eye> eyes, const FrameSettings& settings) const {
@@ -269,7 +269,7 @@ double StereoFrame::changedShare(std::span<const Eye> eyes, const FrameSettings&
 }
 
 void StereoFrame::planAnew(const FrameSettings& settings) {
-    if (std::ranges::none_of(plan_.targets, [](const TargetPlan& target) { return target.past.has_value(); })) { return; }
+    if (std::ranges::none_of(plan_.targets, [](const TargetPlan& target) { return target.history.has_value(); })) { return; }
     // The memory that the history was made from is overwritten already.
     plan_ = planFrame(settings, eyes_, true);
     room_.fitPictures(plan_, settings.hidden_tiles);
@@ -293,7 +293,7 @@ void StereoFrame::prepare(std::span<const Eye> eyes, const FrameSettings& settin
     const MovingPays::Asked asked = MovingPays::askedBy(eyes, settings);
     const bool may_move = moving_pays_.mayMove(asked);
     const double changed = changedShare(eyes, settings);
-    plan_ = planFrame(settings, eyes, may_move, changed > kMostChanged ? Pasts() : pastsFor(eyes, settings));
+    plan_ = planFrame(settings, eyes, may_move, changed > kMostChanged ? Histories() : historiesFor(eyes, settings));
     if (changed <= kMostChanged) {
         plan_.budget = std::min(std::max(plan_.budget, kMoreWhereChanged * changed + kBudgetBesideChanges * plan_.budget), 1.0);
     }
@@ -313,8 +313,8 @@ void StereoFrame::record(Flight& flight, const FrameSettings& settings, const Ap
     recorder().record(flight.commands, plan_, settings.times_passes, settings.before);
     changes_known_ = scene_->changesRecorded();
     recorder().recordReport(flight.commands, flight.readback);
-    pasts_ = pastsAfter(plan_, pastsFor(eyes_, settings));
-    past_shape_ = askedApartFromSizes(settings);
+    histories_ = historiesAfter(plan_, historiesFor(eyes_, settings));
+    history_shape_ = askedApartFromSizes(settings);
     flight.splats_held = scene_->splatsHeld();
     if (append) { append(flight.commands); }
 }

@@ -67,12 +67,12 @@ public:
     // From now on the caller records the scene's changes, and submits them before each frame.
     void leaveChanges() { brings_changes_ = false; }
     // The next frame has no history.
-    void forgetPast() { pasts_ = {}; }
+    void forgetHistory() { histories_ = {}; }
 
     // Makes the images that renderAhead needs for such frames, if they differ from those of the frame before,
     // for which it waits. Throws Error if the device lacks the memory: then no picture is left, and frames as
     // before may still be rendered.
-    void makeRoom(std::span<const Eye> eyes, const FrameSettings& settings);
+    void reserve(std::span<const Eye> eyes, const FrameSettings& settings);
     // Waits for all frames in flight, after which nothing that they use is in use. Returns the last one's
     // result.
     std::optional<FrameResult> finish();
@@ -142,7 +142,7 @@ private:
         return {kernels_, *scene_, room_, drops ? std::nullopt : std::optional(changes_known_), brings_changes_};
     }
     // The histories that earlier frames leave to such a frame.
-    [[nodiscard]] Pasts pastsFor(std::span<const Eye> eyes, const FrameSettings& settings) const;
+    [[nodiscard]] Histories historiesFor(std::span<const Eye> eyes, const FrameSettings& settings) const;
     // The share of both eyes' tiles in which the scene differs from what the last frame shows.
     [[nodiscard]] double changedShare(std::span<const Eye> eyes, const FrameSettings& settings) const;
     // Plans the frame without a history, even if there is one.
@@ -183,8 +183,8 @@ private:
     PassKernels& kernels_;
     FrameRoom room_;
     FramePlan plan_;                  // of the last frame
-    Pasts pasts_;                     // that the last frame leaves
-    FrameShape past_shape_;           // of these histories, apart from sizes
+    Histories histories_;             // that the last frame leaves
+    FrameShape history_shape_;        // of these histories, apart from sizes
     FrameState state_{};              // the report of the last known frame
     std::uint32_t splats_known_ = 0;  // how many the scene held then
     MovingPays moving_pays_;

@@ -53,7 +53,7 @@ FrameSettings settingsOf(const bsp_frame_info& frame, const AskedFrame& asked) {
     settings.mode = modeOf(frame.mode);
     settings.near = near;
     settings.background = background;
-    settings.keep_past = hasPast(settings.mode);
+    settings.keep_history = hasHistory(settings.mode);
     settings.times_passes = false;
     settings.keep_depth = settings.keep_both_depths = (frame.flags & BSP_FRAME_DEPTH) != 0;
     settings.half_floats = (frame.flags & BSP_FRAME_HALF_FLOATS) != 0;
@@ -173,7 +173,7 @@ FrameSettings bsp_renderer_t::settingsOf(const AskedFrame& asked, std::size_t in
     for (std::size_t e = 0; e < eyesOf(asked, index).size(); ++e) { settings.gazes[e] = asked.gazes[2 * index + e]; }
     if (eyesOf(asked, index).size() == 1) {
         settings.mode = Mode::kMono;
-        settings.keep_past = settings.keep_both_depths = false;
+        settings.keep_history = settings.keep_both_depths = false;
     }
     return settings;
 }

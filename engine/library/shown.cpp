@@ -178,5 +178,5 @@ void bsp_renderer_t::begin(AskedFrame& asked) {
     }
     asked.settings.order = on_device_->usualOrder();
     if (!asked.is_cut) { return; }
-    for (const auto& part : parts_) { part->forgetPast(); }
+    for (const auto& part : parts_) { part->forgetHistory(); }
 }

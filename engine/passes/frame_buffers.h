@@ -43,7 +43,7 @@ struct Picture {
     Buffer depths = {};        // D, a float a pixel, if it is wanted and not in the words
     // If later pictures are made from this one:
     Buffer words = {};  // a word a pixel, lib/moving_pixel.glsl
-    Buffer tiles = {};  // gpu::PastTile
+    Buffer tiles = {};  // gpu::HistoryTile
     glm::uvec2 size_px{0, 0};
 };
 

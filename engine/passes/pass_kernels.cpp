@@ -32,19 +32,19 @@ KernelTable frameKernels(std::uint32_t threads) {
     append(table, everyVariant<TileRangesKernel>([](const TileRangesKernel& k) { return k.masked == 1 || k.half_colours == 0; }));
     for (std::uint32_t choices = 0; choices < 8; ++choices) {
         const Kept plain{.depth = (choices & 1) != 0, .half_floats = (choices & 2) != 0};
-        Kept moving = plain, even_rows = plain, past = plain, cut = plain;
+        Kept moving = plain, even_rows = plain, history = plain, cut = plain;
         cut.cut = true;
-        moving.moving = even_rows.moving = even_rows.even_rows = past.past = true;
+        moving.moving = even_rows.moving = even_rows.even_rows = history.history = true;
         const auto add = [&](const Kept& kept, bool masked, bool coarse = false) {
             table.push_back(variantOf(rasterizeKernel(threads, kept, choices >> 2, masked, coarse)));
         };
         for (const Kept& kept : {plain, moving, even_rows}) { add(kept, false); }
         add(plain, true);
-        if (plain.depth) { continue; }  // a past's depths follow from its words
+        if (plain.depth) { continue; }  // a history's depths follow from its words
         add(cut, false);
-        add(past, false);
-        add(past, true);
-        for (const Kept& kept : {plain, past}) { add(kept, true, true); }
+        add(history, false);
+        add(history, true);
+        for (const Kept& kept : {plain, history}) { add(kept, true, true); }
     }
     return table;
 }
@@ -61,18 +61,18 @@ KernelTable warpKernels(const Context& context) {
                return k.row_steps <= most_steps && (k.row_source != gpu::kArrivalsGiven) == (k.rectified && k.row_steps > 0) &&
                       (k.row_source != gpu::kWholeRowMoved || k.way == gpu::kPredicts);
            }));
-    append(table, everyVariant<PriceKernel>([](const PriceKernel& k) { return k.past == 0; }));
-    append(table, everyVariant<SelectKernel>([](const SelectKernel& k) { return k.past == 0; }));
+    append(table, everyVariant<PriceKernel>([](const PriceKernel& k) { return k.history == 0; }));
+    append(table, everyVariant<SelectKernel>([](const SelectKernel& k) { return k.history == 0; }));
     return table;
 }
 
 // Of an eye from its history.
-KernelTable pastKernels(bool by_address) {
-    KernelTable table = everyVariant<WarpPastKernel>([=](const WarpPastKernel& k) { return k.by_address == by_address; });
+KernelTable historyKernels(bool by_address) {
+    KernelTable table = everyVariant<WarpHistoryKernel>([=](const WarpHistoryKernel& k) { return k.by_address == by_address; });
     append(table, everyVariant<WarpPixelsKernel>([=](const WarpPixelsKernel& k) { return k.by_address == by_address; }));
     append(table, everyVariant<MarkChangedKernel>());
-    append(table, everyVariant<PriceKernel>([](const PriceKernel& k) { return k.past == 1; }));
-    append(table, everyVariant<SelectKernel>([](const SelectKernel& k) { return k.past == 1 && k.predicted == 1; }));
+    append(table, everyVariant<PriceKernel>([](const PriceKernel& k) { return k.history == 1; }));
+    append(table, everyVariant<SelectKernel>([](const SelectKernel& k) { return k.history == 1 && k.predicted == 1; }));
     return table;
 }
 
@@ -80,7 +80,7 @@ KernelTable allKernels(const Context& context, const Sort& sort, std::uint32_t t
     KernelTable table = frameKernels(threads_per_cell);
     append(table, sort.kernels());
     append(table, warpKernels(context));
-    append(table, pastKernels(context.isSoftware()));
+    append(table, historyKernels(context.isSoftware()));
     for (std::uint32_t choices = 0; choices < 4; ++choices) {
         const bool by_lanes = areNarrow(context, threads_per_cell);
         table.push_back(variantOf(contributeKernel(threads_per_cell, choices >> 1, (choices & 1) != 0, by_lanes)));
@@ -112,15 +112,15 @@ ContributeKernel contributeKernel(std::uint32_t threads_per_cell, std::uint32_t 
 RasterizeKernel rasterizeKernel(std::uint32_t threads_per_cell, const Kept& kept, std::uint32_t splat_shape, bool masked, bool coarse) {
     const bool moves_by_depth = kept.moving && kept.depth_choice != gpu::kDepthInverse;
     return {.threads_per_cell = threads_per_cell,
-            // A past has the depth from its words.
-            .depth = (kept.depth || moves_by_depth || coarse || kept.cut) && !kept.past,
-            .moments = kept.moments || kept.moving || kept.past,
+            // A history has the depth from its words.
+            .depth = (kept.depth || moves_by_depth || coarse || kept.cut) && !kept.history,
+            .moments = kept.moments || kept.moving || kept.history,
             .half_colours = kept.half_floats,
             .splat_kind = splat_shape,
             .local_size_x = gpu::kCellsPerTile * threads_per_cell,
             .even_rows = kept.even_rows,
             .masked = masked,
-            .past = kept.past,
+            .history = kept.history,
             .coarse = coarse,
             .cut = kept.cut};
 }

@@ -19,7 +19,7 @@ public:
     [[nodiscard]] std::uint32_t threadsPerCell() const { return threads_per_cell_; }
     // The threads of a cell are a subgroup of eight lanes.
     [[nodiscard]] bool cellsAreNarrow() const { return cells_are_narrow_; }
-    // How pixels of a history are loaded (lib/past.glsl): by address on software devices.
+    // How pixels of a history are loaded (lib/history.glsl): by address on software devices.
     [[nodiscard]] bool byAddress() const { return by_address_; }
 
 private:

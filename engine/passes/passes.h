@@ -32,7 +32,7 @@ struct Kept {
     // Splats show only where they are nearer than the target's mesh_depths.
     bool cut = false;
     // Later pictures are going to be made from this one: its words and tiles are kept.
-    bool past = false;
+    bool history = false;
 };
 
 // Pictures that a frame renders at once, whole or some tiles: FrameState::views and targets say where they

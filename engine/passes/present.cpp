@@ -28,7 +28,7 @@ void Presenter::makeKernels() {
     kernels_.get(TurnKernel{});
 }
 
-void Presenter::makeRoom(glm::uvec2 size_px, bool with_depth) {
+void Presenter::reserve(glm::uvec2 size_px, bool with_depth) {
     const std::uint64_t pixel_count = std::uint64_t{size_px.x} * size_px.y;
     const auto grow = [&](Buffer& buffer, const char* name, std::uint64_t bytes) {
         if (buffer.bytes() < bytes) { buffer = Buffer(context_, name, bytes); }
@@ -40,7 +40,7 @@ void Presenter::makeRoom(glm::uvec2 size_px, bool with_depth) {
 void Presenter::record(Commands& commands, const PresentedEye& eye, double near) {
     const bool with_depth = eye.depth && (eye.picture->words.bytes() > 0 || eye.picture->depths.bytes() > 0);
     // Only grows before anything in this submission uses them: both eyes have the same size.
-    makeRoom(eye.size_px, with_depth);
+    reserve(eye.size_px, with_depth);
     gpu::PresentPass pass{};
     pass.colours = eye.picture->colours.address<gpu::vec4>();
     pass.half_colours = eye.picture->colours.address<gpu::uvec2>();

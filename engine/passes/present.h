@@ -35,7 +35,7 @@ public:
     void makeKernels();
     // For pictures of that size, while nothing recorded is in flight. Throws Error if there is no memory for
     // it.
-    void makeRoom(glm::uvec2 size_px, bool with_depth);
+    void reserve(glm::uvec2 size_px, bool with_depth);
     // Records it, allocating memory first. `near` in scene units.
     void record(Commands& commands, const PresentedEye& eye, double near);
     // Makes its kernels again, see Context::replacedShaders. Throws Error if one cannot be made, and then

@@ -19,9 +19,9 @@ WarpBuffers::WarpBuffers(const Context& context, const WarpBufferNeeds& needs)
     tiles_ = Buffer(context, "warp tiles", words * sizeof(gpu::uint));
     if (needs.classes) { classes_ = Buffer(context, "pixel classes", std::uint64_t{sizeTiles().x} * needs.size_px.y * sizeof(gpu::uint)); }
     boxes_ = Buffer(context, "boxes of holes", needs.boxes * sizeof(gpu::PixelBox));
-    if (needs.past) {
-        const glm::uvec2 block{gpu::kPastColumns, gpu::kPastRows}, blocks = (needs.size_px + block - 1u) / block;
-        past_blocks_ = Buffer(context, "blocks of the history", std::uint64_t{blocks.x} * blocks.y * sizeof(gpu::PastBlock));
+    if (needs.history) {
+        const glm::uvec2 block{gpu::kHistoryColumns, gpu::kHistoryRows}, blocks = (needs.size_px + block - 1u) / block;
+        history_blocks_ = Buffer(context, "blocks of the history", std::uint64_t{blocks.x} * blocks.y * sizeof(gpu::HistoryBlock));
     } else if (!sharesRows()) {
         planes_ = Buffer(context, "reprojected pixels", 2 * sizeof(gpu::uint) * std::uint64_t{needs.size_px.x} * needs.size_px.y);
     }

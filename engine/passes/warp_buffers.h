@@ -13,7 +13,7 @@ struct WarpBufferNeeds {
     glm::uvec2 size_px{0, 0};  // of both eyes; 0: no mode that reprojects
     bool classes = false;      // of the target's pixels
     bool half_floats = false;  // what pictures consist of
-    bool past = false;         // the eye's own history is the source
+    bool history = false;      // the eye's own history is the source
     std::uint32_t boxes = 0;   // components of holes that get a box of their own, 0 if centre ROIs are off
     bool operator==(const WarpBufferNeeds&) const = default;
 };
@@ -51,7 +51,7 @@ public:
     static std::uint64_t maskWords(glm::uvec2 size_px);
 
     // The blocks that are made pixel by pixel.
-    [[nodiscard]] gpu::DeviceAddress<gpu::PastBlock> pastBlocks() const { return past_blocks_.address<gpu::PastBlock>(); }
+    [[nodiscard]] gpu::DeviceAddress<gpu::HistoryBlock> historyBlocks() const { return history_blocks_.address<gpu::HistoryBlock>(); }
     [[nodiscard]] gpu::DeviceAddress<gpu::PixelBox> boxes() const { return boxes_.address<gpu::PixelBox>(); }
     // Two bits a pixel, sixteen pixels a word, rows padded to whole tiles.
     [[nodiscard]] const Buffer& classesBuffer() const { return classes_; }
@@ -68,7 +68,7 @@ public:
     }
 
     [[nodiscard]] std::uint64_t bytes() const {
-        return tiles_.bytes() + classes_.bytes() + boxes_.bytes() + planes_.bytes() + past_blocks_.bytes();
+        return tiles_.bytes() + classes_.bytes() + boxes_.bytes() + planes_.bytes() + history_blocks_.bytes();
     }
 
 private:
@@ -76,7 +76,7 @@ private:
 
     WarpBufferNeeds needs_;
     std::uint32_t longest_shared_row_ = 0;
-    Buffer tiles_, classes_, boxes_, planes_, past_blocks_;
+    Buffer tiles_, classes_, boxes_, planes_, history_blocks_;
 };
 
 }  // namespace binosplat

@@ -23,7 +23,7 @@ bool ShownLeaves::add(LoadedPart& part) {
     std::vector<Shown>& shown = leaves_[leaf];
     const bool is_wanted = wanted_[leaf] == level || (shown.empty() && wanted_[leaf] != LevelChoices::kNone);
     if (!is_wanted || has(part.at)) { return true; }
-    if (part.pages.pageCount() > resident_.freePages()) { makeRoom(); }
+    if (part.pages.pageCount() > resident_.freePages()) { reserve(); }
     if (part.pages.pageCount() > resident_.freePages() && wanted_[leaf] == level && shown.size() == 1) {
         // As a last resort, when nothing else can go, not even the part being replaced can stay until then.
         const std::uint64_t own_pages = (splatsOf(leaf, shown.front().level) + gpu::kPageSplats - 1) / gpu::kPageSplats;
@@ -91,7 +91,7 @@ void ShownLeaves::flush(const Context& context) {
     }
 }
 
-void ShownLeaves::makeRoom() {
+void ShownLeaves::reserve() {
     for (const std::uint32_t leaf : changing_) {
         std::vector<Shown>& shown = leaves_[leaf];
         const auto goal = goalOf(leaf);

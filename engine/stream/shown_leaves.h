@@ -60,7 +60,7 @@ private:
     // False: there is nothing left to change in this leaf.
     bool stepLeaf(std::uint32_t leaf, float share, bool at_once);
     // Removes parts that go anyway, now.
-    void makeRoom();
+    void reserve();
 
     ResidentScene resident_;
     std::span<const LodLeaf> tree_;

@@ -60,16 +60,16 @@ std::vector<glm::dvec4> copyColours(const Picture& dominant, std::span<const Arr
         if (kind == TileKind::kHidden) { colours[i] = glm::dvec4(background, 0.0); }
         if (kind != TileKind::kNone) { continue; }
         // One beyond the nearest at or before the pixel, and the nearest at or after it.
-        std::size_t past_left = i + 1, right = i;
-        while (past_left > begin && !arrived(past_left - 1)) { --past_left; }
+        std::size_t history_left = i + 1, right = i;
+        while (history_left > begin && !arrived(history_left - 1)) { --history_left; }
         while (right < end && !arrived(right)) { ++right; }
-        if (past_left == begin && right == end) {
+        if (history_left == begin && right == end) {
             const glm::dvec2 place = source_from_target.move(glm::dvec2(x, y) + 0.5, 0.0).place_px;
             const glm::dvec2 inside = glm::clamp(place, glm::dvec2(0.5), glm::dvec2(dominant.size_px) - 0.5);
             colours[i] = dominant.rgba[static_cast<std::size_t>(inside.y) * width + static_cast<std::size_t>(inside.x)];
             continue;
         }
-        const std::size_t first = past_left > begin ? past_left - 1 : right, last = right < end ? right : first;
+        const std::size_t first = history_left > begin ? history_left - 1 : right, last = right < end ? right : first;
         const double share = first == last ? 0.0 : static_cast<double>(i - first) / static_cast<double>(last - first);
         colours[i] = (1.0 - share) * dominant.rgba[arrivals[first].source] + share * dominant.rgba[arrivals[last].source];
     }

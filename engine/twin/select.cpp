@@ -1,5 +1,5 @@
 // select: the tiles whose errors cost least to render away.
-#include "engine/twin/past.h"
+#include "engine/twin/history.h"
 
 #include <functional>
 #include <map>

@@ -1,5 +1,5 @@
 // warp_pixels: pixels of an eye's picture that are searched for in the history one by one.
-#include "engine/twin/past_view.h"
+#include "engine/twin/history_view.h"
 
 namespace binosplat::reference {
 namespace {
@@ -9,13 +9,13 @@ constexpr std::uint32_t kMixedCode = 21;
 constexpr double kUnseenError = 1.0, kUncoveredError = 0.001;
 
 struct Found {
-    PastView::Seen seen;
+    HistoryView::Seen seen;
     glm::dvec2 place_px;
     bool agrees = false;
 };
 
 // How wide a pixel of the history is at a place: wider than a pixel if the view has turned towards it.
-glm::dvec2 widthOfPixel(const PastView& view, const glm::dvec2& wanted_px) {
+glm::dvec2 widthOfPixel(const HistoryView& view, const glm::dvec2& wanted_px) {
     const auto changeAlong = [&](const glm::dvec2& half) {
         return view.place(wanted_px + half, 0.0).place_px - view.place(wanted_px - half, 0.0).place_px;
     };
@@ -24,7 +24,7 @@ glm::dvec2 widthOfPixel(const PastView& view, const glm::dvec2& wanted_px) {
            std::abs(across.x * down.y - across.y * down.x);
 }
 
-Found search(const PastView& view, const glm::dvec2& wanted_px, double guess, const glm::dvec2& agrees_px) {
+Found search(const HistoryView& view, const glm::dvec2& wanted_px, double guess, const glm::dvec2& agrees_px) {
     Found found{{std::nullopt, guess}, wanted_px};
     for (int step = 0; step < kSteps && !found.agrees; ++step) {
         const EyeChange::Moved place = view.place(wanted_px, found.seen.inverse_depth);
@@ -42,7 +42,7 @@ Found search(const PastView& view, const glm::dvec2& wanted_px, double guess, co
 }
 
 // The inverse depth of the nearest content around a place.
-double frontAround(const PastView& view, const glm::dvec2& place_px) {
+double frontAround(const HistoryView& view, const glm::dvec2& place_px) {
     const glm::ivec2 middle(glm::floor(glm::clamp(place_px, glm::dvec2(0.0), glm::dvec2(view.last))));
     double nearest = 0.0;
     for (int y = -kFrontReach; y <= kFrontReach; ++y) {
@@ -50,7 +50,7 @@ double frontAround(const PastView& view, const glm::dvec2& place_px) {
             if (const auto pixel = view.own(middle + glm::ivec2(x, y))) { nearest = std::max(nearest, pixel->inverse_depth); }
         }
     }
-    return view.now_from_past.move(glm::dvec2(middle) + 0.5, nearest).inverse_depth;
+    return view.now_from_history.move(glm::dvec2(middle) + 0.5, nearest).inverse_depth;
 }
 
 // Catmull and Rom's weights (1974) of the samples at -1, 0, 1, 2 for a place `t` after sample 0.
@@ -67,7 +67,7 @@ struct Sample {
 
 // A signal that alternates in sign from pixel to pixel with an amplitude d has third differences of 8 d, and
 // all of it is lost halfway between two.
-Sample sampleAround(const PastView& view, const glm::dvec2& place_px) {
+Sample sampleAround(const HistoryView& view, const glm::dvec2& place_px) {
     const glm::dvec2 at = glm::clamp(place_px, glm::dvec2(0.5), glm::dvec2(view.last) + 0.5) - 0.5;
     const glm::ivec2 base(glm::floor(at)), nearest(glm::floor(at + 0.5));
     const glm::dvec2 t = at - glm::dvec2(base);
@@ -94,8 +94,8 @@ Sample sampleAround(const PastView& view, const glm::dvec2& place_px) {
 
 }  // namespace
 
-PixelFromPast makePixel(const PastView& view, const glm::dvec2& wanted_px, double near, double far) {
-    const glm::dvec2 disparity = glm::abs(view.past_from_now.disparity(wanted_px));
+PixelFromHistory makePixel(const HistoryView& view, const glm::dvec2& wanted_px, double near, double far) {
+    const glm::dvec2 disparity = glm::abs(view.history_from_now.disparity(wanted_px));
     const bool is_flat = std::max(disparity.x, disparity.y) * (near - far) <= kSameDepthPx;
     const glm::dvec2 agrees_px = kAgreesPx * glm::max(glm::dvec2(1.0), widthOfPixel(view, wanted_px));
     const Found from_near = search(view, wanted_px, near, agrees_px), from_far = search(view, wanted_px, far, agrees_px);
@@ -105,7 +105,7 @@ PixelFromPast makePixel(const PastView& view, const glm::dvec2& wanted_px, doubl
     if (found.agrees && !is_flat) {
         const EyeChange::Moved place = view.place(wanted_px, frontAround(view, found.place_px));
         if (place.in_front && view.isInside(place.place_px)) {
-            const PastView::Seen there = view.look(place.place_px);
+            const HistoryView::Seen there = view.look(place.place_px);
             if (there.pixel && there.pixel->spread >= kMixedCode) { found = {there, place.place_px, true}; }
         }
     }

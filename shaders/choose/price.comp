@@ -9,12 +9,12 @@
 #include "lib/group.glsl"
 #include "lib/last_group.glsl"
 #include "lib/gaze.glsl"
-#include "lib/past_tile.glsl"
+#include "lib/history_tile.glsl"
 
 layout(local_size_x = kWarpGroup) in;
 layout(push_constant, scalar) uniform Push { PricePass pass; };
 layout(constant_id = 0) const bool kFoveated = false;
-layout(constant_id = 1) const bool kPast = false;  // errors are those that the history has left in its tiles
+layout(constant_id = 1) const bool kHistory = false;  // errors are those that the history has left in its tiles
 #include "lib/target.glsl"
 
 const uint kBinsPerThread = kPriceBins / kWarpGroup;
@@ -29,14 +29,14 @@ uint binOf(float error_per_pair) { return min(max(floatBitsToUint(error_per_pair
 // What rendering a tile is worth in a picture that is made from a history: its expected squared error, times
 // the frames that it has waited. Mending an error that grows with each frame saves the area under its growth
 // (a Whittle index), and so every tile gets its turn.
-uint errorOfPast(PastTile tile) {
+uint errorOfHistory(HistoryTile tile) {
     const float squares = 3 * float(kCellSize * kCellSize) * dot(tile.errors, tile.errors);
     return squares > 0 ? max(uint(min(squares * float(max(tile.age, 1)), 2000) * kErrorSteps), 1) : 0;
 }
 
 // Adds the error that this frame's warp is expected to cause. Blur of what is already blurred adds up by
 // amplitude.
-PastTile withGrowth(PastTile tile) {
+HistoryTile withGrowth(HistoryTile tile) {
     [[unroll]] for (uint q = 0; q < 4; ++q) {
         // The amplitude per pixel and channel.
         const float grown =
@@ -47,7 +47,7 @@ PastTile withGrowth(PastTile tile) {
 }
 
 // What a coarse tile lacks is an error as soon as the eye would notice it.
-PastTile withLoss(PastTile tile, uvec2 at) {
+HistoryTile withLoss(HistoryTile tile, uvec2 at) {
     const float share = kFoveated ? seenShareThere(TARGET.counters.gaze, at) : 1;
     const bool is_seen = share * 3 * float(kTileSize * kTileSize) * tile.lost * tile.lost >= kLeastSeenError;
     tile.errors += is_seen ? tile.lost : 0;
@@ -56,14 +56,14 @@ PastTile withLoss(PastTile tile, uvec2 at) {
 
 // The amplitude by which a tile may be off. Contrast masks errors: with less of it, a tile may be off by
 // less.
-float boundOf(PastTile tile) {
+float boundOf(HistoryTile tile) {
     const float gradient = sqrt(float(tile.squared_gradient) / (kErrorSteps * 3 * kTileSize * kTileSize));
     return FIRST.warp.error_bound * clamp(gradient / kMaskingGradient, kUnmaskedBound, 1);
 }
 
 // The bin of a tile under a bound, two bins in one: tiles above the bound come before the others, and those
 // that nobody saw before come first.
-uint binUnderBound(uint bin, PastTile tile, float share) {
+uint binUnderBound(uint bin, HistoryTile tile, float share) {
     uint unseen = 0;
     [[unroll]] for (uint q = 0; q < 4; ++q) { unseen += unseenIn(tile.unseen, q); }
     if (float(unseen) >= kNewShare * kTileSize * kTileSize) { return kNewBin; }
@@ -76,13 +76,13 @@ uint priceOf(uint tile, uvec2 size_tiles) {
     const uvec2 at = uvec2(tile % size_tiles.x, tile / size_tiles.x);
     Uints errors = Uints(TARGET.tile_errors), costs = Uints(TARGET.tile_costs);
     const uint kind = Uints(TARGET.tile_kinds).at[tile];
-    PastTile its;
-    if (kPast) {
-        PastTiles past_tiles = PastTiles(TARGET.past_tiles);
-        its = withGrowth(past_tiles.at[tile]);
-        past_tiles.at[tile].errors = its.errors;
+    HistoryTile its;
+    if (kHistory) {
+        HistoryTiles history_tiles = HistoryTiles(TARGET.history_tiles);
+        its = withGrowth(history_tiles.at[tile]);
+        history_tiles.at[tile].errors = its.errors;
         its = withLoss(its, at);
-        errors.at[tile] = kind == kTileHidden ? 0 : errorOfPast(its);
+        errors.at[tile] = kind == kTileHidden ? 0 : errorOfHistory(its);
         const uint cost = kind == kTileHidden ? 0 : min(its.cost, kMaxTileCost - kTilePairs) + kTilePairs;
         costs.at[tile] = cost;
         atomicAdd(FIRST.warp_counters.picture_cost, cost);
@@ -101,9 +101,9 @@ uint priceOf(uint tile, uvec2 size_tiles) {
     // The list counts errors as if they were seen whole, so that the required worth of a pair does not fall
     // with what is not seen. A history is different: errors that are neither seen nor rendered grow from
     // frame to frame, and would leave nothing to those that are seen.
-    if (kPast && FIRST.warp.error_bound > 0) { seen_bin = binUnderBound(seen_bin, its, share); }
-    const uint listed_bin = kPast ? seen_bin : bin;
-    if (!kPast || !unnoticed) { atomicAdd(pass.price_bins.at[listed_bin], cost); }
+    if (kHistory && FIRST.warp.error_bound > 0) { seen_bin = binUnderBound(seen_bin, its, share); }
+    const uint listed_bin = kHistory ? seen_bin : bin;
+    if (!kHistory || !unnoticed) { atomicAdd(pass.price_bins.at[listed_bin], cost); }
     return unnoticed ? 0 : seen_bin << 22 | (seen_bin < listed_bin ? kSeenInPart : 0) | cost;
 }
 
@@ -119,7 +119,7 @@ void findLastBin(float share, uint picture_cost) {
     uint total;
     uint before = scanGroup(own, total);
     float wanted = share * float(picture_cost);
-    if (kPast && FIRST.warp.error_bound > 0) {
+    if (kHistory && FIRST.warp.error_bound > 0) {
         uint over;
         scanGroup(first >= kOverBin ? own : 0, over);
         wanted = max(min(wanted, float(over) + kWithinBound * float(picture_cost)), float(pass.price_bins.at[kNewBin]));
@@ -144,5 +144,5 @@ void main() [[subgroup_uniform_control_flow]] {
     const uint tile = gl_WorkGroupID.x * kWarpGroup + gl_LocalInvocationIndex;
     if (tile < size_tiles.x * size_tiles.y) { Uints(TARGET.tile_prices).at[tile] = priceOf(tile, size_tiles); }
     if (!isLastGroup(pass.chosen)) { return; }
-    findLastBin(FIRST.warp.budget, kPast ? atomicOr(FIRST.warp_counters.picture_cost, 0) : FIRST.warp_counters.picture_cost);
+    findLastBin(FIRST.warp.budget, kHistory ? atomicOr(FIRST.warp_counters.picture_cost, 0) : FIRST.warp_counters.picture_cost);
 }

@@ -14,7 +14,7 @@ layout(local_size_x = kWarpGroup) in;
 layout(push_constant, scalar) uniform Push { SelectPass pass; };
 layout(constant_id = 0) const bool kPredicted = false;  // otherwise tile_kinds says which
 // All targets share a budget, and a tile that costs more than is left still gets its turn.
-layout(constant_id = 1) const bool kPast = false;
+layout(constant_id = 1) const bool kHistory = false;
 #include "lib/target.glsl"
 
 const uint kTilesPerStep = 8;  // loaded at once, since one load takes as long as all of them
@@ -61,7 +61,7 @@ bool isChosen(uint tile, uint tiles, out bool waits) {
     uint before = scanGroup(is_last ? cost : 0, total);
     // Most workgroups have no tile of the last bin, and need not know what the others have.
     if (total > 0) { before += costBefore(min(gl_WorkGroupID.x * kWarpGroup, tiles), end); }
-    const bool fits = kPast ? before < end.left : before + cost <= end.left;
+    const bool fits = kHistory ? before < end.left : before + cost <= end.left;
     const bool chosen = is_last ? fits : price != 0 && price >> 22 > end.bin;
     waits = !chosen && price >> 22 >= kOverBin;
     return chosen;
@@ -69,7 +69,7 @@ bool isChosen(uint tile, uint tiles, out bool waits) {
 
 // The error that the tile is expected to have.
 uint squaresOf(uint tile) {
-    const vec4 off = PastTiles(TARGET.past_tiles).at[tile].errors;
+    const vec4 off = HistoryTiles(TARGET.history_tiles).at[tile].errors;
     return uint(min(3 * float(kCellSize * kCellSize) * dot(off, off), kMostSquares) * kSquareSteps + 0.5);
 }
 
@@ -79,7 +79,7 @@ void main() [[subgroup_uniform_control_flow]] {
     const uint tile = gl_WorkGroupID.x * kWarpGroup + threadIndex();
     bool waits = false;
     uint kind = tile < tiles ? Uints(TARGET.tile_kinds).at[tile] : kTileHidden;
-    if (kPredicted && !kPast && TARGET.warp_counters.moves == 0) {
+    if (kPredicted && !kHistory && TARGET.warp_counters.moves == 0) {
         kind = kind == 0 ? kTileCheap : kind;
     } else if (kPredicted) {
         kind = isChosen(tile, tiles, waits) ? kTilePredicted : kind;
@@ -91,10 +91,10 @@ void main() [[subgroup_uniform_control_flow]] {
     const uint count = subgroupBallotBitCount(lanes);
     const uint cost = kPredicted ? subgroupAdd(selected ? Uints(TARGET.tile_costs).at[tile] : 0) : 0;
     const uint predicted = subgroupAdd(kind == kTilePredicted ? 1 : 0), cheap = subgroupAdd(kind == kTileCheap ? 1 : 0);
-    const uint edges = subgroupAdd(kind == kTileEdge ? 1 : 0), waiting = kPast ? subgroupAdd(waits ? 1 : 0) : 0;
-    if (kPast && waiting > 0 && subgroupElect()) { atomicAdd(TARGET.warp_counters.waiting_tiles, waiting); }
-    const uint left = kPast ? subgroupAdd(kind == 0 ? squaresOf(tile) : 0) : 0;
-    if (kPast && left > 0 && subgroupElect()) { atomicAdd(TARGET.warp_counters.left_squares, left); }
+    const uint edges = subgroupAdd(kind == kTileEdge ? 1 : 0), waiting = kHistory ? subgroupAdd(waits ? 1 : 0) : 0;
+    if (kHistory && waiting > 0 && subgroupElect()) { atomicAdd(TARGET.warp_counters.waiting_tiles, waiting); }
+    const uint left = kHistory ? subgroupAdd(kind == 0 ? squaresOf(tile) : 0) : 0;
+    if (kHistory && left > 0 && subgroupElect()) { atomicAdd(TARGET.warp_counters.left_squares, left); }
     uint place = 0;
     if (subgroupElect() && count > 0) {
         place = atomicAdd(TARGET.chosen_tiles.needed, count);

@@ -1,6 +1,6 @@
 // What rasterize leaves for pictures made from its own: how far off a tile was, and how fast its error grew.
 
-#include "lib/past_tile.glsl"
+#include "lib/history_tile.glsl"
 
 // Adds the difference between a pixel and what was there before.
 void addError(inout float error, vec3 shown, uvec2 colours, uint at) {
@@ -19,26 +19,26 @@ uint inSquareSteps(float squares) { return uint(min(squares, kMostSquares) * kSq
 // turned out to have; `lost`: the amplitude that a coarse tile lacks.
 void leaveTile(uint tile, uint cost, vec4 sums, float lost) {
     const vec4 amplitude = isMade() ? amplitudeOf(sums) : vec4(0);
-    PastTiles past_tiles = PastTiles(TARGET.past_tiles);
-    const uint age = isMade() ? past_tiles.at[tile].age : 0;  // 0: nothing was there
+    HistoryTiles history_tiles = HistoryTiles(TARGET.history_tiles);
+    const uint age = isMade() ? history_tiles.at[tile].age : 0;  // 0: nothing was there
     // An error of a tile that had never been seen says nothing about later frames.
-    const vec4 expected = age > 0 ? amplitudeOf(vec4(past_tiles.at[tile].grown)) : vec4(1);
+    const vec4 expected = age > 0 ? amplitudeOf(vec4(history_tiles.at[tile].grown)) : vec4(1);
     vec4 counts = mix(vec4(1), vec4(0), greaterThanEqual(expected, vec4(kUnseenGrowth)));
     [[unroll]] for (uint q = 0; q < 4; ++q) {
-        if (isMade() && unseenIn(past_tiles.at[tile].unseen, q) >= kNewPixels) { counts[q] = 0; }
+        if (isMade() && unseenIn(history_tiles.at[tile].unseen, q) >= kNewPixels) { counts[q] = 0; }
     }
-    const vec4 growth = counts * amplitude / float(max(age, 1)), off = past_tiles.at[tile].errors;
+    const vec4 growth = counts * amplitude / float(max(age, 1)), off = history_tiles.at[tile].errors;
     if (kMasked && age > 0) {
         atomicAdd(TARGET.warp_counters.expected_squares, inSquareSteps(3 * float(kCellSize * kCellSize) * dot(counts, off * off)));
         atomicAdd(TARGET.warp_counters.found_squares, inSquareSteps(dot(counts, sums) / kErrorSteps));
     }
-    past_tiles.at[tile] = PastTile(cost, 0, growth, vec4(0), uvec4(0), lost, 0, 0);
+    history_tiles.at[tile] = HistoryTile(cost, 0, growth, vec4(0), uvec4(0), lost, 0, 0);
 }
 
 // True if this frame measures what the tile would lose with pixels twice as wide, once it is rendered.
 bool isMeasured(uint tile) {
     const bool measured = kMeasures && !is_wider && TARGET.is_made != 0 && tile % kMeasuredParts == TARGET.measured;
-    if (measured && gl_LocalInvocationIndex == 0) { frames_waited = clamp(PastTiles(TARGET.past_tiles).at[tile].age, 1, kMostWaited); }
+    if (measured && gl_LocalInvocationIndex == 0) { frames_waited = clamp(HistoryTiles(TARGET.history_tiles).at[tile].age, 1, kMostWaited); }
     return measured;
 }
 

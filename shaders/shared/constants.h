@@ -205,29 +205,29 @@ BINOSPLAT_CONSTANT uint kDoesAny = 3;
 // Invocations of a workgroup in the passes of warp and choose: as many as every device allows.
 BINOSPLAT_CONSTANT uint kWarpGroup = 128;
 
-// warp_past: the block of pixels that a thread makes: 9x13 source pixels are read for 4x8. A workgroup makes
+// warp_history: the block of pixels that a thread makes: 9x13 source pixels are read for 4x8. A workgroup makes
 // the blocks of a row of tiles.
-BINOSPLAT_CONSTANT uint kPastColumns = 4;
-BINOSPLAT_CONSTANT uint kPastRows = 8;
-BINOSPLAT_CONSTANT uint kPastGroup = 64;
-BINOSPLAT_CONSTANT uint kPastTiles = kPastGroup * kPastColumns * kPastRows / (kTileSize * kTileSize);
+BINOSPLAT_CONSTANT uint kHistoryColumns = 4;
+BINOSPLAT_CONSTANT uint kHistoryRows = 8;
+BINOSPLAT_CONSTANT uint kHistoryGroup = 64;
+BINOSPLAT_CONSTANT uint kHistoryTiles = kHistoryGroup * kHistoryColumns * kHistoryRows / (kTileSize * kTileSize);
 // Depths are examined this far around a block: within a frame, a head's motion shifts near content against
 // far content by less than that.
-BINOSPLAT_CONSTANT uint kPastBorder = 2;
+BINOSPLAT_CONSTANT uint kHistoryBorder = 2;
 // Farther away, occluders are searched for along the path they would take where the near plane moves that
 // far, in steps of this.
-BINOSPLAT_CONSTANT float kPastSearchStep = 8.0f;
-BINOSPLAT_CONSTANT uint kPastMostSearched = 48;
+BINOSPLAT_CONSTANT float kHistorySearchStep = 8.0f;
+BINOSPLAT_CONSTANT uint kHistoryMostSearched = 48;
 // How far the places of a block's pixels may deviate from a common shift, and how much of that may come from
 // its depths, in pixels.
-BINOSPLAT_CONSTANT float kPastSmooth = 0.0625f;
-BINOSPLAT_CONSTANT float kPastSameDepth = 0.25f;
-// A pixel of the past that lands this close to the wanted place is what is seen there (half a pixel, and
+BINOSPLAT_CONSTANT float kHistorySmooth = 0.0625f;
+BINOSPLAT_CONSTANT float kHistorySameDepth = 0.25f;
+// A pixel of the history that lands this close to the wanted place is what is seen there (half a pixel, and
 // rounding).
-BINOSPLAT_CONSTANT float kPastAgrees = 0.51f;
-BINOSPLAT_CONSTANT uint kPastSteps = 3;
+BINOSPLAT_CONSTANT float kHistoryAgrees = 0.51f;
+BINOSPLAT_CONSTANT uint kHistorySteps = 3;
 // The taps of a place reach this far from its pixel.
-BINOSPLAT_CONSTANT int kPastReach = 3;
+BINOSPLAT_CONSTANT int kHistoryReach = 3;
 // A pixel whose inverse depth spreads by an eighth of it blends what is in front with what is behind: it
 // moves with the nearest content of the words this far around; from eye to eye, with that of itself and its
 // two neighbours in the row.

@@ -207,23 +207,23 @@ struct ResamplePass {
     uint groups_holes;    // 1: holes will be grouped: `target` gets a ComponentPixel for each of their pixels
 };
 
-// warp_past and warp_pixels: an eye's picture, warped from the one that it showed before, and each tile's
+// warp_history and warp_pixels: an eye's picture, warped from the one that it showed before, and each tile's
 // error so far. With half-float colours, these are their addresses, too.
-struct WarpPastPass {
-    PastViews view;
+struct WarpHistoryPass {
+    HistoryViews view;
     FloatColours source;  // the history
     Uints source_words;   // its pixels' depths: lib/moving_pixel.glsl
-    PastTiles source_tiles;
-    FloatColours target;  // out
-    Uints target_words;   // out
-    PastTiles tiles;      // out
-    Uints tile_kinds;     // out: 0, or kTileHidden
-    Uints tile_mask;      // out: zeros
-    Uints price_bins;     // out: zeros
-    Uints shown_mask;     // if parts are hidden: the shown tiles; otherwise null
-    Uints past_shown;     // the same for the history
-    PastBlocks blocks;    // from warp_past to warp_pixels: the blocks whose pixels are made one by one
-    PastBlockLists block_list;
+    HistoryTiles source_tiles;
+    FloatColours target;   // out
+    Uints target_words;    // out
+    HistoryTiles tiles;    // out
+    Uints tile_kinds;      // out: 0, or kTileHidden
+    Uints tile_mask;       // out: zeros
+    Uints price_bins;      // out: zeros
+    Uints shown_mask;      // if parts are hidden: the shown tiles; otherwise null
+    Uints history_shown;   // the same for the history
+    HistoryBlocks blocks;  // from warp_history to warp_pixels: the blocks whose pixels are made one by one
+    HistoryBlockLists block_list;
 };
 
 // newcomers: predicted: splats that only the target sees, by the tiles that hold them.
@@ -257,7 +257,7 @@ struct ComponentsPass {
 
 // mark_changed: where parts of the scene came, went or faded, a history is wrong.
 struct MarkChangedPass {
-    PastTiles tiles;  // in and out, of the picture being made
+    HistoryTiles tiles;  // in and out, of the picture being made
     ChangedRects rects;
     uvec2 size_tiles;
     uint count;  // of rects, at least 1

@@ -167,20 +167,20 @@ BINOSPLAT_ARRAY_OF(WarpView, WarpViews);
 
 // How places in a picture map to the one from which it is made, and back: what the same eye showed before, or
 // the other eye's picture.
-struct PastView {
-    PixelMap past_from_now;
-    PixelMap now_from_past;
+struct HistoryView {
+    PixelMap history_from_now;
+    PixelMap now_from_history;
     uvec2 size_px;
     uvec2 size_tiles;
-    uvec2 past_size_px;
-    uvec2 past_size_tiles;
+    uvec2 history_size_px;
+    uvec2 history_size_tiles;
     float nearest;    // inverse depth of the near plane
     vec3 background;  // of hidden tiles
 };
-BINOSPLAT_ARRAY_OF(PastView, PastViews);
+BINOSPLAT_ARRAY_OF(HistoryView, HistoryViews);
 
 // What later pictures must know about a tile of the picture from which they are made.
-struct PastTile {
+struct HistoryTile {
     uint cost;  // in pairs, when it was last rendered
     uint age;   // frames since it was rendered
     // By quarters, row by row:
@@ -193,7 +193,7 @@ struct PastTile {
     uint unseen;            // by quarters, eight bits each: pixels that the history did not see
     uint squared_gradient;  // until tiles are chosen: summed over pixels and channels, in kErrorSteps
 };
-BINOSPLAT_ARRAY_OF(PastTile, PastTiles);
+BINOSPLAT_ARRAY_OF(HistoryTile, HistoryTiles);
 
 // Where a changed part of the scene is seen in a picture: pixels from begin to end (exclusive), and the
 // amplitude of the expected error if the picture is warped from its history.
@@ -205,16 +205,16 @@ struct ChangedRect {
 BINOSPLAT_ARRAY_OF(ChangedRect, ChangedRects);
 
 // A block of a picture whose pixels are warped from the history one by one.
-struct PastBlock {
+struct HistoryBlock {
     uint place;           // row << 16 | column, in blocks
     vec2 inverse_depths;  // the least and the greatest in and around it
 };
-BINOSPLAT_ARRAY_OF(PastBlock, PastBlocks);
-struct PastBlockList {
+BINOSPLAT_ARRAY_OF(HistoryBlock, HistoryBlocks);
+struct HistoryBlockList {
     DispatchSize per_group;  // workgroups of kGroupSize, one thread per pixel, at most kMaxGroupsX
     uint count;
 };
-BINOSPLAT_ARRAY_OF(PastBlockList, PastBlockLists);
+BINOSPLAT_ARRAY_OF(HistoryBlockList, HistoryBlockLists);
 
 // A hole's pixel while holes are grouped, stored in place of its colour (the first half of a float colour),
 // since all holes are rendered.
@@ -298,12 +298,12 @@ struct TargetState {
     BINOSPLAT_STORED(Floats) depths;         // D = sum w z
     // Present where meshes cut through the splats: depth_scale / z + depth_offset.
     BINOSPLAT_STORED(Floats) mesh_depths;
-    BINOSPLAT_STORED(Vec2s) moments;         // I = sum w/z and J = sum w/z^2
-    BINOSPLAT_STORED(Uints) moving;          // if the picture is going to be warped: lib/moving_pixel.glsl
-    BINOSPLAT_STORED(Uints) arrivals;        // where these will arrive in the other eye
-    BINOSPLAT_STORED(PastTiles) past_tiles;  // if it is going to be a history
-    BINOSPLAT_STORED(Uints) tile_mask;       // lib/tile_mask.glsl: the tiles that are rendered; null: all
-    BINOSPLAT_STORED(Uints) tile_list;       // the same, unordered, if passes chose them
+    BINOSPLAT_STORED(Vec2s) moments;               // I = sum w/z and J = sum w/z^2
+    BINOSPLAT_STORED(Uints) moving;                // if the picture is going to be warped: lib/moving_pixel.glsl
+    BINOSPLAT_STORED(Uints) arrivals;              // where these will arrive in the other eye
+    BINOSPLAT_STORED(HistoryTiles) history_tiles;  // if it is going to be a history
+    BINOSPLAT_STORED(Uints) tile_mask;             // lib/tile_mask.glsl: the tiles that are rendered; null: all
+    BINOSPLAT_STORED(Uints) tile_list;             // the same, unordered, if passes chose them
     // If tiles are chosen or may be coarse: those with pairs, coarse ones from the end backwards.
     BINOSPLAT_STORED(Uints) full_tiles;
     // If passes choose tiles, for each tile:
@@ -316,8 +316,8 @@ struct TargetState {
     EyeCounters counters;
     WarpView warp;  // if it is made from another
     WarpCounters warp_counters;
-    PastView past;  // if it is made from its own history
-    PastBlockList past_blocks;
+    HistoryView history;  // if it is made from its own history
+    HistoryBlockList history_blocks;
     // If it is made from either: those that are rendered; in the first target, per_item is for all.
     ListState chosen_tiles;
     ListState chosen_visible;  // its visible splats, or none if there is no such tile

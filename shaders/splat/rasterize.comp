@@ -25,12 +25,12 @@ layout(constant_id = 4) const uint kSplatKind = kDiscs;
 layout(local_size_x_id = 5) in;  // kCellsPerTile * kThreadsPerCell
 layout(constant_id = 6) const bool kEvenRows = false;  // an odd row is going to be warped like the even one above it
 layout(constant_id = 7) const bool kMasked = false;    // only the tiles of its target's list
-layout(constant_id = 8) const bool kPast = false;      // the picture is going to be a history
+layout(constant_id = 8) const bool kHistory = false;      // the picture is going to be a history
 layout(constant_id = 9) const bool kCoarse = false;    // some tiles of the list may be coarse
 layout(constant_id = 10) const bool kCut = false;      // splats show only where they are nearer than a mesh
 
 // Of 3D Gaussians the low-pass is in what is projected.
-const bool kMeasures = kPast && kMasked && kSplatKind == kDiscs;
+const bool kMeasures = kHistory && kMasked && kSplatKind == kDiscs;
 
 const bool kPlaced = false;  // no splat of the scene is read
 #include "lib/splat.glsl"
@@ -214,7 +214,7 @@ void blendTile(uint lanes, uvec2 range, uvec2 tile_px, vec2 first_px, bool is_co
         batch_depth[kNoSplat] = vec4(1, 0, 0, 1e30);
         batch_colour[kNoSplat] = uvec2(0);
     }
-    if (kPast && gl_LocalInvocationIndex < kCellsPerTile) { squares[gl_LocalInvocationIndex] = 0; }
+    if (kHistory && gl_LocalInvocationIndex < kCellsPerTile) { squares[gl_LocalInvocationIndex] = 0; }
     if (kCoarse) {
         barrier();
         if (indexInCell() == 0) { atomicMax(most_pairs, range.y - range.x); }
@@ -255,10 +255,10 @@ vec3 shownOf(vec3 sum, float left) {
 // Writes the tile's pixels.
 void putTile(uint tile, uvec2 range, uvec2 first_pixel) {
     const uvec2 size_px = pass.eyes.at[gl_WorkGroupID.z].size_px;
-    const bool may_move = kEvenRows || kPast || kMoments, may_keep = kMoments && !kEvenRows && !kPast;
+    const bool may_move = kEvenRows || kHistory || kMoments, may_keep = kMoments && !kEvenRows && !kHistory;
     const uvec2 colours = TARGET.colours, depths = kDepth ? TARGET.depths : uvec2(0), sums = may_keep ? TARGET.moments : uvec2(0),
                 moving = may_move ? TARGET.moving : uvec2(0), arrivals = may_move ? TARGET.arrivals : uvec2(0);
-    const bool clears_arrivals = isThere(arrivals), keeps_moments = may_keep && isThere(sums), moves = kEvenRows || kPast || (kMoments && isThere(moving));
+    const bool clears_arrivals = isThere(arrivals), keeps_moments = may_keep && isThere(sums), moves = kEvenRows || kHistory || (kMoments && isThere(moving));
     const uint row_words = may_move ? TARGET.row_words : 0;
     float error = 0;
     [[unroll]] for (uint p = 0; p < kPixels; ++p) {
@@ -267,7 +267,7 @@ void putTile(uint tile, uvec2 range, uvec2 first_pixel) {
             const uint at = pixel.y * size_px.x + pixel.x;
             const float left = abs(transmittance[p]);
             const vec3 shown = shownOf(colour[p], left);
-            if (kPast && isMade()) { addError(error, shown, colours, at); }
+            if (kHistory && isMade()) { addError(error, shown, colours, at); }
             if (!kMeasures || !is_wider) {
                 putColour(FloatColours(colours), HalfColours(colours), at, vec4(shown, 1 - left));
                 if (kDepth && isThere(depths)) { Floats(depths).at[at] = depth[p]; }
@@ -279,7 +279,7 @@ void putTile(uint tile, uvec2 range, uvec2 first_pixel) {
             }
         }
     }
-    if (!kPast) { return; }
+    if (!kHistory) { return; }
     if (kMasked) {
         atomicAdd(squares[cellIndex()], uint(error * kErrorSteps));
         barrier();
@@ -297,7 +297,7 @@ uint fillTiles(uint tile, uvec2 tile_px, uvec2 range) {
     [[unroll]] for (uint p = 0; p < kPixels; ++p) {
         const float left = abs(transmittance[p]);
         putSample(cellIndex(), first + ivec2(0, p), vec4(shownOf(colour[p], left), 1 - left), left < 1 ? depth[p] / (1 - left) : 0,
-                  kPast ? toMove(1 - left, depth[p], moments[p]) : 0);
+                  kHistory ? toMove(1 - left, depth[p], moments[p]) : 0);
     }
     barrier();
     float details = 0;
@@ -316,7 +316,7 @@ uint fillTiles(uint tile, uvec2 tile_px, uvec2 range) {
     const bool is_filled = is_there && (sharp & (1u << cellIndex())) == 0;
     float error = 0;
     if (is_filled) {
-        const uvec2 colours = TARGET.colours, depths = kDepth ? TARGET.depths : uvec2(0), moving = kPast ? TARGET.moving : uvec2(0);
+        const uvec2 colours = TARGET.colours, depths = kDepth ? TARGET.depths : uvec2(0), moving = kHistory ? TARGET.moving : uvec2(0);
         const uint width = pass.eyes.at[gl_WorkGroupID.z].size_px.x;
         for (uint task = indexInCell(); task < 2 * kTileSize; task += kThreadsPerCell) {
             const int x = int(task % kTileSize);
@@ -329,15 +329,15 @@ uint fillTiles(uint tile, uvec2 tile_px, uvec2 range) {
                 const ivec2 nearest = ivec2(x, y) / 2;
                 const uvec2 pixel = tile_px + uvec2(x, y);
                 const uint at = pixel.y * width + pixel.x;
-                if (kPast && isMade()) { addError(error, filled.rgb, colours, at); }
+                if (kHistory && isMade()) { addError(error, filled.rgb, colours, at); }
                 putColour(FloatColours(colours), HalfColours(colours), at, filled);
                 if (kDepth && isThere(depths)) { Floats(depths).at[at] = filled.a * sampleDepth(cellIndex(), nearest); }
-                if (kPast) { Uints(moving).at[pixel.y * width + pixel.x] = sampleWord(cellIndex(), nearest); }
+                if (kHistory) { Uints(moving).at[pixel.y * width + pixel.x] = sampleWord(cellIndex(), nearest); }
                 ++p;
             } while (p < kHalfTile);
         }
     }
-    if (kPast) {
+    if (kHistory) {
         if (is_filled) { atomicAdd(squares[cellIndex()], uint(error * kErrorSteps)); }
         barrier();
         if (is_filled && indexInCell() == 0) {

@@ -46,7 +46,7 @@ bool findPairs(uint tile) {
 }
 
 // True if the picture is going to be a history.
-bool leavesPast() { return isThere(TARGET.past_tiles); }
+bool leavesHistory() { return isThere(TARGET.history_tiles); }
 
 uvec2 sizeTiles() { return pass.eyes.at[gl_WorkGroupID.z].size_tiles; }
 uvec2 sizePx() { return pass.eyes.at[gl_WorkGroupID.z].size_px; }
@@ -80,7 +80,7 @@ void clear(uint tile, uint pixel_of_tile) {
     const uint at = pixel.y * size_px.x + pixel.x;
     putColour(FloatColours(TARGET.colours), HalfColours(TARGET.colours), at, vec4(pass.background, 0));
     if (isThere(TARGET.depths)) { Floats(TARGET.depths).at[at] = 0; }
-    if (leavesPast()) { Uints(TARGET.moving).at[at] = movingPixel(0, kLanded, 0); }
+    if (leavesHistory()) { Uints(TARGET.moving).at[at] = movingPixel(0, kLanded, 0); }
 }
 
 void main() [[subgroup_uniform_control_flow]] {
@@ -101,7 +101,7 @@ void main() [[subgroup_uniform_control_flow]] {
     if (listed) {
         full = findPairs(tile);
         if (!full) { empty_tiles[atomicAdd(empty_count, 1)] = tile; }
-        if (leavesPast() && !full) { PastTiles(TARGET.past_tiles).at[tile] = PastTile(0, 0, vec4(0), vec4(0), uvec4(0), 0, 0, 0); }
+        if (leavesHistory() && !full) { HistoryTiles(TARGET.history_tiles).at[tile] = HistoryTile(0, 0, vec4(0), vec4(0), uvec4(0), 0, 0, 0); }
     }
     listFull(full, full && TARGET.counters.may_be_coarse != 0 && mayBeCoarse(tile), tile);
     barrier();

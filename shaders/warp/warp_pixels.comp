@@ -1,4 +1,4 @@
-// warp_pixels: the pixels of an eye's picture that warp_past has left out, one thread per pixel.
+// warp_pixels: the pixels of an eye's picture that warp_history has left out, one thread per pixel.
 //
 // A place is found backwards, by a fixed point (Bowles et al. 2012, Iterative Image Warping): the depth at a
 // place says where the place is. Such a search always finds something, so a place counts only if the
@@ -11,24 +11,24 @@
 
 layout(constant_id = 0) const bool kHalfColours = false;
 layout(constant_id = 1) const bool kHiddenTiles = false;  // a lens hides parts
-layout(constant_id = 2) const bool kByAddress = false;    // lib/past.glsl; for software devices
+layout(constant_id = 2) const bool kByAddress = false;    // lib/history.glsl; for software devices
 
 layout(local_size_x = kGroupSize) in;
-layout(push_constant, scalar) uniform Push { WarpPastPass pass; };
+layout(push_constant, scalar) uniform Push { WarpHistoryPass pass; };
 
 #include "lib/tile_mask.glsl"
 #include "lib/picture.glsl"
 #include "lib/moving_pixel.glsl"
 #include "lib/move_pixel.glsl"
-#include "lib/past.glsl"
+#include "lib/history.glsl"
 #include "lib/cubic.glsl"
 #include "lib/lagrange.glsl"
 
-const uint kBlockPixels = kPastColumns * kPastRows;
+const uint kBlockPixels = kHistoryColumns * kHistoryRows;
 
 // How wide a pixel of the history is at a place: more than one pixel if the view has turned towards it.
-vec2 widthOfPixel(PastView view, vec2 wanted_px) {
-    const PixelMap map = view.past_from_now;
+vec2 widthOfPixel(HistoryView view, vec2 wanted_px) {
+    const PixelMap map = view.history_from_now;
     const vec3 place = movePixelAnywhere(map, wanted_px, 0);
     const vec2 across = (vec2(1 + map.excess_x.x, map.excess_y.x) - place.xy * map.excess_z.x) / place.z;
     const vec2 down = (vec2(map.excess_x.y, 1 + map.excess_y.y) - place.xy * map.excess_z.y) / place.z;
@@ -36,16 +36,16 @@ vec2 widthOfPixel(PastView view, vec2 wanted_px) {
 }
 
 // Searches, from a first guess, for where the history shows what is wanted; true if found.
-bool search(PastView view, vec2 wanted_px, float guess, vec2 agrees, out Seen seen, out vec2 place_px) {
+bool search(HistoryView view, vec2 wanted_px, float guess, vec2 agrees, out Seen seen, out vec2 place_px) {
     float inverse_depth = guess;
     bool found = false, inside = true;
     place_px = wanted_px;
     seen = Seen(0, guess, vec2(0));
-    [[unroll]] for (uint step = 0; step < kPastSteps; ++step) {
+    [[unroll]] for (uint step = 0; step < kHistorySteps; ++step) {
         if (!found && inside) {
-            const vec3 place = movePixelAnywhere(view.past_from_now, wanted_px, inverse_depth);
+            const vec3 place = movePixelAnywhere(view.history_from_now, wanted_px, inverse_depth);
             place_px = place.xy;
-            inside = place.z > 0 && isInPast(view, place_px);
+            inside = place.z > 0 && isInHistory(view, place_px);
             if (inside) {
                 seen = look(view, place_px, wanted_px);
                 found = seen.word != 0 && all(lessThanEqual(abs(seen.off_px), agrees));
@@ -54,15 +54,15 @@ bool search(PastView view, vec2 wanted_px, float guess, vec2 agrees, out Seen se
         }
     }
     if (found) {
-        const vec2 exact_px = movePixelAnywhere(view.past_from_now, wanted_px, inverse_depth).xy;
-        if (!isHiddenInPast(view, pixelAt(view.past_size_px, exact_px))) { place_px = exact_px; }
+        const vec2 exact_px = movePixelAnywhere(view.history_from_now, wanted_px, inverse_depth).xy;
+        if (!isHiddenInHistory(view, pixelAt(view.history_size_px, exact_px))) { place_px = exact_px; }
     }
     return found;
 }
 
 // The nearest content around a place, as inverse depth in the picture that is being made.
-float frontAround(PastView view, vec2 place_px) {
-    const ivec2 last = ivec2(view.past_size_px) - 1, middle = ivec2(clamp(place_px, vec2(0), vec2(last)));
+float frontAround(HistoryView view, vec2 place_px) {
+    const ivec2 last = ivec2(view.history_size_px) - 1, middle = ivec2(clamp(place_px, vec2(0), vec2(last)));
     uint nearest = 0;
     [[unroll]] for (int y = -kFrontReach; y <= kFrontReach; ++y) {
         [[unroll]] for (int x = -kFrontReach; x <= kFrontReach; ++x) {
@@ -72,7 +72,7 @@ float frontAround(PastView view, vec2 place_px) {
     }
     if (nearest == 0) { return 0; }
     const float inverse_depth = inverseDepthOf(nearest);
-    return inverse_depth / max(moveOfPixel(view.now_from_past, vec2(middle) + 0.5, inverse_depth).z, 1e-6);
+    return inverse_depth / max(moveOfPixel(view.now_from_history, vec2(middle) + 0.5, inverse_depth).z, 1e-6);
 }
 
 // With the kernel of whole blocks.
@@ -107,13 +107,13 @@ Sample sampleSmoothly(vec2 place_px, ivec2 size, vec2 direction) {
 
 // Makes one pixel; returns its expected squared error, with `unseen` the part of it due to what the history
 // did not see.
-float makePixel(PastView view, uvec2 pixel, vec2 depths, out float unseen, out float squared_gradient) {
+float makePixel(HistoryView view, uvec2 pixel, vec2 depths, out float unseen, out float squared_gradient) {
     const vec2 wanted_px = vec2(pixel) + 0.5;
     Seen from_near, from_far;
     vec2 near_px, far_px;
     const vec2 disparity_px = disparity(view, wanted_px);
-    const bool is_flat = max(abs(disparity_px.x), abs(disparity_px.y)) * (depths.y - depths.x) <= kPastSameDepth;
-    const vec2 agrees = kPastAgrees * max(vec2(1), widthOfPixel(view, wanted_px));
+    const bool is_flat = max(abs(disparity_px.x), abs(disparity_px.y)) * (depths.y - depths.x) <= kHistorySameDepth;
+    const vec2 agrees = kHistoryAgrees * max(vec2(1), widthOfPixel(view, wanted_px));
     const bool near_found = search(view, wanted_px, depths.y, agrees, from_near, near_px);
     const bool far_found = search(view, wanted_px, depths.x, agrees, from_far, far_px);
     const bool takes_near = near_found && (!far_found || from_near.inverse_depth >= from_far.inverse_depth);
@@ -121,11 +121,11 @@ float makePixel(PastView view, uvec2 pixel, vec2 depths, out float unseen, out f
     if (takes_near) { seen = from_near; }
     vec2 place_px = takes_near ? near_px : far_px;
     const bool found = near_found || far_found;
-    unseen = found ? 0 : seen.word == 0 || !isInPast(view, place_px) ? kUnseenError : kUncoveredError;
+    unseen = found ? 0 : seen.word == 0 || !isInHistory(view, place_px) ? kUnseenError : kUncoveredError;
     // A pixel that blends two depths moves with what stands in front, so that a silhouette keeps its shape.
     if (found && !is_flat) {
-        const vec3 with_front = movePixelAnywhere(view.past_from_now, wanted_px, frontAround(view, place_px));
-        if (with_front.z > 0 && isInPast(view, with_front.xy)) {
+        const vec3 with_front = movePixelAnywhere(view.history_from_now, wanted_px, frontAround(view, place_px));
+        if (with_front.z > 0 && isInHistory(view, with_front.xy)) {
             const Seen there = look(view, with_front.xy, wanted_px);
             if ((there.word & kSpreadBits) >= kMixedCode) {
                 seen = there;
@@ -141,7 +141,7 @@ float makePixel(PastView view, uvec2 pixel, vec2 depths, out float unseen, out f
         uncertain_px = abs(uncertain_px) + abs(place_px - middle_px);
         place_px = middle_px;
     }
-    const ivec2 size = ivec2(view.past_size_px);
+    const ivec2 size = ivec2(view.history_size_px);
     Sample one;
     if (is_flat) {
         one = sampleSmoothly(place_px, size, uncertain_px);
@@ -156,12 +156,12 @@ float makePixel(PastView view, uvec2 pixel, vec2 depths, out float unseen, out f
 }
 
 void main() {
-    const PastView view = pass.view.at[0];
+    const HistoryView view = pass.view.at[0];
     const uint pixels = pass.block_list.at[0].count * kBlockPixels;
     uint i = gl_WorkGroupID.x * kGroupSize + gl_LocalInvocationIndex;
     if (i >= pixels) { return; }
     [[dont_unroll]] do {
-        const PastBlock block = pass.blocks.at[i / kBlockPixels];
+        const HistoryBlock block = pass.blocks.at[i / kBlockPixels];
         const uint in_block = i % kBlockPixels;
         const uvec2 pixel = uvec2(block.place & 0xffffu, block.place >> 16) * kBlock + uvec2(in_block % kBlock.x, in_block / kBlock.x);
         if (all(lessThan(pixel, view.size_px))) {

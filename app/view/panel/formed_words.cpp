@@ -18,7 +18,7 @@ constexpr float kUnits = 64.0f;  // of a pixel, in both libraries
 constexpr unsigned kDotsPerInch = 72;
 
 // A glyph of a font, and its x, y and advance in units.
-using PlacedSign = std::array<std::int64_t, 4>;
+using PlacedGlyph = std::array<std::int64_t, 4>;
 
 class FormingFont {
 public:
@@ -46,7 +46,7 @@ public:
     }
 
     // From left to right; empty if the font lacks a glyph.
-    [[nodiscard]] std::vector<PlacedSign> form(const std::u32string& word) const {
+    [[nodiscard]] std::vector<PlacedGlyph> form(const std::u32string& word) const {
         if (!font_) { return {}; }
         const UniqueOf<hb_buffer_t, hb_buffer_destroy> buffer(hb_buffer_create());
         hb_buffer_add_utf32(buffer.get(), reinterpret_cast<const std::uint32_t*>(word.data()), static_cast<int>(word.size()), 0, -1);
@@ -55,7 +55,7 @@ public:
         unsigned count = 0;
         const hb_glyph_info_t* const infos = hb_buffer_get_glyph_infos(buffer.get(), &count);
         const hb_glyph_position_t* const places = hb_buffer_get_glyph_positions(buffer.get(), &count);
-        std::vector<PlacedSign> signs;
+        std::vector<PlacedGlyph> signs;
         for (unsigned i = 0; i < count; ++i) {
             if (infos[i].codepoint == 0) { return {}; }
             signs.push_back({infos[i].codepoint, places[i].x_offset, places[i].y_offset, places[i].x_advance});
@@ -63,9 +63,9 @@ public:
         return signs;
     }
 
-    [[nodiscard]] FormedSign draw(const PlacedSign& sign) const {
+    [[nodiscard]] FormedGlyph draw(const PlacedGlyph& sign) const {
         const auto [glyph, x, y, advance] = sign;
-        FormedSign drawn{{0, 0}, {}, {0.0f, 0.0f}, static_cast<float>(advance) / kUnits};
+        FormedGlyph drawn{{0, 0}, {}, {0.0f, 0.0f}, static_cast<float>(advance) / kUnits};
         if (FT_Load_Glyph(face_.get(), static_cast<FT_UInt>(glyph), FT_LOAD_NO_HINTING | FT_LOAD_NO_BITMAP) != 0 ||
             FT_Render_Glyph(face_->glyph, FT_RENDER_MODE_NORMAL) != 0) {
             return drawn;
@@ -88,7 +88,7 @@ private:
 
 }  // namespace
 
-FormedWords formWords(const std::set<std::u32string>& words, std::span<const LoadedFont> fonts, float line_px, std::size_t most_signs) {
+FormedWords formWords(const std::set<std::u32string>& words, std::span<const LoadedFont> fonts, float line_px, std::size_t most_glyphs) {
     FormedWords formed;
     FT_Library begun = nullptr;
     if (words.empty() || FT_Init_FreeType(&begun) != 0) { return formed; }
@@ -100,12 +100,12 @@ FormedWords formWords(const std::set<std::u32string>& words, std::span<const Loa
     const int em = forming.empty() ? 0 : forming.front().em(line_px);
     if (em == 0) { return formed; }
     for (FormingFont& font : forming) { font.setEm(em); }
-    std::map<std::pair<const FormingFont*, PlacedSign>, std::size_t> numbers;
+    std::map<std::pair<const FormingFont*, PlacedGlyph>, std::size_t> numbers;
     for (const std::u32string& word : words) {
         for (const FormingFont& font : forming) {
-            const std::vector<PlacedSign> signs = font.form(word);
-            if (signs.empty() || formed.signs.size() + signs.size() > most_signs) { continue; }
-            for (const PlacedSign& sign : signs) {
+            const std::vector<PlacedGlyph> signs = font.form(word);
+            if (signs.empty() || formed.signs.size() + signs.size() > most_glyphs) { continue; }
+            for (const PlacedGlyph& sign : signs) {
                 const auto [number, is_new] = numbers.try_emplace({&font, sign}, formed.signs.size());
                 if (is_new) { formed.signs.push_back(font.draw(sign)); }
                 formed.words[word].push_back(number->second);

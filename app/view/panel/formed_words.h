@@ -20,7 +20,7 @@ struct LoadedFont {
 };
 
 // A font's picture of one or several letters, and its place in the word.
-struct FormedSign {
+struct FormedGlyph {
     glm::uvec2 size_px;                   // of its picture, whose pixels are half as wide as the panel's
     std::vector<unsigned char> coverage;  // row by row
     // The picture's upper left corner, relative to the glyph's start on the base line; y down.
@@ -30,11 +30,11 @@ struct FormedSign {
 
 struct FormedWords {
     std::map<std::u32string, std::vector<std::size_t>> words;  // their glyphs from left to right
-    std::vector<FormedSign> signs;
+    std::vector<FormedGlyph> signs;
 };
 
 // Forms each word with the first font that has all of it; words that no font has are left out. At most
-// `most_signs` different glyphs. The first font's lines are `line_px` high.
-FormedWords formWords(const std::set<std::u32string>& words, std::span<const LoadedFont> fonts, float line_px, std::size_t most_signs);
+// `most_glyphs` different glyphs. The first font's lines are `line_px` high.
+FormedWords formWords(const std::set<std::u32string>& words, std::span<const LoadedFont> fonts, float line_px, std::size_t most_glyphs);
 
 }  // namespace binosplat

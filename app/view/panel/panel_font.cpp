@@ -29,7 +29,7 @@ constexpr std::array<ImWchar, 17> kRanges{0x0020, 0x024f, 0x0300, 0x052f, 0x1e00
 // Fonts with all of Unicode take 20 MB.
 constexpr std::size_t kMostFontBytes = std::size_t{64} << 20;
 // With these limits the atlas stays below 4096x2048, which every device can sample.
-constexpr std::size_t kMostAdded = 3000, kMostSigns = 1500;
+constexpr std::size_t kMostAdded = 3000, kMostGlyphs = 1500;
 constexpr std::size_t kMostPictures = 48, kMostWords = 400;
 
 bool isThereFromTheBeginning(ImWchar letter) {
@@ -119,7 +119,7 @@ AtlasPicture pictureOf(const ScenePicture& scene, PicturePlaces& places) {
             }};
 }
 
-AtlasPicture pictureOf(const FormedSign& sign, ImWchar letter) {
+AtlasPicture pictureOf(const FormedGlyph& sign, ImWchar letter) {
     const glm::uvec2 size_px = glm::max(sign.size_px, 1u);  // a blank has none
     std::vector<unsigned char> rgba(std::size_t{4} * size_px.x * size_px.y, 255);
     for (std::size_t i = 0; i < rgba.size() / 4; ++i) { rgba[4 * i + 3] = i < sign.coverage.size() ? sign.coverage[i] : 0; }
@@ -229,8 +229,8 @@ void PanelFont::build() {
     std::vector<AtlasPicture> pictures;
     for (const auto& [key, picture] : pictures_) { pictures.push_back(pictureOf(picture, built_places_)); }
     const std::size_t scenes = pictures.size();
-    const FormedWords formed = formWords(words_, fonts_, kFontPx, kMostSigns);
-    for (const FormedSign& sign : formed.signs) {
+    const FormedWords formed = formWords(words_, fonts_, kFontPx, kMostGlyphs);
+    for (const FormedGlyph& sign : formed.signs) {
         pictures.push_back(pictureOf(sign, static_cast<ImWchar>(kFirstPrivate + pictures.size() - scenes)));
     }
     // ImGui counts allocations of the context, if there is one, for a window of its own that is never opened:

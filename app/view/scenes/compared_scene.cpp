@@ -70,7 +70,7 @@ void ShownScene::meetOther(std::span<const Eye> eyes, const FrameSettings& frame
     if (std::exchange(other_.met, shape) == shape) { return; }
     const auto meet = [&](StereoFrame& other, std::span<const Eye> seen, const FrameSettings& settings) {
         const std::vector<Eye> there = seenFromResting(seen);
-        other.makeRoom(there, settings);
+        other.reserve(there, settings);
         // Each has memory of its own.
         for (int turn = 0; turn < 2; ++turn) { (void)other.renderAhead(there, settings); }
     };
@@ -84,7 +84,7 @@ void ShownScene::draw(bool other) {
     other = other && other_.scene;
     if (std::exchange(draws_other_, other) == other) { return; }
     for (StereoFrame* const frame : {drawing().frame.get(), drawing().insets.get()}) {
-        if (frame != nullptr) { frame->forgetPast(); }
+        if (frame != nullptr) { frame->forgetHistory(); }
     }
 }
 

@@ -44,7 +44,7 @@ void makeKernelsOf(StereoFrame& small, const FrameSettings& settings, std::span<
     FrameSettings other = settings;
     if (settings.mode == Mode::kPaper) {
         other.stereo.center_rois = !settings.stereo.center_rois;
-    } else if (settings.mode == Mode::kPredicted || hasPast(settings.mode)) {
+    } else if (settings.mode == Mode::kPredicted || hasHistory(settings.mode)) {
         other.gazes = {Gaze{}, Gaze{}};
     } else if (settings.mode == Mode::kShared) {
         other.order = settings.order == Order::kDepth ? Order::kDistance : Order::kDepth;
@@ -65,7 +65,7 @@ void makeKernelsAt(std::uint32_t width_px, StereoFrame& small, const CameraOptio
         between();
         FrameSettings settings = frameSettings(camera, ahead.stereo, kWearersOrder);
         settings.half_floats = true;
-        settings.keep_past = true;
+        settings.keep_history = true;
         settings.keep_depth = settings.keep_both_depths = ahead.with_depth;
         settings.keep_classes = ahead.tint;
         if (hides) { settings.hidden_tiles = {hidden, hidden}; }

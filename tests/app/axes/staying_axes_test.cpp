@@ -120,7 +120,7 @@ TEST_CASE_FIXTURE(Gpu, "while the head turns, what was seen before is the same b
     KeptFrame frame(context(), view.scene);
     FrameSettings settings;
     settings.mode = Mode::kTemporal;
-    settings.keep_past = true;
+    settings.keep_history = true;
     settings.stereo.budget = 1.0;
     settings.stereo.error_bound_db = 20.0;
     StayingAxes axes(kMargin);

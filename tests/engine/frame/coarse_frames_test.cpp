@@ -1,7 +1,7 @@
 // Facts about frames with coarse tiles where the eye would not see more: compared with the twin, and with the
 // same frames in full.
 #include "engine/twin/coarse.h"
-#include "tests/engine/passes/past_stages.h"
+#include "tests/engine/passes/history_stages.h"
 
 SUITE(coarse_frames) {
 
@@ -129,7 +129,7 @@ TEST_CASE_FIXTURE(Gpu, "a coarse tile leaves its samples' depths, a quarter of i
     for (const bool halves : {false, true}) {
         FrameSettings settings = settingsFor(kAside);
         settings.mode = Mode::kTemporal;
-        settings.keep_past = true;
+        settings.keep_history = true;
         settings.half_floats = halves;
         settings.gazes[1] = settings.gazes[0];
         KeptFrame frame(context(), view.scene);
@@ -140,18 +140,18 @@ TEST_CASE_FIXTURE(Gpu, "a coarse tile leaves its samples' depths, a quarter of i
         const test::EyeOnDevice eye = test::readEye(*this, frame, 0, view.eye);
         std::size_t coarse = 0, off = 0, pixels = 0;
         for (std::size_t t = 0; t < twin.coarse.size(); ++t) {
-            const reference::PastTile& tile = eye.past.tiles[t];
+            const reference::HistoryTile& tile = eye.history.tiles[t];
             CHECK(tile.age == 0);
             CHECK(tile.errors == std::array<double, 4>{});
             if (twin.coarse[t] == 0 || tile.lost == 0.0) { continue; }
             ++coarse;
             CHECK(tile.lost == doctest::Approx(std::sqrt(twin.losses[t] / (3.0 * 256.0))).epsilon(0.02));
         }
-        for (std::size_t i = 0; i < eye.past.pixels.size(); ++i) {
+        for (std::size_t i = 0; i < eye.history.pixels.size(); ++i) {
             const double alpha = twin.picture.rgba[i].a, inverse_depth = alpha > 0.0 ? twin.picture.inverse_depth[i] / alpha : 0.0;
             if (twin.coarse[test::tileOf(i, view.eye.size_px)] == 0) { continue; }
             ++pixels;
-            const double made = eye.past.pixels[i] ? eye.past.pixels[i]->inverse_depth : 0.0;
+            const double made = eye.history.pixels[i] ? eye.history.pixels[i]->inverse_depth : 0.0;
             off += std::abs(made - inverse_depth) > 1e-3 * inverse_depth ? 1 : 0;
         }
         CHECK(coarse > 20);
@@ -163,10 +163,10 @@ TEST_CASE_FIXTURE(Gpu, "a coarse tile leaves its samples' depths, a quarter of i
         other.render(eyes, full);
         const test::EyeOnDevice in_full = test::readEye(*this, other, 0, view.eye);
         for (std::size_t t = 0; t < twin.coarse.size(); ++t) {
-            const std::uint64_t pairs = in_full.past.tiles[t].cost;
+            const std::uint64_t pairs = in_full.history.tiles[t].cost;
             // A flat tile loses nothing.
-            const bool is_coarse = eye.past.tiles[t].lost > 0.0 || twin.coarse[t] != 0;
-            CHECK(eye.past.tiles[t].cost == (is_coarse ? pairs / 4 : pairs));
+            const bool is_coarse = eye.history.tiles[t].lost > 0.0 || twin.coarse[t] != 0;
+            CHECK(eye.history.tiles[t].cost == (is_coarse ? pairs / 4 : pairs));
         }
     }
 }
@@ -174,14 +174,14 @@ TEST_CASE_FIXTURE(Gpu, "a coarse tile leaves its samples' depths, a quarter of i
 TEST_CASE_FIXTURE(Gpu,
                   "what a coarse tile lacks counts as soon as it would be seen, and so an eye that turns to such tiles sees them in full") {
     // With a squared error of 0.3072.
-    const reference::PastTile lacks{100, 1, {}, {0.1, 0.2, 0.3, 0.4}, {}, 0.02};
+    const reference::HistoryTile lacks{100, 1, {}, {0.1, 0.2, 0.3, 0.4}, {}, 0.02};
     CHECK(reference::withLoss(lacks, 0.08).errors == lacks.errors);
     CHECK(reference::withLoss(lacks, 0.09).errors[3] == doctest::Approx(0.42));
     const ViewedScene view = viewRoom({176, 144}, 20000);
     const std::array<Eye, 2> eyes{view.eye, view.eye};
     FrameSettings settings = settingsFor(kAside);
     settings.mode = Mode::kTemporal;
-    settings.keep_past = true;
+    settings.keep_history = true;
     settings.gazes[1] = settings.gazes[0];
     KeptFrame frame(context(), view.scene);
     CHECK(countOf(frame.render(eyes, settings), "tiles_coarse") > 40);

@@ -62,12 +62,12 @@ TEST_CASE_FIXTURE(Atelier, "a frame that is not waited for is the one that is, t
         KeptFrame ahead(context(), scene);
         const auto waited = StereoFrame::beside(ahead);
         FrameSettings settings = makeSettings(mode);
-        settings.keep_past = hasPast(mode);
-        for (int step = 0; step < (settings.keep_past ? 12 : 4); ++step) {
+        settings.keep_history = hasHistory(mode);
+        for (int step = 0; step < (settings.keep_history ? 12 : 4); ++step) {
             const auto eyes = eyesAt(ofSize(view.eye, step / 4 == 1 ? glm::uvec2(64, 80) : glm::uvec2(96, 96)), step);
             ahead.renderAhead(eyes, settings);
             // `predicted` uses the frame before
-            if (settings.keep_past || step >= 2) { waited->render(eyes, settings); }
+            if (settings.keep_history || step >= 2) { waited->render(eyes, settings); }
             if (step % 4 == 3) { CHECK(shownBy(ahead) == shownBy(*waited)); }
         }
     }
@@ -191,7 +191,7 @@ TEST_CASE_FIXTURE(Atelier,
             KeptFrame frame(context(), scene, kNoRoom);
             const auto waited = StereoFrame::beside(frame);
             FrameSettings settings = makeSettings(mode);
-            settings.keep_past = hasPast(mode);
+            settings.keep_history = hasHistory(mode);
             settings.waits_after_jump = false;
             if (has_room) { frame.renderAhead(there, settings); }
             goAhead(frame, has_room ? before : nowhere, settings, 3);
@@ -284,14 +284,14 @@ TEST_CASE_FIXTURE(Atelier, "pictures that the device has no memory for are refus
     for (Eye& eye : large) { eye.size_px = {4096, 4096}; }
     const auto show = [&] {
         for (int step = 0; step < 3; ++step) {
-            frame.makeRoom(fits, settings);
+            frame.reserve(fits, settings);
             frame.renderAhead(fits, settings);
         }
         frame.finish();
         return shownBy(frame);
     };
     const test::PairOfValues before = show();
-    for (int time = 0; time < 2; ++time) { CHECK_THROWS_AS(frame.makeRoom(large, settings), Error); }
+    for (int time = 0; time < 2; ++time) { CHECK_THROWS_AS(frame.reserve(large, settings), Error); }
     CHECK(show() == before);
     CHECK(tight.validationMessages().empty());
 }

@@ -47,7 +47,7 @@ public:
         const std::array pair = stereoPair(middle_, 0.063);
         std::vector<Eye> eyes(pair.begin(), pair.begin() + (settings_.mode == Mode::kMono ? 1 : 2));
         for (std::size_t e = 0; e < eyes.size(); ++e) {
-            eyes[e].size_px = sizes_[reprojects(settings_.mode) || !settings_.keep_past ? 0 : e];
+            eyes[e].size_px = sizes_[reprojects(settings_.mode) || !settings_.keep_history ? 0 : e];
             eyes[e].intrinsics = intrinsicsFromAngles(angles_[e], eyes[e].size_px);
             eyes[e].world_from_camera.orientation =
                 eyes[e].world_from_camera.orientation * glm::angleAxis(e == 0 ? -cant_ : cant_, glm::dvec3(0, 1, 0));
@@ -59,7 +59,7 @@ public:
         FrameSettings settings = settings_;
         // Moments are for files: pictures that are only shown have no kernel for them, and neither have
         // histories.
-        settings.keep_moments = settings.keep_moments && !settings.half_floats && !(settings.keep_past && hasPast(settings.mode));
+        settings.keep_moments = settings.keep_moments && !settings.half_floats && !(settings.keep_history && hasHistory(settings.mode));
         const std::vector<Eye> all = eyes();
         for (std::size_t e = 0; e < all.size() && hides_; ++e) {
             const glm::uvec2 tiles = (all[e].size_px + 15u) / 16u;
@@ -92,7 +92,7 @@ private:
         when([&] { s.keep_moments = dice_.falls(0.1); });
         when([&] { s.keep_classes = dice_.falls(0.3); });
         when([&] { s.half_periphery = dice_.falls(0.5); });
-        when([&] { s.keep_past = dice_.falls(0.9); });
+        when([&] { s.keep_history = dice_.falls(0.9); });
         when([&] {
             const bool both = dice_.falls(0.6);
             for (auto& gaze : s.gazes) {
@@ -132,7 +132,7 @@ private:
 };
 
 // Whether all that it learns from earlier frames is whether moving pays.
-bool standsAlone(const FrameSettings& settings) { return !hasPast(settings.mode) || !settings.keep_past; }
+bool standsAlone(const FrameSettings& settings) { return !hasHistory(settings.mode) || !settings.keep_history; }
 
 // By frames that know of none before them.
 std::vector<Image> picturesAlone(StereoFrame& other, const std::vector<Eye>& eyes, const FrameSettings& settings) {

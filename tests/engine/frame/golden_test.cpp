@@ -86,7 +86,7 @@ TEST_CASE_FIXTURE(Gpu, "the golden pictures are what twin and device render, in 
     }
 }
 
-// past_passes_test.cpp and others compare each pass with its twin; the file holds what all of their twins
+// history_passes_test.cpp and others compare each pass with its twin; the file holds what all of their twins
 // made together.
 TEST_CASE_FIXTURE(Gpu, "the last pair of a walk past a scene that moves is what it was") {
     const test::Folder folder;
@@ -95,7 +95,7 @@ TEST_CASE_FIXTURE(Gpu, "the last pair of a walk past a scene that moves is what 
     test::KeptFrame frame(context(), moving.scene());
     FrameSettings settings;
     settings.mode = Mode::kTemporal;
-    settings.keep_past = true;
+    settings.keep_history = true;
     settings.stereo.budget = kBudget;
     View view = *builtinView("atelier");
     view.fov_x_deg = 50.0;  // the sliding objects change a third of the tiles

@@ -7,7 +7,7 @@ SUITE(resident_scene) {
 FrameSettings makeSettings(Mode mode) {
     FrameSettings settings;
     settings.mode = mode;
-    settings.keep_past = true;
+    settings.keep_history = true;
     return settings;
 }
 
@@ -263,7 +263,7 @@ TEST_CASE_FIXTURE(Atelier, "lists have room for what comes, so that no frame is 
     CHECK(countOf(*frame.finish(), "frames_cut_short") == 0);
 }
 
-TEST_CASE_FIXTURE(Gpu, "where a part is exchanged, pictures that are made from their pasts are right again within some frames") {
+TEST_CASE_FIXTURE(Gpu, "where a part is exchanged, pictures that are made from their histories are right again within some frames") {
     const ViewedScene view = viewAtelier({160, 144});
     // What stands in front of the walls is replaced by the same in other colours.
     const std::vector<Scene> parts = inParts(view.scene, 12);

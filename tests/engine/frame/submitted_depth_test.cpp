@@ -65,7 +65,7 @@ TEST_CASE_FIXTURE(Gpu,
         KeptFrame frame(context(), scene);
         FrameSettings settings;
         settings.mode = mode;
-        settings.keep_past = hasPast(mode);
+        settings.keep_history = hasHistory(mode);
         settings.keep_depth = settings.keep_both_depths = true;
         settings.half_floats = true;
         std::array<Eye, 2> eyes{};

@@ -2,8 +2,8 @@
 // compiled shaders say with offsetof and sizeof. Also checks how shaders use their constants, and structs of
 // addresses.
 #include "engine/levels/contribute.h"
+#include "engine/passes/history_passes.h"
 #include "engine/passes/passes.h"
-#include "engine/passes/past_passes.h"
 #include "engine/passes/present.h"
 #include "shaders/embedded_shaders.h"
 #include "tests/engine/gpu/compiled_shader.h"
@@ -40,11 +40,12 @@ std::vector<Layout> hostLayouts() {
         LAYOUT(PixelMap, excess_x, excess_y, excess_z, shift),
         LAYOUT(WarpView, target_from_source, source_from_target, size_px, size_tiles, row_words, rows_apart, gap_px, margin_px,
                edge_samples, tight_edges, move_cost, budget, hole_error, newcomer_error, error_bound),
-        LAYOUT(PastView, past_from_now, now_from_past, size_px, size_tiles, past_size_px, past_size_tiles, nearest, background),
-        LAYOUT(PastTile, cost, age, growth, errors, grown, lost, unseen, squared_gradient),
+        LAYOUT(HistoryView, history_from_now, now_from_history, size_px, size_tiles, history_size_px, history_size_tiles, nearest,
+               background),
+        LAYOUT(HistoryTile, cost, age, growth, errors, grown, lost, unseen, squared_gradient),
         LAYOUT(ChangedRect, begin_px, end_px, error),
-        LAYOUT(PastBlock, place, inverse_depths),
-        LAYOUT(PastBlockList, per_group, count),
+        LAYOUT(HistoryBlock, place, inverse_depths),
+        LAYOUT(HistoryBlockList, per_group, count),
         LAYOUT(ComponentPixel, parent, component),
         LAYOUT(WarpCounters, covered_pixels, gap_pixels, hole_pixels, components, edge_tiles, center_tiles, predicted_tiles, cheap_tiles,
                newcomers, moved_tiles, picture_cost, shown_tiles, saved_cost, chosen_cost, moves, pays, last_bin, left_for_last,
@@ -54,9 +55,9 @@ std::vector<Layout> hostLayouts() {
         LAYOUT(PixelBox, x0, y0, x1, y1),
         LAYOUT(EyeCounters, pairs, large_splats, full_tiles, coarse_tiles, per_full_tile, coarse_kept, coarse_pairs, sharp_pairs,
                may_be_coarse, gaze),
-        LAYOUT(TargetState, colours, depths, mesh_depths, moments, moving, arrivals, past_tiles, tile_mask, tile_list, full_tiles,
-               tile_kinds, tile_costs, tile_errors, tile_prices, pairs, counters, warp, warp_counters, past, past_blocks, chosen_tiles,
-               chosen_visible, first_tile, row_words, measured, depth_scale, depth_offset, unused, is_made, area),
+        LAYOUT(TargetState, colours, depths, mesh_depths, moments, moving, arrivals, history_tiles, tile_mask, tile_list, full_tiles,
+               tile_kinds, tile_costs, tile_errors, tile_prices, pairs, counters, warp, warp_counters, history, history_blocks,
+               chosen_tiles, chosen_visible, first_tile, row_words, measured, depth_scale, depth_offset, unused, is_made, area),
         LAYOUT(CullPagesPass, pages, eyes, page_bits, word_offsets, page_list, visible_pages, page_count, first_eye, eye_count),
         LAYOUT(CullPass, chunks, eyes, page_list, visible_pages, visible_bits, group_counts, visible, splat_count, chunk_bits, first_eye,
                eye_count, capacity, at_once, first_tile_mask, last_tile_mask),
@@ -74,8 +75,8 @@ std::vector<Layout> hostLayouts() {
         LAYOUT(DepthBoundsPass, warp, colours, half_colours, moving, bins),
         LAYOUT(EdgeRoisPass, warp, bins, tile_kinds, shown_mask, counters),
         LAYOUT(ReprojectPass, warp, moving, arrivals, shown_mask),
-        LAYOUT(WarpPastPass, view, source, source_words, source_tiles, target, target_words, tiles, tile_kinds, tile_mask, price_bins,
-               shown_mask, past_shown, blocks, block_list),
+        LAYOUT(WarpHistoryPass, view, source, source_words, source_tiles, target, target_words, tiles, tile_kinds, tile_mask, price_bins,
+               shown_mask, history_shown, blocks, block_list),
         LAYOUT(NewcomersPass, chunks, eyes, warp, tile_depths, order, visible, source_counts, tile_kinds, tile_errors, counters, chunk_bits,
                eye, is_dimmed),
         LAYOUT(ResamplePass, warp, source, half_source, moving, target, half_target, depths, tile_kinds, tile_errors, pixel_classes,
@@ -93,7 +94,7 @@ std::vector<Layout> hostLayouts() {
 }
 
 // What is wrong with a shader's struct, or "". The language's own blocks have no twin in C++: the push
-// constants, the arrays behind an address, and sixteen bytes of anything (lib/past.glsl).
+// constants, the arrays behind an address, and sixteen bytes of anything (lib/history.glsl).
 std::string findMismatch(const Layout& shader, const std::vector<Layout>& host) {
     if (shader.name == "Push" || shader.name == "Sixteen" || (shader.fields.size() == 1 && shader.fields[0].name == "at")) { return {}; }
     const auto twin = std::find_if(host.begin(), host.end(), [&](const Layout& layout) { return layout.name == shader.name; });

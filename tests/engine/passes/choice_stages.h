@@ -1,7 +1,7 @@
 // price and select on the device, with made-up tiles.
 #pragma once
 
-#include "tests/engine/passes/past_stages.h"
+#include "tests/engine/passes/history_stages.h"
 
 namespace binosplat::test {
 
@@ -14,7 +14,7 @@ inline constexpr gpu::uint kPictureCost = 1u << 24;
 struct Tiles {
     glm::uvec2 size{0, 0};
     std::vector<gpu::uint> kinds, errors, costs;
-    std::vector<gpu::PastTile> past;
+    std::vector<gpu::HistoryTile> history;
 
     explicit Tiles(glm::uvec2 size_tiles)
         : size(size_tiles), kinds(std::size_t{size.x} * size.y, 0), errors(count(), 0), costs(count(), 100) {}
@@ -35,7 +35,7 @@ inline How withCost(std::uint64_t budget_cost) { return {.budget = static_cast<d
 // What the device makes of an eye's tiles, with the list sorted.
 struct Chosen {
     std::vector<gpu::uint> kinds, errors, costs, prices, bins, list, mask;
-    std::vector<gpu::PastTile> past;
+    std::vector<gpu::HistoryTile> history;
     gpu::WarpCounters counters;
     gpu::ListState masked_tiles, masked_visible;
 };
@@ -43,9 +43,9 @@ struct Chosen {
 // price and select, for one eye, or for two that share a budget.
 inline std::vector<Chosen> chooseOnDevice(Gpu& gpu, const std::vector<Tiles>& eyes, const How& how) {
     struct Buffers {
-        Buffer kinds, costs, errors, prices, list, mask, past;
+        Buffer kinds, costs, errors, prices, list, mask, history;
     };
-    const bool has_past = !eyes[0].past.empty();
+    const bool has_history = !eyes[0].history.empty();
     std::vector<Buffers> buffers;
     std::vector<gpu::TargetState> targets;
     std::size_t most_tiles = 0;
@@ -55,7 +55,7 @@ inline std::vector<Chosen> chooseOnDevice(Gpu& gpu, const std::vector<Tiles>& ey
         const Buffers& of = buffers.emplace_back(Buffers{
             gpu.upload("kinds", eye.kinds), gpu.upload("costs", eye.costs), gpu.upload("errors", eye.errors), gpu.upload("prices", zeros),
             gpu.upload("list", zeros), gpu.upload("mask", std::vector<gpu::uint>(std::size_t{(eye.size.x + 31) / 32} * eye.size.y, 0)),
-            gpu.upload("past", eye.past)});
+            gpu.upload("history", eye.history)});
         gpu::TargetState& target = targets.emplace_back();
         target.tile_kinds = of.kinds.address<gpu::uint>();
         target.tile_costs = of.costs.address<gpu::uint>();
@@ -63,22 +63,22 @@ inline std::vector<Chosen> chooseOnDevice(Gpu& gpu, const std::vector<Tiles>& ey
         target.tile_prices = of.prices.address<gpu::uint>();
         target.tile_list = of.list.address<gpu::uint>();
         target.tile_mask = of.mask.address<gpu::uint>();
-        target.past_tiles = of.past.address<gpu::PastTile>();
+        target.history_tiles = of.history.address<gpu::HistoryTile>();
         target.area = 1.0f;
         target.warp.size_px = how.gaze ? how.seen.size_px : 16u * eye.size;
         target.warp.size_tiles = eye.size;
         target.warp.budget = static_cast<float>(how.budget);
         target.warp.error_bound = static_cast<float>(how.error_bound);
-        target.warp_counters.moves = how.moves && !has_past ? 1 : 0;
-        target.warp_counters.picture_cost = how.moves && !has_past ? how.picture_cost : 0;
+        target.warp_counters.moves = how.moves && !has_history ? 1 : 0;
+        target.warp_counters.picture_cost = how.moves && !has_history ? how.picture_cost : 0;
         if (how.gaze) { target.counters.gaze = eyeGazeOf(*how.gaze, how.seen.intrinsics); }
     }
     const Buffer bins = gpu.upload("bins", std::vector<gpu::uint>(gpu::kPriceBins, 0)), states = gpu.upload("targets", targets),
                  visible = gpu.upload("visible", std::vector{makeList(kVisible)});
     const auto first = states.address<gpu::TargetState>();
     const auto first_list = states.address<gpu::ListState>(offsetof(gpu::TargetState, chosen_tiles));
-    const Kernel &price = gpu.kernel(PriceKernel{.foveated = how.gaze.has_value(), .past = has_past}),
-                 &select = gpu.kernel(SelectKernel{.predicted = how.predicted, .past = has_past});
+    const Kernel &price = gpu.kernel(PriceKernel{.foveated = how.gaze.has_value(), .history = has_history}),
+                 &select = gpu.kernel(SelectKernel{.predicted = how.predicted, .history = has_history});
     gpu.run([&](Commands& commands) {
         const auto groups = static_cast<std::uint32_t>((most_tiles + gpu::kWarpGroup - 1) / gpu::kWarpGroup),
                    count = static_cast<std::uint32_t>(eyes.size());
@@ -96,8 +96,8 @@ inline std::vector<Chosen> chooseOnDevice(Gpu& gpu, const std::vector<Tiles>& ey
         chosen.push_back({read(of.kinds), read(of.errors), read(of.costs), read(of.prices), gpu.readBack<gpu::uint>(bins, gpu::kPriceBins),
                           gpu.readBack<gpu::uint>(of.list, std::min<std::size_t>(targets[e].chosen_tiles.count, count)),
                           gpu.readBack<gpu::uint>(of.mask, std::size_t{(eyes[e].size.x + 31) / 32} * eyes[e].size.y),
-                          gpu.readBack<gpu::PastTile>(of.past, eyes[e].past.size()), targets[e].warp_counters, targets[e].chosen_tiles,
-                          targets[e].chosen_visible});
+                          gpu.readBack<gpu::HistoryTile>(of.history, eyes[e].history.size()), targets[e].warp_counters,
+                          targets[e].chosen_tiles, targets[e].chosen_visible});
         std::ranges::sort(chosen.back().list);
     }
     return chosen;

@@ -150,7 +150,7 @@ TEST_CASE_FIXTURE(Gpu, "red comes first, or with blue first third; what is seen 
           Bytes{0xff000000u, 0xff0000ffu, 0xff00ff00u, 0xffff00ffu});
 }
 
-TEST_CASE_FIXTURE(Gpu, "depth is near over depth, and nothing is infinitely far, whether it is a sum or in the words of a past") {
+TEST_CASE_FIXTURE(Gpu, "depth is near over depth, and nothing is infinitely far, whether it is a sum or in the words of a history") {
     // Alpha 0.5 at depth 4, alpha 1 at the near plane and in front of it, nothing, almost nothing, alpha
     // without depth.
     const Shown summed{.size_px = {6, 1},

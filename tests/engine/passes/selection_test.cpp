@@ -26,11 +26,11 @@ Tiles drawTiles(glm::uvec2 size, std::mt19937& random, unsigned marked_percent =
     return tiles;
 }
 
-Tiles drawPast(glm::uvec2 size, std::mt19937& random) {
+Tiles drawHistory(glm::uvec2 size, std::mt19937& random) {
     Tiles drawn(size);
     const auto draw = [&] { return static_cast<float>(drawUnit(random)); };
     for (gpu::uint& kind : drawn.kinds) {
-        gpu::PastTile tile{};
+        gpu::HistoryTile tile{};
         tile.cost = static_cast<gpu::uint>(random() % 3 == 0 ? random() % 5000 : random() % 40);
         tile.age = static_cast<gpu::uint>(random() % (random() % 4 == 0 ? 500 : 6));
         const bool is_still = random() % 8 == 0;  // as in front of a head that keeps still
@@ -42,7 +42,7 @@ Tiles drawPast(glm::uvec2 size, std::mt19937& random) {
         }
         // Up to 1.4 times what masks errors.
         tile.squared_gradient = static_cast<gpu::uint>(random() % 4'000'000);
-        drawn.past.push_back(tile);
+        drawn.history.push_back(tile);
         kind = random() % 12 == 0 ? gpu::kTileHidden : 0;
     }
     return drawn;
@@ -85,8 +85,8 @@ struct Expected {
 Expected expectOf(const Tiles& eye, const Chosen& got) {
     Expected expected{test::kindsOf(eye.kinds), {}, {eye.costs.begin(), eye.costs.end()}};
     for (const gpu::uint error : eye.errors) { expected.errors.push_back(error / kErrorSteps); }
-    std::vector<reference::PastTile> twin;
-    for (const gpu::PastTile& tile : eye.past) { twin.push_back(test::tileOf(tile)); }
+    std::vector<reference::HistoryTile> twin;
+    for (const gpu::HistoryTile& tile : eye.history) { twin.push_back(test::tileOf(tile)); }
     reference::growErrors(twin);
     std::size_t other = 0;
     for (std::size_t t = 0; t < twin.size(); ++t) {
@@ -94,7 +94,7 @@ Expected expectOf(const Tiles& eye, const Chosen& got) {
         const double error = hidden ? 0.0 : reference::worthOf(twin[t]);
         expected.costs[t] = hidden ? 0 : reference::costOf(twin[t]);
         for (std::size_t q = 0; q < 4; ++q) {
-            other += test::isNear(static_cast<double>(got.past[t].errors[static_cast<int>(q)]), twin[t].errors[q], 1e-6, 0.0) ? 0 : 1;
+            other += test::isNear(static_cast<double>(got.history[t].errors[static_cast<int>(q)]), twin[t].errors[q], 1e-6, 0.0) ? 0 : 1;
         }
         other += coarse || test::isNear(got.errors[t] / kErrorSteps, error, 1e-5, 1.0 / kErrorSteps) ? 0 : 1;
         other += coarse || (got.errors[t] == 0) == (error == 0.0) ? 0 : 1;
@@ -109,7 +109,7 @@ Expected expectOf(const Tiles& eye, const Chosen& got) {
 void checkChoice(Gpu& gpu, const std::vector<Tiles>& eyes, const How& how) {
     INFO("budget ", how.budget, ", eyes.size ", eyes.size(), ", eyes[0].count ", eyes[0].count());
     const std::vector<Chosen> got = chooseOnDevice(gpu, eyes, how);
-    const bool has_past = !eyes[0].past.empty();
+    const bool has_history = !eyes[0].history.empty();
     std::vector<Expected> expected;
     std::vector<std::vector<std::optional<std::uint32_t>>> prices;
     std::vector<reference::PricedTiles> priced;
@@ -135,7 +135,7 @@ void checkChoice(Gpu& gpu, const std::vector<Tiles>& eyes, const How& how) {
                 ++rough;
             }
             if (how.error_bound > 0.0 && prices[e][t]) {
-                prices[e][t] = reference::priceUnderBound(*prices[e][t], test::tileOf(got[e].past[t]), how.error_bound);
+                prices[e][t] = reference::priceUnderBound(*prices[e][t], test::tileOf(got[e].history[t]), how.error_bound);
             }
             words.push_back(prices[e][t] ? *prices[e][t] << 22 | static_cast<gpu::uint>(costs[t]) : 0);
             if (prices[e][t]) { bins[*prices[e][t]] += static_cast<gpu::uint>(costs[t]); }
@@ -145,7 +145,7 @@ void checkChoice(Gpu& gpu, const std::vector<Tiles>& eyes, const How& how) {
     if (!how.gaze) { CHECK(got[0].bins == bins); }
     CHECK(rough <= 1 + eyes[0].count() / 50);
     for (std::size_t e = 0; e < eyes.size(); ++e) { priced.push_back({expected[e].kinds, prices[e], expected[e].costs}); }
-    if (has_past) {
+    if (has_history) {
         CHECK(got[0].counters.picture_cost == picture_cost);
         auto budget_cost = static_cast<std::uint64_t>(static_cast<float>(how.budget) * static_cast<float>(picture_cost));
         if (how.error_bound > 0.0) {
@@ -299,39 +299,39 @@ TEST_CASE_FIXTURE(Gpu, "price counts of an error what the twin's eye sees, where
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "of tiles with a past price and select take the twin's of both eyes, for any budget, bound and gaze") {
+TEST_CASE_FIXTURE(Gpu, "of tiles with a history price and select take the twin's of both eyes, for any budget, bound and gaze") {
     std::mt19937 random(11);
     for (const auto& [left, right] : {std::pair(glm::uvec2(1, 1), glm::uvec2(1, 1)), std::pair(glm::uvec2(16, 8), glm::uvec2(16, 8)),
                                       std::pair(glm::uvec2(43, 9), glm::uvec2(43, 9)), std::pair(glm::uvec2(20, 17), glm::uvec2(5, 3))}) {
         for (const double budget : {0.0, 0.001, 0.1, 0.3, 0.9, 1.0}) {
-            checkChoice(*this, {drawPast(left, random), drawPast(right, random)}, {.budget = budget});
-            checkChoice(*this, {drawPast(left, random)}, {.budget = budget});
-            checkChoice(*this, {drawPast(left, random), drawPast(right, random)}, {.budget = budget, .error_bound = 0.04});
+            checkChoice(*this, {drawHistory(left, random), drawHistory(right, random)}, {.budget = budget});
+            checkChoice(*this, {drawHistory(left, random)}, {.budget = budget});
+            checkChoice(*this, {drawHistory(left, random), drawHistory(right, random)}, {.budget = budget, .error_bound = 0.04});
         }
     }
     Eye eye = test::makeEye({43 * 16, 20 * 16});
     eye.intrinsics = intrinsicsFromFovX(glm::radians(90.0), eye.size_px);
     const Gaze gaze{glm::normalize(glm::dvec3(0.3, -0.1, 1.0)), 0.05};
     for (const double budget : {0.02, 0.2, 0.6, 1.0}) {
-        checkChoice(*this, {drawPast({43, 20}, random), drawPast({43, 20}, random)}, {.budget = budget, .seen = eye, .gaze = gaze});
+        checkChoice(*this, {drawHistory({43, 20}, random), drawHistory({43, 20}, random)}, {.budget = budget, .seen = eye, .gaze = gaze});
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "of equal tiles with a past the first eye's are first, and a tile dearer than the budget has its turn") {
-    gpu::PastTile plain{};
+TEST_CASE_FIXTURE(Gpu, "of equal tiles with a history the first eye's are first, and a tile dearer than the budget has its turn") {
+    gpu::HistoryTile plain{};
     plain.cost = 84;  // 100 including the cost of the tile itself
     plain.age = 1;
     plain.errors = gpu::vec4(0.1f);
     plain.squared_gradient = 3 * 256 << 14;  // an eighth in each channel of each pixel, which masks errors
     std::vector<Tiles> equal(2, Tiles({20, 10}));
-    for (Tiles& tiles : equal) { tiles.past.assign(200, plain); }
+    for (Tiles& tiles : equal) { tiles.history.assign(200, plain); }
     for (const double budget : {0.0, 0.01, 0.4975, 0.51, 0.75, 1.0}) { checkChoice(*this, equal, {.budget = budget}); }
     const auto half = chooseOnDevice(*this, equal, {.budget = 0.75});
     CHECK(half[0].list.size() == 200);
     CHECK(half[1].list.size() == 100);
     std::vector<Tiles> dear = equal;
-    dear[1].past[150].cost = 10000;
-    dear[1].past[150].age = 60000;
+    dear[1].history[150].cost = 10000;
+    dear[1].history[150].age = 60000;
     checkChoice(*this, dear, {.budget = 0.001});
     const auto turn = chooseOnDevice(*this, dear, {.budget = 0.001});
     CHECK(turn[0].list.empty());
@@ -339,9 +339,9 @@ TEST_CASE_FIXTURE(Gpu, "of equal tiles with a past the first eye's are first, an
     // Under a bound, tiles that are good enough stay, except for a twentieth of the work, however large the
     // budget. What nobody saw before is rendered without a budget, as far as lists have capacity.
     std::vector<Tiles> bounded = equal;
-    bounded[0].past[20].errors = gpu::vec4(0.01f, 0.11f, 0.01f, 0.01f);
-    bounded[1].past[30].errors = bounded[1].past[40].errors = gpu::vec4(0.2f);
-    bounded[1].past[40].unseen = 0x14141414;  // 20 pixels each
+    bounded[0].history[20].errors = gpu::vec4(0.01f, 0.11f, 0.01f, 0.01f);
+    bounded[1].history[30].errors = bounded[1].history[40].errors = gpu::vec4(0.2f);
+    bounded[1].history[40].unseen = 0x14141414;  // 20 pixels each
     How how{.budget = 1.0, .error_bound = 0.105};
     checkChoice(*this, bounded, how);
     const auto over = chooseOnDevice(*this, bounded, how);
@@ -350,7 +350,7 @@ TEST_CASE_FIXTURE(Gpu, "of equal tiles with a past the first eye's are first, an
     CHECK(over[0].list.size() + over[1].list.size() == 3 + 20);
     // An error that contrast masks is visible where there is no contrast.
     std::vector<Tiles> smooth = bounded;
-    smooth[0].past[50].squared_gradient = 0;
+    smooth[0].history[50].squared_gradient = 0;
     checkChoice(*this, smooth, how);
     CHECK_FALSE(has(over[0], 50));
     CHECK(has(chooseOnDevice(*this, smooth, how)[0], 50));

@@ -17,10 +17,10 @@ std::array<Eye, 2> atelierEyes() {
                       0.063);
 }
 
-FrameSettings settingsOf(Mode mode, bool keep_past = false) {
+FrameSettings settingsOf(Mode mode, bool keep_history = false) {
     FrameSettings settings;
     settings.mode = mode;
-    settings.keep_past = keep_past;
+    settings.keep_history = keep_history;
     return settings;
 }
 
@@ -48,7 +48,7 @@ void updateUntil(MovingScene& scene, const Is& is) {
 
 // The worst frame after the first eight, seen from this far behind the view, with four display frames for
 // each scene frame.
-double worstFromPasts(MovingScene& moving, double back_m, int frames) {
+double worstFromHistories(MovingScene& moving, double back_m, int frames) {
     KeptFrame temporal(Gpu::shared(), moving.scene()), full(Gpu::shared(), moving.scene());
     std::array<Eye, 2> eyes = atelierEyes();
     for (Eye& eye : eyes) { eye.world_from_camera.position.z -= back_m; }
@@ -189,13 +189,15 @@ TEST_CASE_FIXTURE(Sliding, "frames may have more splats or fewer, as far as the 
     CHECK_THROWS_WITH_AS(moving->settle({}), doctest::Contains("there is room for"), Error);
 }
 
-TEST_CASE_FIXTURE(Sliding, "pictures that are made from their pasts show what moves") { CHECK(worstFromPasts(*open(), 0.0, 16) > 27.0); }
-
-TEST_CASE_FIXTURE(Sliding, "for longer, too, and where it is a part of the picture" * nightly()) {
-    for (const double back_m : {1.2, 0.0}) { CHECK(worstFromPasts(*open(), back_m, 30) > 27.0); }
+TEST_CASE_FIXTURE(Sliding, "pictures that are made from their histories show what moves") {
+    CHECK(worstFromHistories(*open(), 0.0, 16) > 27.0);
 }
 
-TEST_CASE_FIXTURE(Sliding, "what stays equal costs pictures that are made from their pasts nothing") {
+TEST_CASE_FIXTURE(Sliding, "for longer, too, and where it is a part of the picture" * nightly()) {
+    for (const double back_m : {1.2, 0.0}) { CHECK(worstFromHistories(*open(), back_m, 30) > 27.0); }
+}
+
+TEST_CASE_FIXTURE(Sliding, "what stays equal costs pictures that are made from their histories nothing") {
     for (int at = 1; at < kFrames; ++at) { writePly(slidingAtelier(0), fileOf(at)); }
     const auto still = open();
     KeptFrame frame(context(), still->scene());
@@ -210,7 +212,7 @@ TEST_CASE_FIXTURE(Sliding, "what stays equal costs pictures that are made from t
     CHECK(still->scene().changesRecorded() == before);
 }
 
-TEST_CASE_FIXTURE(Gpu, "where most of the picture changes both eyes are rendered in full, and the frames after it have pasts again") {
+TEST_CASE_FIXTURE(Gpu, "where most of the picture changes both eyes are rendered in full, and the frames after it have histories again") {
     const Folder folder;
     writeFilm(folder.file("film"), 3, [](int frame) { return shakenAtelier(frame, 2); });
     MovingScene moving(context(), SceneSeries(folder.file("film")), {.rate_hz = kRate, .memory_bytes = 1});
@@ -224,13 +226,13 @@ TEST_CASE_FIXTURE(Gpu, "where most of the picture changes both eyes are rendered
         eye.world_from_camera.position.x += 0.01 * at;
         const FrameResult result = temporal.render(stereoPair(eye, 0.063), settingsOf(Mode::kTemporal, true));
         const FrameResult full = other.render(stereoPair(eye, 0.063), settingsOf(Mode::kShared));
-        const bool has_past = at != 0.0 && at != 2.0;
-        for (const int e : {kLeft, kRight}) { CHECK((temporal.readPicture(e).values == other.readPicture(e).values) == !has_past); }
-        CHECK((result.counters.targets[kLeft].tile_pairs == full.counters.targets[kLeft].tile_pairs) == !has_past);
+        const bool has_history = at != 0.0 && at != 2.0;
+        for (const int e : {kLeft, kRight}) { CHECK((temporal.readPicture(e).values == other.readPicture(e).values) == !has_history); }
+        CHECK((result.counters.targets[kLeft].tile_pairs == full.counters.targets[kLeft].tile_pairs) == !has_history);
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "frames under way have room for what changes, whether it is less or more than a past is kept for") {
+TEST_CASE_FIXTURE(Gpu, "frames under way have room for what changes, whether it is less or more than a history is kept for") {
     const Folder folder;
     writeFilm(folder.file("film"), 9, [](int frame) { return shakenAtelier(frame, 5); });
     MovingScene moving(context(), SceneSeries(folder.file("film")), {.rate_hz = kRate, .memory_bytes = 1});

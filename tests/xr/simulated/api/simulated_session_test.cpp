@@ -199,7 +199,7 @@ TEST_CASE("a session that is being lost says so with every success, and then fai
     checkEach(XR_ERROR_SESSION_LOST,
               {failureOf(made), xrEnumerateReferenceSpaces(session, 0, &count, nullptr), xrRequestExitSession(session)});
     CHECK(xrDestroySession(session) == XR_SUCCESS);
-    // Time has moved on, so the script's line is in the past.
+    // Time has moved on, so the script's line is in the history.
     made.makeSession();
     made.focus();
 }

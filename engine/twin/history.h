@@ -15,7 +15,7 @@
 namespace binosplat::reference {
 
 // What later pictures must know about a tile of the picture from which they are made.
-struct PastTile {
+struct HistoryTile {
     std::uint64_t cost = 0;  // in pairs, when it was last rendered
     std::uint32_t age = 0;   // frames since it was rendered
     // By quarters, row by row:
@@ -29,25 +29,25 @@ struct PastTile {
 };
 
 // A picture of an eye, and what later ones need to know about it.
-struct Past {
+struct History {
     Eye eye;
     std::vector<glm::dvec4> rgba;
     std::vector<std::optional<MovingPixel>> pixels;  // empty: it goes nowhere
-    std::vector<PastTile> tiles;
+    std::vector<HistoryTile> tiles;
     // By tile: 1 for those that have never been seen; empty: all have been.
     std::vector<std::uint8_t> hidden = {};
 };
 
 // rasterize: a picture that was rendered whole, from its moments of inverse depth. `costs`: pairs of each
 // tile.
-Past pastOf(const Eye& eye, const Picture& full, std::span<const std::uint64_t> costs);
+History historyOf(const Eye& eye, const Picture& full, std::span<const std::uint64_t> costs);
 
 // Weights of the samples at -2 ... 3 for a place `t` (0 to 1) after sample 0: Lagrange's polynomial through
 // all six. They sum to 1, and no frequency comes out stronger than it went in, at any t, so a picture may be
 // resampled again and again.
 std::array<double, 6> lagrangeWeights(double t);
 
-// warp_past and warp_pixels: the history as `eye` sees it, and the expected errors of its tiles.
+// warp_history and warp_pixels: the history as `eye` sees it, and the expected errors of its tiles.
 //
 // A block of 4x8 pixels comes whole from a block of the history, if its pixels lie there as in a picture that
 // is shifted and slightly turned. Each pixel then has the depth of the pixel equally far from that block's
@@ -59,15 +59,15 @@ std::array<double, 6> lagrangeWeights(double t);
 // neighbours, as when the history is the other eye's picture, the nearest content that comes along that way
 // is searched for first. A pixel that blends two depths moves with the nearer one: its place is looked up
 // once more with the nearest depth around what was found, and counts if what lies there does blend.
-struct WarpedPast {
-    Past picture;
+struct WarpedHistory {
+    History picture;
     std::vector<std::uint8_t> one_by_one;  // by blocks: 1 if its pixels are made one by one
     std::vector<std::uint8_t> unseen;      // by pixels: 1 if the history did not see it
 };
 // `hidden`: a byte a tile of the picture being made, 1 for tiles that are hidden: these are not made, and are
 // background; empty: none is. `near`: nothing nearer is visible.
-WarpedPast warpPast(const Past& past, const Eye& eye, std::span<const std::uint8_t> hidden = {},
-                    const glm::dvec3& background = glm::dvec3(0.0), double near = 0.2);
+WarpedHistory warpHistory(const History& history, const Eye& eye, std::span<const std::uint8_t> hidden = {},
+                          const glm::dvec3& background = glm::dvec3(0.0), double near = 0.2);
 
 // mark_changed: where something changed in the scene since the history was made, the quarters of tiles that
 // meet the rectangle (half open) are off by that much more amplitude, up to a limit.
@@ -75,28 +75,28 @@ struct ChangedRect {
     glm::uvec2 begin_px, end_px;
     double error;
 };
-void markChanged(std::span<PastTile> tiles, glm::uvec2 size_px, std::span<const ChangedRect> rects);
+void markChanged(std::span<HistoryTile> tiles, glm::uvec2 size_px, std::span<const ChangedRect> rects);
 
 // price: adds the expected error of this frame's warp to the errors of tiles. What is blurred already is
 // blurred more, so it adds up as an amplitude. Half of it is the measured growth, if there is one and most of
 // the quarter was seen. A quarter of which half was not seen is new, and is expected to be off by an
 // amplitude of a half.
-void growErrors(std::span<PastTile> tiles);
+void growErrors(std::span<HistoryTile> tiles);
 // Also price: the loss of a coarse tile counts as an error of all its quarters as soon as a hundredth would
 // be seen in each pixel. `share`: the share of an error that the eye sees (findSharesThere).
-PastTile withLoss(const PastTile& tile, double share);
+HistoryTile withLoss(const HistoryTile& tile, double share);
 // Also price: the worth of rendering a tile: the squared error of all its pixels, times the frames since it
 // was rendered. For an error that grows from frame to frame this is the area under its growth, which
 // rendering saves (Whittle's index).
-double worthOf(const PastTile& tile);
+double worthOf(const HistoryTile& tile);
 // price, under a bound of errors: classes of a tile's price. First come tiles with a quarter of whose pixels
 // the history did not see, then those with a quarter that is off by more than `error_bound`, an amplitude.
 // Contrast masks errors: the bound of a tile whose gradient is less than 1/20 on average (root mean square)
 // is lower in proportion, down to 0.6 of it.
 inline constexpr std::uint32_t kOverPrice = 512, kNewPrice = 1023;
-std::uint32_t priceUnderBound(std::uint32_t price, const PastTile& tile, double error_bound);
+std::uint32_t priceUnderBound(std::uint32_t price, const HistoryTile& tile, double error_bound);
 // Also price: the cost of a tile: its pairs, a workgroup, and writing its pixels.
-std::uint64_t costOf(const PastTile& tile);
+std::uint64_t costOf(const HistoryTile& tile);
 
 // select, if the tiles of several pictures share a budget, in their order: from the highest price down, the
 // first of equals first. The tile in which the budget ends is rendered as well, so that one that costs more
@@ -118,13 +118,13 @@ std::uint64_t budgetUnderBound(std::span<const PricedTiles> pictures, std::uint6
 struct SquaresOfTiles {
     double expected = 0.0, found = 0.0;
 };
-SquaresOfTiles renderTiles(Past& warped, const Picture& full, std::span<const std::uint64_t> costs, std::span<const TileKind> kinds);
+SquaresOfTiles renderTiles(History& warped, const Picture& full, std::span<const std::uint64_t> costs, std::span<const TileKind> kinds);
 // Also rasterize: what the tile's pixels would lose if they were twice as wide, as in the picture `wider`,
 // times the frames since it was rendered, at most 32.
-double widerSquares(const PastTile& tile, const Picture& full, const Picture& wider, std::size_t index, glm::uvec2 size_px);
+double widerSquares(const HistoryTile& tile, const Picture& full, const Picture& wider, std::size_t index, glm::uvec2 size_px);
 // A disc as these see it, in whichever tile it is.
 ProjectedSplat asSeenWider(const ProjectedSplat& disc, glm::uvec2 size_px);
 // select: the squared errors expected of tiles that are not rendered.
-double leftSquares(std::span<const PastTile> tiles, std::span<const TileKind> kinds);
+double leftSquares(std::span<const HistoryTile> tiles, std::span<const TileKind> kinds);
 
 }  // namespace binosplat::reference

@@ -1,5 +1,5 @@
-// warp_past: an eye's picture from the one that it showed before, block by block.
-#include "engine/twin/past_view.h"
+// warp_history: an eye's picture from the one that it showed before, block by block.
+#include "engine/twin/history_view.h"
 
 namespace binosplat::reference {
 namespace {
@@ -9,7 +9,7 @@ constexpr double kSmoothPx = 1.0 / 16.0;
 constexpr double kSearchStepPx = 8.0;
 constexpr int kMostSearched = 48;
 
-struct BlockFromPast {
+struct BlockFromHistory {
     bool whole;                                      // it comes from a block of the history
     glm::dvec2 source_px;                            // where its middle comes from
     std::vector<std::optional<MovingPixel>> pixels;  // row by row
@@ -20,13 +20,13 @@ struct BlockFromPast {
 
 // The inverse depth of the nearest content that comes to lie at a place from beyond its neighbours; 0: none
 // in front of `known`. `moves_px`: how far it moves per unit of inverse depth.
-double nearestOnTheWay(const PastView& view, const glm::dvec2& wanted_px, double moves_px, double known, double near) {
+double nearestOnTheWay(const HistoryView& view, const glm::dvec2& wanted_px, double moves_px, double known, double near) {
     const int steps = static_cast<int>(std::min(moves_px / near / kSearchStepPx, double{kMostSearched}));
     double nearest = 0.0;
     for (int i = 1; i <= steps; ++i) {
         const EyeChange::Moved place = view.place(wanted_px, i * kSearchStepPx / moves_px);
         if (!place.in_front || !view.isInside(place.place_px)) { continue; }
-        const PastView::Seen seen = view.look(place.place_px);
+        const HistoryView::Seen seen = view.look(place.place_px);
         const glm::dvec2 off_px = glm::abs(seen.lands_px - wanted_px);
         const bool comes = seen.pixel && std::max(off_px.x, off_px.y) <= kSearchStepPx;
         if (comes && moves_px * (seen.inverse_depth - known) > 1.0) { nearest = std::max(nearest, seen.inverse_depth); }
@@ -34,28 +34,28 @@ double nearestOnTheWay(const PastView& view, const glm::dvec2& wanted_px, double
     return nearest;
 }
 
-BlockFromPast findBlock(const PastView& view, const glm::ivec2& first, double near) {
-    const glm::dvec2 middle_px = glm::dvec2(first + kPastBlock / 2);
+BlockFromHistory findBlock(const HistoryView& view, const glm::ivec2& first, double near) {
+    const glm::dvec2 middle_px = glm::dvec2(first + kHistoryBlock / 2);
     const double guess = view.look(view.place(middle_px, 0.0).place_px).inverse_depth;
     const EyeChange::Moved source = view.place(middle_px, guess);
-    BlockFromPast block{source.in_front, source.place_px, {}, glm::dvec2(0.0), 0.0, HUGE_VAL};
+    BlockFromHistory block{source.in_front, source.place_px, {}, glm::dvec2(0.0), 0.0, HUGE_VAL};
     const glm::dvec2 in_reach = glm::clamp(source.place_px, glm::dvec2(-1e6), glm::dvec2(1e6));
-    const glm::ivec2 corner = glm::ivec2(glm::floor(in_reach + 0.5)) - kPastBlock / 2, end = corner + kPastBlock - 1;
+    const glm::ivec2 corner = glm::ivec2(glm::floor(in_reach + 0.5)) - kHistoryBlock / 2, end = corner + kHistoryBlock - 1;
     block.whole = block.whole && glm::all(glm::greaterThanEqual(corner, glm::ivec2(0))) && glm::all(glm::lessThanEqual(end, view.last)) &&
                   !view.reachesHidden(corner, end);
 
     const auto seenAt = [&](const glm::ivec2& at) {
         const std::optional<MovingPixel> pixel = view.pixel(glm::clamp(at, glm::ivec2(0), view.last));
         const EyeChange::Moved moved =
-            view.now_from_past.move(glm::dvec2(glm::clamp(at, glm::ivec2(0), view.last)) + 0.5, pixel ? pixel->inverse_depth : 0.0);
+            view.now_from_history.move(glm::dvec2(glm::clamp(at, glm::ivec2(0), view.last)) + 0.5, pixel ? pixel->inverse_depth : 0.0);
         return pixel ? std::optional(MovingPixel{moved.inverse_depth, pixel->spread}) : std::nullopt;
     };
     const auto widen = [&](double inverse_depth) {
         block.nearest = std::max(block.nearest, inverse_depth);
         block.farthest = std::min(block.farthest, inverse_depth);
     };
-    for (int y = 0; y < kPastBlock.y; ++y) {
-        for (int x = 0; x < kPastBlock.x; ++x) {
+    for (int y = 0; y < kHistoryBlock.y; ++y) {
+        for (int x = 0; x < kHistoryBlock.x; ++x) {
             const std::optional<MovingPixel> pixel = seenAt(corner + glm::ivec2(x, y));
             block.whole = block.whole && pixel;
             block.pixels.push_back(pixel);
@@ -63,7 +63,7 @@ BlockFromPast findBlock(const PastView& view, const glm::ivec2& first, double ne
             block.spread = std::max(block.spread, pixel ? pixel->spread : 0);
             const glm::dvec2 here_px = glm::dvec2(first + glm::ivec2(x, y)) + 0.5;
             block.mean_move_px +=
-                (view.place(here_px, pixel ? pixel->inverse_depth : 0.0).place_px - here_px) / double(kPastBlock.x * kPastBlock.y);
+                (view.place(here_px, pixel ? pixel->inverse_depth : 0.0).place_px - here_px) / double(kHistoryBlock.x * kHistoryBlock.y);
         }
     }
     const double differ = 0.5 * (block.nearest - block.farthest);
@@ -71,23 +71,23 @@ BlockFromPast findBlock(const PastView& view, const glm::ivec2& first, double ne
     for (int y = -1; y <= 1; ++y) {
         for (int x = -1; x <= 1; ++x) {
             if (x == 0 && y == 0) { continue; }
-            const std::optional<MovingPixel> pixel = seenAt(corner + kPastBlock / 2 + glm::ivec2(x, y) * (kPastBlock / 2 + kBorder));
+            const std::optional<MovingPixel> pixel = seenAt(corner + kHistoryBlock / 2 + glm::ivec2(x, y) * (kHistoryBlock / 2 + kBorder));
             widen(pixel ? pixel->inverse_depth : 0.0);
         }
     }
-    const glm::dvec2 disparity = glm::abs(view.past_from_now.disparity(middle_px));
+    const glm::dvec2 disparity = glm::abs(view.history_from_now.disparity(middle_px));
     const double moves_px = std::max(disparity.x, disparity.y);
     block.nearest = std::max(block.nearest, nearestOnTheWay(view, middle_px, moves_px, block.nearest, near));
     // What is found there must belong there: it must land where it was searched for.
     double mean = 0.0;
-    for (const auto& pixel : block.pixels) { mean += (pixel ? pixel->inverse_depth : 0.0) / double(kPastBlock.x * kPastBlock.y); }
+    for (const auto& pixel : block.pixels) { mean += (pixel ? pixel->inverse_depth : 0.0) / double(kHistoryBlock.x * kHistoryBlock.y); }
     block.whole = block.whole && moves_px * std::abs(mean - guess) <= kAgreesPx;
     // Not stretched along either axis, and of about one depth.
     const auto stretch = [&](int axis) {
         glm::dvec2 half(0.0);
-        half[axis] = 0.5 * kPastBlock[axis];
+        half[axis] = 0.5 * kHistoryBlock[axis];
         const double length = view.place(middle_px + half, guess).place_px[axis] - view.place(middle_px - half, guess).place_px[axis];
-        return 0.5 * (kPastBlock[axis] - 1) * std::abs(length / kPastBlock[axis] - 1.0);
+        return 0.5 * (kHistoryBlock[axis] - 1) * std::abs(length / kHistoryBlock[axis] - 1.0);
     };
     block.whole = block.whole && std::max({stretch(0), stretch(1), moves_px * differ}) <= kSmoothPx &&
                   moves_px * (block.nearest - block.farthest) <= kSameDepthPx;
@@ -95,25 +95,30 @@ BlockFromPast findBlock(const PastView& view, const glm::ivec2& first, double ne
 }
 
 // If anything moves, a block loses at least this much, so that every tile gets its turn.
-double leastLossOf(const BlockFromPast& block) {
-    return kPastBlock.x * kPastBlock.y * (block.mean_move_px != glm::dvec2(0.0) ? kLeastGrowth : 0.0);
+double leastLossOf(const BlockFromHistory& block) {
+    return kHistoryBlock.x * kHistoryBlock.y * (block.mean_move_px != glm::dvec2(0.0) ? kLeastGrowth : 0.0);
 }
 
 // For a whole block: over all its pixels, estimated from two of them. Those in between may be worse.
-Loss lossOf(const PastView& view, const BlockFromPast& block, const glm::ivec2& first) {
+Loss lossOf(const HistoryView& view, const BlockFromHistory& block, const glm::ivec2& first) {
     const double spread = kOwnSpread * spreadOf(block.spread) * block.nearest + 0.5 * (block.nearest - block.farthest);
     const glm::dvec2 off_px = view.uncertainMove(glm::dvec2(first), spread), t = block.mean_move_px - glm::floor(block.mean_move_px);
-    const glm::ivec2 corner = glm::ivec2(glm::floor(block.source_px)) - kPastBlock / 2;
+    const glm::ivec2 corner = glm::ivec2(glm::floor(block.source_px)) - kHistoryBlock / 2;
     const Loss one = lossAt(view, corner + glm::ivec2(1, 2), t, off_px), other = lossAt(view, corner + glm::ivec2(2, 5), t, off_px);
-    const double pixels_each = 0.5 * kPastBlock.x * kPastBlock.y;
+    const double pixels_each = 0.5 * kHistoryBlock.x * kHistoryBlock.y;
     return {std::max(pixels_each * (one.error + other.error), leastLossOf(block)),
             pixels_each * (one.squared_gradient + other.squared_gradient)};
 }
 
 class Warper {
 public:
-    Warper(const Past& past, const Eye& eye, std::span<const std::uint8_t> hidden, const glm::dvec3& background, double near)
-        : past_(past), hidden_(hidden), background_(background, 0.0), near_(near), view_(past, eye), tiles_(tileGrid(eye.size_px)) {
+    Warper(const History& history, const Eye& eye, std::span<const std::uint8_t> hidden, const glm::dvec3& background, double near)
+        : history_(history),
+          hidden_(hidden),
+          background_(background, 0.0),
+          near_(near),
+          view_(history, eye),
+          tiles_(tileGrid(eye.size_px)) {
         const std::size_t pixels = std::size_t{eye.size_px.x} * eye.size_px.y;
         warped_.picture = {eye,
                            std::vector<glm::dvec4>(pixels, background_),
@@ -124,27 +129,27 @@ public:
         for (std::size_t t = 0; t < std::size_t{tiles_.x} * tiles_.y; ++t) { warped_.picture.tiles.push_back(tileBefore(t)); }
     }
 
-    WarpedPast run() {
+    WarpedHistory run() {
         const glm::ivec2 size(warped_.picture.eye.size_px);
-        for (int y = 0; y < size.y; y += kPastBlock.y) {
-            for (int x = 0; x < size.x; x += kPastBlock.x) { makeBlock({x, y}); }
+        for (int y = 0; y < size.y; y += kHistoryBlock.y) {
+            for (int x = 0; x < size.x; x += kHistoryBlock.x) { makeBlock({x, y}); }
         }
         return std::move(warped_);
     }
 
 private:
     // The tile's cost and age are those of where its middle comes from.
-    [[nodiscard]] PastTile tileBefore(std::size_t tile) const {
+    [[nodiscard]] HistoryTile tileBefore(std::size_t tile) const {
         const glm::dvec2 middle_px = glm::min(glm::dvec2(tile % tiles_.x, tile / tiles_.x) * double{kTileSize} + 0.5 * kTileSize,
                                               glm::dvec2(warped_.picture.eye.size_px));
         const double guess = view_.look(view_.place(middle_px, 0.0).place_px).inverse_depth;
         const glm::dvec2 from_px = glm::clamp(view_.place(middle_px, guess).place_px, glm::dvec2(0.0), glm::dvec2(view_.last));
-        const PastTile& before = tileOf(past_, from_px);
+        const HistoryTile& before = tileOf(history_, from_px);
         return {before.cost, before.age + 1, {}, {}, {}, before.lost};
     }
-    static const PastTile& tileOf(const Past& past, const glm::dvec2& place_px) {
+    static const HistoryTile& tileOf(const History& history, const glm::dvec2& place_px) {
         const glm::uvec2 at = glm::uvec2(place_px) / unsigned{kTileSize};
-        return past.tiles[std::size_t{at.y} * tileGrid(past.eye.size_px).x + at.x];
+        return history.tiles[std::size_t{at.y} * tileGrid(history.eye.size_px).x + at.x];
     }
     static std::size_t quarterOf(const glm::ivec2& pixel) {
         return static_cast<std::size_t>(pixel.y % kTileSize / kCell * 2 + pixel.x % kTileSize / kCell);
@@ -153,16 +158,16 @@ private:
     void makeBlock(const glm::ivec2& first) {
         const std::size_t tile_index = std::size_t(first.y / kTileSize) * tiles_.x + std::size_t(first.x / kTileSize);
         if (!hidden_.empty() && hidden_[tile_index] != 0) { return warped_.one_by_one.push_back(0); }
-        const BlockFromPast block = findBlock(view_, first, near_);
-        PastTile& tile = warped_.picture.tiles[tile_index];
+        const BlockFromHistory block = findBlock(view_, first, near_);
+        HistoryTile& tile = warped_.picture.tiles[tile_index];
         const std::size_t quarter = quarterOf(first);
         // The history's errors carry over as squares, and their growth unchanged: as means over where the
         // quarter's blocks come from.
         if (view_.isInside(block.source_px)) {
             const std::size_t from = quarterOf(glm::ivec2(block.source_px));
-            const PastTile& before = tileOf(past_, block.source_px);
-            const bool is_cut = first.x / kCell * kCell + kPastBlock.x >= static_cast<int>(warped_.picture.eye.size_px.x);
-            const double share = is_cut ? 1.0 : static_cast<double>(kPastBlock.x) / kCell;
+            const HistoryTile& before = tileOf(history_, block.source_px);
+            const bool is_cut = first.x / kCell * kCell + kHistoryBlock.x >= static_cast<int>(warped_.picture.eye.size_px.x);
+            const double share = is_cut ? 1.0 : static_cast<double>(kHistoryBlock.x) / kCell;
             tile.errors[quarter] = std::hypot(tile.errors[quarter], std::sqrt(share) * std::min(before.errors[from], 1.0));
             tile.growth[quarter] += share * std::min(before.growth[from], 1.0);
         }
@@ -172,8 +177,8 @@ private:
         tile.grown[quarter] += loss.error;
         tile.squared_gradient += loss.squared_gradient;
         const glm::ivec2 size(warped_.picture.eye.size_px);
-        for (int i = 0; i < kPastBlock.x * kPastBlock.y; ++i) {
-            const glm::ivec2 pixel = first + glm::ivec2(i % kPastBlock.x, i / kPastBlock.x);
+        for (int i = 0; i < kHistoryBlock.x * kHistoryBlock.y; ++i) {
+            const glm::ivec2 pixel = first + glm::ivec2(i % kHistoryBlock.x, i / kHistoryBlock.x);
             if (glm::any(glm::greaterThanEqual(pixel, size))) { continue; }
             const glm::dvec2 middle_px = glm::dvec2(pixel) + 0.5;
             if (block.whole) {
@@ -181,7 +186,7 @@ private:
                 put(pixel, its, sampleSmoothly(view_, view_.place(middle_px, its.inverse_depth).place_px));
                 continue;
             }
-            const PixelFromPast made = makePixel(view_, middle_px, block.nearest, block.farthest);
+            const PixelFromHistory made = makePixel(view_, middle_px, block.nearest, block.farthest);
             tile.grown[quarter] += made.loss.error;
             tile.squared_gradient += made.loss.squared_gradient;
             tile.unseen[quarter] += made.seen ? 0 : 1;
@@ -197,18 +202,18 @@ private:
         warped_.picture.pixels[indexOf(pixel)] = moving;
     }
 
-    const Past& past_;
+    const History& history_;
     std::span<const std::uint8_t> hidden_;
     glm::dvec4 background_;
     double near_;
-    PastView view_;
+    HistoryView view_;
     glm::uvec2 tiles_;
-    WarpedPast warped_;
+    WarpedHistory warped_;
 };
 
 }  // namespace
 
-glm::dvec4 sampleSmoothly(const PastView& view, const glm::dvec2& place_px) {
+glm::dvec4 sampleSmoothly(const HistoryView& view, const glm::dvec2& place_px) {
     const glm::dvec2 at = place_px - 0.5, base = glm::floor(at);
     const auto weights_x = lagrangeWeights(at.x - base.x), weights_y = lagrangeWeights(at.y - base.y);
     glm::dvec4 sum(0.0);
@@ -224,7 +229,7 @@ glm::dvec4 sampleSmoothly(const PastView& view, const glm::dvec2& place_px) {
 // The expected squared error of a pixel of a block. A signal that alternates in sign from pixel to pixel with
 // an amplitude d has fifth differences of 32 d, all of which is lost halfway between two pixels; to this is
 // added how the picture changes over the uncertainty of the place.
-Loss lossAt(const PastView& view, const glm::ivec2& wanted, const glm::dvec2& t, const glm::dvec2& off_px) {
+Loss lossAt(const HistoryView& view, const glm::ivec2& wanted, const glm::dvec2& t, const glm::dvec2& off_px) {
     constexpr std::array<double, 6> kFifthDifference{-1, 5, -10, 10, -5, 1};
     const glm::ivec2 at = glm::clamp(wanted, glm::ivec2(0), view.last);
     glm::dvec3 across(0.0), down(0.0);
@@ -253,8 +258,9 @@ std::array<double, 6> lagrangeWeights(double t) {
     return weights;
 }
 
-WarpedPast warpPast(const Past& past, const Eye& eye, std::span<const std::uint8_t> hidden, const glm::dvec3& background, double near) {
-    return Warper(past, eye, hidden, background, near).run();
+WarpedHistory warpHistory(const History& history, const Eye& eye, std::span<const std::uint8_t> hidden, const glm::dvec3& background,
+                          double near) {
+    return Warper(history, eye, hidden, background, near).run();
 }
 
 }  // namespace binosplat::reference

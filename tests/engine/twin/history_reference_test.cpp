@@ -1,10 +1,10 @@
 // Facts about the twins of reuse over time: pictures whose result is worked out by hand.
-#include "engine/twin/past.h"
+#include "engine/twin/history.h"
 #include "tests/engine/twin/reference_scenes.h"
 
 #include <complex>
 
-SUITE(past_reference) {
+SUITE(history_reference) {
 
 using namespace binosplat::reference;
 
@@ -18,7 +18,7 @@ Picture makePicture(glm::uvec2 size_px) {
 // An opaque picture with `colour(x, y)` at the inverse depth `depth(x, y)`; each pixel has a single depth,
 // and tiles cost 100 pairs.
 template <typename Colour, typename Depth>
-Past makePast(const Eye& eye, const Colour& colour, const Depth& depth) {
+History makeHistory(const Eye& eye, const Colour& colour, const Depth& depth) {
     Picture picture = makePicture(eye.size_px);
     for (std::size_t i = 0; i < picture.rgba.size(); ++i) {
         const double x = static_cast<double>(i % eye.size_px.x), y = static_cast<double>(i / eye.size_px.x);
@@ -27,7 +27,7 @@ Past makePast(const Eye& eye, const Colour& colour, const Depth& depth) {
         picture.inverse_depth_squared[i] = depth(x, y) * depth(x, y);
     }
     const glm::uvec2 tiles = (eye.size_px + 15u) / 16u;
-    return pastOf(eye, picture, std::vector<std::uint64_t>(std::size_t{tiles.x} * tiles.y, 100));
+    return historyOf(eye, picture, std::vector<std::uint64_t>(std::size_t{tiles.x} * tiles.y, 100));
 }
 
 glm::dvec3 waves(double x, double y) {
@@ -39,7 +39,9 @@ Eye moved(Eye eye, const glm::dvec3& by) {
     return eye;
 }
 
-double depthAt(const WarpedPast& warped, std::size_t pixel) { return warped.picture.pixels[pixel].value_or(MovingPixel{}).inverse_depth; }
+double depthAt(const WarpedHistory& warped, std::size_t pixel) {
+    return warped.picture.pixels[pixel].value_or(MovingPixel{}).inverse_depth;
+}
 
 TEST_CASE("the kernel of repeated sampling keeps sums, and makes no frequency stronger at any shift") {
     for (int step = 0; step <= 200; ++step) {
@@ -61,18 +63,18 @@ TEST_CASE("the kernel of repeated sampling keeps sums, and makes no frequency st
 
 TEST_CASE("what stands still in front of a head that stands still stays as it is, however often, and has no error") {
     const Eye eye = test::makeEye({70, 45});
-    Past past = makePast(eye, waves, [](double x, double y) { return x > 30 && y > 20 ? 0.5 : 0.2; });
-    const Past first = past;
+    History history = makeHistory(eye, waves, [](double x, double y) { return x > 30 && y > 20 ? 0.5 : 0.2; });
+    const History first = history;
     for (int frame = 0; frame < 5; ++frame) {
-        WarpedPast warped = warpPast(past, eye);
+        WarpedHistory warped = warpHistory(history, eye);
         CHECK(std::ranges::count(warped.unseen, 1) == 0);
         growErrors(warped.picture.tiles);
-        past = std::move(warped.picture);
+        history = std::move(warped.picture);
     }
-    CHECK(past.rgba == first.rgba);
-    CHECK(std::ranges::equal(past.pixels, first.pixels,
+    CHECK(history.rgba == first.rgba);
+    CHECK(std::ranges::equal(history.pixels, first.pixels,
                              [](const auto& a, const auto& b) { return a->inverse_depth == b->inverse_depth && a->spread == b->spread; }));
-    CHECK(std::ranges::all_of(past.tiles, [](const PastTile& tile) {
+    CHECK(std::ranges::all_of(history.tiles, [](const HistoryTile& tile) {
         return tile.age == 5 && tile.cost == 100 && tile.errors == std::array<double, 4>{} && worthOf(tile) == 0.0;
     }));
 }
@@ -80,8 +82,8 @@ TEST_CASE("what stands still in front of a head that stands still stays as it is
 TEST_CASE("a wave on a wall comes out as it would have been seen, for the least error that counts") {
     const Eye eye = test::makeEye({96, 64});
     // 0.005 to the right moves a wall at inverse depth 0.5 by 0.25 px to the left.
-    const Past past = makePast(eye, waves, [](double, double) { return 0.5; });
-    const WarpedPast warped = warpPast(past, moved(eye, {0.005, 0.0, 0.0}));
+    const History history = makeHistory(eye, waves, [](double, double) { return 0.5; });
+    const WarpedHistory warped = warpHistory(history, moved(eye, {0.005, 0.0, 0.0}));
     for (std::size_t y = 8; y < 56; ++y) {
         for (std::size_t x = 8; x < 88; ++x) {
             const std::size_t i = y * 96 + x;
@@ -94,7 +96,7 @@ TEST_CASE("a wave on a wall comes out as it would have been seen, for the least 
     // The fifth differences of these waves are at most 2e-5.
     for (const double grown : warped.picture.tiles[1].grown) { CHECK(grown == doctest::Approx(64.0 * kLeastGrowth)); }
     // After a whole pixel, the last column has no history; its pixels count with an amplitude of 1.
-    const WarpedPast on = warpPast(past, moved(eye, {0.02, 0.0, 0.0}));
+    const WarpedHistory on = warpHistory(history, moved(eye, {0.02, 0.0, 0.0}));
     CHECK(std::ranges::count(on.unseen, 1) == 64);
     CHECK(on.picture.tiles[5].grown[1] >= 8.0);
     CHECK(on.picture.tiles[5].grown[1] < 8.1);
@@ -104,7 +106,7 @@ TEST_CASE("what is lost between pixels is what alternates there, in whole blocks
     const Eye eye = test::makeEye({96, 64}), half = moved(eye, {0.01, 0.0, 0.0}), quarter = moved(eye, {0.005, 0.0, 0.0});
     const auto stripes = [](double x, double) { return glm::dvec3(std::fmod(x, 2.0) == 0.0 ? 0.7 : 0.3); };
     const auto grownOf = [&](const Eye& to, const auto& depth) {
-        return warpPast(makePast(eye, stripes, depth), to).picture.tiles[7].grown[0];
+        return warpHistory(makeHistory(eye, stripes, depth), to).picture.tiles[7].grown[0];
     };
     const auto wall = [](double, double) { return 0.5; };
     // An amplitude of 0.2 in 64 pixels of three channels, all moved by half a pixel; a move by t from pixel
@@ -114,12 +116,12 @@ TEST_CASE("what is lost between pixels is what alternates there, in whole blocks
     // Pairs of rows at two depths, so that no block is uniform: half of the pixels move by 1/2, half by 1/20.
     // Each has an equal row beside it.
     const auto bands = [](double, double y) { return std::fmod(y, 4.0) < 2.0 ? 0.5 : 0.05; };
-    const WarpedPast apart = warpPast(makePast(eye, stripes, bands), half);
+    const WarpedHistory apart = warpHistory(makeHistory(eye, stripes, bands), half);
     CHECK(std::ranges::count(apart.one_by_one, 0) == 0);
     CHECK(apart.picture.tiles[7].grown[0] == doctest::Approx(32 * 3 * 0.2 * 0.2 + 32 * 3 * std::pow(0.19 * 0.2, 2)).epsilon(1e-4));
     // Not even where everything has one colour: every tile must get its turn.
     const auto grey = [](double, double) { return glm::dvec3(0.5); };
-    CHECK(warpPast(makePast(eye, grey, bands), half).picture.tiles[7].grown[0] == doctest::Approx(64 * kLeastGrowth));
+    CHECK(warpHistory(makeHistory(eye, grey, bands), half).picture.tiles[7].grown[0] == doctest::Approx(64 * kLeastGrowth));
 }
 
 TEST_CASE("a tile's gradient is its picture's, in whole blocks and pixel by pixel, and where it is low less error is within a bound") {
@@ -129,10 +131,10 @@ TEST_CASE("a tile's gradient is its picture's, in whole blocks and pixel by pixe
     const auto bands = [](double, double y) { return std::fmod(y, 4.0) < 2.0 ? 0.5 : 0.05; };
     const double expected = 256 * (0.004 * 0.004 + 0.003 * 0.003);
     const Eye there = moved(eye, {0.01, 0.0, 0.0});
-    CHECK(warpPast(makePast(eye, ramp, wall), there).picture.tiles[7].squared_gradient == doctest::Approx(expected));
-    CHECK(warpPast(makePast(eye, ramp, bands), there).picture.tiles[7].squared_gradient == doctest::Approx(expected));
+    CHECK(warpHistory(makeHistory(eye, ramp, wall), there).picture.tiles[7].squared_gradient == doctest::Approx(expected));
+    CHECK(warpHistory(makeHistory(eye, ramp, bands), there).picture.tiles[7].squared_gradient == doctest::Approx(expected));
 
-    PastTile tile;
+    HistoryTile tile;
     tile.errors[2] = 0.03;
     const auto isOver = [&](double gradient) {
         tile.squared_gradient = 3 * 256 * gradient * gradient;
@@ -148,8 +150,8 @@ TEST_CASE("what was hidden behind a nearer wall is not taken for seen, and the n
     const Eye eye = test::makeEye({160, 48});
     // The left half is near, at inverse depth 1: a step of 0.02 to the right moves it 2 px to the left, and
     // what is behind, at 0.1, by 0.2 px.
-    const Past past = makePast(eye, waves, [](double x, double) { return x < 80 ? 1.0 : 0.1; });
-    const WarpedPast warped = warpPast(past, moved(eye, {0.02, 0.0, 0.0}));
+    const History history = makeHistory(eye, waves, [](double x, double) { return x < 80 ? 1.0 : 0.1; });
+    const WarpedHistory warped = warpHistory(history, moved(eye, {0.02, 0.0, 0.0}));
     for (std::size_t y = 0; y < 48; ++y) {
         const std::size_t row = 160 * y;
         for (std::size_t x = 0; x < 78; ++x) { CHECK(depthAt(warped, row + x) == doctest::Approx(1.0)); }
@@ -162,18 +164,18 @@ TEST_CASE("what was hidden behind a nearer wall is not taken for seen, and the n
     CHECK(warped.picture.tiles[14].unseen == std::array<unsigned, 4>{0, 16, 0, 16});
     CHECK(warped.picture.tiles[14].grown[1] < 1.0);
     // And to the left: the near wall covers two pixels that both walls would claim.
-    const WarpedPast covered = warpPast(past, moved(eye, {-0.02, 0.0, 0.0}));
+    const WarpedHistory covered = warpHistory(history, moved(eye, {-0.02, 0.0, 0.0}));
     for (std::size_t x = 78; x < 160; ++x) { CHECK(depthAt(covered, 160 * 24 + x) == doctest::Approx(x < 82 ? 1.0 : 0.1)); }
 }
 
-TEST_CASE("nothing comes from where the past was hidden, and what is hidden now is background") {
+TEST_CASE("nothing comes from where the history was hidden, and what is hidden now is background") {
     const Eye eye = test::makeEye({96, 64});
-    Past past = makePast(eye, waves, [](double, double) { return 0.5; });
+    History history = makeHistory(eye, waves, [](double, double) { return 0.5; });
     std::vector<std::uint8_t> hidden(24, 0);
     hidden[8] = 1;
-    past.hidden = hidden;
+    history.hidden = hidden;
     hidden[15] = 1;
-    const WarpedPast warped = warpPast(past, moved(eye, {0.02, 0.0, 0.0}), hidden, {0.1, 0.2, 0.3});
+    const WarpedHistory warped = warpHistory(history, moved(eye, {0.02, 0.0, 0.0}), hidden, {0.1, 0.2, 0.3});
     CHECK(warped.picture.rgba[40 * 96 + 50] == glm::dvec4(0.1, 0.2, 0.3, 0.0));
     CHECK(warped.unseen[40 * 96 + 46] == 0);  // that tile was seen
     CHECK(warped.picture.rgba[20 * 96 + 40] == glm::dvec4(0.1, 0.2, 0.3, 0.0));
@@ -185,17 +187,17 @@ TEST_CASE("nothing comes from where the past was hidden, and what is hidden now 
 TEST_CASE("the colour of what was hidden does not leak into the pixels beside it") {
     const Eye eye = test::makeEye({96, 64});
     const auto grey = [](double, double) { return glm::dvec3(0.5); };
-    Past past = makePast(eye, grey, [](double, double) { return 0.5; });
-    past.hidden.assign(24, 0);
-    past.hidden[8] = 1;
+    History history = makeHistory(eye, grey, [](double, double) { return 0.5; });
+    history.hidden.assign(24, 0);
+    history.hidden[8] = 1;
     for (std::size_t y = 16; y < 32; ++y) {
-        for (std::size_t x = 32; x < 48; ++x) { past.rgba[y * 96 + x] = glm::dvec4(0.0); }
+        for (std::size_t x = 32; x < 48; ++x) { history.rgba[y * 96 + x] = glm::dvec4(0.0); }
     }
     // By half a pixel in each direction.
-    const WarpedPast warped = warpPast(past, moved(eye, {0.01, 0.01, 0.0}));
+    const WarpedHistory warped = warpHistory(history, moved(eye, {0.01, 0.01, 0.0}));
     for (std::size_t i = 0; i < warped.unseen.size(); ++i) {
         if (warped.unseen[i] == 0) { CHECK(warped.picture.rgba[i].r == doctest::Approx(0.5)); }
     }
 }
 
-}  // SUITE(past_reference)
+}  // SUITE(history_reference)

@@ -1,5 +1,5 @@
 // Pictures and lists grow to what frames need.
-#include "engine/frame/room.h"
+#include "engine/frame/capacity.h"
 
 #include "engine/error.h"
 #include "engine/frame/changes.h"
@@ -21,15 +21,15 @@ constexpr double kRoomMade = 1.5;
 bool isEmptied(const gpu::ListState& list) { return list.needed != list.count; }
 
 WarpBufferNeeds needsOf(const TargetPlan& target) {
-    if (target.past || target.from_past_later) {
-        return {.size_px = target.eye.size_px, .classes = false, .half_floats = target.kept.half_floats, .past = true, .boxes = 0};
+    if (target.history || target.from_history_later) {
+        return {.size_px = target.eye.size_px, .classes = false, .half_floats = target.kept.half_floats, .history = true, .boxes = 0};
     }
     if (!target.warp) { return {}; }
     const bool components = target.warp->settings.choice == TileChoice::kPaper && target.warp->settings.center_rois;
     return {.size_px = target.eye.size_px,
             .classes = target.keeps_classes || components,
             .half_floats = target.kept.half_floats,
-            .past = false,
+            .history = false,
             .boxes = components ? kHoleBoxes : 0};
 }
 
@@ -94,9 +94,9 @@ void FrameRoom::fitPicture(Picture& picture, glm::uvec2 size_px, const Kept& kep
     picture.size_px = size_px;
     picture.half_floats = kept.half_floats;
     resize(picture.colours, "colours", pixels * (kept.half_floats ? sizeof(gpu::uvec2) : sizeof(gpu::vec4)));
-    resize(picture.depths, "depths", kept.depth && !kept.past ? pixels * sizeof(float) : 0);
-    resize(picture.words, "depths of the history", kept.past ? pixels * sizeof(gpu::uint) : 0);
-    resize(picture.tiles, "tiles of the history", kept.past ? std::uint64_t{tiles.x} * tiles.y * sizeof(gpu::PastTile) : 0);
+    resize(picture.depths, "depths", kept.depth && !kept.history ? pixels * sizeof(float) : 0);
+    resize(picture.words, "depths of the history", kept.history ? pixels * sizeof(gpu::uint) : 0);
+    resize(picture.tiles, "tiles of the history", kept.history ? std::uint64_t{tiles.x} * tiles.y * sizeof(gpu::HistoryTile) : 0);
 }
 
 void FrameRoom::fitPictures(const FramePlan& plan, const std::array<std::span<const std::uint8_t>, 2>& hidden_tiles) {
@@ -112,8 +112,8 @@ void FrameRoom::fitPictures(const FramePlan& plan, const std::array<std::span<co
         if (!used) { continue; }
         if (plan.targets[t].kept.moments) { moments_bytes = std::uint64_t{size_px.x} * size_px.y * sizeof(gpu::vec2); }
         is_used[static_cast<std::size_t>(plan.targets[t].picture)] = true;
-        // A past stays as it is.
-        if (plan.targets[t].past) { is_used[static_cast<std::size_t>(plan.targets[t].past->picture)] = true; }
+        // A history stays as it is.
+        if (plan.targets[t].history) { is_used[static_cast<std::size_t>(plan.targets[t].history->picture)] = true; }
     }
     if (plan.spare_picture) { is_used[static_cast<std::size_t>(*plan.spare_picture)] = true; }
     for (std::size_t p = 0; p < pictures_.size(); ++p) {
@@ -124,7 +124,7 @@ void FrameRoom::fitPictures(const FramePlan& plan, const std::array<std::span<co
     for (const TargetPlan& target : plan.targets) {
         coarse = coarse || target.coarse;
         Kept kept = target.kept;
-        kept.past = kept.past || plan.keeps_past;
+        kept.history = kept.history || plan.keeps_history;
         if (plan.spare_picture) { fitPicture(pictures_[static_cast<std::size_t>(*plan.spare_picture)], target.eye.size_px, kept); }
         fitPicture(pictures_[static_cast<std::size_t>(target.picture)], target.eye.size_px, kept);
     }

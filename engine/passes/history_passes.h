@@ -1,7 +1,7 @@
 // An eye's picture warped from the one that it showed before, and the tiles of both eyes that are rendered
 // again.
 //
-//   warp_past    what the history shows, block by block, and the error to expect of each tile
+//   warp_history    what the history shows, block by block, and the error to expect of each tile
 //   warp_pixels  the pixels of other blocks one by one
 //   mark_changed where the scene differs from what the history saw
 //   price        what it costs to mend that, with one budget for all eyes
@@ -17,7 +17,7 @@
 namespace binosplat {
 
 // The inputs of one eye's passes.
-struct PastInputs {
+struct HistoryInputs {
     const FrameBuffers& buffers;
     const WarpBuffers& warp;
     int index;  // of FrameState::targets
@@ -31,15 +31,15 @@ struct PastInputs {
 
 // The eye `now` and the one whose picture is its history, for the device. `near`: nothing nearer is visible,
 // in scene units.
-gpu::PastView pastViewOf(const Eye& now, const Eye& past, double near, const glm::vec3& background);
+gpu::HistoryView historyViewOf(const Eye& now, const Eye& history, double near, const glm::vec3& background);
 
 // The target's colours, words and tiles.
-void recordFromPast(PassKernels& kernels, Commands& commands, const PastInputs& in);
+void recordFromHistory(PassKernels& kernels, Commands& commands, const HistoryInputs& in);
 // Between the two: marks where the scene has changed since the history was made.
-void recordChanged(PassKernels& kernels, Commands& commands, const PastInputs& in, gpu::DeviceAddress<gpu::ChangedRect> rects,
+void recordChanged(PassKernels& kernels, Commands& commands, const HistoryInputs& in, gpu::DeviceAddress<gpu::ChangedRect> rects,
                    gpu::uint count);
 // Chooses the tiles of all `eyes`, one target after the other, that are rendered again; `at_once` of them at
 // the same time. The first one's WarpView has the budget, a share of all eyes' work.
-void recordChoice(PassKernels& kernels, Commands& commands, std::span<const PastInputs> eyes, gpu::uint at_once);
+void recordChoice(PassKernels& kernels, Commands& commands, std::span<const HistoryInputs> eyes, gpu::uint at_once);
 
 }  // namespace binosplat

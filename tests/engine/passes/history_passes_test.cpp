@@ -1,13 +1,13 @@
-// Facts about the passes that reproject an eye from its history: warp_past and warp_pixels, what rasterize
+// Facts about the passes that reproject an eye from its history: warp_history and warp_pixels, what rasterize
 // measures (price and select: selection_test.cpp), and what changes of the scene do. Each is compared with
 // its twin, which continues from the device's previous pass. Where a depth or a place lies on a threshold,
 // float32 may fall on the other side: there is a budget for such flips.
 #include "engine/frame/changes.h"
 #include "shaders/embedded_shaders.h"
+#include "tests/engine/passes/history_stages.h"
 #include "tests/engine/passes/pass_stages.h"
-#include "tests/engine/passes/past_stages.h"
 
-SUITE(past_passes) {
+SUITE(history_passes) {
 
 using reference::TileKind;
 
@@ -27,11 +27,11 @@ const ViewedScene& evenFence() {
 }
 
 // A pixel's D is its alpha over its inverse depth, or 0 if that is infinitely far.
-std::size_t countOtherDepths(const Image& depths, const reference::Past& past) {
+std::size_t countOtherDepths(const Image& depths, const reference::History& history) {
     std::size_t other = 0;
-    for (std::size_t i = 0; i < past.rgba.size(); ++i) {
-        const double inverse_depth = past.pixels[i] ? past.pixels[i]->inverse_depth : 0.0;
-        const double expected = inverse_depth > 0.0 ? past.rgba[i].a / inverse_depth : 0.0;
+    for (std::size_t i = 0; i < history.rgba.size(); ++i) {
+        const double inverse_depth = history.pixels[i] ? history.pixels[i]->inverse_depth : 0.0;
+        const double expected = inverse_depth > 0.0 ? history.rgba[i].a / inverse_depth : 0.0;
         // Depths are half floats.
         other += test::isNear(static_cast<double>(depths.values[i]), expected, 1e-3, 1e-6) ? 0 : 1;
     }
@@ -72,7 +72,7 @@ void checkWarped(Gpu& gpu, const Way& way) {
     INFO(way.view.name, ", hides ", way.hides);
     const test::WalkSettings settings = way.settings();
     const auto& hidden = settings.hidden;
-    PastWalk walk(gpu, way.view, settings);
+    HistoryWalk walk(gpu, way.view, settings);
     walk.go(0.0, 0.0);
     std::array<EyeOnDevice, 2> before{walk.read(kLeft), walk.read(kRight)};
     WarpDifferences all;
@@ -82,12 +82,12 @@ void checkWarped(Gpu& gpu, const Way& way) {
         walk.go(step, 0.0);
         for (const std::size_t e : {0, 1}) {
             EyeOnDevice made = walk.read(static_cast<int>(e));
-            before[e].past.hidden = hidden[e];
-            reference::WarpedPast warped = reference::warpPast(before[e].past, walk.eyes()[e], hidden[e], settings.background);
+            before[e].history.hidden = hidden[e];
+            reference::WarpedHistory warped = reference::warpHistory(before[e].history, walk.eyes()[e], hidden[e], settings.background);
             one_by_one += static_cast<std::size_t>(std::ranges::count(warped.one_by_one, 1));
             blocks += warped.one_by_one.size();
             compareWarped(all, made, std::move(warped.picture));
-            if (e == 0) { CHECK(countOtherDepths(walk.readDepth(), made.past) == 0); }
+            if (e == 0) { CHECK(countOtherDepths(walk.readDepth(), made.history) == 0); }
             before[e] = std::move(made);
         }
     }
@@ -109,18 +109,18 @@ void checkFirst(Gpu& gpu, const Way& way) {
     INFO(way.view.name, ", half floats ", way.half_floats, ", cant ", way.cant, ", hides ", way.hides);
     const test::WalkSettings settings = way.settings();
     const auto& hidden = settings.hidden;
-    PastWalk walk(gpu, way.view, settings);
+    HistoryWalk walk(gpu, way.view, settings);
     const FrameResult result = walk.go(0.0, 0.2);
     const std::array<Image, 2> full = walk.full();
     std::size_t pixels = 0, other_depths = 0, other_spreads = 0;
     for (const std::size_t e : {0, 1}) {
         const EyeOnDevice made = walk.read(static_cast<int>(e));
         const Eye& eye = walk.eyes()[e];
-        CHECK(test::toImage(eye.size_px, made.past.rgba).values == full[e].values);
+        CHECK(test::toImage(eye.size_px, made.history.rgba).values == full[e].values);
         const auto isHidden = [&](std::size_t tile) { return !hidden[e].empty() && hidden[e][tile] != 0; };
         std::uint64_t pairs = 0;
-        for (std::size_t t = 0; t < made.past.tiles.size(); ++t) {
-            const reference::PastTile& tile = made.past.tiles[t];
+        for (std::size_t t = 0; t < made.history.tiles.size(); ++t) {
+            const reference::HistoryTile& tile = made.history.tiles[t];
             pairs += tile.cost;
             if (isHidden(t)) { continue; }
             CHECK(tile.age == 0);
@@ -130,10 +130,10 @@ void checkFirst(Gpu& gpu, const Way& way) {
         CHECK(pairs == test::countOf(result, e == 0 ? "tile_pairs_left" : "tile_pairs_right"));
         reference::Settings twin_settings{.background = settings.background};
         twin_settings.inverse_depth_moments = true;
-        const reference::Past twin = reference::pastOf(eye, reference::render(way.view.scene, eye, twin_settings),
-                                                       std::vector<std::uint64_t>(made.past.tiles.size()));
+        const reference::History twin = reference::historyOf(eye, reference::render(way.view.scene, eye, twin_settings),
+                                                             std::vector<std::uint64_t>(made.history.tiles.size()));
         for (std::size_t i = 0; i < twin.pixels.size(); ++i) {
-            const auto &a = made.past.pixels[i], &b = twin.pixels[i];
+            const auto &a = made.history.pixels[i], &b = twin.pixels[i];
             if (isHidden(test::tileOf(i, eye.size_px))) { continue; }  // nobody looks there
             ++pixels;
             const bool same = a.has_value() == b.has_value();
@@ -147,21 +147,21 @@ void checkFirst(Gpu& gpu, const Way& way) {
     CHECK(test::share(other_spreads, pixels) <= 0.02);
 }
 
-TEST_CASE_FIXTURE(Gpu, "warp_past and warp_pixels make the twin's picture, and expect the twin's errors") {
+TEST_CASE_FIXTURE(Gpu, "warp_history and warp_pixels make the twin's picture, and expect the twin's errors") {
     checkWarped(*this, {atelier(), false, true});
     checkWarped(*this, {evenFence(), true, false});
 }
 
 TEST_CASE_FIXTURE(Gpu, "pixels are the same whether they are moved as addresses, as on software devices, or as what they are") {
-    const auto walk = [](PastWalk& of) {
+    const auto walk = [](HistoryWalk& of) {
         for (int step = 0; step < 3; ++step) { of.go(step, 0.0); }
-        return of.read(kRight).past.rgba;
+        return of.read(kRight).history.rgba;
     };
     for (const bool half_floats : {false, true}) {
         const ViewedScene& view = half_floats ? evenFence() : atelier();
-        PastWalk own(*this, view, {.half_floats = half_floats});
+        HistoryWalk own(*this, view, {.half_floats = half_floats});
         const auto expected = walk(own);
-        for (const auto& [name, last_constant] : {std::pair("warp_past", 4u), std::pair("warp_pixels", 3u)}) {
+        for (const auto& [name, last_constant] : {std::pair("warp_history", 4u), std::pair("warp_pixels", 3u)}) {
             constexpr std::uint32_t kDecorate = 71, kSpecId = 1;
             const auto embedded = embeddedShader(name);
             std::vector<std::uint32_t>& words = context().replacedShaders()[name];
@@ -171,19 +171,19 @@ TEST_CASE_FIXTURE(Gpu, "pixels are the same whether they are moved as addresses,
                 if (is_it) { words[at + 3] = 99; }  // an id that nobody sets, so by_address keeps its default
             }
         }
-        PastWalk other(*this, view, {.half_floats = half_floats});
+        HistoryWalk other(*this, view, {.half_floats = half_floats});
         CHECK(walk(other) == expected);
         context().replacedShaders().clear();
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "where there is no past both pictures are rendered in full, and what they leave for later is the twin's") {
+TEST_CASE_FIXTURE(Gpu, "where there is no history both pictures are rendered in full, and what they leave for later is the twin's") {
     checkFirst(*this, {atelier(), false, false});
     checkFirst(*this, {fence(), true, true});
     checkFirst(*this, {atelier(), false, true, 0.05});
 }
 
-TEST_CASE_FIXTURE(Gpu, "pictures from pasts and without are so in floats and half floats, whatever lenses hide" * test::nightly()) {
+TEST_CASE_FIXTURE(Gpu, "pictures from histories and without are so in floats and half floats, whatever lenses hide" * test::nightly()) {
     for (const bool hides : {false, true}) {
         checkWarped(*this, {atelier(), false, hides});
         checkWarped(*this, {evenFence(), true, hides});
@@ -195,7 +195,7 @@ TEST_CASE_FIXTURE(Gpu, "pictures from pasts and without are so in floats and hal
 }
 
 // What pixels twice as wide lose in a tile, with splats sampled as the tile's own pixels would see them.
-double widerSquares(const ViewedScene& view, const Eye& eye, const reference::PastTile& tile, std::size_t index) {
+double widerSquares(const ViewedScene& view, const Eye& eye, const reference::HistoryTile& tile, std::size_t index) {
     const reference::Settings settings{.background = {0.1, 0.2, 0.3}};
     test::TwinStages stages({view.name, view.scene, eye}, settings);
     const auto picture = [&] { return reference::rasterize(stages.splats, stages.sorted_pairs, stages.ranges, eye, settings); };
@@ -208,9 +208,9 @@ TEST_CASE_FIXTURE(Gpu, "a frame's choice is the twin's, and tiles that were rend
     for (const ViewedScene* view : {&atelier(), &fence()}) {
         CAPTURE(view->name);
         // Two walks are equal so far; one of them renders tiles again in the last frame.
-        PastWalk walk(*this, *view), only_warps(*this, *view);
+        HistoryWalk walk(*this, *view), only_warps(*this, *view);
         constexpr int kFrames = 3;
-        PastWalk before(*this, *view);
+        HistoryWalk before(*this, *view);
         for (int step = 0; step <= kFrames; ++step) { before.go(step, step == kFrames ? 0.5 : 0.0); }
         const std::vector<gpu::uint> chosen = before.read(kLeft).kinds;
         const auto measured = static_cast<std::uint32_t>(std::find(chosen.begin() + 6, chosen.end(), gpu::kTilePredicted) - chosen.begin());
@@ -231,8 +231,8 @@ TEST_CASE_FIXTURE(Gpu, "a frame's choice is the twin's, and tiles that were rend
             for (std::size_t t = 0; t < costs[e].size(); ++t) {
                 errors.push_back(made[e].errors[t] / kErrorSteps);
                 picture_cost += costs[e][t];
-                CHECK(costs[e][t] == reference::costOf(warped[e].past.tiles[t]));
-                CHECK(test::isNear(errors[t], reference::worthOf(warped[e].past.tiles[t]), 1e-5, 1.0 / kErrorSteps));
+                CHECK(costs[e][t] == reference::costOf(warped[e].history.tiles[t]));
+                CHECK(test::isNear(errors[t], reference::worthOf(warped[e].history.tiles[t]), 1e-5, 1.0 / kErrorSteps));
             }
             kinds[e].assign(costs[e].size(), TileKind::kNone);
             prices[e] = reference::price(kinds[e], errors, costs[e]);
@@ -246,19 +246,19 @@ TEST_CASE_FIXTURE(Gpu, "a frame's choice is the twin's, and tiles that were rend
         for (std::size_t e = 0; e < 2; ++e) {
             CHECK(made[e].kinds == test::kindsOf(kinds[e]));
             // The full render is the device's own, so the twin's measurement is exact.
-            reference::Picture full{walk.eyes()[e].size_px, made[e].past.rgba, {}, {}, {}};
+            reference::Picture full{walk.eyes()[e].size_px, made[e].history.rgba, {}, {}, {}};
             full.inverse_depth = full.inverse_depth_squared = std::vector<double>(full.rgba.size(), 0.0);
             std::vector<std::uint64_t> pairs;
-            for (const reference::PastTile& tile : made[e].past.tiles) { pairs.push_back(tile.cost); }
-            reference::Past twin = warped[e].past;
+            for (const reference::HistoryTile& tile : made[e].history.tiles) { pairs.push_back(tile.cost); }
+            reference::History twin = warped[e].history;
             const reference::SquaresOfTiles its = reference::renderTiles(twin, full, pairs, kinds[e]);
             sums = {sums.expected + its.expected, sums.found + its.found};
-            left += reference::leftSquares(warped[e].past.tiles, kinds[e]);
+            left += reference::leftSquares(warped[e].history.tiles, kinds[e]);
             if (kinds[e][measured] == TileKind::kPredicted) {
-                wider += widerSquares(*view, walk.eyes()[e], warped[e].past.tiles[measured], measured);
+                wider += widerSquares(*view, walk.eyes()[e], warped[e].history.tiles[measured], measured);
             }
             for (std::size_t t = 0; t < kinds[e].size(); ++t) {
-                const reference::PastTile &a = made[e].past.tiles[t], &b = twin.tiles[t];
+                const reference::HistoryTile &a = made[e].history.tiles[t], &b = twin.tiles[t];
                 CHECK(a.age == b.age);
                 for (std::size_t q = 0; q < 4; ++q) {
                     // Up to a step for each thread's sum.
@@ -267,7 +267,7 @@ TEST_CASE_FIXTURE(Gpu, "a frame's choice is the twin's, and tiles that were rend
                     rendered += kinds[e][t] == TileKind::kPredicted && a.growth[q] > 1e-3 ? 1 : 0;
                 }
             }
-            CHECK(twin.rgba == made[e].past.rgba);
+            CHECK(twin.rgba == made[e].history.rgba);
         }
         CHECK(rendered > 40);
         const double all = 2.0 * 768.0 * static_cast<double>(kinds[0].size());
@@ -287,7 +287,7 @@ TEST_CASE_FIXTURE(Gpu, "every tile of a picture that moves has its turn, also wh
             {{0.0f, 0.06f * z * static_cast<float>(bar), z}, {1, 0, 0, 0}, z * glm::vec2(3.0f, 0.02f), 0.99f, glm::vec3(0.5f)});
     }
     const ViewedScene view{"bars", test::makeScene(splats), test::makeEye({96, 64})};
-    PastWalk walk(*this, view, {.background = glm::dvec3(0.5)});
+    HistoryWalk walk(*this, view, {.background = glm::dvec3(0.5)});
     walk.go(0.0, 0.0);
     walk.go(5.0, 0.0);
     for (const int eye : {kLeft, kRight}) { CHECK(std::ranges::count(walk.read(eye).errors, 0u) == 0); }
@@ -362,9 +362,9 @@ TEST_CASE_FIXTURE(Gpu, "mark_changed gives the twin's errors") {
         Eye eye = test::makeOddEye(size_px);
         std::mt19937 random(2);
         const glm::uvec2 size_tiles = tilesOf(size_px);
-        std::vector<gpu::PastTile> tiles(std::size_t{size_tiles.x} * size_tiles.y);
-        std::vector<reference::PastTile> twin;
-        for (gpu::PastTile& tile : tiles) {
+        std::vector<gpu::HistoryTile> tiles(std::size_t{size_tiles.x} * size_tiles.y);
+        std::vector<reference::HistoryTile> twin;
+        for (gpu::HistoryTile& tile : tiles) {
             tile.cost = static_cast<gpu::uint>(random() % 100);
             tile.age = static_cast<gpu::uint>(random() % 10);
             tile.growth = gpu::vec4(0.25f);
@@ -377,13 +377,13 @@ TEST_CASE_FIXTURE(Gpu, "mark_changed gives the twin's errors") {
         for (const gpu::ChangedRect& rect : rects) { twin_rects.push_back({rect.begin_px, rect.end_px, static_cast<double>(rect.error)}); }
         reference::markChanged(twin, size_px, twin_rects);
         const Buffer tile_buffer = upload("tiles", tiles), rect_buffer = upload("rects", rects);
-        const gpu::MarkChangedPass pass{.tiles = tile_buffer.address<gpu::PastTile>(),
+        const gpu::MarkChangedPass pass{.tiles = tile_buffer.address<gpu::HistoryTile>(),
                                         .rects = rect_buffer.address<gpu::ChangedRect>(),
                                         .size_tiles = size_tiles,
                                         .count = static_cast<gpu::uint>(rects.size())};
         const Kernel& kernel = this->kernel(MarkChangedKernel{});
         run([&](Commands& commands) { commands.dispatchOver(kernel, pass, tiles.size(), gpu::kWarpGroup); });
-        const auto marked = readBack<gpu::PastTile>(tile_buffer, tiles.size());
+        const auto marked = readBack<gpu::HistoryTile>(tile_buffer, tiles.size());
         std::size_t changed = 0;
         for (std::size_t t = 0; t < tiles.size(); ++t) {
             CHECK(marked[t].cost == tiles[t].cost);
@@ -397,4 +397,4 @@ TEST_CASE_FIXTURE(Gpu, "mark_changed gives the twin's errors") {
     }
 }
 
-}  // SUITE(past_passes)
+}  // SUITE(history_passes)

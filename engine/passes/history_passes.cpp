@@ -1,5 +1,5 @@
 // Records the passes that make an eye from its own history.
-#include "engine/passes/past_passes.h"
+#include "engine/passes/history_passes.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -16,64 +16,64 @@ gpu::uint mostCost(const FrameCapacity& capacity) { return capacity.pairs - capa
 
 }  // namespace
 
-gpu::PastView pastViewOf(const Eye& now, const Eye& past, double near, const glm::vec3& background) {
-    const EyeRelation relation = relate(past, now);
-    return {.past_from_now = relation.source_from_target,
-            .now_from_past = relation.target_from_source,
+gpu::HistoryView historyViewOf(const Eye& now, const Eye& history, double near, const glm::vec3& background) {
+    const EyeRelation relation = relate(history, now);
+    return {.history_from_now = relation.source_from_target,
+            .now_from_history = relation.target_from_source,
             .size_px = now.size_px,
             .size_tiles = tilesOf(now.size_px),
-            .past_size_px = past.size_px,
-            .past_size_tiles = tilesOf(past.size_px),
+            .history_size_px = history.size_px,
+            .history_size_tiles = tilesOf(history.size_px),
             .nearest = static_cast<float>(1.0 / near),
             .background = background};
 }
 
-void recordFromPast(PassKernels& kernels, Commands& commands, const PastInputs& in) {
-    commands.beginPass({in.role, WarpPastKernel::kStage, WarpPastKernel::kShader});
-    const std::uint64_t blocks = FrameBuffers::targetField(in.index, offsetof(TargetState, past_blocks));
-    const gpu::WarpPastPass pass{
-        .view = in.buffers.state.address<gpu::PastView>(FrameBuffers::targetField(in.index, offsetof(TargetState, past))),
+void recordFromHistory(PassKernels& kernels, Commands& commands, const HistoryInputs& in) {
+    commands.beginPass({in.role, WarpHistoryKernel::kStage, WarpHistoryKernel::kShader});
+    const std::uint64_t blocks = FrameBuffers::targetField(in.index, offsetof(TargetState, history_blocks));
+    const gpu::WarpHistoryPass pass{
+        .view = in.buffers.state.address<gpu::HistoryView>(FrameBuffers::targetField(in.index, offsetof(TargetState, history))),
         .source = in.source.colours.address<gpu::vec4>(),
         .source_words = in.source.words.address<gpu::uint>(),
-        .source_tiles = in.source.tiles.address<gpu::PastTile>(),
+        .source_tiles = in.source.tiles.address<gpu::HistoryTile>(),
         .target = in.target.colours.address<gpu::vec4>(),
         .target_words = in.target.words.address<gpu::uint>(),
-        .tiles = in.target.tiles.address<gpu::PastTile>(),
+        .tiles = in.target.tiles.address<gpu::HistoryTile>(),
         .tile_kinds = in.warp.tileKinds(),
         .tile_mask = in.warp.tileMask(),
         .price_bins = in.warp.bins(),
         .shown_mask = in.shown,
-        .past_shown = in.source_shown,
-        .blocks = in.warp.pastBlocks(),
-        .block_list = in.buffers.state.address<gpu::PastBlockList>(blocks)};
+        .history_shown = in.source_shown,
+        .blocks = in.warp.historyBlocks(),
+        .block_list = in.buffers.state.address<gpu::HistoryBlockList>(blocks)};
     const glm::uvec2 size_px = in.target.size_px;
-    const WarpPastKernel kernel{.half_colours = in.target.half_floats,
-                                .hidden_tiles = in.shown.value != 0 || in.source_shown.value != 0,
-                                .whole_blocks = size_px.x % gpu::kPastColumns == 0,
-                                .by_address = kernels.byAddress()};
-    commands.dispatch(kernels.get(kernel), pass, groupsOver(size_px.x, gpu::kPastTiles * gpu::kTileSize),
+    const WarpHistoryKernel kernel{.half_colours = in.target.half_floats,
+                                   .hidden_tiles = in.shown.value != 0 || in.source_shown.value != 0,
+                                   .whole_blocks = size_px.x % gpu::kHistoryColumns == 0,
+                                   .by_address = kernels.byAddress()};
+    commands.dispatch(kernels.get(kernel), pass, groupsOver(size_px.x, gpu::kHistoryTiles * gpu::kTileSize),
                       groupsOver(size_px.y, gpu::kTileSize));
     commands.beginPass({in.role, WarpPixelsKernel::kStage, WarpPixelsKernel::kShader});
     const WarpPixelsKernel pixels{
         .half_colours = kernel.half_colours, .hidden_tiles = kernel.hidden_tiles, .by_address = kernels.byAddress()};
-    commands.dispatchIndirect(kernels.get(pixels), pass, in.buffers.state, blocks + offsetof(gpu::PastBlockList, per_group));
+    commands.dispatchIndirect(kernels.get(pixels), pass, in.buffers.state, blocks + offsetof(gpu::HistoryBlockList, per_group));
 }
 
-void recordChanged(PassKernels& kernels, Commands& commands, const PastInputs& in, gpu::DeviceAddress<gpu::ChangedRect> rects,
+void recordChanged(PassKernels& kernels, Commands& commands, const HistoryInputs& in, gpu::DeviceAddress<gpu::ChangedRect> rects,
                    gpu::uint count) {
     if (count == 0) { return; }
     commands.beginPass({in.role, MarkChangedKernel::kStage, MarkChangedKernel::kShader});
     const gpu::MarkChangedPass pass{
-        .tiles = in.target.tiles.address<gpu::PastTile>(), .rects = rects, .size_tiles = tilesOf(in.target.size_px), .count = count};
+        .tiles = in.target.tiles.address<gpu::HistoryTile>(), .rects = rects, .size_tiles = tilesOf(in.target.size_px), .count = count};
     commands.dispatch(kernels.get(MarkChangedKernel{}), pass, groupsOver(in.warp.tileCount(), gpu::kWarpGroup));
 }
 
-void recordChoice(PassKernels& kernels, Commands& commands, std::span<const PastInputs> eyes, gpu::uint at_once) {
-    const PastInputs& first = eyes.front();
+void recordChoice(PassKernels& kernels, Commands& commands, std::span<const HistoryInputs> eyes, gpu::uint at_once) {
+    const HistoryInputs& first = eyes.front();
     const std::uint64_t target = FrameBuffers::targetField(first.index, 0);
     std::uint32_t most_tiles = 0;
     bool foveated = false;
-    for (const PastInputs& in : eyes) {
+    for (const HistoryInputs& in : eyes) {
         most_tiles = std::max(most_tiles, in.warp.tileCount());
         foveated = foveated || in.gaze;
     }
@@ -84,10 +84,10 @@ void recordChoice(PassKernels& kernels, Commands& commands, std::span<const Past
         commands.beginPass({eyes.size() > 1 ? Role::kBoth : first.role, K::kStage, K::kShader});
         commands.dispatch(kernels.get(kernel), pass, groupsOver(most_tiles, gpu::kWarpGroup), 1, static_cast<std::uint32_t>(eyes.size()));
     };
-    dispatch(PriceKernel{.foveated = foveated, .past = true},
+    dispatch(PriceKernel{.foveated = foveated, .history = true},
              gpu::PricePass{
                  .targets = targets, .chosen = chosen, .price_bins = first.warp.bins(), .most_cost = mostCost(first.buffers.capacity())});
-    dispatch(SelectKernel{.predicted = true, .past = true},
+    dispatch(SelectKernel{.predicted = true, .history = true},
              gpu::SelectPass{.targets = targets,
                              .chosen = chosen,
                              .visible = first.buffers.state.address<gpu::ListState>(FrameBuffers::visibleList(0)),

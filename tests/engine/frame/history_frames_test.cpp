@@ -1,13 +1,13 @@
 // Facts about frames that are reprojected from the history, in full and with coarse tiles: what they equal if
-// nothing moves, and what they cost. For single passes see past_passes_test.cpp.
+// nothing moves, and what they cost. For single passes see history_passes_test.cpp.
 #include "tests/engine/frame/frame_runs.h"
 
-SUITE(past_frames) {
+SUITE(history_frames) {
 
 FrameSettings makeSettings(Mode mode, double budget = 0.2) {
     FrameSettings settings;
     settings.mode = mode;
-    settings.keep_past = true;
+    settings.keep_history = true;
     settings.stereo.budget = budget;
     return settings;
 }
@@ -18,7 +18,7 @@ ViewedScene viewAtelier() { return test::viewBuiltin("builtin:atelier", {208, 17
 // far from the gaze.
 FrameSettings withCoarse(Mode mode) {
     FrameSettings settings = makeSettings(mode);
-    settings.keep_past = mode != Mode::kMono;
+    settings.keep_history = mode != Mode::kMono;
     settings.half_periphery = true;
     settings.gazes = {Gaze{{-3.0, 1.0, -2.0}, 0.0}, Gaze{{-3.0, 1.0, -2.0}, 0.0}};
     return settings;
@@ -75,14 +75,14 @@ private:
     std::array<Eye, 2> eyes_;
 };
 
-TEST_CASE_FIXTURE(Gpu, "where no past is kept, temporal is predicted and alternate is shared, frame after frame") {
+TEST_CASE_FIXTURE(Gpu, "where no history is kept, temporal is predicted and alternate is shared, frame after frame") {
     const ViewedScene view = viewAtelier();
     for (const auto& [mode, same] : {std::pair(Mode::kTemporal, Mode::kPredicted), std::pair(Mode::kAlternate, Mode::kShared)}) {
         KeptFrame frame(context(), view.scene);
         const auto other = StereoFrame::beside(frame);
         for (int step = 0; step < 2; ++step) {
             FrameSettings settings = makeSettings(mode);
-            settings.keep_past = false;
+            settings.keep_history = false;
             frame.render(eyesAt(view.eye, step), settings);
             other->render(eyesAt(view.eye, step), makeSettings(same));
             CHECK(shownBy(frame) == shownBy(*other));
@@ -171,7 +171,7 @@ TEST_CASE_FIXTURE(Gpu, "after a jump of the head both eyes are rendered in full"
 }
 
 // The resolution changes as when a governor looks for the one that holds the rate.
-TEST_CASE_FIXTURE(Gpu, "a past comes from less than the way to the other eye; without one a frame is waited for") {
+TEST_CASE_FIXTURE(Gpu, "a history comes from less than the way to the other eye; without one a frame is waited for") {
     constexpr double kStepMetres = 0.0033166;  // the step of eyesAt
     const auto countFull = [](Walk& walk) {
         const auto shown = walk.shown(), full = walk.full();
@@ -201,7 +201,7 @@ TEST_CASE_FIXTURE(Gpu, "a past comes from less than the way to the other eye; wi
     CHECK(told[4] == 4);  // reported at once
 }
 
-TEST_CASE_FIXTURE(Gpu, "a past of another size or of other angles is a past like any other, also when both change in each frame") {
+TEST_CASE_FIXTURE(Gpu, "a history of another size or of other angles is a history like any other, also when both change in each frame") {
     Walk walk(context(), makeSettings(Mode::kTemporal, 0.4));
     for (int step = 0; step < 8; ++step) {
         Eye eye = viewAtelier().eye;
@@ -233,7 +233,7 @@ TEST_CASE_FIXTURE(Gpu, "alternate renders one eye in full, in turn, and the othe
     CHECK(turns == std::array{3, 3});
 }
 
-TEST_CASE_FIXTURE(Gpu, "with coarse tiles, both eyes are as alone without a past") {
+TEST_CASE_FIXTURE(Gpu, "with coarse tiles, both eyes are as alone without a history") {
     for (const Mode mode : {Mode::kPredicted, Mode::kAlternate, Mode::kTemporal}) {
         CAPTURE(nameOf(mode));
         Walk walk(context(), withCoarse(mode), viewRoom());
@@ -248,7 +248,7 @@ TEST_CASE_FIXTURE(Gpu, "with coarse tiles, both eyes are as alone without a past
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "with coarse tiles, a head that stands still comes to see what it sees without a past, for next to no work") {
+TEST_CASE_FIXTURE(Gpu, "with coarse tiles, a head that stands still comes to see what it sees without a history, for next to no work") {
     Walk walk(context(), withCoarse(Mode::kTemporal), viewRoom());
     for (int frame = 0; frame < 4; ++frame) { walk.go(frame); }
     for (int frame = 0; frame < 30; ++frame) { walk.go(4.0); }
@@ -272,4 +272,4 @@ TEST_CASE_FIXTURE(Gpu, "with coarse tiles, a walk keeps its quality within the b
     }
 }
 
-}  // SUITE(past_frames)
+}  // SUITE(history_frames)

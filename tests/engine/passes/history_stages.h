@@ -2,7 +2,7 @@
 // continues.
 #pragma once
 
-#include "engine/twin/past.h"
+#include "engine/twin/history.h"
 #include "tests/engine/frame/frame_runs.h"
 #include "tests/engine/passes/stereo_cases.h"
 
@@ -10,8 +10,8 @@ namespace binosplat::test {
 
 inline constexpr double kErrorSteps = 0x1p20;
 
-inline reference::PastTile tileOf(const gpu::PastTile& tile) {
-    reference::PastTile twin{tile.cost, tile.age, {}, {}, {}, static_cast<double>(tile.lost)};
+inline reference::HistoryTile tileOf(const gpu::HistoryTile& tile) {
+    reference::HistoryTile twin{tile.cost, tile.age, {}, {}, {}, static_cast<double>(tile.lost)};
     for (int q = 0; q < 4; ++q) {
         twin.growth[static_cast<std::size_t>(q)] = static_cast<double>(tile.growth[q]);
         twin.errors[static_cast<std::size_t>(q)] = static_cast<double>(tile.errors[q]);
@@ -24,7 +24,7 @@ inline reference::PastTile tileOf(const gpu::PastTile& tile) {
 
 // An eye's picture, and what the choice among its tiles left.
 struct EyeOnDevice {
-    reference::Past past;
+    reference::History history;
     std::vector<gpu::uint> kinds, errors, costs;
 };
 
@@ -34,14 +34,16 @@ inline EyeOnDevice readEye(Gpu& gpu, StereoFrame& frame, int index, const Eye& e
     const std::size_t pixels = std::size_t{eye.size_px.x} * eye.size_px.y;
     for (const gpu::vec4& colour : picture.half_floats ? unpackHalves(gpu.readBack<gpu::uvec2>(picture.colours, pixels))
                                                        : gpu.readBack<gpu::vec4>(picture.colours, pixels)) {
-        read.past.rgba.emplace_back(colour);
+        read.history.rgba.emplace_back(colour);
     }
     for (const gpu::uint word : gpu.readBack<gpu::uint>(picture.words, pixels)) {
         const reference::Arrival held = unpackArrival(word);
-        read.past.pixels.push_back(word == 0 ? std::nullopt : std::optional(reference::MovingPixel{held.inverse_depth, held.spread}));
+        read.history.pixels.push_back(word == 0 ? std::nullopt : std::optional(reference::MovingPixel{held.inverse_depth, held.spread}));
     }
     const std::size_t count = tileCount(eye.size_px);
-    for (const gpu::PastTile& tile : gpu.readBack<gpu::PastTile>(picture.tiles, count)) { read.past.tiles.push_back(tileOf(tile)); }
+    for (const gpu::HistoryTile& tile : gpu.readBack<gpu::HistoryTile>(picture.tiles, count)) {
+        read.history.tiles.push_back(tileOf(tile));
+    }
     if (const WarpBuffers* chosen = frame.chosenTiles(index)) {
         const auto array = [&](gpu::DeviceAddress<gpu::uint> at) {
             return gpu.readBack<gpu::uint>(chosen->tiles(), count, at.value - chosen->tileKinds().value + WarpBuffers::tileKindsOffset());
@@ -53,7 +55,7 @@ inline EyeOnDevice readEye(Gpu& gpu, StereoFrame& frame, int index, const Eye& e
     return read;
 }
 
-// How a PastWalk keeps its pictures.
+// How a HistoryWalk keeps its pictures.
 struct WalkSettings {
     std::array<std::vector<std::uint8_t>, 2> hidden = {};  // each eye's tiles, as in FrameSettings
     glm::dvec3 background{0.1, 0.2, 0.3};
@@ -62,9 +64,9 @@ struct WalkSettings {
 };
 
 // Frames of a head that walks and turns a little, made as `temporal` makes them.
-class PastWalk {
+class HistoryWalk {
 public:
-    PastWalk(Gpu& gpu, const ViewedScene& view, WalkSettings settings = {})
+    HistoryWalk(Gpu& gpu, const ViewedScene& view, WalkSettings settings = {})
         : gpu_(gpu), view_(view), settings_(std::move(settings)), scene_(gpu.context(), view.scene), frame_(gpu.context(), scene_) {}
 
     FrameResult go(double step, double budget, std::uint32_t measured_part = gpu::kMeasuredParts) {
@@ -94,7 +96,7 @@ private:
     [[nodiscard]] FrameSettings settingsOf(Mode mode, double budget) const {
         FrameSettings settings;
         settings.mode = mode;
-        settings.keep_past = mode == Mode::kTemporal;
+        settings.keep_history = mode == Mode::kTemporal;
         settings.stereo.budget = budget;
         settings.hidden_tiles = {settings_.hidden[0], settings_.hidden[1]};
         settings.background = settings_.background;
@@ -119,11 +121,11 @@ struct WarpDifferences {
 
 // Compares what the device made of the frame before, with nothing rendered again, with what the twin makes of
 // it.
-inline void compareWarped(WarpDifferences& differences, const EyeOnDevice& made, reference::Past twin) {
+inline void compareWarped(WarpDifferences& differences, const EyeOnDevice& made, reference::History twin) {
     for (std::size_t i = 0; i < twin.rgba.size(); ++i) {
-        const glm::dvec4 off = made.past.rgba[i] - twin.rgba[i];
+        const glm::dvec4 off = made.history.rgba[i] - twin.rgba[i];
         differences.squares += glm::dot(off, off) / 4.0;
-        const auto &a = made.past.pixels[i], &b = twin.pixels[i];
+        const auto &a = made.history.pixels[i], &b = twin.pixels[i];
         // All depths of a block change by the ratio of its middle's.
         const bool same = a.has_value() == b.has_value() && (!a || isNear(a->inverse_depth, b->inverse_depth, 1e-3, 1e-6));
         differences.other_depths += same ? 0 : 1;
@@ -131,7 +133,7 @@ inline void compareWarped(WarpDifferences& differences, const EyeOnDevice& made,
     }
     differences.pixels += twin.rgba.size();
     for (std::size_t t = 0; t < twin.tiles.size(); ++t) {
-        const reference::PastTile &a = made.past.tiles[t], &b = twin.tiles[t];
+        const reference::HistoryTile &a = made.history.tiles[t], &b = twin.tiles[t];
         for (std::size_t q = 0; q < 4; ++q) {
             differences.other_growth += isNear(a.growth[q], b.growth[q], 1e-5, 1e-8) ? 0 : 1;
             // A pixel's error is rounded down to steps.
@@ -145,7 +147,7 @@ inline void compareWarped(WarpDifferences& differences, const EyeOnDevice& made,
     reference::growErrors(twin.tiles);
     for (std::size_t t = 0; t < twin.tiles.size(); ++t) {
         for (std::size_t q = 0; q < 4; ++q) {
-            differences.other_errors += isNear(made.past.tiles[t].errors[q], twin.tiles[t].errors[q], 0.02, 6e-4) ? 0 : 1;
+            differences.other_errors += isNear(made.history.tiles[t].errors[q], twin.tiles[t].errors[q], 0.02, 6e-4) ? 0 : 1;
         }
     }
     differences.tiles += twin.tiles.size();

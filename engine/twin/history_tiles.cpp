@@ -1,6 +1,6 @@
 // price and rasterize, with a history: the expected errors of its tiles, and what these turn out to have
 // been.
-#include "engine/twin/past_view.h"
+#include "engine/twin/history_view.h"
 
 namespace binosplat::reference {
 namespace {
@@ -18,8 +18,8 @@ std::optional<MovingPixel> pixelOf(const Picture& full, std::size_t i) {
 
 }  // namespace
 
-void growErrors(std::span<PastTile> tiles) {
-    for (PastTile& tile : tiles) {
+void growErrors(std::span<HistoryTile> tiles) {
+    for (HistoryTile& tile : tiles) {
         for (std::size_t q = 0; q < 4; ++q) {
             const double expected = tile.unseen[q] >= kNewPixels ? kNewError : std::sqrt(tile.grown[q] / (kChannels * kCellPixels));
             const double measured = tile.growth[q] > 0.0 && expected < kUnseenGrowth ? kMeasuredShare : 0.0;
@@ -28,15 +28,15 @@ void growErrors(std::span<PastTile> tiles) {
     }
 }
 
-PastTile withLoss(const PastTile& tile, double share) {
-    PastTile seen = tile;
+HistoryTile withLoss(const HistoryTile& tile, double share) {
+    HistoryTile seen = tile;
     if (share * kChannels * kTilePixels * tile.lost * tile.lost >= 0.01 * 0.01 * kTilePixels) {
         for (double& error : seen.errors) { error += tile.lost; }
     }
     return seen;
 }
 
-void markChanged(std::span<PastTile> tiles, glm::uvec2 size_px, std::span<const ChangedRect> rects) {
+void markChanged(std::span<HistoryTile> tiles, glm::uvec2 size_px, std::span<const ChangedRect> rects) {
     const std::size_t columns = tileGrid(size_px).x;
     std::vector<std::array<double, 4>> more(tiles.size());
     for (const ChangedRect& rect : rects) {
@@ -57,7 +57,7 @@ void markChanged(std::span<PastTile> tiles, glm::uvec2 size_px, std::span<const 
     }
 }
 
-std::uint32_t priceUnderBound(std::uint32_t price, const PastTile& tile, double error_bound) {
+std::uint32_t priceUnderBound(std::uint32_t price, const HistoryTile& tile, double error_bound) {
     unsigned unseen = 0;
     for (const unsigned pixels : tile.unseen) { unseen += pixels; }
     if (unseen >= 0.25 * kTilePixels) { return kNewPrice; }
@@ -67,15 +67,15 @@ std::uint32_t priceUnderBound(std::uint32_t price, const PastTile& tile, double 
     return std::min((is_over ? kOverPrice : 0) + price / 2, kNewPrice - 1);
 }
 
-double worthOf(const PastTile& tile) {
+double worthOf(const HistoryTile& tile) {
     double squares = 0.0;
     for (const double error : tile.errors) { squares += kChannels * kCellPixels * error * error; }
     return squares > 0.0 ? std::max(std::min(squares * std::max(tile.age, 1u), kMostWorth), kStep) : 0.0;
 }
 
-std::uint64_t costOf(const PastTile& tile) { return std::min(tile.cost + kPairsOfTile, kMostCost); }
+std::uint64_t costOf(const HistoryTile& tile) { return std::min(tile.cost + kPairsOfTile, kMostCost); }
 
-double leftSquares(std::span<const PastTile> tiles, std::span<const TileKind> kinds) {
+double leftSquares(std::span<const HistoryTile> tiles, std::span<const TileKind> kinds) {
     double squares = 0.0;
     for (std::size_t t = 0; t < tiles.size(); ++t) {
         double its = 0.0;
@@ -92,7 +92,7 @@ ProjectedSplat asSeenWider(const ProjectedSplat& disc, glm::uvec2 size_px) {
     return wider;
 }
 
-double widerSquares(const PastTile& tile, const Picture& full, const Picture& wider, std::size_t index, glm::uvec2 size_px) {
+double widerSquares(const HistoryTile& tile, const Picture& full, const Picture& wider, std::size_t index, glm::uvec2 size_px) {
     const std::size_t columns = tileGrid(size_px).x;
     double squares = 0.0;
     for (std::size_t y = index / columns * kTileSize; y < std::min<std::size_t>((index / columns + 1) * kTileSize, size_px.y); ++y) {
@@ -103,7 +103,7 @@ double widerSquares(const PastTile& tile, const Picture& full, const Picture& wi
     return squares * std::clamp(tile.age, 1u, 32u);
 }
 
-SquaresOfTiles renderTiles(Past& warped, const Picture& full, std::span<const std::uint64_t> costs, std::span<const TileKind> kinds) {
+SquaresOfTiles renderTiles(History& warped, const Picture& full, std::span<const std::uint64_t> costs, std::span<const TileKind> kinds) {
     const std::size_t width = warped.eye.size_px.x, columns = tileGrid(warped.eye.size_px).x;
     std::vector<std::array<double, 4>> squares(kinds.size(), std::array<double, 4>{});
     for (std::size_t i = 0; i < warped.rgba.size(); ++i) {
@@ -135,11 +135,11 @@ SquaresOfTiles renderTiles(Past& warped, const Picture& full, std::span<const st
     return sums;
 }
 
-Past pastOf(const Eye& eye, const Picture& full, std::span<const std::uint64_t> costs) {
-    Past past{eye, full.rgba, {}, {}};
-    for (std::size_t i = 0; i < full.rgba.size(); ++i) { past.pixels.push_back(pixelOf(full, i)); }
-    for (const std::uint64_t cost : costs) { past.tiles.push_back({cost, 0, {}, {}, {}}); }
-    return past;
+History historyOf(const Eye& eye, const Picture& full, std::span<const std::uint64_t> costs) {
+    History history{eye, full.rgba, {}, {}};
+    for (std::size_t i = 0; i < full.rgba.size(); ++i) { history.pixels.push_back(pixelOf(full, i)); }
+    for (const std::uint64_t cost : costs) { history.tiles.push_back({cost, 0, {}, {}, {}}); }
+    return history;
 }
 
 }  // namespace binosplat::reference

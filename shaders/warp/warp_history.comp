@@ -1,4 +1,4 @@
-// warp_past: warps the picture that an eye showed before, and predicts each tile's error. A workgroup makes
+// warp_history: warps the picture that an eye showed before, and predicts each tile's error. A workgroup makes
 // 128x16 pixels, a thread a block of 4x8. If the places of a block's pixels in the history are just shifted
 // and slightly rotated, its thread goes over the source pixels row by row and resamples first along the row,
 // then along columns, so that each pixel is read once. Other blocks, where depths differ or the history ends,
@@ -11,26 +11,26 @@
 layout(constant_id = 0) const bool kHalfColours = false;
 layout(constant_id = 1) const bool kHiddenTiles = false;  // a lens hides parts
 layout(constant_id = 2) const bool kWholeBlocks = false;  // the picture's width is a multiple of a block's
-layout(constant_id = 3) const bool kByAddress = false;    // lib/past.glsl; for software devices
+layout(constant_id = 3) const bool kByAddress = false;    // lib/history.glsl; for software devices
 
-layout(local_size_x = kPastGroup) in;
-layout(push_constant, scalar) uniform Push { WarpPastPass pass; };
+layout(local_size_x = kHistoryGroup) in;
+layout(push_constant, scalar) uniform Push { WarpHistoryPass pass; };
 
 #include "lib/tile_mask.glsl"
 #include "lib/picture.glsl"
 #include "lib/moving_pixel.glsl"
 #include "lib/move_pixel.glsl"
-#include "lib/past.glsl"
+#include "lib/history.glsl"
 #include "lib/lagrange.glsl"
 
-const uint kTileBlocks = kTileSize / kPastColumns, kRegionBlocks = kPastTiles * kTileBlocks;  // across
-const uvec2 kRegionCells = uvec2(kPastTiles, 1) * (kTileSize / kCellSize);
-const int kColumns = int(kPastColumns), kRows = int(kPastRows);
+const uint kTileBlocks = kTileSize / kHistoryColumns, kRegionBlocks = kHistoryTiles * kTileBlocks;  // across
+const uvec2 kRegionCells = uvec2(kHistoryTiles, 1) * (kTileSize / kCellSize);
+const int kColumns = int(kHistoryColumns), kRows = int(kHistoryRows);
 
 shared uint listed_count, listed_first;  // this workgroup's part of the list of blocks
 // Squared errors expected of this step, summed, in kErrorSteps.
 shared uint cell_grown[kRegionCells.x * kRegionCells.y];
-shared uint tile_squared_gradient[kPastTiles];
+shared uint tile_squared_gradient[kHistoryTiles];
 // Where the blocks of a cell come from: squares of the history's errors, and how fast they grow, summed in
 // kCarriedSteps.
 shared uint cell_carried[kRegionCells.x * kRegionCells.y], cell_growth[kRegionCells.x * kRegionCells.y];
@@ -42,30 +42,30 @@ struct BlockMoves {
 };
 
 // A row of a block, in 16-byte stores if it begins at a multiple of 16 bytes.
-void putWords(PastView view, uvec2 first, uvec4 words) {
+void putWords(HistoryView view, uvec2 first, uvec4 words) {
     if (first.y >= view.size_px.y) { return; }
     if (kWholeBlocks) {
-        const uint at = (first.y * view.size_px.x + first.x) / kPastColumns;
+        const uint at = (first.y * view.size_px.x + first.x) / kHistoryColumns;
         putSixteen(uvec2(pass.target_words), at, isHidden(view, first) ? uvec4(0) : words);
         return;
     }
-    [[unroll]] for (uint c = 0; c < kPastColumns; ++c) {
+    [[unroll]] for (uint c = 0; c < kHistoryColumns; ++c) {
         if (first.x + c < view.size_px.x) { putWord(view, first + uvec2(c, 0), words[c]); }
     }
 }
 
-void putPixels(PastView view, uvec2 first, vec4 colours[kPastColumns]) {
+void putPixels(HistoryView view, uvec2 first, vec4 colours[kHistoryColumns]) {
     if (first.y >= view.size_px.y) { return; }
     if (kWholeBlocks && kHalfColours) {
         const bool hidden = isHidden(view, first);
         const uint at = (first.y * view.size_px.x + first.x) / 2;
-        [[unroll]] for (uint c = 0; c < kPastColumns; c += 2) {
+        [[unroll]] for (uint c = 0; c < kHistoryColumns; c += 2) {
             const vec4 left = hidden ? vec4(view.background, 0) : colours[c], right = hidden ? vec4(view.background, 0) : colours[c + 1];
             putSixteen(uvec2(pass.target), at + c / 2, uvec4(packHalves(left), packHalves(right)));
         }
         return;
     }
-    [[unroll]] for (uint c = 0; c < kPastColumns; ++c) {
+    [[unroll]] for (uint c = 0; c < kHistoryColumns; ++c) {
         if (kWholeBlocks || first.x + c < view.size_px.x) { putPixel(view, first + uvec2(c, 0), colours[c]); }
     }
 }
@@ -93,7 +93,7 @@ float lossAt(ivec2 at, ivec2 last, vec2 shares, vec2 uncertain_px, out float squ
 }
 
 // Resamples the block.
-void resampleBlock(PastView view, uvec2 first, BlockMoves moves, ivec2 last) {
+void resampleBlock(HistoryView view, uvec2 first, BlockMoves moves, ivec2 last) {
     float weights_y[kColumns][kTaps];  // by column
     const int base_y = int(floor(moves.mean.y));
     const float fract_y = moves.mean.y - float(base_y);
@@ -137,36 +137,36 @@ void resampleBlock(PastView view, uvec2 first, BlockMoves moves, ivec2 last) {
     } while (row < kRows);
 }
 
-// The inverse depth of content that lands at a place from so far away in the past that it is not among its
+// The inverse depth of content that lands at a place from so far away in the history that it is not among its
 // neighbours; 0 if nothing is in front of `known`.
-float nearestOnTheWay(PastView view, vec2 wanted_px, vec2 by_depth, float known) {
+float nearestOnTheWay(HistoryView view, vec2 wanted_px, vec2 by_depth, float known) {
     const float px_by_depth = max(abs(by_depth.x), abs(by_depth.y));
-    const uint steps = min(uint(px_by_depth * view.nearest / kPastSearchStep), kPastMostSearched);
+    const uint steps = min(uint(px_by_depth * view.nearest / kHistorySearchStep), kHistoryMostSearched);
     float nearest = 0;
     for (uint i = 1; i <= steps; ++i) {
-        const float inverse_depth = float(i) * kPastSearchStep / px_by_depth;
-        const vec3 place = movePixelAnywhere(view.past_from_now, wanted_px, inverse_depth);
-        if (place.z <= 0 || !isInPast(view, place.xy)) { continue; }
+        const float inverse_depth = float(i) * kHistorySearchStep / px_by_depth;
+        const vec3 place = movePixelAnywhere(view.history_from_now, wanted_px, inverse_depth);
+        if (place.z <= 0 || !isInHistory(view, place.xy)) { continue; }
         const Seen seen = look(view, place.xy, wanted_px);
-        const bool comes = seen.word != 0 && max(abs(seen.off_px.x), abs(seen.off_px.y)) <= kPastSearchStep;
+        const bool comes = seen.word != 0 && max(abs(seen.off_px.x), abs(seen.off_px.y)) <= kHistorySearchStep;
         if (comes && px_by_depth * (seen.inverse_depth - known) > 1) { nearest = max(nearest, seen.inverse_depth); }
     }
     return nearest;
 }
 
 // Looks for where the block's pixels come from: close to the place of its middle, since the head moves little
-// within a frame. True if they lie in the past as in a picture that is shifted and slightly rotated. Also
+// within a frame. True if they lie in the history as in a picture that is shifted and slightly rotated. Also
 // writes their depths, which are valid in that case.
-bool findBlock(PastView view, uvec2 first, ivec2 last, out BlockMoves moves, out vec2 depths, out vec2 source_px, out float spread) {
+bool findBlock(HistoryView view, uvec2 first, ivec2 last, out BlockMoves moves, out vec2 depths, out vec2 source_px, out float spread) {
     const vec2 half_size = 0.5 * vec2(kBlock), middle_px = vec2(first) + half_size;
-    const float guess = look(view, movePixelAnywhere(view.past_from_now, middle_px, 0).xy, middle_px).inverse_depth;
-    const vec3 move = moveOfPixel(view.past_from_now, middle_px, guess);
-    moves.across = (moveOfPixel(view.past_from_now, middle_px + vec2(half_size.x, 0), guess).xy - move.xy) / half_size.x;
-    moves.down = (moveOfPixel(view.past_from_now, middle_px + vec2(0, half_size.y), guess).xy - move.xy) / half_size.y;
+    const float guess = look(view, movePixelAnywhere(view.history_from_now, middle_px, 0).xy, middle_px).inverse_depth;
+    const vec3 move = moveOfPixel(view.history_from_now, middle_px, guess);
+    moves.across = (moveOfPixel(view.history_from_now, middle_px + vec2(half_size.x, 0), guess).xy - move.xy) / half_size.x;
+    moves.down = (moveOfPixel(view.history_from_now, middle_px + vec2(0, half_size.y), guess).xy - move.xy) / half_size.y;
     const vec2 by_depth = disparity(view, middle_px);
     source_px = middle_px + move.xy;
     const ivec2 corner = ivec2(floor(clamp(source_px, vec2(-1e6), vec2(1e6)) + 0.5)) - ivec2(kBlock) / 2, end = corner + ivec2(kBlock) - 1;
-    const float depth_there = 1 + dot(view.now_from_past.excess_z, vec3(source_px, 1));
+    const float depth_there = 1 + dot(view.now_from_history.excess_z, vec3(source_px, 1));
     bool valid = move.z > 0 && all(greaterThanEqual(corner, ivec2(0))) && all(lessThanEqual(end, last));
     valid = valid && !reachesHidden(view, corner, end);
     depths = vec2(3e38, 0);
@@ -184,7 +184,7 @@ bool findBlock(PastView view, uvec2 first, ivec2 last, out BlockMoves moves, out
         uvec4 words;
         [[unroll]] for (int c = 0; c < kColumns; ++c) {
             const uint word = there_words[c][r];
-            const float there = inverseDepthOf(word), here = there / (depth_there + view.now_from_past.shift.z * there);
+            const float there = inverseDepthOf(word), here = there / (depth_there + view.now_from_history.shift.z * there);
             valid = valid && word != 0;
             words[c] = movingPixel(here, kLanded, word & kSpreadBits);
             spread_bits = max(spread_bits, word & kSpreadBits);
@@ -200,15 +200,15 @@ bool findBlock(PastView view, uvec2 first, ivec2 last, out BlockMoves moves, out
     // Content in front of neighbouring blocks may have moved in front of this one.
     [[unroll]] for (int side = 0; side < 9; ++side) {
         if (side == 4) { continue; }
-        const ivec2 at = clamp((corner + end + 1) / 2 + ivec2(side % 3 - 1, side / 3 - 1) * (ivec2(kBlock) / 2 + int(kPastBorder)), ivec2(0), last);
+        const ivec2 at = clamp((corner + end + 1) / 2 + ivec2(side % 3 - 1, side / 3 - 1) * (ivec2(kBlock) / 2 + int(kHistoryBorder)), ivec2(0), last);
         const uint word = pass.source_words.at[at.y * (last.x + 1) + at.x];
-        const float there = word == 0 ? 0 : inverseDepthOf(word), here = there / (depth_there + view.now_from_past.shift.z * there);
+        const float there = word == 0 ? 0 : inverseDepthOf(word), here = there / (depth_there + view.now_from_history.shift.z * there);
         depths = vec2(min(depths.x, here), max(depths.y, here));
     }
     depths.y = max(depths.y, nearestOnTheWay(view, middle_px, by_depth, depths.y));
     // What is found there must belong there: it lands where it was looked for.
     const float pixels = float(kColumns * kRows), off_px = max(abs(by_depth.x), abs(by_depth.y)) * abs(sum / pixels - guess);
-    valid = valid && off_px <= kPastAgrees;
+    valid = valid && off_px <= kHistoryAgrees;
     const float right = in_columns[2] + in_columns[3] - in_columns[0] - in_columns[1];
     moves.mean = move.xy + by_depth * (sum / pixels - guess);
     const vec2 across = moves.across, down = moves.down;
@@ -217,7 +217,7 @@ bool findBlock(PastView view, uvec2 first, ivec2 last, out BlockMoves moves, out
     spread = kSpreadWeight * sqrt(varianceShareOf(spread_bits)) * depths.y + 0.5 * (depths.y - depths.x);
     const float farthest = max(abs(by_depth.x), abs(by_depth.y));
     const vec2 apart = 0.5 * vec2(kBlock - 1) * abs(vec2(across.x, down.y));
-    return valid && max(max(apart.x, apart.y), farthest * differ) <= kPastSmooth && farthest * (depths.y - depths.x) <= kPastSameDepth;
+    return valid && max(max(apart.x, apart.y), farthest * differ) <= kHistorySmooth && farthest * (depths.y - depths.x) <= kHistorySameDepth;
 }
 
 // Workgroups of warp_pixels over this many blocks.
@@ -227,11 +227,11 @@ uint pixelGroups(uint blocks) {
 }
 
 // The workgroup's tile `i`: outside the picture if there are no more.
-uvec2 tileOfRegion(uint i) { return uvec2(gl_WorkGroupID.x * kPastTiles + i, gl_WorkGroupID.y); }
+uvec2 tileOfRegion(uint i) { return uvec2(gl_WorkGroupID.x * kHistoryTiles + i, gl_WorkGroupID.y); }
 
 void main() {
-    const PastView view = pass.view.at[0];
-    const ivec2 last = ivec2(view.past_size_px) - 1;
+    const HistoryView view = pass.view.at[0];
+    const ivec2 last = ivec2(view.history_size_px) - 1;
     const uint thread = gl_LocalInvocationIndex;
     const uvec2 block = uvec2(thread % kRegionBlocks, thread / kRegionBlocks);
     const uvec2 own_tile = tileOfRegion(block.x / kTileBlocks);
@@ -240,8 +240,8 @@ void main() {
     const uint cell = in_cells.y * kRegionCells.x + in_cells.x;
 
     // Cleared for the passes that choose tiles.
-    const uint all_threads = gl_NumWorkGroups.x * gl_NumWorkGroups.y * kPastGroup;
-    const uint own = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * kPastGroup + thread;
+    const uint all_threads = gl_NumWorkGroups.x * gl_NumWorkGroups.y * kHistoryGroup;
+    const uint own = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * kHistoryGroup + thread;
     for (uint i = own; i < maskWords(view.size_tiles) * view.size_tiles.y; i += all_threads) { pass.tile_mask.at[i] = 0; }
     for (uint i = own; i < kPriceBins; i += all_threads) { pass.price_bins.at[i] = 0; }
 
@@ -249,22 +249,22 @@ void main() {
     uint in_list = 0;
     vec2 depths;
     if (thread == 0) { listed_count = 0; }
-    if (thread < kPastTiles) { tile_squared_gradient[thread] = 0; }
+    if (thread < kHistoryTiles) { tile_squared_gradient[thread] = 0; }
     if (thread < kRegionCells.x * kRegionCells.y) { cell_grown[thread] = cell_carried[thread] = cell_growth[thread] = 0; }
     barrier();
     if (all(lessThan(first, view.size_px)) && isHidden(view, first)) {
-        [[unroll]] for (uint r = 0; r < kPastRows; ++r) {
+        [[unroll]] for (uint r = 0; r < kHistoryRows; ++r) {
             putWords(view, first + uvec2(0, r), uvec4(0));
-            putPixels(view, first + uvec2(0, r), vec4[kPastColumns](vec4(0), vec4(0), vec4(0), vec4(0)));
+            putPixels(view, first + uvec2(0, r), vec4[kHistoryColumns](vec4(0), vec4(0), vec4(0), vec4(0)));
         }
     } else if (all(lessThan(first, view.size_px))) {
         BlockMoves moves;
         vec2 source_px;
         float spread;
         const bool as_one = findBlock(view, first, last, moves, depths, source_px, spread);
-        if (isInPast(view, source_px)) {
-            const uvec2 at = pixelAt(view.past_size_px, source_px), tile = at / kTileSize, quarter = at % kTileSize / kCellSize;
-            const uint from = tile.y * view.past_size_tiles.x + tile.x, its = 2 * quarter.y + quarter.x;
+        if (isInHistory(view, source_px)) {
+            const uvec2 at = pixelAt(view.history_size_px, source_px), tile = at / kTileSize, quarter = at % kTileSize / kCellSize;
+            const uint from = tile.y * view.history_size_tiles.x + tile.x, its = 2 * quarter.y + quarter.x;
             const float carried = pass.source_tiles.at[from].errors[its], growth = pass.source_tiles.at[from].growth[its];
             atomicAdd(cell_carried[cell], uint(min(carried * carried, 1) * kCarriedSteps));
             atomicAdd(cell_growth[cell], uint(min(growth, 1) * kCarriedSteps));
@@ -299,20 +299,20 @@ void main() {
         if (groups > 0) { atomicAdd(pass.block_list.at[0].per_group.x, groups); }
     }
     barrier();
-    if (is_listed) { pass.blocks.at[listed_first + in_list] = PastBlock(first.y / kBlock.y << 16 | first.x / kBlock.x, depths); }
-    if (thread >= kPastTiles) { return; }
+    if (is_listed) { pass.blocks.at[listed_first + in_list] = HistoryBlock(first.y / kBlock.y << 16 | first.x / kBlock.x, depths); }
+    if (thread >= kHistoryTiles) { return; }
     const uvec2 tile = tileOfRegion(thread);
     if (any(greaterThanEqual(tile, view.size_tiles))) { return; }
     // The tile's cost and age are those of the place that its middle comes from.
     const vec2 middle_px = min(vec2(tile * kTileSize) + 0.5 * float(kTileSize), vec2(view.size_px));
-    const float guess = look(view, movePixelAnywhere(view.past_from_now, middle_px, 0).xy, middle_px).inverse_depth;
-    const uvec2 from = pixelAt(view.past_size_px, movePixelAnywhere(view.past_from_now, middle_px, guess).xy) / kTileSize;
-    const PastTile before = pass.source_tiles.at[from.y * view.past_size_tiles.x + from.x];
-    PastTile now = PastTile(before.cost, before.age + 1, vec4(0), vec4(0), uvec4(0), before.lost, 0, tile_squared_gradient[thread]);
+    const float guess = look(view, movePixelAnywhere(view.history_from_now, middle_px, 0).xy, middle_px).inverse_depth;
+    const uvec2 from = pixelAt(view.history_size_px, movePixelAnywhere(view.history_from_now, middle_px, guess).xy) / kTileSize;
+    const HistoryTile before = pass.source_tiles.at[from.y * view.history_size_tiles.x + from.x];
+    HistoryTile now = HistoryTile(before.cost, before.age + 1, vec4(0), vec4(0), uvec4(0), before.lost, 0, tile_squared_gradient[thread]);
     [[unroll]] for (uint q = 0; q < 4; ++q) {
         const uint its_cell = (q >> 1) * kRegionCells.x + thread * (kTileSize / kCellSize) + (q & 1);
         // A quarter has two blocks, side by side, unless the picture ends between them.
-        const float blocks = tile.x * kTileSize + (q & 1) * kCellSize + kPastColumns < view.size_px.x ? 2 : 1;
+        const float blocks = tile.x * kTileSize + (q & 1) * kCellSize + kHistoryColumns < view.size_px.x ? 2 : 1;
         now.errors[q] = sqrt(float(cell_carried[its_cell]) / (blocks * kCarriedSteps));
         now.growth[q] = float(cell_growth[its_cell]) / (blocks * kCarriedSteps);
         now.grown[q] = cell_grown[its_cell];

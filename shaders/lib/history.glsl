@@ -2,9 +2,9 @@
 // of pictures these are: kHalfColours, kHiddenTiles, kByAddress; after their push constants,
 // lib/tile_mask.glsl, lib/picture.glsl, lib/moving_pixel.glsl and lib/move_pixel.glsl.
 
-const uvec2 kBlock = uvec2(kPastColumns, kPastRows);
+const uvec2 kBlock = uvec2(kHistoryColumns, kHistoryRows);
 
-bool isInPast(PastView view, vec2 place_px) { return all(greaterThanEqual(place_px, vec2(0))) && all(lessThan(place_px, vec2(view.past_size_px))); }
+bool isInHistory(HistoryView view, vec2 place_px) { return all(greaterThanEqual(place_px, vec2(0))) && all(lessThan(place_px, vec2(view.history_size_px))); }
 
 // With kByAddress, eight bytes are one access and sixteen bytes two, as if they were addresses: llvmpipe goes
 // from lane to lane once per number of a vector, however wide it is. A 64-bit integer would do as well, but
@@ -35,34 +35,34 @@ struct Seen {
     vec2 off_px;          // where that pixel's middle lands, relative to `wanted_px`
 };
 
-bool isHiddenInPast(PastView view, uvec2 at) {
-    return kHiddenTiles && isThere(uvec2(pass.past_shown)) && !isInMask(pass.past_shown, view.past_size_tiles, at / kTileSize);
+bool isHiddenInHistory(HistoryView view, uvec2 at) {
+    return kHiddenTiles && isThere(uvec2(pass.history_shown)) && !isInMask(pass.history_shown, view.history_size_tiles, at / kTileSize);
 }
 // True if taps around the pixels of a box, less than a tile wide, include hidden ones, whose background would
 // leak in.
-bool reachesHidden(PastView view, ivec2 first, ivec2 last) {
+bool reachesHidden(HistoryView view, ivec2 first, ivec2 last) {
     if (!kHiddenTiles) { return false; }
-    const ivec2 end = ivec2(view.past_size_px) - 1;
-    const uvec2 low = uvec2(clamp(first - kPastReach, ivec2(0), end)), high = uvec2(clamp(last + kPastReach, ivec2(0), end));
-    return isHiddenInPast(view, low) || isHiddenInPast(view, high) || isHiddenInPast(view, uvec2(low.x, high.y)) ||
-           isHiddenInPast(view, uvec2(high.x, low.y));
+    const ivec2 end = ivec2(view.history_size_px) - 1;
+    const uvec2 low = uvec2(clamp(first - kHistoryReach, ivec2(0), end)), high = uvec2(clamp(last + kHistoryReach, ivec2(0), end));
+    return isHiddenInHistory(view, low) || isHiddenInHistory(view, high) || isHiddenInHistory(view, uvec2(low.x, high.y)) ||
+           isHiddenInHistory(view, uvec2(high.x, low.y));
 }
 
-uint wordAt(PastView view, vec2 place_px) {
-    const uvec2 at = pixelAt(view.past_size_px, place_px);
-    return isHiddenInPast(view, at) ? 0 : pass.source_words.at[at.y * view.past_size_px.x + at.x];
+uint wordAt(HistoryView view, vec2 place_px) {
+    const uvec2 at = pixelAt(view.history_size_px, place_px);
+    return isHiddenInHistory(view, at) ? 0 : pass.source_words.at[at.y * view.history_size_px.x + at.x];
 }
 
-Seen look(PastView view, vec2 place_px, vec2 wanted_px) {
+Seen look(HistoryView view, vec2 place_px, vec2 wanted_px) {
     const uint word = wordAt(view, place_px);
     const vec2 middle_px = floor(place_px) + 0.5;
     const float inverse_depth = word == 0 ? 0 : inverseDepthOf(word);
-    const vec3 moves = moveOfPixel(view.now_from_past, middle_px, inverse_depth);
+    const vec3 moves = moveOfPixel(view.now_from_history, middle_px, inverse_depth);
     return Seen(moves.z > 0 ? word : 0, inverse_depth / max(moves.z, 1e-6), (middle_px - wanted_px) + moves.xy);
 }
 
 // How far a place in the history moves per unit of inverse depth.
-vec2 disparity(PastView view, vec2 pixel_px) { return view.past_from_now.shift.xy - pixel_px * view.past_from_now.shift.z; }
+vec2 disparity(HistoryView view, vec2 pixel_px) { return view.history_from_now.shift.xy - pixel_px * view.history_from_now.shift.z; }
 
 // How far the place may be off because of its depth's spread; at most kMaxSpread.
 vec2 uncertainMove(vec2 disparity_px, float spread) {
@@ -71,7 +71,7 @@ vec2 uncertainMove(vec2 disparity_px, float spread) {
     return length_px > kMaxSpread ? move_px * (kMaxSpread / length_px) : move_px;
 }
 
-bool isHidden(PastView view, uvec2 pixel) {
+bool isHidden(HistoryView view, uvec2 pixel) {
     return kHiddenTiles && isThere(uvec2(pass.shown_mask)) && !isInMask(pass.shown_mask, view.size_tiles, pixel / kTileSize);
 }
 
@@ -85,10 +85,10 @@ vec4 sourceAt(uint i) {
 }
 
 // For pixels inside the picture.
-void putWord(PastView view, uvec2 pixel, uint word) {
+void putWord(HistoryView view, uvec2 pixel, uint word) {
     pass.target_words.at[pixel.y * view.size_px.x + pixel.x] = isHidden(view, pixel) ? 0 : word;
 }
-void putPixel(PastView view, uvec2 pixel, vec4 colour) {
+void putPixel(HistoryView view, uvec2 pixel, vec4 colour) {
     const uint at = pixel.y * view.size_px.x + pixel.x;
     const vec4 shown = isHidden(view, pixel) ? vec4(view.background, 0) : colour;
     if (kHalfColours && kByAddress) {
